@@ -1,0 +1,61 @@
+//! One error: which file, where in it, and why.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A failure that the user can act on. Prints as `file: place: reason`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Error {
+    /// The file it is about, if any.
+    pub path: Option<PathBuf>,
+    /// Where in the file: `line 12`, `triangle 3`, `key grid.x`.
+    pub place: Option<String>,
+    /// What is wrong and, where known, what to do.
+    pub reason: String,
+    /// The command line itself is at fault (exit code 2 rather than 1).
+    pub usage: bool,
+}
+
+/// Result with [`Error`].
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// A failure about no file in particular.
+    pub fn new(reason: impl Into<String>) -> Self {
+        Error { path: None, place: None, reason: reason.into(), usage: false }
+    }
+
+    /// A failure of a file as a whole.
+    pub fn file(path: &Path, reason: impl Into<String>) -> Self {
+        Error { path: Some(path.to_owned()), ..Error::new(reason) }
+    }
+
+    /// A failure at a place in a file.
+    pub fn at(path: &Path, place: impl Into<String>, reason: impl Into<String>) -> Self {
+        Error { place: Some(place.into()), ..Error::file(path, reason) }
+    }
+
+    /// A contradiction on the command line.
+    pub fn usage(reason: impl Into<String>) -> Self {
+        Error { usage: true, ..Error::new(reason) }
+    }
+
+    /// An operating-system error about a file.
+    pub fn io(path: &Path, doing: &str, cause: &std::io::Error) -> Self {
+        Error::file(path, format!("cannot {doing}: {cause}"))
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(path) = &self.path {
+            write!(f, "{}: ", path.display())?;
+        }
+        if let Some(place) = &self.place {
+            write!(f, "{place}: ")?;
+        }
+        f.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for Error {}

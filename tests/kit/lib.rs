@@ -1,0 +1,1 @@
+//! Generators, oracles and properties shared by tests, fuzz targets and benches.
