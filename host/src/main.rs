@@ -1,1 +1,2 @@
+//! The command `voidage`.
 fn main() {}
