@@ -9,4 +9,10 @@
 #![forbid(unsafe_code)]
 
 pub mod aabb;
+pub mod clip;
+pub mod grid;
+pub mod layer;
+pub mod overlap;
 pub mod real;
+pub mod section;
+pub mod surface;

@@ -1,6 +1,15 @@
 //! Porosity of files on disk: reading, threads, writing. The mathematics is in [`voidage_core`].
+//!
+//! Data flows one way: [`input`] → [`bodies`] → [`grid`] → [`porosity`] → [`output`]; [`run`] shows the stages in order.
 #![forbid(unsafe_code)]
 
+pub mod bodies;
+pub mod cli;
 pub mod error;
+pub mod grid;
 pub mod input;
+pub mod inspect;
 pub mod output;
+pub mod porosity;
+pub mod progress;
+pub mod run;

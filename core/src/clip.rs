@@ -1,0 +1,153 @@
+//! Cutting convex polygons by planes.
+//!
+//! A crossing is always computed from the lower end of the edge, so two polygons that share an edge get bitwise the same
+//! point: a closed surface stays closed whatever it is cut by.
+
+use crate::real::Real;
+
+/// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is room for the cuts by
+/// other bodies' planes in one cell. A polygon that would grow beyond is refused ([`Polygon::push`] answers false).
+pub const MAX_CORNERS: usize = 16;
+
+/// A convex polygon in space; fewer than three corners means empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Polygon<R> {
+    len: usize,
+    corners: [[R; 3]; MAX_CORNERS],
+}
+
+impl<R: Real> Default for Polygon<R> {
+    fn default() -> Self {
+        Polygon { len: 0, corners: [[R::ZERO; 3]; MAX_CORNERS] }
+    }
+}
+
+impl<R: Real> Polygon<R> {
+    /// A polygon with the given corners (at most [`MAX_CORNERS`]; the rest is dropped).
+    #[must_use]
+    pub fn new(corners: &[[R; 3]]) -> Self {
+        let mut p = Self::default();
+        for &c in corners {
+            p.push(c);
+        }
+        p
+    }
+
+    /// The corners in order.
+    #[must_use]
+    #[inline(always)]
+    pub fn corners(&self) -> &[[R; 3]] {
+        // `len` never exceeds the capacity; `min` lets the compiler see it.
+        &self.corners[..self.len.min(MAX_CORNERS)]
+    }
+
+    /// No area: fewer than three corners.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.len < 3
+    }
+
+    /// Add a corner; false if there is no room.
+    #[inline(always)]
+    pub fn push(&mut self, corner: [R; 3]) -> bool {
+        let room = self.len < MAX_CORNERS;
+        if room {
+            self.corners[self.len] = corner;
+            self.len += 1;
+        }
+        room
+    }
+
+    #[inline(always)]
+    fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Lowest and highest coordinate along an axis.
+    #[must_use]
+    #[inline(always)]
+    pub fn extent(&self, axis: usize) -> (R, R) {
+        let (mut lo, mut hi) = (R::INFINITY, -R::INFINITY);
+        for c in self.corners() {
+            lo = lo.min(c[axis]);
+            hi = hi.max(c[axis]);
+        }
+        (lo, hi)
+    }
+
+    /// Twice the area vector (its direction by the right-hand rule).
+    #[must_use]
+    pub fn doubled_area(&self) -> [R; 3] {
+        let mut sum = [R::ZERO; 3];
+        let c = self.corners();
+        for t in 2..c.len() {
+            let n = cross(sub(c[t - 1], c[0]), sub(c[t], c[0]));
+            sum = [sum[0] + n[0], sum[1] + n[1], sum[2] + n[2]];
+        }
+        sum
+    }
+}
+
+#[inline(always)]
+pub(crate) fn sub<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+pub(crate) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The point of the edge `a`–`b` at coordinate `at` of `axis`, which lies strictly between both ends.
+#[inline(always)]
+pub fn crossing<R: Real>(a: [R; 3], b: [R; 3], axis: usize, at: R) -> [R; 3] {
+    let (lo, hi) = if a[axis] < b[axis] { (a, b) } else { (b, a) };
+    let t = (at - lo[axis]) / (hi[axis] - lo[axis]);
+    let mut p = [lo[0] + (hi[0] - lo[0]) * t, lo[1] + (hi[1] - lo[1]) * t, lo[2] + (hi[2] - lo[2]) * t];
+    p[axis] = at;
+    p
+}
+
+/// Split a polygon at coordinate `at` of `axis` into the parts below and above. Corners on the plane go to both.
+#[inline]
+pub fn split<R: Real>(whole: &Polygon<R>, axis: usize, at: R, below: &mut Polygon<R>, above: &mut Polygon<R>) {
+    below.clear();
+    above.clear();
+    let corners = whole.corners();
+    let Some(&(mut a)) = corners.last() else { return };
+    for &b in corners {
+        if (a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at) {
+            let p = crossing(a, b, axis, at);
+            below.push(p);
+            above.push(p);
+        }
+        if b[axis] <= at {
+            below.push(b);
+        }
+        if b[axis] >= at {
+            above.push(b);
+        }
+        a = b;
+    }
+}
+
+/// The part of a polygon in the slab `lo..hi` of `axis`, in `whole`; `spare` is scratch.
+#[inline]
+pub fn keep_slab<R: Real>(whole: &mut Polygon<R>, axis: usize, lo: R, hi: R, spare: &mut Polygon<R>) {
+    let mut kept = Polygon::default();
+    let (min, max) = whole.extent(axis);
+    if min < lo {
+        split(whole, axis, lo, spare, &mut kept);
+        *whole = kept;
+    }
+    if max > hi {
+        split(whole, axis, hi, &mut kept, spare);
+        *whole = kept;
+    }
+}

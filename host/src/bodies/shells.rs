@@ -1,0 +1,260 @@
+//! Triangles to shells: which belong together, which way round, and where the surface is open.
+//!
+//! Two triangles are neighbours across an edge that they run in opposite directions. Where more than two meet, parts of an
+//! assembly touch; each triangle then takes the neighbour nearest in the file, because exporters write part by part.
+
+use super::weld::Indexed;
+use std::collections::HashMap;
+
+/// A set of triangles connected through edges.
+#[derive(Debug, Clone, Default)]
+pub struct Shell {
+    /// Positions in the mesh's triangle list, in file order.
+    pub triangles: Vec<u32>,
+    /// Directed edges without a partner.
+    pub boundary: Vec<[u32; 2]>,
+    /// Triangles that were turned to agree with the others.
+    pub turned: usize,
+    /// It cannot be oriented (as a Möbius strip).
+    pub one_sided: bool,
+}
+
+/// One triangle's use of an edge: the triangle and whether it runs from the lower to the higher vertex.
+#[derive(Clone, Copy)]
+struct Use {
+    triangle: u32,
+    up: bool,
+}
+
+type Edges = HashMap<[u32; 2], Vec<Use>>;
+
+fn edges_of(t: [u32; 3]) -> [[u32; 2]; 3] {
+    [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
+}
+
+fn edge_uses(mesh: &Indexed, alive: &[bool]) -> Edges {
+    let mut edges: Edges = HashMap::with_capacity(mesh.triangles.len() * 3 / 2);
+    for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
+        for [a, b] in edges_of(t) {
+            edges.entry([a.min(b), a.max(b)]).or_default().push(Use { triangle: n as u32, up: a < b });
+        }
+    }
+    edges
+}
+
+/// How many more times an edge is run one way than the other.
+fn imbalance(uses: &[Use]) -> usize {
+    let up = uses.iter().filter(|u| u.up).count();
+    up.abs_diff(uses.len() - up)
+}
+
+/// Drop repeated triangles, by clusters that share edges, where that leaves the surface no more open than before; a repeat
+/// that closes another part stays. Returns the number dropped.
+pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
+    let mut first: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut repeats = Vec::new();
+    for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
+        let lowest = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+        let key = [t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]];
+        if *first.entry(key).or_insert(n as u32) != n as u32 {
+            repeats.push(n as u32);
+        }
+    }
+    if repeats.is_empty() {
+        return 0;
+    }
+    let edges = edge_uses(mesh, alive);
+    let mut dropped = 0;
+    for cluster in clusters(mesh, &repeats) {
+        let mut change: HashMap<[u32; 2], i64> = HashMap::new();
+        for &n in &cluster {
+            for [a, b] in edges_of(mesh.triangles[n as usize]) {
+                *change.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+        let (mut before, mut after) = (0, 0);
+        for (edge, less) in change {
+            let up: i64 = edges[&edge].iter().map(|u| if u.up { 1 } else { -1 }).sum();
+            before += up.abs();
+            after += (up - less).abs();
+        }
+        if after <= before {
+            cluster.iter().for_each(|&n| alive[n as usize] = false);
+            dropped += cluster.len();
+        }
+    }
+    dropped
+}
+
+/// Groups of some triangles connected through edges.
+fn clusters(mesh: &Indexed, members: &[u32]) -> Vec<Vec<u32>> {
+    let mut sets = Sets::new(members.len());
+    let mut owner: HashMap<[u32; 2], usize> = HashMap::new();
+    for (m, &n) in members.iter().enumerate() {
+        for [a, b] in edges_of(mesh.triangles[n as usize]) {
+            let other = *owner.entry([a.min(b), a.max(b)]).or_insert(m);
+            sets.join(m, other);
+        }
+    }
+    let mut groups: HashMap<usize, Vec<u32>> = HashMap::new();
+    for (m, &n) in members.iter().enumerate() {
+        groups.entry(sets.find(m)).or_default().push(n);
+    }
+    let mut groups: Vec<_> = groups.into_values().collect();
+    groups.sort();
+    groups
+}
+
+/// Disjoint sets with path halving.
+#[derive(Debug)]
+pub struct Sets(Vec<usize>);
+
+impl Sets {
+    /// `n` sets of one element each.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        Sets((0..n).collect())
+    }
+
+    /// The representative of an element's set: its lowest element.
+    pub fn find(&mut self, mut a: usize) -> usize {
+        while self.0[a] != a {
+            self.0[a] = self.0[self.0[a]];
+            a = self.0[a];
+        }
+        a
+    }
+
+    /// Make two sets one.
+    pub fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        let (low, high) = (a.min(b), a.max(b));
+        self.0[high] = low;
+    }
+}
+
+/// Neighbours across edges. `same` tells that both run the edge the same way: one of them is the wrong way round.
+struct Link {
+    a: u32,
+    b: u32,
+    same: bool,
+}
+
+/// Pair the uses of one edge: opposite directions first, nearest in the file first; what is left is boundary.
+fn pair(uses: &[Use], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
+    if let [p, q] = uses {
+        if p.triangle != q.triangle {
+            links.push(Link { a: p.triangle, b: q.triangle, same: p.up == q.up });
+            return;
+        }
+    }
+    let mut free = vec![true; uses.len()];
+    for same in [false, true] {
+        let mut candidates = Vec::new();
+        for (m, p) in uses.iter().enumerate() {
+            // A long list would cost its square; its far ends are not neighbours anyway.
+            for (n, q) in uses.iter().enumerate().skip(m + 1).take(64) {
+                if (p.up == q.up) == same && p.triangle != q.triangle {
+                    candidates.push((p.triangle.abs_diff(q.triangle), m, n));
+                }
+            }
+        }
+        candidates.sort_unstable();
+        // Turning triangles over is for plain edges only: at an edge of many, an odd one out is a loose flap.
+        for (_, m, n) in candidates.into_iter().filter(|_| !same || uses.len() == 2) {
+            if free[m] && free[n] {
+                (free[m], free[n]) = (false, false);
+                links.push(Link { a: uses[m].triangle, b: uses[n].triangle, same });
+            }
+        }
+    }
+    for (m, &u) in uses.iter().enumerate() {
+        if free[m] {
+            lonely(u);
+        }
+    }
+}
+
+/// Split a mesh into shells and turn their triangles to agree with each other; `mesh` is changed where triangles turn.
+pub fn shells(mesh: &mut Indexed, alive: &[bool]) -> Vec<Shell> {
+    let count = mesh.triangles.len();
+    let mut edges: Vec<_> = edge_uses(mesh, alive).into_iter().collect();
+    edges.sort_unstable_by_key(|(edge, _)| *edge);
+    let mut links = Vec::with_capacity(edges.len());
+    let mut lonely = Vec::new();
+    for (edge, uses) in &edges {
+        pair(uses, &mut links, |u| lonely.push((u.triangle, *edge)));
+    }
+    let turn = orientations(count, &links);
+    for (t, turn) in mesh.triangles.iter_mut().zip(&turn) {
+        if turn.turned {
+            t.swap(1, 2);
+        }
+    }
+    let mut position = HashMap::new();
+    let mut shells: Vec<Shell> = Vec::new();
+    for n in (0..count).filter(|&n| alive[n]) {
+        let at = *position.entry(turn[n].root).or_insert_with(|| {
+            shells.push(Shell::default());
+            shells.len() - 1
+        });
+        shells[at].triangles.push(n as u32);
+        shells[at].turned += usize::from(turn[n].turned);
+    }
+    for link in &links {
+        let (a, b) = (&turn[link.a as usize], &turn[link.b as usize]);
+        if (a.turned != b.turned) != link.same {
+            shells[position[&a.root]].one_sided = true;
+        }
+    }
+    for (n, [low, high]) in lonely {
+        let directed = edges_of(mesh.triangles[n as usize]).into_iter().find(|e| e.contains(&low) && e.contains(&high));
+        shells[position[&turn[n as usize].root]].boundary.extend(directed);
+    }
+    shells
+}
+
+#[derive(Clone, Copy)]
+struct Turn {
+    root: u32,
+    turned: bool,
+}
+
+/// Flood each connected set from its first triangle. The minority is what turns.
+fn orientations(count: usize, links: &[Link]) -> Vec<Turn> {
+    let mut neighbours = vec![Vec::new(); count];
+    for l in links {
+        neighbours[l.a as usize].push((l.b, l.same));
+        neighbours[l.b as usize].push((l.a, l.same));
+    }
+    let mut turn: Vec<Option<Turn>> = vec![None; count];
+    for root in 0..count {
+        if turn[root].is_some() {
+            continue;
+        }
+        turn[root] = Some(Turn { root: root as u32, turned: false });
+        let mut members = vec![root];
+        let mut next = 0;
+        while let Some(&n) = members.get(next) {
+            next += 1;
+            let turned = turn[n].is_some_and(|t| t.turned);
+            for &(m, same) in &neighbours[n] {
+                if turn[m as usize].is_none() {
+                    turn[m as usize] = Some(Turn { root: root as u32, turned: turned != same });
+                    members.push(m as usize);
+                }
+            }
+        }
+        let turned = members.iter().filter(|&&n| turn[n].is_some_and(|t| t.turned)).count();
+        if 2 * turned > members.len() {
+            members.iter().filter_map(|&n| turn[n].as_mut().map(|t| t.turned ^= true)).for_each(drop);
+        }
+    }
+    turn.into_iter().map(|t| t.unwrap_or(Turn { root: 0, turned: false })).collect()
+}
+
+/// Sum of the imbalances of all edges of a mesh: 0 if every edge is run as often one way as the other.
+#[must_use]
+pub fn unmatched_edges(mesh: &Indexed, alive: &[bool]) -> usize {
+    edge_uses(mesh, alive).values().map(|uses| imbalance(uses)).sum()
+}

@@ -1,0 +1,227 @@
+//! Grids as the user gives them: a file, a number of cells, or a spacing.
+//!
+//! A grid file is TOML or JSON with one of
+//! - `x`, `y`, `z`: lists of edges;
+//! - `x`, `y`, `z`: segments `{ points = [0, 2, 10], cells = [4, 8], ratios = [1, 2] }`, as in PDRblockMesh: between two
+//!   points that many cells, the last `ratio` times as long as the first (−r means 1/r);
+//! - `origin`, `spacing`, `cells`: three numbers each.
+
+use crate::error::{Error, Result};
+use glam::DVec3;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use voidage_core::grid::{Grid, GridError};
+
+/// Where the grid comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Source {
+    /// A grid file.
+    File(PathBuf),
+    /// A number of cells along each axis in a box; without one, in the scene's box and a margin of one cell.
+    Cells([usize; 3], Option<[DVec3; 2]>),
+    /// Cubes of this size that cover a box; without one, the scene's box and a margin of one cell.
+    Spacing(f64, Option<[DVec3; 2]>),
+}
+
+/// Cell edges along x, y and z.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edges(pub [Vec<f64>; 3]);
+
+impl Edges {
+    /// The edges as a grid.
+    ///
+    /// # Errors
+    /// If they are none; `path` is the file to blame, if there is one.
+    pub fn grid(&self, path: Option<&Path>) -> Result<Grid<'_, f64>> {
+        Grid::new(&self.0[0], &self.0[1], &self.0[2]).map_err(|error| {
+            let (place, reason) = explain(error, &self.0);
+            match path {
+                Some(path) => Error::at(path, place, reason),
+                None => Error::usage(format!("grid: {place}: {reason}")),
+            }
+        })
+    }
+
+    /// Number of cells along each axis.
+    #[must_use]
+    pub fn cells(&self) -> [usize; 3] {
+        [0, 1, 2].map(|axis| self.0[axis].len().saturating_sub(1))
+    }
+
+    /// Lowest and highest corner.
+    #[must_use]
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let end = |pick: fn(&Vec<f64>) -> Option<&f64>| {
+            DVec3::from_array([0, 1, 2].map(|axis| pick(&self.0[axis]).copied().unwrap_or(0.0)))
+        };
+        [end(|e| e.first()), end(|e| e.last())]
+    }
+}
+
+fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
+    let name = |axis: usize| ["x", "y", "z"][axis];
+    match error {
+        GridError::NoCell { axis } => (format!("axis {}", name(axis)), "needs at least two edges".into()),
+        GridError::NotFinite { axis, index } => {
+            (format!("{}[{index}]", name(axis)), format!("edge {} is not finite", edges[axis][index]))
+        }
+        GridError::NotIncreasing { axis, index } => {
+            let (before, here) = (edges[axis][index - 1], edges[axis][index]);
+            (format!("{}[{index}]", name(axis)), format!("edge {here} does not lie above the one before it, {before}"))
+        }
+        GridError::OutOfRange => ("grid".into(), "cells are too small, too large or too many to be counted".into()),
+    }
+}
+
+/// Most cells of a grid: beyond, the fields would not fit into any memory this program will meet.
+const MAX_CELLS: f64 = 4e9;
+
+/// Make the edges. `scene` is the box of all bodies; what is odd but harmless goes to `warnings`.
+///
+/// # Errors
+/// A file that cannot be read or understood, or a grid without cells.
+pub fn edges(source: &Source, scene: Option<[DVec3; 2]>, warnings: &mut Vec<String>) -> Result<Edges> {
+    let edges = match source {
+        Source::File(path) => return read(path, warnings),
+        Source::Cells(cells, bounds) => {
+            // With n cells in all, n − 2 span the scene and one each side is the margin.
+            let [lo, hi] = bounds.map_or_else(|| around(scene), Ok)?;
+            let count = DVec3::from_array(cells.map(|n| n as f64));
+            let margin = match bounds {
+                Some(_) => DVec3::ZERO,
+                None => (hi - lo) / (count - 2.0).max(DVec3::ONE),
+            };
+            check_count(count)?;
+            uniform(lo - margin, hi + margin, *cells)
+        }
+        Source::Spacing(d, bounds) => {
+            let margin = if bounds.is_some() { 0.0 } else { *d };
+            let [lo, hi] = bounds.map_or_else(|| around(scene), Ok)?;
+            let (lo, hi) = (lo - margin, hi + margin);
+            // A length that is a whole number of cells but for rounding must not gain one.
+            let count = ((hi - lo) / *d - 1e-9).ceil().max(DVec3::ONE);
+            check_count(count)?;
+            let cells = count.to_array().map(|n| n as usize);
+            uniform(lo, lo + count * *d, cells)
+        }
+    };
+    Ok(edges)
+}
+
+fn check_count(count: DVec3) -> Result<()> {
+    let product = count.x * count.y * count.z;
+    if product <= MAX_CELLS {
+        Ok(())
+    } else {
+        Err(Error::usage(format!("grid: {} × {} × {} cells are too many", count.x, count.y, count.z)))
+    }
+}
+
+fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
+    let [lo, hi] = scene.ok_or_else(|| Error::new("the scene is empty: give --bounds"))?;
+    let size = (hi - lo).max_element();
+    // A flat scene still needs a box with a volume.
+    let thin = DVec3::select((hi - lo).cmpgt(DVec3::ZERO), DVec3::ZERO, DVec3::splat(size * 0.5));
+    Ok([lo - thin, hi + thin])
+}
+
+fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Edges {
+    let axis = |a: usize| {
+        let (lo, hi, n) = (lo[a], hi[a], cells[a]);
+        (0..=n).map(|i| if i == n { hi } else { lo + (hi - lo) * (i as f64 / n as f64) }).collect()
+    };
+    Edges([axis(0), axis(1), axis(2)])
+}
+
+#[derive(Deserialize)]
+struct Document {
+    x: Option<AxisSpec>,
+    y: Option<AxisSpec>,
+    z: Option<AxisSpec>,
+    origin: Option<[f64; 3]>,
+    spacing: Option<[f64; 3]>,
+    cells: Option<[usize; 3]>,
+    #[serde(flatten)]
+    other: std::collections::BTreeMap<String, serde::de::IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum AxisSpec {
+    Edges(Vec<f64>),
+    Segments { points: Vec<f64>, cells: Vec<usize>, ratios: Option<Vec<f64>> },
+}
+
+/// Keys that other programs write beside the edges and that say nothing new.
+const HARMLESS: [&str; 6] = ["nx", "ny", "nz", "uniform", "name", "comment"];
+
+fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
+    let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
+    let document: Document = if json {
+        serde_json::from_str(&text).map_err(|e| Error::at(path, format!("line {}", e.line()), format!("no grid: {e}")))?
+    } else {
+        toml::from_str(&text).map_err(|e| toml_error(path, &text, &e))?
+    };
+    for key in document.other.keys().filter(|k| !HARMLESS.contains(&k.as_str())) {
+        warnings.push(format!("{}: key {key}: not known, ignored", path.display()));
+    }
+    let edges = match (document.x, document.y, document.z) {
+        (Some(x), Some(y), Some(z)) => Edges([axis(path, "x", x)?, axis(path, "y", y)?, axis(path, "z", z)?]),
+        (None, None, None) => match (document.origin, document.spacing, document.cells) {
+            (Some(origin), Some(spacing), Some(cells)) => {
+                check_count(DVec3::from_array(cells.map(|n| n as f64)))?;
+                let axis = |a: usize| (0..=cells[a]).map(|i| origin[a] + spacing[a] * i as f64).collect();
+                Edges([axis(0), axis(1), axis(2)])
+            }
+            _ => return Err(Error::file(path, "a grid needs x, y, z or origin, spacing, cells")),
+        },
+        _ => return Err(Error::file(path, "a grid needs all of x, y, z")),
+    };
+    edges.grid(Some(path))?;
+    Ok(edges)
+}
+
+/// A TOML error with its line.
+pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error) -> Error {
+    let place = error.span().map_or_else(
+        || "document".to_owned(),
+        |s| format!("line {}", text.get(..s.start).unwrap_or("").matches('\n').count() + 1),
+    );
+    Error::at(path, place, error.message())
+}
+
+fn axis(path: &Path, name: &str, spec: AxisSpec) -> Result<Vec<f64>> {
+    let (points, cells, ratios) = match spec {
+        AxisSpec::Edges(edges) => return Ok(edges),
+        AxisSpec::Segments { points, cells, ratios } => (points, cells, ratios),
+    };
+    let wrong = |reason: String| Error::at(path, format!("key {name}"), reason);
+    let ratios = ratios.unwrap_or_else(|| vec![1.0; cells.len()]);
+    if points.len() != cells.len() + 1 || ratios.len() != cells.len() {
+        let (p, c, r) = (points.len(), cells.len(), ratios.len());
+        return Err(wrong(format!("{p} points need {} cells and ratios, not {c} and {r}", p.saturating_sub(1))));
+    }
+    check_count(DVec3::new(cells.iter().map(|&n| n as f64).sum(), 1.0, 1.0))?;
+    let mut edges = vec![points.first().copied().unwrap_or(0.0)];
+    for (ends, (&n, &ratio)) in points.windows(2).zip(cells.iter().zip(&ratios)) {
+        if n == 0 || ratio == 0.0 || !ratio.is_finite() {
+            return Err(wrong(format!("a segment needs at least one cell and a ratio other than 0, not {n} and {ratio}")));
+        }
+        let ratio = if ratio < 0.0 { -1.0 / ratio } else { ratio };
+        edges.extend((1..=n).map(|i| ends[0] + (ends[1] - ends[0]) * share(i, n, ratio)));
+        if let Some(last) = edges.last_mut() {
+            *last = ends[1];
+        }
+    }
+    Ok(edges)
+}
+
+/// Where the `i`-th of `n` cells ends, if lengths grow geometrically and the last is `ratio` times the first.
+fn share(i: usize, n: usize, ratio: f64) -> f64 {
+    if n == 1 || (ratio - 1.0).abs() < 1e-12 {
+        return i as f64 / n as f64;
+    }
+    let growth = ratio.powf(1.0 / (n - 1) as f64);
+    (growth.powi(i as i32) - 1.0) / (growth.powi(n as i32) - 1.0)
+}

@@ -1,0 +1,125 @@
+//! `voidage inspect`: what is in a file, before anything is computed.
+
+use crate::bodies::{Bodies, Body, Diagnosis};
+use crate::cli::InspectArgs;
+use crate::error::Result;
+use crate::output::report;
+use crate::progress::Progress;
+use crate::run::load;
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct Inspection<'a> {
+    files: &'a [Diagnosis],
+    overlapping_boxes: usize,
+    thin: Vec<Thin>,
+    bodies: &'a [Body],
+    warnings: &'a [String],
+}
+
+/// A body much thinner than long.
+#[derive(Debug, Clone, Serialize)]
+struct Thin {
+    body: usize,
+    name: String,
+    /// Twice its volume by its surface area: the thickness of a plate, half the thickness of a bar [m].
+    thickness: f64,
+    size: f64,
+}
+
+/// Run it.
+///
+/// # Errors
+/// A file that cannot be read, or a report that cannot be written.
+pub fn inspect(args: &InspectArgs) -> Result<()> {
+    let mut progress = Progress::new(&args.talk);
+    let bodies = load(&args.scene, &mut progress)?;
+    let inspection = Inspection {
+        files: &bodies.diagnoses,
+        overlapping_boxes: overlapping_boxes(&bodies.bodies),
+        thin: thin(&bodies),
+        bodies: &bodies.bodies,
+        warnings: &progress.warnings,
+    };
+    if let Some(path) = &args.report {
+        report::json(path, &inspection)?;
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&inspection);
+        println!("{}", text.map_err(|e| crate::error::Error::new(format!("cannot write JSON: {e}")))?);
+    } else {
+        inspection.table(&progress);
+    }
+    Ok(())
+}
+
+/// Pairs of bodies whose boxes overlap: an upper bound on overlapping pairs. A sweep along x.
+fn overlapping_boxes(bodies: &[Body]) -> usize {
+    let mut order: Vec<&Body> = bodies.iter().collect();
+    order.sort_by(|a, b| a.bounds[0].x.total_cmp(&b.bounds[0].x));
+    let mut pairs = 0;
+    for (n, a) in order.iter().enumerate() {
+        let reach = order[n + 1..].iter().take_while(|b| b.bounds[0].x < a.bounds[1].x);
+        pairs += reach.filter(|b| b.bounds[0].cmplt(a.bounds[1]).all() && a.bounds[0].cmplt(b.bounds[1]).all()).count();
+    }
+    pairs
+}
+
+fn thin(bodies: &Bodies) -> Vec<Thin> {
+    let mut thin: Vec<Thin> = bodies
+        .bodies
+        .iter()
+        .enumerate()
+        .filter(|(_, b)| !b.sheet)
+        .filter_map(|(n, b)| {
+            let area: f64 =
+                bodies.triangles[b.triangles.clone()].iter().map(|[p, q, r]| (q - p).cross(r - p).length() * 0.5).sum();
+            let (thickness, size) = (2.0 * b.volume / area, (b.bounds[1] - b.bounds[0]).max_element());
+            (thickness < 0.01 * size).then(|| Thin { body: n, name: b.name.clone(), thickness, size })
+        })
+        .collect();
+    thin.sort_by(|a, b| a.thickness.total_cmp(&b.thickness));
+    thin
+}
+
+impl Inspection<'_> {
+    fn table(&self, progress: &Progress) {
+        for d in self.files {
+            progress.say(format!("{}", d.file));
+            let size = d.bounds[1] - d.bounds[0];
+            let rows: [(&str, String); 17] = [
+                ("triangles", d.triangles.to_string()),
+                ("named solids", d.solids.to_string()),
+                ("distinct points", d.points.to_string()),
+                ("box", format!("({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6})", d.bounds[0].x, d.bounds[0].y, d.bounds[0].z, d.bounds[1].x, d.bounds[1].y, d.bounds[1].z)),
+                ("size", format!("{:.6} × {:.6} × {:.6} m", size.x, size.y, size.z)),
+                ("shells", d.shells.to_string()),
+                ("bodies", d.bodies.to_string()),
+                ("cavities", d.cavities.to_string()),
+                ("inside out", d.inside_out.to_string()),
+                ("sheets", d.sheets.to_string()),
+                ("turned triangles", d.turned.to_string()),
+                ("degenerate", d.degenerate.to_string()),
+                ("repeated", d.repeated.to_string()),
+                ("boundary edges", format!("{} ({} of T-junctions)", d.boundary_edges, d.t_junction_edges)),
+                ("holes capped", d.holes.to_string()),
+                ("area", format!("{:.9} m²", d.area)),
+                ("volume", format!("{:.9} m³ signed as read, {:.9} m³ sum of bodies", d.signed_volume, d.body_volume)),
+            ];
+            for (name, value) in rows {
+                progress.say(format!("  {name:<18}{value}"));
+            }
+        }
+        progress.say(format!("body boxes that overlap: {} pairs", self.overlapping_boxes));
+        if let Some(t) = self.thin.first() {
+            progress.say(format!(
+                "thin bodies: {}; the thinnest is {} \"{}\", about {:.6} m over {:.6} m",
+                self.thin.len(),
+                t.body,
+                t.name,
+                t.thickness,
+                t.size
+            ));
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! Cells and faces that several bodies share: exact unions, or division until there is one.
+
+use super::bins::{Bins, Group};
+use super::{FieldSet, Options, Worker, slices};
+use glam::DVec3;
+use voidage_core::grid::Grid;
+use voidage_core::layer::{Layer, gap};
+use voidage_core::overlap::{CellUnion, Fragment, Full, Limit, Node, Overlap, Part, Piece, Task, Workspace};
+
+/// Pieces of surface that one cell may hold before it is divided: beyond, trees cost more than smaller cells.
+const MAX_PIECES: usize = 512;
+
+/// A thread's memory for unions, made when first needed.
+pub struct Unions {
+    options: Options,
+    memory: Option<Memory>,
+    /// For the parts of a divided cell.
+    inner: Option<Box<Worker>>,
+}
+
+struct Memory {
+    pieces: Vec<Piece<f64>>,
+    growing: Vec<Piece<f64>>,
+    nodes: Vec<Node<f64>>,
+    parts: Vec<Part>,
+    fragments: Vec<Fragment<f64>>,
+    tasks: Vec<Task>,
+}
+
+impl Memory {
+    fn new() -> Self {
+        Memory {
+            pieces: vec![Piece::default(); MAX_PIECES],
+            growing: vec![Piece::default(); 4 * MAX_PIECES],
+            nodes: vec![Node::default(); 4 * MAX_PIECES],
+            parts: vec![Part::default(); MAX_PIECES / 4],
+            fragments: vec![Fragment::default(); MAX_PIECES],
+            tasks: vec![Task::default(); MAX_PIECES],
+        }
+    }
+
+    fn workspace(&mut self) -> Workspace<'_, f64> {
+        Workspace {
+            pieces: &mut self.pieces,
+            growing: &mut self.growing,
+            nodes: &mut self.nodes,
+            parts: &mut self.parts,
+            fragments: &mut self.fragments,
+            tasks: &mut self.tasks,
+        }
+    }
+}
+
+/// Bounds of a solid fraction.
+type Bounds = (f64, f64);
+
+/// What is known of a cell after refinement.
+struct Refined {
+    cell: Bounds,
+    low: [Bounds; 3],
+    high: [Bounds; 3],
+}
+
+impl From<CellUnion<f64>> for Refined {
+    fn from(u: CellUnion<f64>) -> Self {
+        let known = |v: f64| ((v - u.error).max(0.0), (v + u.error).min(1.0));
+        Refined { cell: known(u.cell), low: u.low.map(known), high: u.high.map(known) }
+    }
+}
+
+/// The triangles that reach one row of a layer, by body.
+#[derive(Default)]
+struct Row {
+    ids: Vec<u32>,
+    groups: Vec<(usize, std::ops::Range<usize>)>,
+}
+
+impl Row {
+    fn new(bins: &Bins, k: usize, lo: f64, hi: f64) -> Self {
+        let mut row = Row::default();
+        for (g, group) in bins.groups(k).iter().enumerate() {
+            if group.max.y <= lo || group.min.y >= hi {
+                continue;
+            }
+            let first = row.ids.len();
+            row.ids.extend(bins.ids(group).iter().filter(|&&t| {
+                let [a, b, c] = bins.triangles()[t as usize].map(|p| p.y);
+                a.max(b).max(c) > lo && a.min(b).min(c) < hi
+            }));
+            row.groups.push((g, first..row.ids.len()));
+        }
+        row
+    }
+}
+
+/// The bounds of one cell or face in a layer, open for a better result.
+fn improve(lower: &mut f64, sum: &mut f64, (low, high): Bounds) {
+    // Both pairs hold; so does their intersection, unless rounding has crossed it.
+    let (l, u) = (lower.max(low), sum.min(1.0).min(high));
+    (*lower, *sum) = if l <= u { (l, u) } else { ((l + u) * 0.5, (l + u) * 0.5) };
+}
+
+impl Unions {
+    pub fn new(options: Options) -> Self {
+        Unions { options, memory: None, inner: None }
+    }
+
+    /// Refine layer `k`: its cells, x and y faces, and the z faces below. Returns the numbers of ambiguous cells and of
+    /// divided ones.
+    pub fn resolve(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) -> (usize, usize) {
+        let [nx, ny, _] = grid.cells();
+        let tol = self.options.tol;
+        let (mut ambiguous, mut divided) = (0, 0);
+        for j in 0..ny {
+            let mut row = None;
+            for i in 0..nx {
+                let c = j * nx + i;
+                ambiguous += usize::from(gap(layer.lower.cell[c], layer.sum.cell[c]) > 0.0);
+                if !wants(layer, nx, ny, i, j, tol) {
+                    continue;
+                }
+                let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
+                let (lo, hi) = grid.cell_box([i, j, k]);
+                let refined = match self.union(lo, hi, bins, k, row) {
+                    Ok(union) => Some(Refined::from(union)),
+                    Err(Full) => {
+                        divided += 1;
+                        self.divide(lo, hi, bins, k)
+                    }
+                };
+                if let Some(refined) = refined {
+                    store(layer, nx, ny, i, j, &refined);
+                }
+            }
+        }
+        self.walls(grid, bins, k, layer);
+        (ambiguous, divided)
+    }
+
+    /// Refine the z faces above layer `k`, held in `layer.…z`.
+    pub fn resolve_top(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) {
+        let [nx, ny, _] = grid.cells();
+        for j in 0..ny {
+            let mut row = None;
+            for i in 0..nx {
+                let c = j * nx + i;
+                if !(gap(layer.lower.z[c], layer.sum.z[c]) > self.options.tol) {
+                    continue;
+                }
+                let bounds = if layer.marks.z[c] != 0 {
+                    self.wall(grid, bins, 2, [i, j, k + 1])
+                } else {
+                    let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
+                    let (lo, hi) = grid.cell_box([i, j, k]);
+                    match self.union(lo, hi, bins, k, row) {
+                        Ok(union) => Some(Refined::from(union).high[2]),
+                        Err(Full) => self.divide(lo, hi, bins, k).map(|r| r.high[2]),
+                    }
+                };
+                if let Some(bounds) = bounds {
+                    improve(&mut layer.lower.z[c], &mut layer.sum.z[c], bounds);
+                }
+            }
+        }
+    }
+
+    /// The exact union in a cell of layer `k`.
+    fn union(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, k: usize, row: &Row) -> Result<CellUnion<f64>, Full> {
+        let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
+        let mut overlap = Overlap::new(&mut space, lo, hi);
+        for (g, run) in &row.groups {
+            let group = &bins.groups(k)[*g];
+            if group.max.x > lo[0] && group.min.x < hi[0] {
+                overlap.add(lo, hi, false, bins.triangles(), &row.ids[run.clone()])?;
+            }
+        }
+        overlap.cell()
+    }
+
+    /// Bounds of a cell of layer `k` from its eight parts; none if the depth is spent.
+    fn divide(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, k: usize) -> Option<Refined> {
+        let options = Options { depth: self.options.depth.checked_sub(1)?, bounds: true, areas: true, ..self.options };
+        let edges = [0, 1, 2].map(|a| [lo[a], lo[a] + (hi[a] - lo[a]) * 0.5, hi[a]]);
+        let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
+        let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
+        let meets = |g: &&Group| g.min.cmple(max).all() && g.max.cmpge(min).all();
+        // Rows and columns begin outside: what lies towards lower x or y counts too.
+        let before = |t: &&u32| {
+            let corners = bins.triangles()[**t as usize];
+            corners.iter().any(|p| p.x <= max.x) && corners.iter().any(|p| p.y <= max.y)
+        };
+        let members: Vec<(u32, u32)> = bins
+            .groups(k)
+            .iter()
+            .filter(meets)
+            .flat_map(|g| bins.ids(g).iter().filter(before).map(|&t| (g.body, t)))
+            .collect();
+        let parts = Bins::of(&grid, bins.triangles(), members.into_iter());
+        let worker = self.inner.get_or_insert_with(|| Box::new(Worker::new(&grid, options)));
+        let (mut lower, mut upper) = (FieldSet::new(&grid, true), FieldSet::new(&grid, true));
+        let layers = slices(&grid, &mut lower).into_iter().zip(slices(&grid, &mut upper));
+        for (k, (lower, upper)) in layers.enumerate() {
+            worker.layer(&grid, &parts, k, lower, Some(upper));
+        }
+        Some(Refined::from_parts(&lower, &upper))
+    }
+
+    /// Faces of layer `k` in whose plane surface lies: open where both sides are.
+    fn walls(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) {
+        let [nx, ny, _] = grid.cells();
+        for (axis, shape) in [(0, [nx + 1, ny]), (1, [nx, ny + 1]), (2, [nx, ny])] {
+            let Layer { lower, sum, marks } = layer;
+            let (lower, sum, marks) = match axis {
+                0 => (&mut *lower.x, &mut *sum.x, &*marks.x),
+                1 => (&mut *lower.y, &mut *sum.y, &*marks.y),
+                _ => (&mut *lower.z, &mut *sum.z, &*marks.z),
+            };
+            for f in 0..shape[0] * shape[1] {
+                if marks[f] != 0 && gap(lower[f], sum[f]) > self.options.tol {
+                    if let Some(bounds) = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k]) {
+                        improve(&mut lower[f], &mut sum[f], bounds);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The union on a face from what both its cells see.
+    fn wall(&mut self, grid: &Grid<f64>, bins: &Bins, axis: usize, face: [usize; 3]) -> Option<Bounds> {
+        let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
+        let (lo, hi) = side_cell(grid, axis, face, true);
+        let mut overlap = Overlap::new(&mut space, lo, hi);
+        for below in [true, false] {
+            let (lo, hi) = side_cell(grid, axis, face, below);
+            let layers = grid.cells()[2] as isize;
+            let k = face[2] as isize - isize::from(axis == 2 && below);
+            // Beyond the outer planes the nearest layer knows all that touches them.
+            let k = k.clamp(0, layers - 1) as usize;
+            let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
+            for group in bins.groups(k).iter().filter(|g| g.min.cmplt(max).all() && g.max.cmpgt(min).all()) {
+                overlap.add(lo, hi, below, bins.triangles(), bins.ids(group)).ok()?;
+            }
+        }
+        let closed = overlap.face(axis, 1.0, Limit::Both).ok()?;
+        Some((closed, closed))
+    }
+}
+
+/// The cell below or above a face; beyond the grid's outer planes, a thin one.
+fn side_cell(grid: &Grid<f64>, axis: usize, face: [usize; 3], below: bool) -> ([f64; 3], [f64; 3]) {
+    let count = grid.cells()[axis];
+    let mut cell = face;
+    let at = grid.edges(axis)[face[axis]];
+    if below && face[axis] == 0 {
+        let (mut lo, mut hi) = grid.cell_box(cell);
+        (lo[axis], hi[axis]) = (at - (hi[axis] - at) * OUTSIDE, at);
+        return (lo, hi);
+    }
+    if !below && face[axis] == count {
+        cell[axis] -= 1;
+        let (mut lo, mut hi) = grid.cell_box(cell);
+        (lo[axis], hi[axis]) = (at, at + (at - lo[axis]) * OUTSIDE);
+        return (lo, hi);
+    }
+    cell[axis] -= usize::from(below);
+    grid.cell_box(cell)
+}
+
+/// How far beyond its outer planes a grid looks for bodies that touch them, in cells.
+const OUTSIDE: f64 = 1.0 / 1024.0;
+
+/// Does a cell, or a face that it decides, need refinement?
+fn wants(layer: &Layer<f64>, nx: usize, ny: usize, i: usize, j: usize, tol: f64) -> bool {
+    let open = |lower: &[f64], sum: &[f64], marks: &[u8], at: usize| gap(lower[at], sum[at]) > tol && marks[at] == 0;
+    let x = |at| open(layer.lower.x, layer.sum.x, layer.marks.x, at);
+    let y = |at| open(layer.lower.y, layer.sum.y, layer.marks.y, at);
+    let c = j * nx + i;
+    gap(layer.lower.cell[c], layer.sum.cell[c]) > tol
+        || x(j * (nx + 1) + i)
+        || (i + 1 == nx && x(j * (nx + 1) + nx))
+        || y(c)
+        || (j + 1 == ny && y(c + nx))
+        || open(layer.lower.z, layer.sum.z, layer.marks.z, c)
+}
+
+/// Store what is known of a cell and of those of its faces that it decides.
+fn store(layer: &mut Layer<f64>, nx: usize, ny: usize, i: usize, j: usize, refined: &Refined) {
+    let Layer { lower, sum, marks } = layer;
+    let c = j * nx + i;
+    improve(&mut lower.cell[c], &mut sum.cell[c], refined.cell);
+    let face = |lower: &mut [f64], sum: &mut [f64], marks: &[u8], at: usize, bounds: Bounds| {
+        if marks[at] == 0 && gap(lower[at], sum[at]) > 0.0 {
+            improve(&mut lower[at], &mut sum[at], bounds);
+        }
+    };
+    let x = j * (nx + 1) + i;
+    face(lower.x, sum.x, marks.x, x, refined.low[0]);
+    face(lower.y, sum.y, marks.y, c, refined.low[1]);
+    face(lower.z, sum.z, marks.z, c, refined.low[2]);
+    if i + 1 == nx {
+        face(lower.x, sum.x, marks.x, x + 1, refined.high[0]);
+    }
+    if j + 1 == ny {
+        face(lower.y, sum.y, marks.y, c + nx, refined.high[1]);
+    }
+}
+
+impl Refined {
+    /// From the bounds of a cell's eight parts, halves along each axis.
+    fn from_parts(lower: &FieldSet, upper: &FieldSet) -> Self {
+        let mean = |f: fn(&FieldSet) -> &[f64], at: &[usize]| {
+            let part = |set: &FieldSet| at.iter().map(|&n| f(set)[n]).sum::<f64>() / at.len() as f64;
+            (part(lower), part(upper))
+        };
+        let x = |i: usize| mean(|s| &s.x, &[0, 1, 2, 3].map(|r| 3 * r + i));
+        let y = |j: usize| mean(|s| &s.y, &[2 * j, 2 * j + 1, 6 + 2 * j, 7 + 2 * j]);
+        let z = |k: usize| mean(|s| &s.z, &[0, 1, 2, 3].map(|c| 4 * k + c));
+        Refined { cell: mean(|s| &s.v, &[0, 1, 2, 3, 4, 5, 6, 7]), low: [x(0), y(0), z(0)], high: [x(2), y(2), z(2)] }
+    }
+}

@@ -1,0 +1,65 @@
+//! What the user sees while and after it runs.
+
+use crate::cli::TalkArgs;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Messages to the terminal, warnings collected, stages timed.
+#[derive(Debug)]
+pub struct Progress {
+    quiet: bool,
+    verbose: bool,
+    /// Sentences said so far.
+    pub warnings: Vec<String>,
+    /// Seconds by stage.
+    pub seconds: BTreeMap<&'static str, f64>,
+    begun: Instant,
+}
+
+impl Progress {
+    /// As loud as the user asked for.
+    #[must_use]
+    pub fn new(talk: &TalkArgs) -> Self {
+        Progress {
+            quiet: talk.quiet,
+            verbose: talk.verbose,
+            warnings: Vec::new(),
+            seconds: BTreeMap::new(),
+            begun: Instant::now(),
+        }
+    }
+
+    /// Say and keep a warning.
+    pub fn warn(&mut self, sentence: impl Into<String>) {
+        let sentence = sentence.into();
+        if !self.quiet {
+            eprintln!("warning: {sentence}");
+        }
+        self.warnings.push(sentence);
+    }
+
+    /// Say something that is no warning.
+    pub fn say(&self, sentence: impl AsRef<str>) {
+        if !self.quiet {
+            println!("{}", sentence.as_ref());
+        }
+    }
+
+    /// Run a stage and keep its time.
+    pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let begin = Instant::now();
+        let result = work(self);
+        let seconds = begin.elapsed().as_secs_f64();
+        *self.seconds.entry(name).or_default() += seconds;
+        if self.verbose {
+            eprintln!("{name:>10} {seconds:9.4} s");
+        }
+        result
+    }
+
+    /// Seconds since the start.
+    #[must_use]
+    pub fn elapsed(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64()
+    }
+}

@@ -1,0 +1,277 @@
+//! The stages of a run, in order: scene → bodies → grid → porosity → output.
+
+use crate::bodies::Bodies;
+use crate::cli::{PorosityArgs, SceneArgs, Unit};
+use crate::error::{Error, Result};
+use crate::grid::{self, Edges, Source};
+use crate::input;
+use crate::output::vtr::{CellField, Field, Vtr};
+use crate::output::{npy, report};
+use crate::porosity::{self, Options, Porosity};
+use crate::progress::Progress;
+use glam::DVec3;
+use serde::Serialize;
+use std::path::Path;
+
+/// Read all files of a scene into bodies, in metres.
+///
+/// # Errors
+/// The first file that cannot be read or holds nothing solid.
+pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<Bodies> {
+    let scale = args.unit.unwrap_or(Unit::M).metres();
+    let mut bodies = Bodies::default();
+    for path in &args.scene {
+        let mesh = progress.stage("read", |_| input::read(path))?;
+        mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
+        progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
+        if args.unit.is_none() {
+            smell_millimetres(path, &bodies, progress);
+        }
+    }
+    bodies.warnings.iter().for_each(|w| progress.warn(w.as_str()));
+    Ok(bodies)
+}
+
+/// No plant is larger than this in metres, and few parts are smaller than this in millimetres.
+const LARGEST_PLANT: f64 = 1000.0;
+
+fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
+    let Some([lo, hi]) = bodies.diagnoses.last().map(|d| d.bounds) else { return };
+    let size = hi - lo;
+    if size.max_element() >= LARGEST_PLANT && size.max_element() < LARGEST_PLANT * 1e4 {
+        progress.warn(format!(
+            "{}: its size, {:.6} × {:.6} × {:.6}, would be in metres; if these are millimetres, give --unit mm",
+            path.display(),
+            size.x,
+            size.y,
+            size.z
+        ));
+    }
+}
+
+/// `voidage porosity`.
+///
+/// # Errors
+/// Anything that keeps it from writing all that was asked for.
+pub fn porosity(args: &PorosityArgs) -> Result<()> {
+    let mut progress = Progress::new(&args.talk);
+    let threads = args.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
+    pool.install(|| {
+        let bodies = load(&args.scene, &mut progress)?;
+        let source = source(args, &bodies);
+        let mut remarks = Vec::new();
+        let edges = grid::edges(&source, bodies.bounds(), &mut remarks)?;
+        remarks.into_iter().for_each(|r| progress.warn(r));
+        let grid = edges.grid(None)?;
+        look_for_misfit(&bodies, &edges, &mut progress);
+        let options =
+            Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
+        let result = progress.stage("porosity", |_| porosity::porosity(&grid, &bodies, options));
+        report_leaks(&bodies, &result, &mut progress);
+        let report = Report::new(args, &edges, &bodies, &result);
+        write(args, &edges, &result, &report, &mut progress)?;
+        report.summary(&progress);
+        if let Some(path) = &args.report {
+            let seconds = progress.seconds.clone();
+            report::json(path, &Report { seconds, warnings: progress.warnings.clone(), ..report })?;
+        }
+        Ok(())
+    })
+}
+
+fn source(args: &PorosityArgs, bodies: &Bodies) -> Source {
+    match (&args.grid, args.cells, args.spacing) {
+        (Some(path), _, _) => Source::File(path.clone()),
+        (_, Some(cells), _) => Source::Cells(cells, args.bounds),
+        (_, _, Some(spacing)) => Source::Spacing(spacing, args.bounds),
+        _ => {
+            let size = args.bounds.or_else(|| bodies.bounds()).map_or(1.0, |[lo, hi]| (hi - lo).max_element());
+            Source::Spacing(if size > 0.0 { size / 64.0 } else { 1.0 }, args.bounds)
+        }
+    }
+}
+
+/// Geometry outside the grid does not count; say so.
+fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
+    let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
+    let files = || bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+    let extent = |p: DVec3, q: DVec3| format!("({}, {}, {}) to ({}, {}, {})", p.x, p.y, p.z, q.x, q.y, q.z);
+    if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
+        progress.warn(format!(
+            "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
+            files(),
+            extent(min, max),
+            extent(lo, hi)
+        ));
+    } else if min.cmplt(lo).any() || max.cmpgt(hi).any() {
+        progress.warn(format!(
+            "{}: the geometry, {}, extends beyond the grid, {}; only what is inside counts",
+            files(),
+            extent(min, max),
+            extent(lo, hi)
+        ));
+    }
+}
+
+/// A row that misses zero by more than this fraction of a face deserves a warning; less is cracks of `f32` corners.
+const LEAK_TO_WARN: f64 = 1e-6;
+
+fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
+    let leaks: Vec<_> = result.leaks.iter().filter(|l| l.fraction > LEAK_TO_WARN).collect();
+    if let Some(worst) = leaks.first() {
+        let body = &bodies.bodies[worst.body];
+        let files = bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+        progress.warn(format!(
+            "{files}: the surface of {} bodies leaks: in layer {} of body {} \"{}\" a row ends {:.3e} of a face away from zero",
+            leaks.len(),
+            worst.layer,
+            worst.body,
+            body.name,
+            worst.fraction
+        ));
+    }
+    if result.winding > WINDING_TO_WARN {
+        let files = bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+        progress.warn(format!(
+            "{files}: a surface cuts through itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
+            result.winding
+        ));
+    }
+}
+
+/// A body whose own share leaves 0..1 by more than this crosses itself.
+const WINDING_TO_WARN: f64 = 1e-6;
+
+fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, progress: &mut Progress) -> Result<()> {
+    if let Some(dir) = &args.npy {
+        progress.stage("npy", |_| write_npy(dir, edges, result))?;
+    }
+    if let Some(path) = &args.output {
+        progress.stage("vtr", |_| write_vtr(path, args.compress, edges, result, about))?;
+    }
+    if let Some(path) = &args.png {
+        let [x, y, z] = &edges.0;
+        let name = |p: &std::path::PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
+        let _ = (path, title, x, y, z);
+    }
+    Ok(())
+}
+
+/// The fields of a result with names: base name, shape, values.
+fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &'a [f64])> {
+    let [nx, ny, nz] = edges.cells();
+    let sets = [("", Some(&result.beta)), ("_lower", result.lower.as_ref()), ("_upper", result.upper.as_ref())];
+    let mut all: Vec<(String, [usize; 3], &[f64])> = Vec::new();
+    for (suffix, set) in sets.into_iter().filter_map(|(suffix, set)| Some((suffix, set?))) {
+        all.push((format!("beta_v{suffix}"), [nx, ny, nz], &set.v));
+        all.push((format!("beta_x{suffix}"), [nx + 1, ny, nz], &set.x));
+        all.push((format!("beta_y{suffix}"), [nx, ny + 1, nz], &set.y));
+        all.push((format!("beta_z{suffix}"), [nx, ny, nz + 1], &set.z));
+    }
+    all.retain(|(_, _, values)| !values.is_empty());
+    all
+}
+
+fn write_npy(dir: &Path, edges: &Edges, result: &Porosity) -> Result<()> {
+    std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
+    for (name, shape, values) in fields(edges, result) {
+        npy::write(&dir.join(format!("{name}.npy")), shape, values)?;
+    }
+    Ok(())
+}
+
+fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {
+    let [x, y, z] = &edges.0;
+    let all = fields(edges, result);
+    let beta = &result.beta;
+    let mut cell = Vec::new();
+    for (name, _, data) in all.iter().filter(|(name, ..)| name.starts_with("beta_v")) {
+        cell.push(CellField::Values(Field { name, components: 1, data }));
+    }
+    if !beta.x.is_empty() {
+        cell.push(CellField::LowFaces { name: "beta_f", faces: [&beta.x, &beta.y, &beta.z] });
+    }
+    let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
+    let field_data = staggered.map(|(name, _, data)| Field { name, components: 1, data }).collect();
+    let version = format!("voidage {}", about.version);
+    Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }.write(path)
+}
+
+/// What `--report` writes.
+#[derive(Debug, Clone, Serialize)]
+struct Report {
+    version: &'static str,
+    command: String,
+    grid: GridReport,
+    /// Of the union, within the grid [m³].
+    solid_volume: f64,
+    bodies: usize,
+    triangles: usize,
+    cells: porosity::CellCounts,
+    max_gap: f64,
+    divided: usize,
+    leaks: Vec<porosity::Leak>,
+    warnings: Vec<String>,
+    skipped: Vec<&'static str>,
+    seconds: std::collections::BTreeMap<&'static str, f64>,
+    gjk: Gjk,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct GridReport {
+    cells: [usize; 3],
+    bounds: [DVec3; 2],
+    unit: &'static str,
+}
+
+#[derive(Debug, Clone, Default, Serialize)]
+struct Gjk {
+    queries: u64,
+    undecided: u64,
+}
+
+impl Report {
+    fn new(args: &PorosityArgs, edges: &Edges, bodies: &Bodies, result: &Porosity) -> Self {
+        let mut skipped = vec!["gjk: no body was given as a convex solid; all are measured by their surface"];
+        if args.no_areas {
+            skipped.push("area porosities: --no-areas");
+        }
+        if !args.bounds_fields {
+            skipped.push("bound fields: not asked for (--bounds-fields)");
+        }
+        if result.cells.ambiguous == 0 {
+            skipped.push("unions: no cell is shared by bodies");
+        }
+        Report {
+            version: env!("CARGO_PKG_VERSION"),
+            command: std::env::args().collect::<Vec<_>>().join(" "),
+            grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
+            solid_volume: result.solid_volume,
+            bodies: bodies.bodies.len(),
+            triangles: bodies.triangles.len(),
+            cells: result.cells,
+            max_gap: result.max_gap,
+            divided: result.divided,
+            leaks: result.leaks.clone(),
+            warnings: Vec::new(),
+            skipped,
+            seconds: std::collections::BTreeMap::new(),
+            gjk: Gjk::default(),
+        }
+    }
+
+    /// A few lines for the terminal.
+    fn summary(&self, progress: &Progress) {
+        let [nx, ny, nz] = self.grid.cells;
+        let c = self.cells;
+        progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
+        progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
+        progress.say(format!("solid volume  {:.9} m³", self.solid_volume));
+        progress.say(format!("cells         {} open, {} cut, {} closed; {} shared by bodies", c.open, c.cut, c.closed, c.ambiguous));
+        progress.say(format!("largest gap   {:.1e}", self.max_gap));
+        progress.say(format!("time          {:.3} s", progress.elapsed()));
+    }
+}
