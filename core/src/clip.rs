@@ -6,7 +6,7 @@
 use crate::real::Real;
 
 /// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is room for the cuts by
-/// other bodies' planes in one cell. A polygon that would grow beyond is refused ([`Polygon::push`] answers false).
+/// other bodies' planes in one cell. A full polygon is halved before the next cut.
 pub const MAX_CORNERS: usize = 16;
 
 /// A convex polygon in space; fewer than three corners means empty.
@@ -74,6 +74,30 @@ impl<R: Real> Polygon<R> {
             hi = hi.max(c[axis]);
         }
         (lo, hi)
+    }
+
+    /// Two polygons that make up this one, each with fewer corners if it has more than four.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let c = self.corners();
+        let middle = c.len() / 2;
+        let mut halves = [Self::default(), Self::default()];
+        for (n, &corner) in c.iter().enumerate() {
+            if n <= middle {
+                halves[0].push(corner);
+            }
+            if n >= middle || n == 0 {
+                halves[1].push(corner);
+            }
+        }
+        halves
+    }
+
+    /// No room for another corner.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.len >= MAX_CORNERS
     }
 
     /// Twice the area vector (its direction by the right-hand rule).

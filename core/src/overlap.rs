@@ -374,8 +374,15 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
                         f.twin |= along;
                         if along != (f.inward || (both_sides && part.below)) { node.positive } else { node.negative }
                     }
+                    Place::Across if f.polygon.is_full() => {
+                        let [half, other] = f.polygon.halves();
+                        *fragments.get_mut(waiting).ok_or(Full)? = Fragment { polygon: other, ..f };
+                        waiting += 1;
+                        f.polygon = half;
+                        continue;
+                    }
                     Place::Across => {
-                        let (negative, positive) = cut(&f.polygon, node.normal, node.offset).ok_or(Full)?;
+                        let (negative, positive) = cut(&f.polygon, node.normal, node.offset);
                         if !positive.is_empty() {
                             *fragments.get_mut(waiting).ok_or(Full)? =
                                 Fragment { polygon: positive, branch: node.positive, ..f };
@@ -430,29 +437,29 @@ fn side<R: Real>(polygon: &Polygon<R>, normal: [R; 3], offset: R, thickness: R) 
     }
 }
 
-/// Cut a polygon by a plane into its negative and positive part; none if one would have too many corners.
-fn cut<R: Real>(whole: &Polygon<R>, normal: [R; 3], offset: R) -> Option<(Polygon<R>, Polygon<R>)> {
+/// Cut a polygon that is not full by a plane, into its negative and positive part.
+fn cut<R: Real>(whole: &Polygon<R>, normal: [R; 3], offset: R) -> (Polygon<R>, Polygon<R>) {
     let (mut negative, mut positive) = (Polygon::default(), Polygon::default());
     let distance = |p: [R; 3]| dot(normal, p) - offset;
-    let mut a = *whole.corners().last()?;
+    let Some(&(mut a)) = whole.corners().last() else { return (negative, positive) };
     let mut da = distance(a);
-    let mut room = true;
     for &b in whole.corners() {
         let db = distance(b);
         if (da < R::ZERO && db > R::ZERO) || (da > R::ZERO && db < R::ZERO) {
             let (lo, hi, t) = if da < db { (a, b, da / (da - db)) } else { (b, a, db / (db - da)) };
             let p = [0, 1, 2].map(|i| lo[i] + (hi[i] - lo[i]) * t);
-            room &= negative.push(p) && positive.push(p);
+            negative.push(p);
+            positive.push(p);
         }
         if db <= R::ZERO {
-            room &= negative.push(b);
+            negative.push(b);
         }
         if db >= R::ZERO {
-            room &= positive.push(b);
+            positive.push(b);
         }
         (a, da) = (b, db);
     }
-    room.then_some((negative, positive))
+    (negative, positive)
 }
 
 /// The piece of largest area, moved to the front.
@@ -491,17 +498,28 @@ fn divide<R: Real>(
                 before += 1;
             }
             Place::Across => {
-                let (negative, positive) = cut(&piece.polygon, divider.normal, divider.offset).ok_or(Full)?;
-                let part =
-                    |polygon: Polygon<R>| Piece { area: dot(polygon.doubled_area(), piece.normal), polygon, ..piece };
-                let (negative, positive) = (part(negative), part(positive));
-                if negative.area > R::ZERO {
-                    growing[behind] = negative;
-                    behind += 1;
-                }
-                if positive.area > R::ZERO {
-                    *growing.get_mut(before).ok_or(Full)? = positive;
-                    before += 1;
+                let halves =
+                    if piece.polygon.is_full() { piece.polygon.halves() } else { [piece.polygon, Polygon::default()] };
+                for half in halves {
+                    let (negative, positive) = cut(&half, divider.normal, divider.offset);
+                    let part = |polygon: Polygon<R>| Piece {
+                        area: dot(polygon.doubled_area(), piece.normal),
+                        polygon,
+                        ..piece
+                    };
+                    let (negative, positive) = (part(negative), part(positive));
+                    if negative.area > R::ZERO {
+                        // The second half of a full polygon may need room that is not yet free.
+                        if behind > p {
+                            return Err(Full);
+                        }
+                        growing[behind] = negative;
+                        behind += 1;
+                    }
+                    if positive.area > R::ZERO {
+                        *growing.get_mut(before).ok_or(Full)? = positive;
+                        before += 1;
+                    }
                 }
             }
         }

@@ -110,7 +110,7 @@ pub struct PorosityArgs {
     /// How volumes are found
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
-    /// Accept values whose bounds are this close [fraction]; 0 finds every union exactly
+    /// Where bodies overlap and their union has no proof, divide cells until the bounds are this close
     #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol)]
     pub tol: f64,
     /// How often a cell without a proof may be divided by two

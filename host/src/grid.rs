@@ -159,7 +159,8 @@ fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
     let document: Document = if json {
-        serde_json::from_str(&text).map_err(|e| Error::at(path, format!("line {}", e.line()), format!("no grid: {e}")))?
+        serde_json::from_str(&text)
+            .map_err(|e| Error::at(path, format!("line {}", e.line()), format!("no grid: {e}")))?
     } else {
         toml::from_str(&text).map_err(|e| toml_error(path, &text, &e))?
     };
@@ -206,7 +207,9 @@ fn axis(path: &Path, name: &str, spec: AxisSpec) -> Result<Vec<f64>> {
     let mut edges = vec![points.first().copied().unwrap_or(0.0)];
     for (ends, (&n, &ratio)) in points.windows(2).zip(cells.iter().zip(&ratios)) {
         if n == 0 || ratio == 0.0 || !ratio.is_finite() {
-            return Err(wrong(format!("a segment needs at least one cell and a ratio other than 0, not {n} and {ratio}")));
+            return Err(wrong(format!(
+                "a segment needs at least one cell and a ratio other than 0, not {n} and {ratio}"
+            )));
         }
         let ratio = if ratio < 0.0 { -1.0 / ratio } else { ratio };
         edges.extend((1..=n).map(|i| ends[0] + (ends[1] - ends[0]) * share(i, n, ratio)));

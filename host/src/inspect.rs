@@ -91,7 +91,13 @@ impl Inspection<'_> {
                 ("triangles", d.triangles.to_string()),
                 ("named solids", d.solids.to_string()),
                 ("distinct points", d.points.to_string()),
-                ("box", format!("({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6})", d.bounds[0].x, d.bounds[0].y, d.bounds[0].z, d.bounds[1].x, d.bounds[1].y, d.bounds[1].z)),
+                (
+                    "box",
+                    format!(
+                        "({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6})",
+                        d.bounds[0].x, d.bounds[0].y, d.bounds[0].z, d.bounds[1].x, d.bounds[1].y, d.bounds[1].z
+                    ),
+                ),
                 ("size", format!("{:.6} × {:.6} × {:.6} m", size.x, size.y, size.z)),
                 ("shells", d.shells.to_string()),
                 ("bodies", d.bodies.to_string()),

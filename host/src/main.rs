@@ -38,7 +38,9 @@ fn execute(command: Command) -> Result<()> {
 /// To standard output; a reader that closes early is no failure.
 fn print(bytes: &[u8]) -> Result<()> {
     match std::io::stdout().write_all(bytes) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::new(format!("cannot write to standard output: {e}"))),
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::new(format!("cannot write to standard output: {e}")))
+        }
         _ => Ok(()),
     }
 }

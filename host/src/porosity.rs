@@ -19,7 +19,7 @@ use voidage_core::surface::{Scratch, add_body};
 /// What to compute and how far to refine.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Accept a cell or face without refinement if its bounds are this close.
+    /// Unions are found exactly; where one has no proof, divide the cell until its bounds are this close.
     pub tol: f64,
     /// How often a cell whose union has no proof may be divided by 2 along each axis.
     pub depth: u32,

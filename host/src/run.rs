@@ -66,8 +66,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         remarks.into_iter().for_each(|r| progress.warn(r));
         let grid = edges.grid(None)?;
         look_for_misfit(&bodies, &edges, &mut progress);
-        let options =
-            Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
+        let options = Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
         let result = progress.stage("porosity", |_| porosity::porosity(&grid, &bodies, options));
         report_leaks(&bodies, &result, &mut progress);
         let report = Report::new(args, &edges, &bodies, &result);
@@ -153,7 +152,8 @@ fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, 
     }
     if let Some(path) = &args.png {
         let [x, y, z] = &edges.0;
-        let name = |p: &std::path::PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let name =
+            |p: &std::path::PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
         let _ = (path, title, x, y, z);
     }
@@ -197,7 +197,8 @@ fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, abou
     let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
     let field_data = staggered.map(|(name, _, data)| Field { name, components: 1, data }).collect();
     let version = format!("voidage {}", about.version);
-    Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }.write(path)
+    Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }
+        .write(path)
 }
 
 /// What `--report` writes.
@@ -270,7 +271,10 @@ impl Report {
         progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
         progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
         progress.say(format!("solid volume  {:.9} m³", self.solid_volume));
-        progress.say(format!("cells         {} open, {} cut, {} closed; {} shared by bodies", c.open, c.cut, c.closed, c.ambiguous));
+        progress.say(format!(
+            "cells         {} open, {} cut, {} closed; {} shared by bodies",
+            c.open, c.cut, c.closed, c.ambiguous
+        ));
         progress.say(format!("largest gap   {:.1e}", self.max_gap));
         progress.say(format!("time          {:.3} s", progress.elapsed()));
     }

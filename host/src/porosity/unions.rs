@@ -109,24 +109,25 @@ impl Unions {
     /// divided ones.
     pub fn resolve(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) -> (usize, usize) {
         let [nx, ny, _] = grid.cells();
-        let tol = self.options.tol;
         let (mut ambiguous, mut divided) = (0, 0);
         for j in 0..ny {
             let mut row = None;
             for i in 0..nx {
                 let c = j * nx + i;
                 ambiguous += usize::from(gap(layer.lower.cell[c], layer.sum.cell[c]) > 0.0);
-                if !wants(layer, nx, ny, i, j, tol) {
+                let open = open_gap(layer, nx, ny, i, j);
+                if !(open > KNOWN) {
                     continue;
                 }
                 let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                 let (lo, hi) = grid.cell_box([i, j, k]);
                 let refined = match self.union(lo, hi, bins, k, row) {
                     Ok(union) => Some(Refined::from(union)),
-                    Err(Full) => {
+                    Err(Full) if open > self.options.tol => {
                         divided += 1;
                         self.divide(lo, hi, bins, k)
                     }
+                    Err(Full) => None,
                 };
                 if let Some(refined) = refined {
                     store(layer, nx, ny, i, j, &refined);
@@ -144,7 +145,8 @@ impl Unions {
             let mut row = None;
             for i in 0..nx {
                 let c = j * nx + i;
-                if !(gap(layer.lower.z[c], layer.sum.z[c]) > self.options.tol) {
+                let open = gap(layer.lower.z[c], layer.sum.z[c]);
+                if !(open > KNOWN) {
                     continue;
                 }
                 let bounds = if layer.marks.z[c] != 0 {
@@ -154,7 +156,8 @@ impl Unions {
                     let (lo, hi) = grid.cell_box([i, j, k]);
                     match self.union(lo, hi, bins, k, row) {
                         Ok(union) => Some(Refined::from(union).high[2]),
-                        Err(Full) => self.divide(lo, hi, bins, k).map(|r| r.high[2]),
+                        Err(Full) if open > self.options.tol => self.divide(lo, hi, bins, k).map(|r| r.high[2]),
+                        Err(Full) => None,
                     }
                 };
                 if let Some(bounds) = bounds {
@@ -216,7 +219,7 @@ impl Unions {
                 _ => (&mut *lower.z, &mut *sum.z, &*marks.z),
             };
             for f in 0..shape[0] * shape[1] {
-                if marks[f] != 0 && gap(lower[f], sum[f]) > self.options.tol {
+                if marks[f] != 0 && gap(lower[f], sum[f]) > KNOWN {
                     if let Some(bounds) = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k]) {
                         improve(&mut lower[f], &mut sum[f], bounds);
                     }
@@ -269,18 +272,26 @@ fn side_cell(grid: &Grid<f64>, axis: usize, face: [usize; 3], below: bool) -> ([
 /// How far beyond its outer planes a grid looks for bodies that touch them, in cells.
 const OUTSIDE: f64 = 1.0 / 1024.0;
 
-/// Does a cell, or a face that it decides, need refinement?
-fn wants(layer: &Layer<f64>, nx: usize, ny: usize, i: usize, j: usize, tol: f64) -> bool {
-    let open = |lower: &[f64], sum: &[f64], marks: &[u8], at: usize| gap(lower[at], sum[at]) > tol && marks[at] == 0;
-    let x = |at| open(layer.lower.x, layer.sum.x, layer.marks.x, at);
-    let y = |at| open(layer.lower.y, layer.sum.y, layer.marks.y, at);
+/// Bounds this close are one value: what remains is rounding.
+const KNOWN: f64 = 1e-13;
+
+/// The largest gap of a cell and of the faces that it decides.
+fn open_gap(layer: &Layer<f64>, nx: usize, ny: usize, i: usize, j: usize) -> f64 {
+    let of = |lower: &[f64], sum: &[f64], marks: &[u8], at: usize| {
+        if marks[at] == 0 { gap(lower[at], sum[at]) } else { 0.0 }
+    };
+    let x = |at| of(layer.lower.x, layer.sum.x, layer.marks.x, at);
+    let y = |at| of(layer.lower.y, layer.sum.y, layer.marks.y, at);
     let c = j * nx + i;
-    gap(layer.lower.cell[c], layer.sum.cell[c]) > tol
-        || x(j * (nx + 1) + i)
-        || (i + 1 == nx && x(j * (nx + 1) + nx))
-        || y(c)
-        || (j + 1 == ny && y(c + nx))
-        || open(layer.lower.z, layer.sum.z, layer.marks.z, c)
+    let mut open = gap(layer.lower.cell[c], layer.sum.cell[c]).max(x(j * (nx + 1) + i)).max(y(c));
+    open = open.max(of(layer.lower.z, layer.sum.z, layer.marks.z, c));
+    if i + 1 == nx {
+        open = open.max(x(j * (nx + 1) + nx));
+    }
+    if j + 1 == ny {
+        open = open.max(y(c + nx));
+    }
+    open
 }
 
 /// Store what is known of a cell and of those of its faces that it decides.
