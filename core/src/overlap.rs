@@ -171,20 +171,39 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         ids: &[u32],
     ) -> Result<(), Full> {
         let first = self.piece_count;
+        let mut filling = R::ZERO;
         for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
-            if let Some(piece) = self.piece(&triangle.map(Vector::to_array), lo, hi) {
-                *self.space.pieces.get_mut(self.piece_count).ok_or(Full)? = piece;
-                self.piece_count += 1;
+            let Some(piece) = self.piece(&triangle.map(Vector::to_array), lo, hi) else { continue };
+            if let Some(solid) = self.on_side(&piece, lo, hi) {
+                filling += if solid { piece.area } else { -piece.area };
+                continue;
             }
+            *self.space.pieces.get_mut(self.piece_count).ok_or(Full)? = piece;
+            self.piece_count += 1;
         }
-        if self.piece_count == first {
+        // With no surface but on its sides the cell is all solid or all open.
+        let uniform = if filling > R::ZERO { Branch::Solid } else { Branch::Open };
+        if self.piece_count == first && uniform == Branch::Open {
             return Ok(());
         }
-        let part = Part { first, end: self.piece_count, root: Branch::Open, below };
-        let root = self.grow(part)?;
+        let part = Part { first, end: self.piece_count, root: uniform, below };
+        let root = if self.piece_count == first { uniform } else { self.grow(part)? };
         *self.space.parts.get_mut(self.part_count).ok_or(Full)? = Part { root, ..part };
         self.part_count += 1;
         Ok(())
+    }
+
+    /// Does a piece lie on a side of the cell `lo..hi`, and if so, is the solid on the inner side of it?
+    fn on_side(&self, piece: &Piece<R>, lo: [R; 3], hi: [R; 3]) -> Option<bool> {
+        let (low, high) = (self.framed(lo), self.framed(hi));
+        (0..3).find_map(|axis| {
+            let near = |at: R| piece.polygon.corners().iter().all(|c| (c[axis] - at).abs() <= self.thickness);
+            if near(low[axis]) {
+                Some(piece.normal[axis] < R::ZERO)
+            } else {
+                near(high[axis]).then_some(piece.normal[axis] > R::ZERO)
+            }
+        })
     }
 
     /// The part of a triangle inside a cell, in the frame. Cut along z, y, x as in [`crate::surface`].
