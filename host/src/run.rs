@@ -163,7 +163,8 @@ fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, 
 /// The fields of a result with names: base name, shape, values.
 fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &'a [f64])> {
     let [nx, ny, nz] = edges.cells();
-    let sets = [("", Some(&result.beta)), ("_lower", result.lower.as_ref()), ("_upper", result.upper.as_ref())];
+    let [lower, upper] = [0, 1].map(|n| result.bounds.as_ref().map(|b| &b[n]));
+    let sets = [("", Some(&result.beta)), ("_lower", lower), ("_upper", upper)];
     let mut all: Vec<(String, [usize; 3], &[f64])> = Vec::new();
     for (suffix, set) in sets.into_iter().filter_map(|(suffix, set)| Some((suffix, set?))) {
         all.push((format!("beta_v{suffix}"), [nx, ny, nz], &set.v));

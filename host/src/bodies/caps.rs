@@ -6,7 +6,7 @@
 
 use super::shells::Sets;
 use glam::DVec3;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// Rims whose integrals are below this share of the surface's size cancel: rounding of `f32` corners on T-junctions.
 const CANCELS: f64 = 1e-5;
@@ -52,7 +52,7 @@ pub struct Rim {
 /// Group loose edges into rims that share no vertex.
 #[must_use]
 pub fn rims(boundary: &[[u32; 2]]) -> Vec<Rim> {
-    let mut index = HashMap::new();
+    let mut index = HashMap::default();
     let mut sets = Sets::new(boundary.len());
     for (n, edge) in boundary.iter().enumerate() {
         for v in edge {
@@ -60,7 +60,7 @@ pub fn rims(boundary: &[[u32; 2]]) -> Vec<Rim> {
             sets.join(n, other);
         }
     }
-    let mut at = HashMap::new();
+    let mut at = HashMap::default();
     let mut rims: Vec<Rim> = Vec::new();
     for (n, edge) in boundary.iter().enumerate() {
         let rim = *at.entry(sets.find(n)).or_insert_with(|| {

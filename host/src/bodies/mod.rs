@@ -12,9 +12,9 @@ use crate::input::Mesh;
 use caps::{cancels, rims};
 use glam::DVec3;
 use nesting::{Closed, Role};
+use rustc_hash::FxHashMap as HashMap;
 use serde::Serialize;
 use shells::{Sets, Shell};
-use std::collections::HashMap;
 use std::ops::Range;
 use weld::Indexed;
 
@@ -308,14 +308,14 @@ fn close(
 /// Shells that belong together: closed ones alone, open ones with those that share a corner of their boundary.
 fn groups(shells: &[Shell]) -> Vec<Vec<usize>> {
     let mut sets = Sets::new(shells.len());
-    let mut owner = HashMap::new();
+    let mut owner = HashMap::default();
     for (s, shell) in shells.iter().enumerate() {
         for v in shell.boundary.iter().flatten() {
             let other = *owner.entry(*v).or_insert(s);
             sets.join(s, other);
         }
     }
-    let mut at = HashMap::new();
+    let mut at = HashMap::default();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for s in 0..shells.len() {
         let group = *at.entry(sets.find(s)).or_insert_with(|| {

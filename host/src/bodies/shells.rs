@@ -4,7 +4,7 @@
 //! assembly touch; each triangle then takes the neighbour nearest in the file, because exporters write part by part.
 
 use super::weld::Indexed;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// A set of triangles connected through edges.
 #[derive(Debug, Clone, Default)]
@@ -26,32 +26,50 @@ struct Use {
     up: bool,
 }
 
-type Edges = HashMap<[u32; 2], Vec<Use>>;
+/// Uses of edges, sorted by edge and then by triangle. An edge is its lower vertex, then its higher one.
+struct Edges(Vec<(u64, Use)>);
+
+fn key(a: u32, b: u32) -> u64 {
+    u64::from(a.min(b)) << 32 | u64::from(a.max(b))
+}
+
+impl Edges {
+    fn new(mesh: &Indexed, alive: &[bool]) -> Self {
+        let mut uses = Vec::with_capacity(mesh.triangles.len() * 3);
+        for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
+            uses.extend(edges_of(t).map(|[a, b]| (key(a, b), Use { triangle: n as u32, up: a < b })));
+        }
+        uses.sort_unstable_by_key(|&(edge, u)| (edge, u.triangle, u.up));
+        Edges(uses)
+    }
+
+    /// The uses of each edge in turn.
+    fn each(&self) -> impl Iterator<Item = &[(u64, Use)]> {
+        self.0.chunk_by(|a, b| a.0 == b.0)
+    }
+
+    /// The uses of one edge.
+    fn of(&self, edge: u64) -> &[(u64, Use)] {
+        let first = self.0.partition_point(|u| u.0 < edge);
+        let count = self.0[first..].partition_point(|u| u.0 == edge);
+        &self.0[first..first + count]
+    }
+}
 
 fn edges_of(t: [u32; 3]) -> [[u32; 2]; 3] {
     [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
 }
 
-fn edge_uses(mesh: &Indexed, alive: &[bool]) -> Edges {
-    let mut edges: Edges = HashMap::with_capacity(mesh.triangles.len() * 3 / 2);
-    for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
-        for [a, b] in edges_of(t) {
-            edges.entry([a.min(b), a.max(b)]).or_default().push(Use { triangle: n as u32, up: a < b });
-        }
-    }
-    edges
-}
-
-/// How many more times an edge is run one way than the other.
-fn imbalance(uses: &[Use]) -> usize {
-    let up = uses.iter().filter(|u| u.up).count();
-    up.abs_diff(uses.len() - up)
+/// How many more times an edge is run upwards than downwards.
+fn balance(uses: &[(u64, Use)]) -> i64 {
+    uses.iter().map(|(_, u)| if u.up { 1 } else { -1 }).sum()
 }
 
 /// Drop repeated triangles, by clusters that share edges, where that leaves the surface no more open than before; a repeat
 /// that closes another part stays. Returns the number dropped.
 pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
-    let mut first: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut first: HashMap<[u32; 3], u32> = HashMap::default();
+    first.reserve(mesh.triangles.len());
     let mut repeats = Vec::new();
     for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
         let lowest = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
@@ -63,18 +81,18 @@ pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
     if repeats.is_empty() {
         return 0;
     }
-    let edges = edge_uses(mesh, alive);
+    let edges = Edges::new(mesh, alive);
     let mut dropped = 0;
     for cluster in clusters(mesh, &repeats) {
-        let mut change: HashMap<[u32; 2], i64> = HashMap::new();
+        let mut change: HashMap<u64, i64> = HashMap::default();
         for &n in &cluster {
             for [a, b] in edges_of(mesh.triangles[n as usize]) {
-                *change.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+                *change.entry(key(a, b)).or_default() += if a < b { 1 } else { -1 };
             }
         }
         let (mut before, mut after) = (0, 0);
         for (edge, less) in change {
-            let up: i64 = edges[&edge].iter().map(|u| if u.up { 1 } else { -1 }).sum();
+            let up = balance(edges.of(edge));
             before += up.abs();
             after += (up - less).abs();
         }
@@ -89,14 +107,14 @@ pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
 /// Groups of some triangles connected through edges.
 fn clusters(mesh: &Indexed, members: &[u32]) -> Vec<Vec<u32>> {
     let mut sets = Sets::new(members.len());
-    let mut owner: HashMap<[u32; 2], usize> = HashMap::new();
+    let mut owner: HashMap<u64, usize> = HashMap::default();
     for (m, &n) in members.iter().enumerate() {
         for [a, b] in edges_of(mesh.triangles[n as usize]) {
-            let other = *owner.entry([a.min(b), a.max(b)]).or_insert(m);
+            let other = *owner.entry(key(a, b)).or_insert(m);
             sets.join(m, other);
         }
     }
-    let mut groups: HashMap<usize, Vec<u32>> = HashMap::new();
+    let mut groups: HashMap<usize, Vec<u32>> = HashMap::default();
     for (m, &n) in members.iter().enumerate() {
         groups.entry(sets.find(m)).or_default().push(n);
     }
@@ -141,8 +159,8 @@ struct Link {
 }
 
 /// Pair the uses of one edge: opposite directions first, nearest in the file first; what is left is boundary.
-fn pair(uses: &[Use], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
-    if let [p, q] = uses {
+fn pair(uses: &[(u64, Use)], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
+    if let [(_, p), (_, q)] = uses {
         if p.triangle != q.triangle {
             links.push(Link { a: p.triangle, b: q.triangle, same: p.up == q.up });
             return;
@@ -151,9 +169,9 @@ fn pair(uses: &[Use], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
     let mut free = vec![true; uses.len()];
     for same in [false, true] {
         let mut candidates = Vec::new();
-        for (m, p) in uses.iter().enumerate() {
+        for (m, (_, p)) in uses.iter().enumerate() {
             // A long list would cost its square; its far ends are not neighbours anyway.
-            for (n, q) in uses.iter().enumerate().skip(m + 1).take(64) {
+            for (n, (_, q)) in uses.iter().enumerate().skip(m + 1).take(64) {
                 if (p.up == q.up) == same && p.triangle != q.triangle {
                     candidates.push((p.triangle.abs_diff(q.triangle), m, n));
                 }
@@ -164,11 +182,11 @@ fn pair(uses: &[Use], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
         for (_, m, n) in candidates.into_iter().filter(|_| !same || uses.len() == 2) {
             if free[m] && free[n] {
                 (free[m], free[n]) = (false, false);
-                links.push(Link { a: uses[m].triangle, b: uses[n].triangle, same });
+                links.push(Link { a: uses[m].1.triangle, b: uses[n].1.triangle, same });
             }
         }
     }
-    for (m, &u) in uses.iter().enumerate() {
+    for (m, &(_, u)) in uses.iter().enumerate() {
         if free[m] {
             lonely(u);
         }
@@ -178,12 +196,11 @@ fn pair(uses: &[Use], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
 /// Split a mesh into shells and turn their triangles to agree with each other; `mesh` is changed where triangles turn.
 pub fn shells(mesh: &mut Indexed, alive: &[bool]) -> Vec<Shell> {
     let count = mesh.triangles.len();
-    let mut edges: Vec<_> = edge_uses(mesh, alive).into_iter().collect();
-    edges.sort_unstable_by_key(|(edge, _)| *edge);
-    let mut links = Vec::with_capacity(edges.len());
+    let mut links = Vec::with_capacity(count * 3 / 2);
     let mut lonely = Vec::new();
-    for (edge, uses) in &edges {
-        pair(uses, &mut links, |u| lonely.push((u.triangle, *edge)));
+    for uses in Edges::new(mesh, alive).each() {
+        let edge = uses[0].0;
+        pair(uses, &mut links, |u| lonely.push((u.triangle, edge)));
     }
     let turn = orientations(count, &links);
     for (t, turn) in mesh.triangles.iter_mut().zip(&turn) {
@@ -191,7 +208,7 @@ pub fn shells(mesh: &mut Indexed, alive: &[bool]) -> Vec<Shell> {
             t.swap(1, 2);
         }
     }
-    let mut position = HashMap::new();
+    let mut position = HashMap::default();
     let mut shells: Vec<Shell> = Vec::new();
     for n in (0..count).filter(|&n| alive[n]) {
         let at = *position.entry(turn[n].root).or_insert_with(|| {
@@ -207,8 +224,8 @@ pub fn shells(mesh: &mut Indexed, alive: &[bool]) -> Vec<Shell> {
             shells[position[&a.root]].one_sided = true;
         }
     }
-    for (n, [low, high]) in lonely {
-        let directed = edges_of(mesh.triangles[n as usize]).into_iter().find(|e| e.contains(&low) && e.contains(&high));
+    for (n, edge) in lonely {
+        let directed = edges_of(mesh.triangles[n as usize]).into_iter().find(|&[a, b]| key(a, b) == edge);
         shells[position[&turn[n as usize].root]].boundary.extend(directed);
     }
     shells
@@ -222,10 +239,16 @@ struct Turn {
 
 /// Flood each connected set from its first triangle. The minority is what turns.
 fn orientations(count: usize, links: &[Link]) -> Vec<Turn> {
-    let mut neighbours = vec![Vec::new(); count];
+    let mut first = vec![0_usize; count + 1];
+    links.iter().flat_map(|l| [l.a, l.b]).for_each(|n| first[n as usize + 1] += 1);
+    (0..count).for_each(|n| first[n + 1] += first[n]);
+    let mut neighbours = vec![(0_u32, false); first[count]];
+    let mut next = first.clone();
     for l in links {
-        neighbours[l.a as usize].push((l.b, l.same));
-        neighbours[l.b as usize].push((l.a, l.same));
+        for (n, other) in [(l.a, l.b), (l.b, l.a)] {
+            neighbours[next[n as usize]] = (other, l.same);
+            next[n as usize] += 1;
+        }
     }
     let mut turn: Vec<Option<Turn>> = vec![None; count];
     for root in 0..count {
@@ -238,7 +261,7 @@ fn orientations(count: usize, links: &[Link]) -> Vec<Turn> {
         while let Some(&n) = members.get(next) {
             next += 1;
             let turned = turn[n].is_some_and(|t| t.turned);
-            for &(m, same) in &neighbours[n] {
+            for &(m, same) in &neighbours[first[n]..first[n + 1]] {
                 if turn[m as usize].is_none() {
                     turn[m as usize] = Some(Turn { root: root as u32, turned: turned != same });
                     members.push(m as usize);
@@ -255,6 +278,6 @@ fn orientations(count: usize, links: &[Link]) -> Vec<Turn> {
 
 /// Sum of the imbalances of all edges of a mesh: 0 if every edge is run as often one way as the other.
 #[must_use]
-pub fn unmatched_edges(mesh: &Indexed, alive: &[bool]) -> usize {
-    edge_uses(mesh, alive).values().map(|uses| imbalance(uses)).sum()
+pub fn unmatched_edges(mesh: &Indexed, alive: &[bool]) -> u64 {
+    Edges::new(mesh, alive).each().map(|uses| balance(uses).unsigned_abs()).sum()
 }

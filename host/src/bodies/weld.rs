@@ -1,7 +1,7 @@
 //! Corner lists to indexed triangles: equal points become one vertex.
 
 use glam::DVec3;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 /// Triangles as indices into a list of distinct points.
 #[derive(Debug, Clone, Default)]
@@ -15,7 +15,8 @@ pub struct Indexed {
 /// Weld points that are equal; −0 equals 0.
 #[must_use]
 pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
-    let mut seen: HashMap<[u64; 3], u32> = HashMap::with_capacity(triangles.len());
+    let mut seen: HashMap<[u64; 3], u32> = HashMap::default();
+    seen.reserve(triangles.len());
     let mut points = Vec::new();
     let indexed = triangles
         .iter()
@@ -34,7 +35,7 @@ pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
 /// Merge points closer than `distance`; each group moves to the place of its first point. Returns the largest move.
 pub fn merge_close(mesh: &mut Indexed, distance: f64) -> f64 {
     let key = |p: DVec3| (p / distance).floor().to_array().map(|c| c as i64);
-    let mut buckets: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut buckets: HashMap<[i64; 3], Vec<u32>> = HashMap::default();
     let (mut target, mut largest_move) = (Vec::with_capacity(mesh.points.len()), 0.0_f64);
     for (v, &p) in mesh.points.iter().enumerate() {
         let [a, b, c] = key(p);

@@ -8,7 +8,6 @@ use voidage_core::grid::{Grid, Located};
 #[derive(Debug)]
 pub struct Bins<'a> {
     triangles: &'a [[DVec3; 3]],
-    body_count: usize,
     /// Per layer: the run of its groups.
     layers: Vec<std::ops::Range<usize>>,
     /// A body's triangles in a layer: body, first entry in `ids`, bounding box of those triangles.
@@ -45,9 +44,7 @@ impl<'a> Bins<'a> {
         let nz = grid.cells()[2];
         let span = |t: u32| layer_span(grid, &triangles[t as usize]);
         let mut first = vec![0_usize; nz + 1];
-        let mut body_count = 0;
-        for (body, t) in members.clone() {
-            body_count = body_count.max(body as usize + 1);
+        for (_, t) in members.clone() {
             span(t).for_each(|k| first[k + 1] += 1);
         }
         for k in 0..nz {
@@ -74,19 +71,13 @@ impl<'a> Bins<'a> {
             }
             layers.push(begin..groups.len());
         }
-        Bins { triangles, body_count, layers, groups, ids: entries.into_iter().map(|(_, t)| t).collect() }
+        Bins { triangles, layers, groups, ids: entries.into_iter().map(|(_, t)| t).collect() }
     }
 
     /// All triangles.
     #[must_use]
     pub fn triangles(&self) -> &'a [[DVec3; 3]] {
         self.triangles
-    }
-
-    /// One more than the highest body.
-    #[must_use]
-    pub fn body_count(&self) -> usize {
-        self.body_count
     }
 
     /// The bodies that touch layer `k`, and which of their triangles do.

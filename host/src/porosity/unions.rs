@@ -1,7 +1,9 @@
 //! Cells and faces that several bodies share: exact unions, or division until there is one.
 
 use super::bins::{Bins, Group};
-use super::{FieldSet, Options, Worker, slices};
+use super::fields::FieldSet;
+use super::layers::Worker;
+use super::{Options, targets};
 use glam::DVec3;
 use voidage_core::grid::Grid;
 use voidage_core::layer::{Layer, gap};
@@ -111,6 +113,9 @@ impl Unions {
         let [nx, ny, _] = grid.cells();
         let (mut ambiguous, mut divided) = (0, 0);
         for j in 0..ny {
+            if !row_is_open(layer, nx, j) {
+                continue;
+            }
             let mut row = None;
             for i in 0..nx {
                 let c = j * nx + i;
@@ -200,12 +205,12 @@ impl Unions {
             .collect();
         let parts = Bins::of(&grid, bins.triangles(), members.into_iter());
         let worker = self.inner.get_or_insert_with(|| Box::new(Worker::new(&grid, options)));
-        let (mut lower, mut upper) = (FieldSet::new(&grid, true), FieldSet::new(&grid, true));
-        let layers = slices(&grid, &mut lower).into_iter().zip(slices(&grid, &mut upper));
-        for (k, (lower, upper)) in layers.enumerate() {
-            worker.layer(&grid, &parts, k, lower, Some(upper));
+        let mut beta = FieldSet::new(&grid, true);
+        let mut bounds = [FieldSet::new(&grid, true), FieldSet::new(&grid, true)];
+        for (k, target) in targets(&grid, &mut beta, Some(&mut bounds)).into_iter().enumerate() {
+            worker.layer(&grid, &parts, k, target);
         }
-        Some(Refined::from_parts(&lower, &upper))
+        Some(Refined::from_parts(&bounds))
     }
 
     /// Faces of layer `k` in whose plane surface lies: open where both sides are.
@@ -275,6 +280,18 @@ const OUTSIDE: f64 = 1.0 / 1024.0;
 /// Bounds this close are one value: what remains is rounding.
 const KNOWN: f64 = 1e-13;
 
+/// Is there a gap anywhere in a row, its upper y faces included?
+fn row_is_open(layer: &Layer<f64>, nx: usize, j: usize) -> bool {
+    let any = |lower: &[f64], sum: &[f64], run: std::ops::Range<usize>| {
+        // Sums are compared as they are: a closed item with a sum above 1 only costs a second look.
+        lower[run.clone()].iter().zip(&sum[run]).fold(false, |any, (l, s)| any | (*s - *l > KNOWN))
+    };
+    any(layer.lower.cell, layer.sum.cell, j * nx..(j + 1) * nx)
+        || any(layer.lower.x, layer.sum.x, j * (nx + 1)..(j + 1) * (nx + 1))
+        || any(layer.lower.y, layer.sum.y, j * nx..(j + 2) * nx)
+        || any(layer.lower.z, layer.sum.z, j * nx..(j + 1) * nx)
+}
+
 /// The largest gap of a cell and of the faces that it decides.
 fn open_gap(layer: &Layer<f64>, nx: usize, ny: usize, i: usize, j: usize) -> f64 {
     let of = |lower: &[f64], sum: &[f64], marks: &[u8], at: usize| {
@@ -317,11 +334,11 @@ fn store(layer: &mut Layer<f64>, nx: usize, ny: usize, i: usize, j: usize, refin
 }
 
 impl Refined {
-    /// From the bounds of a cell's eight parts, halves along each axis.
-    fn from_parts(lower: &FieldSet, upper: &FieldSet) -> Self {
+    /// From the bounds of the open fractions of a cell's eight parts, halves along each axis.
+    fn from_parts([lower, upper]: &[FieldSet; 2]) -> Self {
         let mean = |f: fn(&FieldSet) -> &[f64], at: &[usize]| {
             let part = |set: &FieldSet| at.iter().map(|&n| f(set)[n]).sum::<f64>() / at.len() as f64;
-            (part(lower), part(upper))
+            (1.0 - part(upper), 1.0 - part(lower))
         };
         let x = |i: usize| mean(|s| &s.x, &[0, 1, 2, 3].map(|r| 3 * r + i));
         let y = |j: usize| mean(|s| &s.y, &[2 * j, 2 * j + 1, 6 + 2 * j, 7 + 2 * j]);

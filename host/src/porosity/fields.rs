@@ -1,0 +1,63 @@
+//! A value for every cell and face, whole and by layers.
+
+use voidage_core::grid::Grid;
+
+/// A value for every cell and face of a grid, x fastest.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FieldSet {
+    /// Cells, `nx*ny*nz`.
+    pub v: Vec<f64>,
+    /// x faces, `(nx+1)*ny*nz`.
+    pub x: Vec<f64>,
+    /// y faces, `nx*(ny+1)*nz`.
+    pub y: Vec<f64>,
+    /// z faces, `nx*ny*(nz+1)`.
+    pub z: Vec<f64>,
+}
+
+/// One layer's share of a field set.
+#[derive(Debug)]
+pub struct Slices<'a> {
+    /// Cells.
+    pub v: &'a mut [f64],
+    /// x faces.
+    pub x: &'a mut [f64],
+    /// y faces.
+    pub y: &'a mut [f64],
+    /// z faces below.
+    pub z: &'a mut [f64],
+    /// z faces above: only for the topmost layer, else empty.
+    pub top: &'a mut [f64],
+}
+
+impl FieldSet {
+    /// All zero; without `areas` the face fields are empty.
+    #[must_use]
+    pub fn new(grid: &Grid<f64>, areas: bool) -> Self {
+        let faces = |axis| if areas { vec![0.0; grid.face_shape(axis).iter().product()] } else { Vec::new() };
+        FieldSet { v: vec![0.0; grid.cell_count()], x: faces(0), y: faces(1), z: faces(2) }
+    }
+
+    /// Cut into layers; empty fields give empty slices.
+    pub fn layers(&mut self, grid: &Grid<f64>) -> Vec<Slices<'_>> {
+        let [nx, ny, nz] = grid.cells();
+        let FieldSet { v, x, y, z } = self;
+        let (mut v, mut x, mut y, mut z) = (&mut v[..], &mut x[..], &mut y[..], &mut z[..]);
+        let layers = (0..nz).map(|k| Slices {
+            v: split_off(&mut v, nx * ny),
+            x: split_off(&mut x, (nx + 1) * ny),
+            y: split_off(&mut y, nx * (ny + 1)),
+            z: split_off(&mut z, nx * ny),
+            top: split_off(&mut z, if k + 1 == nz { nx * ny } else { 0 }),
+        });
+        layers.collect()
+    }
+}
+
+/// The first `count` entries of a slice, which then begins after them.
+fn split_off<'a>(slice: &mut &'a mut [f64], count: usize) -> &'a mut [f64] {
+    let whole = std::mem::take(slice);
+    let (first, rest) = whole.split_at_mut(count.min(whole.len()));
+    *slice = rest;
+    first
+}
