@@ -1,1 +1,7 @@
 //! Generators, oracles and properties shared by tests, fuzz targets and benches.
+
+pub mod fields;
+pub mod lattice;
+pub mod rng;
+pub mod solids;
+pub mod truth;

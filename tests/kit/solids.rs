@@ -1,0 +1,122 @@
+//! Triangulated solids, outward, and scenes of them.
+
+use glam::{DMat3, DVec3};
+use std::path::PathBuf;
+use voidage::bodies::Bodies;
+use voidage::input::{Mesh, Solid};
+
+/// A triangle: three corners, counter-clockwise from outside.
+pub type Triangle = [DVec3; 3];
+
+/// An axis-aligned box, 12 triangles.
+#[must_use]
+pub fn cuboid(min: DVec3, max: DVec3) -> Vec<Triangle> {
+    let corner = |n: usize| {
+        DVec3::new(
+            if n & 1 == 0 { min.x } else { max.x },
+            if n & 2 == 0 { min.y } else { max.y },
+            if n & 4 == 0 { min.z } else { max.z },
+        )
+    };
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(corner)).collect()
+}
+
+/// A box of half-lengths `half`, turned and moved.
+#[must_use]
+pub fn turned_box(center: DVec3, half: DVec3, turn: DMat3) -> Vec<Triangle> {
+    cuboid(-half, half).into_iter().map(|t| t.map(|p| center + turn * p)).collect()
+}
+
+/// A geodesic sphere: an icosahedron with every edge cut into `frequency` parts: 10 f² + 2 points, 20 f² triangles.
+#[must_use]
+pub fn sphere(center: DVec3, radius: f64, frequency: usize) -> Vec<Triangle> {
+    let g = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let points = [
+        [-1.0, g, 0.0],
+        [1.0, g, 0.0],
+        [-1.0, -g, 0.0],
+        [1.0, -g, 0.0],
+        [0.0, -1.0, g],
+        [0.0, 1.0, g],
+        [0.0, -1.0, -g],
+        [0.0, 1.0, -g],
+        [g, 0.0, -1.0],
+        [g, 0.0, 1.0],
+        [-g, 0.0, -1.0],
+        [-g, 0.0, 1.0],
+    ]
+    .map(DVec3::from_array);
+    let faces = [
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
+    ];
+    let mut triangles = Vec::with_capacity(20 * frequency * frequency);
+    for [a, b, c] in faces {
+        // Weighted sums in the order of the corners' numbers: neighbours get the same bits.
+        let at = |i: usize, j: usize| {
+            let mut weights = [(a, frequency - i - j), (b, i), (c, j)];
+            weights.sort_unstable();
+            let sum: DVec3 = weights.iter().map(|&(p, w): &(usize, usize)| points[p] * w as f64).sum();
+            center + sum.normalize() * radius
+        };
+        for i in 0..frequency {
+            for j in 0..frequency - i {
+                triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                if i + j + 1 < frequency {
+                    triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+    }
+    triangles
+}
+
+/// Sixteen spheres of 362 points in the unit cube, as in the paper's largest case.
+#[must_use]
+pub fn sixteen_spheres() -> Vec<Vec<Triangle>> {
+    let centers = (0..16).map(|n| {
+        DVec3::new(0.125 + 0.25 * (n % 4) as f64, 0.25 + 0.5 * (n / 4 % 2) as f64, 0.25 + 0.5 * (n / 8) as f64)
+    });
+    centers.map(|c| sphere(c, 0.11, 6)).collect()
+}
+
+/// Volume enclosed by triangles.
+#[must_use]
+pub fn volume(triangles: &[Triangle]) -> f64 {
+    voidage::bodies::nesting::signed_volume(triangles, triangles.first().map_or(DVec3::ZERO, |t| t[0]))
+}
+
+/// A scene of closed solids, as if each had been read from a file of its own.
+///
+/// # Panics
+/// If a solid has no area.
+#[must_use]
+pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
+    let mut bodies = Bodies::default();
+    for (n, triangles) in solids.iter().enumerate() {
+        let solids = vec![Solid { name: format!("solid {n}"), triangles: 0..triangles.len() }];
+        let path = PathBuf::from(format!("solid-{n}.stl"));
+        let mesh = Mesh { path, solids, triangles: triangles.clone(), warnings: Vec::new() };
+        bodies.add(&mesh, 1.0).expect("a solid with an area");
+    }
+    bodies
+}

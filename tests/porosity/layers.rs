@@ -1,0 +1,30 @@
+//! The layers of the core: a module uses only modules above it.
+
+use std::path::Path;
+
+/// Modules from the bottom up; `a/b.rs` counts as `a`.
+const ORDER: [&str; 8] = ["real", "aabb", "clip", "grid", "layer", "surface", "section", "overlap"];
+
+#[test]
+fn core_modules_import_downwards_only() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src");
+    let place = |module: &str| ORDER.iter().position(|m| *m == module);
+    let mut checked = 0;
+    for (at, module) in ORDER.iter().enumerate() {
+        let text = std::fs::read_to_string(source.join(format!("{module}.rs"))).expect("a module of the list");
+        for line in text.lines().filter(|l| !l.trim_start().starts_with("//")) {
+            for used in line.split("crate::").skip(1) {
+                let name: String = used.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();
+                let below = place(&name).unwrap_or_else(|| panic!("{module} uses {name}, which the list lacks"));
+                assert!(below < at, "{module} uses {name}, which stands above it");
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 10, "imports were seen");
+    let listed = std::fs::read_to_string(source.join("lib.rs")).expect("lib.rs");
+    for line in listed.lines().filter_map(|l| l.strip_prefix("pub mod ")) {
+        let name = line.trim_end_matches(';');
+        assert!(place(name).is_some(), "module {name} is missing in the order");
+    }
+}

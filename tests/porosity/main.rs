@@ -1,0 +1,8 @@
+//! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
+
+mod core_alone;
+mod invariance;
+mod known;
+mod layers;
+mod overlap;
+mod truth;

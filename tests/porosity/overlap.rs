@@ -1,0 +1,137 @@
+//! Unions of bodies against an oracle, and against themselves.
+
+use glam::DVec3;
+use voidage::grid::Edges;
+use voidage::porosity::{FieldSet, Options, porosity};
+use voidage_tests::fields::assert_close;
+use voidage_tests::lattice::{Lattice, SIDE};
+use voidage_tests::rng::Rng;
+use voidage_tests::solids::{Triangle, scene, sphere, turned_box};
+
+fn oracle(lattice: &Lattice, edges: &[Vec<usize>; 3]) -> FieldSet {
+    let [nx, ny, nz] = [0, 1, 2].map(|a: usize| edges[a].len() - 1);
+    let mut f = FieldSet::default();
+    let corner = |[i, j, k]: [usize; 3]| [edges[0][i], edges[1][j], edges[2][k]];
+    for k in 0..nz {
+        for j in 0..ny {
+            f.v.extend((0..nx).map(|i| 1.0 - lattice.cell(corner([i, j, k]), corner([i + 1, j + 1, k + 1]))));
+            f.x.extend((0..=nx).map(|i| 1.0 - lattice.face(0, corner([i, j, k]), corner([i, j + 1, k + 1]))));
+        }
+        for j in 0..=ny {
+            f.y.extend((0..nx).map(|i| 1.0 - lattice.face(1, corner([i, j, k]), corner([i + 1, j, k + 1]))));
+        }
+    }
+    for k in 0..=nz {
+        for j in 0..ny {
+            f.z.extend((0..nx).map(|i| 1.0 - lattice.face(2, corner([i, j, k]), corner([i + 1, j + 1, k]))));
+        }
+    }
+    f
+}
+
+/// Overlapping, touching and coincident boxes on grids whose planes hold their faces: every cell and face, walls included.
+#[test]
+fn boxes_on_a_lattice() {
+    let whole: Vec<usize> = (0..=SIDE).collect();
+    let grids = [
+        [4, 4, 4].map(|step| whole.iter().copied().step_by(step).collect::<Vec<_>>()),
+        [2, 8, 4].map(|step| whole.iter().copied().step_by(step).collect()),
+        [vec![0, 1, 3, 7, 12, 16], vec![0, 2, 6, 16], vec![0, 5, 10, 16]],
+        [vec![2, 6, 10, 14], vec![3, 7, 8, 13], vec![1, 9, 12]],
+    ];
+    let (mut shared, mut walls) = (0, 0);
+    for seed in 0..200 {
+        let mut rng = Rng(seed);
+        let count = 1 + rng.below(6);
+        let lattice = Lattice::random(&mut rng, count);
+        let bodies = scene(&lattice.solids());
+        for (n, steps) in grids.iter().enumerate() {
+            let edges = Edges(steps.clone().map(|e| e.into_iter().map(|c| c as f64).collect()));
+            let p = porosity(&edges.grid(None).expect("a grid"), &bodies, Options::default());
+            let expected = oracle(&lattice, steps);
+            assert_close(&p.beta, &expected, 1e-12, &format!("seed {seed} grid {n} boxes {:?}", lattice.boxes));
+            assert!(p.max_gap <= 1e-12, "seed {seed} grid {n}: gap {}", p.max_gap);
+            shared += p.cells.ambiguous;
+            walls += expected.x.iter().filter(|&&b| b > 0.0 && b < 1.0).count();
+        }
+    }
+    assert!(
+        shared > 1000 && walls > 1000,
+        "the regimes were visited: {shared} shared cells, {walls} part-open x faces"
+    );
+}
+
+fn random_solids(rng: &mut Rng) -> Vec<Vec<Triangle>> {
+    let (lo, hi) = (DVec3::splat(0.2), DVec3::splat(0.8));
+    let count = 2 + rng.below(5);
+    let one = |rng: &mut Rng| {
+        let center = rng.point(lo, hi);
+        if rng.below(3) == 0 {
+            sphere(center, rng.range(0.05, 0.25), 1 + rng.below(4))
+        } else {
+            turned_box(center, rng.point(DVec3::splat(0.02), DVec3::splat(0.3)), rng.turn())
+        }
+    };
+    (0..count).map(|_| one(rng)).collect()
+}
+
+/// What eight small cells hold is what the large one holds, and so for faces.
+#[test]
+fn parts_sum_to_the_whole() {
+    let mut shared = 0;
+    for seed in 1000..1040 {
+        let bodies = scene(&random_solids(&mut Rng(seed)));
+        let axis = |n: usize| -> Vec<f64> { (0..=n).map(|i| i as f64 / n as f64).collect() };
+        let run = |n: usize| {
+            let edges = Edges([axis(n), axis(n), axis(n)]);
+            porosity(&edges.grid(None).expect("a grid"), &bodies, Options::default())
+        };
+        let (coarse, fine) = (run(4), run(8));
+        shared += coarse.cells.ambiguous;
+        assert_close(
+            &coarse.beta,
+            &merge(&fine.beta, 4),
+            coarse.max_gap + fine.max_gap + 1e-12,
+            &format!("seed {seed}"),
+        );
+        assert!(coarse.max_gap <= 1e-4 && fine.max_gap <= 1e-4, "seed {seed}: {} {}", coarse.max_gap, fine.max_gap);
+    }
+    assert!(shared > 200, "{shared}");
+}
+
+/// Merge 2×2×2 cells of a cubic grid; `n` is the number of coarse cells along an axis.
+fn merge(fine: &FieldSet, n: usize) -> FieldSet {
+    let mut f = FieldSet::default();
+    let mean = |field: &[f64], shape: [usize; 2], at: [usize; 3], thick: [usize; 3]| {
+        let mut sum = 0.0;
+        for c in 0..thick[2] {
+            for b in 0..thick[1] {
+                for a in 0..thick[0] {
+                    sum += field[((2 * at[2] + c) * shape[1] + 2 * at[1] + b) * shape[0] + 2 * at[0] + a];
+                }
+            }
+        }
+        sum / thick.iter().product::<usize>() as f64
+    };
+    for k in 0..=n {
+        for j in 0..=n {
+            for i in 0..=n {
+                let at = [i, j, k];
+                let m = 2 * n;
+                if i < n && j < n && k < n {
+                    f.v.push(mean(&fine.v, [m, m], at, [2, 2, 2]));
+                }
+                if j < n && k < n {
+                    f.x.push(mean(&fine.x, [m + 1, m], at, [1, 2, 2]));
+                }
+                if i < n && k < n {
+                    f.y.push(mean(&fine.y, [m, m + 1], at, [2, 1, 2]));
+                }
+                if i < n && j < n {
+                    f.z.push(mean(&fine.z, [m, m], at, [2, 2, 1]));
+                }
+            }
+        }
+    }
+    f
+}

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Reads what `voidage porosity` wrote with NumPy and VTK, which share no code with it, and compares.
+
+usage: check_outputs.py DIR      DIR holds any of *.vtr, beta_*.npy, *.png, *.json
+needs: pip install numpy vtk
+
+Checks that every .vtr agrees with the arrays to the bit (cell values, low-side face vectors, staggered faces, shapes),
+that 0 <= lower <= value <= upper <= 1, that pictures and reports load. Exit code 1 and a line for each fault.
+"""
+
+import json
+import pathlib
+import sys
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOXML import vtkXMLRectilinearGridReader
+
+faults = []
+
+
+def check(holds, what):
+    if not holds:
+        faults.append(what)
+
+
+def same_bits(a, b):
+    return a.shape == b.shape and a.dtype == b.dtype == np.float64 and a.tobytes("F") == b.tobytes("F")
+
+
+def face_shape(cells, axis):
+    return tuple(n + (a == axis) for a, n in enumerate(cells))
+
+
+def read_arrays(directory):
+    """The beta_*.npy files by name; all Fortran-ordered doubles of matching shapes, within their bounds."""
+    arrays = {}
+    for path in sorted(directory.glob("beta_*.npy")):
+        array = np.load(path, allow_pickle=False)
+        check(array.dtype == np.dtype("<f8"), f"{path.name}: type {array.dtype}")
+        check(array.ndim == 3 and array.flags.f_contiguous, f"{path.name}: not Fortran-ordered in three dimensions")
+        check(np.all((array >= 0) & (array <= 1)), f"{path.name}: values outside 0..1")
+        arrays[path.stem] = array
+    for name, array in arrays.items():
+        axis = "xyz".find(name.split("_")[1])
+        if "beta_v" in arrays and array.ndim == 3:
+            wanted = face_shape(arrays["beta_v"].shape, axis)
+            check(array.shape == wanted, f"{name}.npy: shape {array.shape}, not {wanted}")
+    for name, lower in arrays.items():
+        value, upper = name.removesuffix("_lower"), name.replace("_lower", "_upper")
+        if name.endswith("_lower") and value in arrays and upper in arrays:
+            ordered = np.all(lower <= arrays[value]) and np.all(arrays[value] <= arrays[upper])
+            check(ordered, f"{value}: not between its bounds")
+    return arrays
+
+
+def read_vtr(path):
+    """Cell counts, cell arrays shaped [i, j, k(, component)] and free arrays as stored."""
+    reader = vtkXMLRectilinearGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    check(reader.GetErrorCode() == 0, f"{path.name}: VTK error {reader.GetErrorCode()}")
+    grid = reader.GetOutput()
+    edges = [vtk_to_numpy(getattr(grid, f"Get{axis}Coordinates")()) for axis in "XYZ"]
+    check(all(np.all(np.diff(e) > 0) for e in edges), f"{path.name}: edges do not ascend")
+    cells = tuple(len(e) - 1 for e in edges)
+    check(grid.GetNumberOfCells() == np.prod(cells), f"{path.name}: {grid.GetNumberOfCells()} cells")
+
+    def numbers(data):
+        found = (data.GetArray(n) for n in range(data.GetNumberOfArrays()))  # text arrays are None
+        return {array.GetName(): vtk_to_numpy(array) for array in found if array is not None}
+
+    shaped = {name: a.reshape(cells + a.shape[1:], order="F") for name, a in numbers(grid.GetCellData()).items()}
+    return cells, shaped, numbers(grid.GetFieldData())
+
+
+def compare(path, arrays):
+    cells, cell_data, free = read_vtr(path)
+    expected = dict(cell_data)
+    for name, array in free.items():
+        axis = "xyz".find(name.split("_")[1]) if name.startswith("beta_") else -1
+        shape = face_shape(cells, axis)
+        if name.startswith("beta_"):
+            check(array.size == np.prod(shape), f"{path.name}: {name} has {array.size} values, not {shape}")
+            if array.size == np.prod(shape):
+                expected[name] = array.reshape(shape, order="F")
+    for name, array in arrays.items():
+        if name in expected:
+            check(same_bits(expected[name], array), f"{path.name}: {name} differs from {name}.npy")
+    check("beta_v" in cell_data, f"{path.name}: no beta_v")
+    faces = [expected.get(f"beta_{axis}") for axis in "xyz"]
+    if "beta_f" in cell_data and all(f is not None for f in faces):
+        nx, ny, nz = cells
+        for axis, face in enumerate(faces):
+            low = same_bits(np.asfortranarray(cell_data["beta_f"][..., axis]), np.asfortranarray(face[:nx, :ny, :nz]))
+            check(low, f"{path.name}: component {axis} of beta_f is not the low face")
+    return f"{path.name} {cells} {sorted(expected)}"
+
+
+def check_picture(path):
+    reader = vtkPNGReader()
+    check(reader.CanReadFile(str(path)) > 0, f"{path.name}: no PNG")
+    reader.SetFileName(str(path))
+    reader.Update()
+    scalars = reader.GetOutput().GetPointData().GetScalars()
+    check(scalars is not None and np.unique(vtk_to_numpy(scalars), axis=0).shape[0] > 2, f"{path.name}: empty picture")
+    return f"{path.name} {reader.GetOutput().GetDimensions()[:2]}"
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    directory = pathlib.Path(sys.argv[1])
+    arrays = read_arrays(directory)
+    done = [f"{name}.npy {array.shape}" for name, array in arrays.items()]
+    done += [compare(path, arrays) for path in sorted(directory.glob("*.vtr"))]
+    done += [check_picture(path) for path in sorted(directory.glob("*.png"))]
+    for path in sorted(directory.glob("*.json")):
+        json.loads(path.read_text(encoding="utf-8"))
+        done.append(path.name)
+    check(done, f"{directory}: nothing to check")
+    left = [p.name for p in directory.glob(".voidage-*.tmp")]
+    check(not left, f"left behind: {left}")
+    print("\n".join(done))
+    if faults:
+        sys.exit("\n".join(faults))
+
+
+if __name__ == "__main__":
+    main()
