@@ -134,10 +134,11 @@ pub(crate) fn count<R: Real>(share: R, lower: &mut R, sum: &mut R) {
     }
 }
 
-/// As [`count`], for a share of a face, or of a cell without surface inside: noise counts as open.
+/// As [`count`], for a share of a face; noise counts as open. A face is `whole` if it lies in no wall and bounds a cell without
+/// surface inside: then it is open or closed altogether.
 #[inline(always)]
-pub(crate) fn count_clean<R: Real>(share: R, lower: &mut R, sum: &mut R) {
-    if share > noise::<R>() {
-        count(share, lower, sum);
+pub(crate) fn count_face<R: Real>(share: R, whole: bool, lower: &mut R, sum: &mut R) {
+    if share > if whole { R::HALF } else { noise::<R>() } {
+        count(if whole { R::ONE } else { share }, lower, sum);
     }
 }

@@ -12,7 +12,7 @@
 
 use crate::clip::{Polygon, crossing, split};
 use crate::grid::Grid;
-use crate::layer::{Fields, Layer, count_clean};
+use crate::layer::{Layer, count_face};
 use crate::real::{Real, Vector};
 use crate::surface::{Axis, Scratch, Window};
 
@@ -25,7 +25,8 @@ pub enum Side {
     Above,
 }
 
-/// Add one body to the z faces of a layer: those in plane `z[plane]` of the grid, seen from `side`.
+/// Add one body to the z faces of a layer: those in plane `z[plane]` of the grid, seen from `side`. From above, the body's
+/// cells must have been added before ([`crate::surface::add_body`]): where they hold no surface, the face is whole.
 ///
 /// `ids` lists at least those of the body's triangles that touch the plane, level ones in it included. Returns the
 /// largest amount by which a row failed to return to zero, as a fraction of a face.
@@ -44,12 +45,12 @@ pub fn add_section<R: Real, V: Vector<Scalar = R>>(
     for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
         let corners = triangle.map(Vector::to_array);
         if corners.iter().all(|c| c[2] == z) {
-            sums.wall(side, &corners, &mut layer.marks);
+            sums.wall(side, &corners, layer.marks.z);
         } else if let Some([from, to]) = segment(&corners, z, side) {
             sums.scatter(from, to);
         }
     }
-    sums.faces(&mut layer.lower, &mut layer.sum)
+    sums.faces(side, layer)
 }
 
 /// Where the boundary of a triangle leaves `side` of the plane and where it comes back; none if it does neither.
@@ -149,7 +150,7 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
     }
 
     /// Add a level triangle in the plane, where it is the wall that `side` does not see.
-    fn wall(&mut self, side: Side, corners: &[[R; 3]; 3], marks: &mut Fields<u8>) {
+    fn wall(&mut self, side: Side, corners: &[[R; 3]; 3], marks: &mut [u8]) {
         let mut rest = Polygon::new(corners);
         let faces_up = rest.doubled_area()[2] > R::ZERO;
         let weight = if faces_up == (side == Side::Above) { R::HALF } else { R::ZERO };
@@ -172,14 +173,14 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
         }
     }
 
-    fn add_wall(&mut self, row: usize, c: usize, area: R, marks: &mut Fields<u8>) {
+    fn add_wall(&mut self, row: usize, c: usize, area: R, marks: &mut [u8]) {
         let Window { i0, ni, j0, .. } = self.window;
         self.walls[row * ni + c] += area;
-        marks.z[(j0 + row) * self.grid.cells()[0] + i0 + c] = 1;
+        marks[(j0 + row) * self.grid.cells()[0] + i0 + c] = 1;
     }
 
     /// Fractions of the faces from the sums along x.
-    fn faces(&self, lower: &mut Fields<R>, sum: &mut Fields<R>) -> R {
+    fn faces(&self, side: Side, layer: &mut Layer<R>) -> R {
         let Window { i0, ni, j0, nj } = self.window;
         let (nx, x, y) = (self.grid.cells()[0], self.grid.edges(0), self.grid.edges(1));
         let mut leak = R::ZERO;
@@ -189,12 +190,15 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
             let (moment, walls) = (&self.moment[row * ni..][..ni], &self.walls[row * ni..][..ni]);
             let height = y[j + 1] - y[j];
             let faces = j * nx + i0;
-            let (lower, sum) = (&mut lower.z[faces..][..ni], &mut sum.z[faces..][..ni]);
+            let (lower, sum) = (&mut layer.lower.z[faces..][..ni], &mut layer.sum.z[faces..][..ni]);
+            let (walls_seen, cut) = (&layer.marks.z[faces..][..ni], &layer.marks.cell[faces..][..ni]);
             let mut length = -flux[0];
             for c in 0..ni {
                 let width = x[i0 + c + 1] - x[i0 + c];
                 let share = (length * width - moment[c] * R::HALF + walls[c]) / (width * height);
-                count_clean(share, &mut lower[c], &mut sum[c]);
+                // The layer's cells are those above the plane.
+                let whole = side == Side::Above && walls_seen[c] == 0 && cut[c] == 0;
+                count_face(share, whole, &mut lower[c], &mut sum[c]);
                 length -= flux[c + 1];
             }
             leak = leak.max(((length - flux[ni + 1]) / height).abs());

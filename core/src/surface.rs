@@ -19,7 +19,7 @@
 
 use crate::clip::{Polygon, split};
 use crate::grid::{Grid, Located};
-use crate::layer::{Layer, ShapeMismatch, at_least, count, count_clean, noise};
+use crate::layer::{Layer, ShapeMismatch, at_least, count, count_face, noise};
 use crate::real::{Real, Vector};
 
 /// What is wrong with a body's surface in one layer; zero, but for rounding, if it is closed and does not cross itself.
@@ -98,39 +98,49 @@ impl Window {
 }
 
 /// One axis of a window: its cells are numbered from 0; −1 is the outside below the grid, `count` the outside above.
+///
+/// Coordinates are relative to `origin`. Of a triangle that hardly extends along the axis, corners cut at other planes would
+/// lose the digits that tell where it crosses this axis' planes; seen from its own corner it keeps them.
 #[derive(Clone, Copy)]
 pub(crate) struct Axis<'a, R> {
     edges: &'a [R],
     first: usize,
     pub count: isize,
+    pub origin: R,
 }
 
 impl<'a, R: Real> Axis<'a, R> {
     pub fn new(edges: &'a [R], first: usize, count: usize) -> Self {
-        Axis { edges, first, count: count as isize }
+        Axis { edges, first, count: count as isize, origin: R::ZERO }
     }
 
     /// The cell that holds a coordinate; a coordinate on an edge belongs to the cell above.
     #[inline(always)]
     pub fn cell(&self, value: R) -> isize {
-        match crate::grid::locate(self.edges, value) {
+        let mut cell = match crate::grid::locate(self.edges, value + self.origin) {
             Located::Below => -1,
             Located::Cell(i) => i as isize - self.first as isize,
             Located::Above => self.count,
+        };
+        if self.origin != R::ZERO {
+            // The sum above may have been rounded across an edge.
+            cell += isize::from(value >= self.upper(cell));
+            cell -= isize::from(cell >= 0 && value < self.upper(cell - 1));
         }
+        cell
     }
 
     /// The upper edge of a cell; infinite for the outside above.
     #[inline(always)]
     pub fn upper(&self, cell: isize) -> R {
         let index = self.first as isize + cell + 1;
-        self.edges.get(index as usize).copied().unwrap_or(R::INFINITY)
+        self.edges.get(index as usize).map_or(R::INFINITY, |&e| e - self.origin)
     }
 
     /// Is `value` the lower edge of a cell?
     #[inline(always)]
     pub fn opens(&self, cell: isize, value: R) -> bool {
-        cell >= 0 && self.edges.get((self.first as isize + cell) as usize) == Some(&value)
+        cell >= 0 && self.edges.get((self.first as isize + cell) as usize).is_some_and(|&e| e - self.origin == value)
     }
 
     /// Is this a cell of the window?
@@ -170,12 +180,30 @@ pub fn add_body<R: Real, V: Vector<Scalar = R>>(
     let mut sums = Sums::new(grid, window, scratch, layer);
     let mut b = Buffers::default();
     for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
-        if slab_part(&triangle.map(Vector::to_array), lo, hi, &mut b.slab, &mut b.spare) {
+        let mut corners = triangle.map(Vector::to_array);
+        sums.x.origin = take_origin(&mut corners, 0);
+        sums.y.origin = take_origin(&mut corners, 1);
+        if slab_part(&corners, lo, hi, &mut b.slab, &mut b.spare) {
             sums.scatter(&mut b);
         }
     }
     let defects = sums.x_faces_and_cells(hi - lo);
     defects.worst(Defects { leak: sums.y_faces(hi - lo), ..none })
+}
+
+/// If a triangle's extent along `axis` is below this share of its coordinates, it gets an origin of its own.
+const FLAT: f64 = 1.0 / 1024.0;
+
+/// The origin that a triangle is best seen from along an axis, subtracted from its corners (exactly, by Sterbenz' lemma).
+#[inline(always)]
+fn take_origin<R: Real>(corners: &mut [[R; 3]; 3], axis: usize) -> R {
+    let [a, b, c] = corners.map(|p| p[axis]);
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    if max == min || max - min > R::from_f64(FLAT) * min.abs() {
+        return R::ZERO;
+    }
+    corners.iter_mut().for_each(|p| p[axis] -= min);
+    min
 }
 
 /// The part of a triangle in the open slab `lo..hi`; false if there is none. Level triangles on `lo` or `hi` are outside.
@@ -337,13 +365,15 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             let faces = j * (nx + 1) + i0;
             let cells = j * nx + i0;
             let Layer { lower, sum, marks } = &mut *self.layer;
+            let walls = &marks.x[faces..][..ni + 1];
             let (face_lower, face_sum) = (&mut lower.x[faces..][..ni + 1], &mut sum.x[faces..][..ni + 1]);
             let (cell_lower, cell_sum) = (&mut lower.cell[cells..][..ni], &mut sum.cell[cells..][..ni]);
             let cut = &marks.cell[cells..][..ni];
             let mut area = -flux[0];
             for c in 0..ni {
                 let face = area * to_fraction;
-                count_clean(face, &mut face_lower[c], &mut face_sum[c]);
+                let whole = walls[c] == 0 && (cut[c] == 0 || (c > 0 && cut[c - 1] == 0));
+                count_face(face, whole, &mut face_lower[c], &mut face_sum[c]);
                 area -= flux[c + 1];
                 let share = face - moment[c] * (sixth * to_fraction) / (x[i0 + c + 1] - x[i0 + c]);
                 let surface = flux[c + 1] != R::ZERO || moment[c] != R::ZERO;
@@ -357,7 +387,8 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
                     count(share, &mut cell_lower[c], &mut cell_sum[c]);
                 }
             }
-            count_clean(area * to_fraction, &mut face_lower[ni], &mut face_sum[ni]);
+            let whole = walls[ni] == 0 && cut[ni - 1] == 0;
+            count_face(area * to_fraction, whole, &mut face_lower[ni], &mut face_sum[ni]);
             defects.leak = defects.leak.max(((area - flux[ni + 1]) * to_fraction).abs());
         }
         defects
@@ -374,10 +405,13 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
                 continue;
             }
             let faces = (j0 + row) * nx + i0;
-            let (lower, sum) = (&mut self.layer.lower.y[faces..][..ni], &mut self.layer.sum.y[faces..][..ni]);
+            let Layer { lower, sum, marks } = &mut *self.layer;
+            let (lower, sum, walls) = (&mut lower.y[faces..][..ni], &mut sum.y[faces..][..ni], &marks.y[faces..][..ni]);
+            let uncut = |row: usize, c: usize| marks.cell[(j0 + row) * nx + i0 + c] == 0;
             for c in 0..ni {
                 let to_fraction = R::ONE / ((x[i0 + c + 1] - x[i0 + c]) * dz);
-                count_clean(-flux[c] * to_fraction, &mut lower[c], &mut sum[c]);
+                let whole = walls[c] == 0 && ((row < nj && uncut(row, c)) || (row > 0 && uncut(row - 1, c)));
+                count_face(-flux[c] * to_fraction, whole, &mut lower[c], &mut sum[c]);
                 above[c] += flux[c];
                 if row == nj {
                     leak = leak.max((above[c] * to_fraction).abs());

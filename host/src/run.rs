@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::grid::{self, Edges, Source};
 use crate::input;
 use crate::output::vtr::{CellField, Field, Vtr};
-use crate::output::{npy, report};
+use crate::output::{npy, png, report};
 use crate::porosity::{self, Options, Porosity};
 use crate::progress::Progress;
 use glam::DVec3;
@@ -155,7 +155,7 @@ fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, 
         let name =
             |p: &std::path::PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
-        let _ = (path, title, x, y, z);
+        progress.stage("png", |_| png::slices(path, &title, x, y, z, "m", &result.beta.v))?;
     }
     Ok(())
 }
