@@ -8,6 +8,11 @@ use voidage::error::{Error, Result};
 use voidage::{inspect, run};
 
 fn main() -> ExitCode {
+    // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
+    let _ = ctrlc::set_handler(|| {
+        voidage::output::discard_unfinished();
+        std::process::exit(130);
+    });
     match execute(Cli::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

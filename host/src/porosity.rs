@@ -83,13 +83,31 @@ pub struct Porosity {
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.
 #[must_use]
 pub fn porosity(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Porosity {
+    porosity_watched(grid, bodies, options, &|| ())
+}
+
+/// As [`porosity`]; `layer_done` is called after each layer of cells, from any thread.
+#[must_use]
+pub fn porosity_watched(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    options: Options,
+    layer_done: &(dyn Fn() + Sync),
+) -> Porosity {
     let bins = Bins::new(grid, bodies);
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
         .into_par_iter()
         .enumerate()
-        .map_init(|| Worker::new(grid, options), |worker, (k, target)| worker.layer(grid, &bins, k, target))
+        .map_init(
+            || Worker::new(grid, options),
+            |worker, (k, target)| {
+                let summary = worker.layer(grid, &bins, k, target);
+                layer_done();
+                summary
+            },
+        )
         .collect();
     let total = summaries.iter().fold(Summary::default(), Summary::join);
     Porosity {

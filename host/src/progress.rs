@@ -1,7 +1,9 @@
 //! What the user sees while and after it runs.
 
 use crate::cli::TalkArgs;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
+use std::io::IsTerminal;
 use std::time::Instant;
 
 /// Messages to the terminal, warnings collected, stages timed.
@@ -43,6 +45,18 @@ impl Progress {
         if !self.quiet {
             println!("{}", sentence.as_ref());
         }
+    }
+
+    /// A bar of `steps` steps, on a terminal only.
+    #[must_use]
+    pub fn bar(&self, name: &'static str, steps: usize) -> ProgressBar {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr_with_hz(10));
+        let style = ProgressStyle::with_template("{prefix:>10} {bar:40} {percent:>3} %  {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.with_prefix(name).with_finish(indicatif::ProgressFinish::AndClear)
     }
 
     /// Run a stage and keep its time.

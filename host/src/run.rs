@@ -67,7 +67,11 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let grid = edges.grid(None)?;
         look_for_misfit(&bodies, &edges, &mut progress);
         let options = Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
-        let result = progress.stage("porosity", |_| porosity::porosity(&grid, &bodies, options));
+        let layers = edges.cells()[2];
+        let result = progress.stage("porosity", |p| {
+            let bar = p.bar("porosity", layers);
+            porosity::porosity_watched(&grid, &bodies, options, &|| bar.inc(1))
+        });
         report_leaks(&bodies, &result, &mut progress);
         let report = Report::new(args, &edges, &bodies, &result);
         write(args, &edges, &result, &report, &mut progress)?;
@@ -249,7 +253,10 @@ impl Report {
         }
         Report {
             version: env!("CARGO_PKG_VERSION"),
-            command: std::env::args().collect::<Vec<_>>().join(" "),
+            command: std::iter::once("voidage".to_owned())
+                .chain(std::env::args().skip(1))
+                .collect::<Vec<_>>()
+                .join(" "),
             grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
             solid_volume: result.solid_volume,
             bodies: bodies.bodies.len(),

@@ -1,0 +1,6 @@
+//! The command, as from a shell.
+
+mod bad_inputs;
+mod inspect;
+mod kit;
+mod porosity;

@@ -1,0 +1,224 @@
+//! `voidage porosity`.
+
+use crate::kit::{Scratch, fixture, stderr, stdout, voidage};
+use serde_json::Value;
+use std::fs;
+use voidage::output::npy;
+
+fn json(path: &std::path::Path) -> Value {
+    serde_json::from_slice(&fs::read(path).expect("a file")).expect("JSON")
+}
+
+#[test]
+fn a_run_with_everything() {
+    let out = Scratch::new();
+    let [npy_dir, vtr, png, report] = ["npy", "out.vtr", "out.png", "report.json"].map(|n| out.file(n));
+    let output = voidage(&[
+        &"porosity",
+        &fixture("cad_skid.stl"),
+        &"--cells",
+        &"40x26x22",
+        &"--npy",
+        &npy_dir,
+        &"-o",
+        &vtr,
+        &"--compress",
+        &"--png",
+        &png,
+        &"--report",
+        &report,
+        &"--bounds-fields",
+        &"-v",
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stdout(&output).contains("solid volume  9.166567214"), "{}", stdout(&output));
+    assert_eq!(out.names(), ["npy", "out.png", "out.vtr", "report.json"]);
+    let (shape, beta) = npy::read(&npy_dir.join("beta_v.npy")).expect("an array");
+    assert_eq!(shape, [40, 26, 22]);
+    assert_eq!(npy::read(&npy_dir.join("beta_y_upper.npy")).expect("an array").0, [40, 27, 22]);
+    let report = json(&report);
+    assert_eq!(report["grid"]["cells"], serde_json::json!([40, 26, 22]));
+    assert_eq!(report["bodies"], 123);
+    assert!(report["max_gap"].as_f64().expect("a gap") <= 1e-4);
+    assert!(report["seconds"]["porosity"].as_f64().is_some());
+    let cells = &report["cells"];
+    let count = |k: &str| cells[k].as_u64().expect("a count") as usize;
+    assert_eq!(count("open") + count("cut") + count("closed"), beta.len());
+    assert_eq!(count("closed"), beta.iter().filter(|&&b| b == 0.0).count());
+}
+
+#[test]
+fn any_number_of_threads_writes_the_same_bytes() {
+    let run = |threads: &str| {
+        let out = Scratch::new();
+        let (npy_dir, vtr) = (out.file("npy"), out.file("skid.vtr"));
+        let output = voidage(&[
+            &"porosity",
+            &fixture("cad_skid.stl"),
+            &"--spacing",
+            &"0.2",
+            &"--threads",
+            &threads,
+            &"--npy",
+            &npy_dir,
+            &"-o",
+            &vtr,
+            &"-q",
+        ]);
+        assert!(output.status.success() && output.stdout.is_empty(), "{}", stderr(&output));
+        let fields = ["beta_v", "beta_x", "beta_y", "beta_z"]
+            .map(|f| fs::read(npy_dir.join(format!("{f}.npy"))).expect("a field"));
+        // The command line is in the file; the numbers behind it must agree.
+        let picture = fs::read(vtr).expect("a file");
+        let appended = picture.windows(12).position(|w| w == b"AppendedData").expect("appended data");
+        (fields, picture[appended..].to_vec())
+    };
+    let one = run("1");
+    for threads in ["2", "7"] {
+        let other = run(threads);
+        assert!(one.0 == other.0, "{threads} threads: arrays");
+        assert!(one.1.len().abs_diff(other.1.len()) <= 8, "{threads} threads: picture");
+    }
+}
+
+#[test]
+fn units_scale_the_geometry() {
+    let volume = |unit: &str| {
+        let out = Scratch::new();
+        let report = out.file("r.json");
+        let output = voidage(&[
+            &"porosity",
+            &fixture("analytic_boxes_aligned.stl"),
+            &"--cells",
+            &"8x8x8",
+            &"--unit",
+            &unit,
+            &"--report",
+            &report,
+        ]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        json(&report)["solid_volume"].as_f64().expect("a volume")
+    };
+    let metres = volume("m");
+    for (unit, length) in [("mm", 0.001), ("cm", 0.01), ("in", 0.0254), ("ft", 0.3048_f64)] {
+        let expected = metres * length.powi(3);
+        assert!((volume(unit) - expected).abs() < 1e-12 * expected, "{unit}");
+    }
+}
+
+#[test]
+fn grid_files_of_every_form() {
+    let out = Scratch::new();
+    let forms = [
+        ("edges.toml", "x = [0, 1, 2.5, 4]\ny = [0, 4]\nz = [0.0, 4.0]\n", [3, 1, 1]),
+        ("edges.json", "{\"nx\": 3, \"x\": [0, 1, 2, 4], \"y\": [0, 4], \"z\": [0, 4], \"uniform\": null}", [3, 1, 1]),
+        ("uniform.toml", "origin = [0, 0, 0]\nspacing = [1, 2, 4]\ncells = [4, 2, 1]\n", [4, 2, 1]),
+        (
+            "segments.toml",
+            "x = { points = [0, 2, 4], cells = [2, 4], ratios = [1, -2] }\ny = { points = [0, 4], cells = [3] }\nz = [0, 4]\n",
+            [6, 3, 1],
+        ),
+    ];
+    for (name, text, cells) in forms {
+        let (grid, npy_dir) = (out.file(name), out.file("npy"));
+        fs::write(&grid, text).expect("written");
+        let output =
+            voidage(&[&"porosity", &fixture("analytic_boxes_aligned.stl"), &"--grid", &grid, &"--npy", &npy_dir]);
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
+        assert!(!stderr(&output).contains("key"), "{name}: {}", stderr(&output));
+        assert_eq!(npy::read(&npy_dir.join("beta_v.npy")).expect("an array").0, cells, "{name}");
+    }
+}
+
+#[test]
+fn errors_name_file_place_and_reason() {
+    let out = Scratch::new();
+    let grids = [
+        ("x = [0, 2, 1]\ny = [0, 1]\nz = [0, 1]\n", "x[2]: edge 1 does not lie above the one before it, 2"),
+        ("x = [0]\ny = [0, 1]\nz = [0, 1]\n", "axis x: needs at least two edges"),
+        ("x = [0, nan]\ny = [0, 1]\nz = [0, 1]\n", "x[1]: edge NaN is not finite"),
+        ("x = [0, 1]\ny = [0, 1]\nz = [0, \n", "line"),
+        ("x = [0, 1]\n", "needs all of x, y, z"),
+        ("cells = [3, 3, 3]\n", "needs x, y, z or origin, spacing, cells"),
+        ("x = { points = [0, 1], cells = [0] }\ny = [0, 1]\nz = [0, 1]\n", "key x: a segment needs at least one cell"),
+    ];
+    for (text, reason) in grids {
+        let grid = out.file("bad.toml");
+        fs::write(&grid, text).expect("written");
+        let output = voidage(&[&"porosity", &fixture("analytic_boxes_aligned.stl"), &"--grid", &grid]);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}: {message}");
+        assert!(message.contains("bad.toml") && message.contains(reason), "{text}: {message}");
+    }
+}
+
+#[test]
+fn misuse_exits_with_two() {
+    let mesh = fixture("analytic_boxes_aligned.stl");
+    let calls: [&[&str]; 9] = [
+        &["--cells", "10x10"],
+        &["--cells", "0x1x1"],
+        &["--cells", "100000x100000x100000"],
+        &["--spacing", "-1"],
+        &["--spacing", "1e-300"],
+        &["--bounds", "0,0,0,1,1,0"],
+        &["--tol", "7"],
+        &["--threads", "0"],
+        &["--unit", "furlong"],
+    ];
+    for call in calls {
+        let mut arguments: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"porosity", &mesh];
+        arguments.extend(call.iter().map(|a| a as &dyn AsRef<std::ffi::OsStr>));
+        let output = voidage(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{call:?}: {}", stderr(&output));
+    }
+    assert_eq!(voidage(&[&"porosity"]).status.code(), Some(2));
+}
+
+#[test]
+fn a_target_that_cannot_be_written_is_named() {
+    let out = Scratch::new();
+    let target = out.file("no/such/place.vtr");
+    let output = voidage(&[&"porosity", &fixture("analytic_boxes_aligned.stl"), &"--cells", &"4x4x4", &"-o", &target]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("place.vtr"), "{}", stderr(&output));
+    assert!(out.names().is_empty());
+}
+
+/// Killed at any moment, a run leaves either no file of the final name or a whole one.
+#[test]
+#[cfg(unix)]
+fn a_killed_run_leaves_nothing_that_looks_whole() {
+    for delay in [5, 20, 40, 80, 160] {
+        let out = Scratch::new();
+        let npy_dir = out.file("npy");
+        fs::create_dir(&npy_dir).expect("a directory");
+        let mut child = std::process::Command::new(crate::kit::program())
+            .args(["porosity", "--cells", "150x100x80", "-q", "--npy"])
+            .arg(&npy_dir)
+            .arg(fixture("cad_skid.stl"))
+            .spawn()
+            .expect("the program runs");
+        std::thread::sleep(std::time::Duration::from_millis(delay));
+        child.kill().expect("killed");
+        child.wait().expect("gone");
+        for (name, shape) in [("beta_v", [150, 100, 80]), ("beta_x", [151, 100, 80])] {
+            let path = npy_dir.join(format!("{name}.npy"));
+            if path.exists() {
+                let (found, values) = npy::read(&path).expect("a whole file");
+                assert_eq!(found, shape);
+                assert_eq!(values.len(), shape.iter().product::<usize>());
+            }
+        }
+    }
+}
+
+#[test]
+fn completions_and_manual() {
+    for shell in ["bash", "zsh", "fish"] {
+        let output = voidage(&[&"completions", &shell]);
+        assert!(output.status.success() && stdout(&output).contains("porosity"), "{shell}");
+    }
+    let output = voidage(&[&"man"]);
+    assert!(stdout(&output).contains(".TH voidage"), "{}", stdout(&output));
+}
