@@ -17,7 +17,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Compute the porosity of a scene on a grid
-    Porosity(PorosityArgs),
+    Porosity(Box<PorosityArgs>),
     /// Say what is in a file: bodies, closure, orientation, overlaps, units, thin parts
     Inspect(InspectArgs),
     /// Print a completion script for a shell
@@ -73,7 +73,7 @@ pub struct SceneArgs {
     /// STL or OBJ files; their bodies form one scene
     #[arg(required = true, value_name = "SCENE")]
     pub scene: Vec<PathBuf>,
-    /// Unit of the files' coordinates [default: m]
+    /// Unit of the files' coordinates (default: m)
     #[arg(long)]
     pub unit: Option<Unit>,
 }
@@ -101,10 +101,10 @@ pub struct PorosityArgs {
     /// Number of cells, such as 99x99x63
     #[arg(long, value_name = "NXxNYxNZ", value_parser = parse_cells, conflicts_with = "spacing")]
     pub cells: Option<[usize; 3]>,
-    /// Edge length of cubic cells [m] [default: 1/64 of the longest side of the scene]
+    /// Edge length of cubic cells in metres (default: 1/64 of the longest side of the scene)
     #[arg(long, value_name = "D", value_parser = parse_spacing)]
     pub spacing: Option<f64>,
-    /// The grid's box [m] [default: the scene's box and a margin of one cell]
+    /// The grid's box in metres (default: the scene's box and a margin of one cell)
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = parse_bounds, allow_hyphen_values = true)]
     pub bounds: Option<[DVec3; 2]>,
     /// How volumes are found
@@ -122,7 +122,7 @@ pub struct PorosityArgs {
     /// Only the volume porosity
     #[arg(long)]
     pub no_areas: bool,
-    /// Number of threads [default: all cores]
+    /// Number of threads (default: all cores)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
     /// Write fields for ParaView (VTK rectilinear grid)

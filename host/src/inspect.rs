@@ -85,7 +85,7 @@ fn thin(bodies: &Bodies) -> Vec<Thin> {
 impl Inspection<'_> {
     fn table(&self, progress: &Progress) {
         for d in self.files {
-            progress.say(format!("{}", d.file));
+            progress.say(&d.file);
             let size = d.bounds[1] - d.bounds[0];
             let rows: [(&str, String); 17] = [
                 ("triangles", d.triangles.to_string()),

@@ -212,7 +212,7 @@ struct Report {
     version: &'static str,
     command: String,
     grid: GridReport,
-    /// Of the union, within the grid [m³].
+    /// Of the union, within the grid in m³.
     solid_volume: f64,
     bodies: usize,
     triangles: usize,

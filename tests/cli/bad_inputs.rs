@@ -25,7 +25,7 @@ fn make_special(dir: &Path) {
         fs::copy(&good, dir.join(name)).expect("a copy");
     }
     use std::os::unix::fs::{PermissionsExt, symlink};
-    fs::set_permissions(dir.join("unreadable.stl"), fs::Permissions::from_mode(0)).expect("no permissions");
+    fs::set_permissions(dir.join("unreadable.stl"), fs::Permissions::from_mode(0o000)).expect("no permissions");
     symlink("does_not_exist.stl", dir.join("dangling_symlink.stl")).expect("a link");
     symlink("ref_ok_binary.stl", dir.join("symlink_ok.stl")).expect("a link");
     let made = std::process::Command::new("mkfifo").arg(dir.join("fifo.stl")).status();

@@ -160,11 +160,11 @@ struct Link {
 
 /// Pair the uses of one edge: opposite directions first, nearest in the file first; what is left is boundary.
 fn pair(uses: &[(u64, Use)], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
-    if let [(_, p), (_, q)] = uses {
-        if p.triangle != q.triangle {
-            links.push(Link { a: p.triangle, b: q.triangle, same: p.up == q.up });
-            return;
-        }
+    if let [(_, p), (_, q)] = uses
+        && p.triangle != q.triangle
+    {
+        links.push(Link { a: p.triangle, b: q.triangle, same: p.up == q.up });
+        return;
     }
     let mut free = vec![true; uses.len()];
     for same in [false, true] {

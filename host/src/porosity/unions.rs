@@ -224,10 +224,11 @@ impl Unions {
                 _ => (&mut *lower.z, &mut *sum.z, &*marks.z),
             };
             for f in 0..shape[0] * shape[1] {
-                if marks[f] != 0 && gap(lower[f], sum[f]) > KNOWN {
-                    if let Some(bounds) = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k]) {
-                        improve(&mut lower[f], &mut sum[f], bounds);
-                    }
+                if marks[f] != 0
+                    && gap(lower[f], sum[f]) > KNOWN
+                    && let Some(bounds) = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k])
+                {
+                    improve(&mut lower[f], &mut sum[f], bounds);
                 }
             }
         }

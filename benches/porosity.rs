@@ -1,0 +1,74 @@
+//! Time and error of porosity fields: `cargo bench -p voidage-benches --bench porosity`.
+//!
+//! One line a case: medians over several runs, on one thread and on all. Meshes that do not ship are measured where the
+//! shared corpus is present.
+
+use std::path::Path;
+use std::time::Instant;
+use voidage::bodies::Bodies;
+use voidage::grid::{Edges, Source, edges};
+use voidage::input;
+use voidage::porosity::{Options, Porosity, porosity};
+use voidage_tests::solids::{scene, sixteen_spheres};
+use voidage_tests::truth::{Truth, fixture, shared};
+
+const RUNS: usize = 9;
+
+fn main() {
+    println!("{:34} {:>15} {:>9} {:>9} {:>9} {:>9}", "case", "cells", "1 thread", "all", "max error", "max gap");
+    let axis: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
+    let unit = Edges([axis.clone(), axis.clone(), axis]);
+    case("16 spheres of 362 points", &scene(&sixteen_spheres()), &unit, None);
+    let skid = read(&fixture("cad_skid.stl"));
+    let truth = Truth::read(&fixture("cad_skid.stl.npz"));
+    case("cad_skid", &skid, &truth.edges(), Some(&truth));
+    let fine = edges(&Source::Cells([400, 260, 220], None), skid.bounds(), &mut Vec::new()).expect("a grid");
+    case("cad_skid, fine", &skid, &fine, None);
+    match shared("corpus") {
+        Some(corpus) => {
+            let huldra = read(&corpus.join("meshes/huldra_psup_region.stl"));
+            let truth = Truth::read(&corpus.join("ground_truth/huldra_psup_region.stl.npz"));
+            case("huldra_psup_region", &huldra, &truth.edges(), Some(&truth));
+        }
+        None => println!("huldra_psup_region: skipped, the shared corpus is absent"),
+    }
+}
+
+fn read(path: &Path) -> Bodies {
+    let mut bodies = Bodies::default();
+    bodies.add(&input::read(path).expect("a mesh"), 1.0).expect("bodies");
+    bodies
+}
+
+fn case(name: &str, bodies: &Bodies, edges: &Edges, truth: Option<&Truth>) {
+    let [nx, ny, nz] = edges.cells();
+    let runs = if nx * ny * nz > 10_000_000 { 3 } else { RUNS };
+    let (one, _) = median(bodies, edges, 1, runs);
+    let (all, result) = median(bodies, edges, 0, runs);
+    let error = truth.map_or_else(|| "-".to_owned(), |t| format!("{:.1e}", t.compare(&result.beta).worst()));
+    println!(
+        "{name:34} {:>15} {:>7.1}ms {:>7.1}ms {error:>9} {:>9.1e}",
+        format!("{nx}x{ny}x{nz}"),
+        one * 1e3,
+        all * 1e3,
+        result.max_gap
+    );
+}
+
+/// Median seconds of the computation alone, after one run to warm up.
+fn median(bodies: &Bodies, edges: &Edges, threads: usize, runs: usize) -> (f64, Porosity) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let grid = edges.grid(None).expect("a grid");
+    pool.install(|| {
+        let mut result = porosity(&grid, bodies, Options::default());
+        let mut seconds: Vec<f64> = (0..runs)
+            .map(|_| {
+                let begin = Instant::now();
+                result = porosity(&grid, bodies, Options::default());
+                begin.elapsed().as_secs_f64()
+            })
+            .collect();
+        seconds.sort_by(f64::total_cmp);
+        (seconds[runs / 2], result)
+    })
+}
