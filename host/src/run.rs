@@ -10,6 +10,7 @@ use crate::output::{npy, png, report};
 use crate::porosity::{self, Options, Porosity};
 use crate::progress::Progress;
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
@@ -182,10 +183,9 @@ fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &
 
 fn write_npy(dir: &Path, edges: &Edges, result: &Porosity) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
-    for (name, shape, values) in fields(edges, result) {
-        npy::write(&dir.join(format!("{name}.npy")), shape, values)?;
-    }
-    Ok(())
+    fields(edges, result)
+        .into_par_iter()
+        .try_for_each(|(name, shape, values)| npy::write(&dir.join(format!("{name}.npy")), shape, values))
 }
 
 fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {

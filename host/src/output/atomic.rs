@@ -1,0 +1,109 @@
+//! A file appears whole or not at all: write beside it, then rename.
+//!
+//! The temporary is `.voidage-PID-N.tmp` in the target's directory (a rename is atomic only within a file system). It
+//! is removed on any error and on a panic. A signal kills a process without running destructors: a handler for SIGINT
+//! should call [`discard_unfinished`] before it exits. After SIGKILL or a power cut the temporary stays; nothing is
+//! synced to the disk, so a power cut may also lose the new file.
+//!
+//! Links are followed: the file behind them is replaced. What is not a regular file (`/dev/null`, a pipe) cannot be
+//! replaced and is written directly.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use crate::error::{Error, Result};
+
+/// Bytes of the write buffer. Array writers hand over blocks of this size, which then bypass it.
+pub(super) const BUFFER: usize = 64 * 1024;
+
+/// Calls `write` with a buffered writer and, if it succeeds, puts the result at `path`.
+///
+/// # Errors
+/// The file cannot be created, written or renamed, `write` fails, or an existing target is read-only or a directory;
+/// the error names `path`. An existing target is then untouched.
+pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    replace(path, |out| write(out))
+}
+
+/// [`atomically`] for writers that also seek.
+pub(super) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let failed = |doing| move |cause: io::Error| Error::io(path, doing, &cause);
+    let old = fs::metadata(path).ok();
+    if let Some(old) = &old {
+        if old.is_dir() {
+            return Err(Error::file(path, "cannot write: it is a directory"));
+        }
+        if old.permissions().readonly() {
+            return Err(Error::file(path, "cannot write: the existing file is read-only"));
+        }
+        if !old.is_file() {
+            let file = OpenOptions::new().write(true).open(path).map_err(failed("open"))?;
+            return fill(file, write).map_err(failed("write"));
+        }
+    }
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let directory = target.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !directory.exists() {
+        return Err(Error::file(path, format!("cannot create: there is no directory {}", directory.display())));
+    }
+    let (temporary, file) = Temporary::create(directory).map_err(failed("create"))?;
+    fill(file, write).map_err(failed("write"))?;
+    if let Some(old) = old {
+        fs::set_permissions(&temporary.path, old.permissions()).map_err(failed("keep its permissions"))?;
+    }
+    fs::rename(&temporary.path, &target).map_err(failed("replace"))
+}
+
+fn fill(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(BUFFER, file);
+    write(&mut out)?;
+    out.flush()
+}
+
+/// Removes the temporaries of writes that have not ended: for a signal handler's thread, just before the process exits.
+/// Writes still running then fail at their rename.
+pub fn discard_unfinished() {
+    for path in unfinished().iter() {
+        let _ = fs::remove_file(path); // it may not exist yet or any more, and there is nobody to tell
+    }
+}
+
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner) // a list of paths is valid at any moment
+}
+
+/// A file that is removed when dropped, unless renamed before.
+struct Temporary {
+    path: PathBuf,
+}
+
+impl Temporary {
+    /// A new file under a name that nobody has: left-overs and other machines on a shared disk may have the first ones.
+    fn create(directory: &Path) -> io::Result<(Self, File)> {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        loop {
+            let n = NEXT.fetch_add(1, Ordering::Relaxed);
+            let path = directory.join(format!(".voidage-{}-{n}.tmp", std::process::id()));
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Err(taken) if taken.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(other) => return Err(other),
+                Ok(file) => {
+                    unfinished().push(path.clone());
+                    return Ok((Temporary { path }, file));
+                }
+            }
+        }
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.path); // absent after the rename
+        unfinished().retain(|p| *p != self.path);
+    }
+}

@@ -1,0 +1,146 @@
+//! `--png`: slices of `beta_v` to look at before anything is computed with it.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::colour::ColourMap;
+use super::figure::Figure;
+use super::ticks::number;
+use crate::error::{Error, Result};
+
+/// Draws three slices of the open volume fraction, where each shows most: the planes of largest contrast.
+///
+/// # Errors
+/// `beta_v` does not fit the edges, the edges do not ascend, or the file cannot be written.
+pub fn slices(path: &Path, title: &str, x: &[f64], y: &[f64], z: &[f64], unit: &str, beta_v: &[f64]) -> Result<()> {
+    let edges = [x, y, z];
+    let (at, open) =
+        survey(edges, beta_v).ok_or_else(|| Error::file(path, "beta_v does not have the grid's length"))?;
+    let note = note(edges, unit, open);
+    let map = &ColourMap::sequential();
+    let (name, range, ends) = ("beta_v", [0.0, 1.0], ["blocked", "open"]);
+    Figure { title, note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.write(path)
+}
+
+/// Cells, their sizes, the domain, how much is open.
+fn note(edges: [&[f64]; 3], unit: &str, open: f64) -> String {
+    let by = |texts: [String; 3]| texts.join(" × ");
+    let cells = by(edges.map(|e| (e.len() - 1).to_string()));
+    let sizes = edges.map(size);
+    let sizes = if sizes[0] == sizes[1] && sizes[1] == sizes[2] { sizes[0].clone() } else { by(sizes) };
+    let domain = by(edges.map(|e| number(e[e.len() - 1] - e[0])));
+    // Under 1e-12 it is rounding of the sum.
+    let blocked = number(((1.0 - open) * 1e12).round() / 1e10);
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    format!("{cells} cells of {sizes}{unit} · domain {domain}{unit} · {blocked} % of the volume blocked")
+}
+
+/// Cell size along an axis, or its range.
+fn size(edges: &[f64]) -> String {
+    let sizes = || edges.windows(2).map(|w| w[1] - w[0]);
+    let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+    // Edges given in decimals differ in the last bits.
+    if most - least <= 1e-6 * most { number(most) } else { format!("{}–{}", number(least), number(most)) }
+}
+
+/// The index of the slice with the largest variance along each axis, the one nearest to the middle among equals; and
+/// the mean of all. None if the lengths do not fit.
+fn survey(edges: [&[f64]; 3], beta: &[f64]) -> Option<([usize; 3], f64)> {
+    let [dx, dy, dz] = edges.map(|e| e.windows(2).map(|w| w[1] - w[0]).collect::<Vec<f64>>());
+    if dx.is_empty() || dy.is_empty() || beta.len() != dx.len() * dy.len() * dz.len() {
+        return None;
+    }
+    let planes: Vec<[Vec<Sums>; 2]> =
+        beta.par_chunks_exact(dx.len() * dy.len()).map(|plane| plane_sums(plane, &dx, &dy)).collect();
+    let [mut by_x, mut by_y, mut by_z] = [&dx, &dy, &dz].map(|d| vec![Sums::default(); d.len()]);
+    let mut total = Sums::default();
+    for (([in_x, in_y], d), sum) in planes.iter().zip(&dz).zip(&mut by_z) {
+        in_y.iter().zip(&dy).for_each(|(line, d)| sum.add(*line, *d));
+        total.add(*sum, *d);
+        sums_add(&mut by_x, in_x, *d);
+        sums_add(&mut by_y, in_y, *d);
+    }
+    Some(([by_x, by_y, by_z].map(|s| most_telling(&s)), total.value / total.weight))
+}
+
+/// Of one plane across z: the lines along y at each x, and along x at each y.
+fn plane_sums(plane: &[f64], dx: &[f64], dy: &[f64]) -> [Vec<Sums>; 2] {
+    let mut in_x = vec![Sums::default(); dx.len()];
+    let mut in_y = vec![Sums::default(); dy.len()];
+    for ((line, d), along) in plane.chunks_exact(dx.len()).zip(dy).zip(&mut in_y) {
+        for ((b, w), across) in line.iter().zip(dx).zip(&mut in_x) {
+            let one = Sums { weight: 1.0, value: *b, square: b * b };
+            across.add(one, *d);
+            along.add(one, *w);
+        }
+    }
+    [in_x, in_y]
+}
+
+/// Of a weighted set of values.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    weight: f64,
+    value: f64,
+    square: f64,
+}
+
+impl Sums {
+    fn add(&mut self, other: Sums, weight: f64) {
+        self.weight += weight * other.weight;
+        self.value += weight * other.value;
+        self.square += weight * other.square;
+    }
+
+    fn variance(&self) -> f64 {
+        let mean = self.value / self.weight;
+        self.square / self.weight - mean * mean
+    }
+}
+
+fn sums_add(all: &mut [Sums], others: &[Sums], weight: f64) {
+    all.iter_mut().zip(others).for_each(|(sum, other)| sum.add(*other, weight));
+}
+
+fn most_telling(slices: &[Sums]) -> usize {
+    let most = slices.iter().map(Sums::variance).fold(0.0, f64::max);
+    // Rounding must not decide among slices that are alike.
+    let enough = |i: &usize| slices[*i].variance() >= 0.999 * most - 1e-12;
+    (0..slices.len()).filter(enough).min_by_key(|i| (2 * i + 1).abs_diff(slices.len())).unwrap_or(slices.len() / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EDGES: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+
+    #[test]
+    fn an_empty_domain_is_cut_in_the_middle() {
+        let (at, open) = survey([&EDGES; 3], &[1.0; 125]).expect("lengths fit");
+        assert_eq!((at, open), ([2, 2, 2], 1.0));
+    }
+
+    #[test]
+    fn slices_go_through_a_lone_block_but_not_along_a_floor() {
+        let mut beta = vec![1.0; 125];
+        beta[..25].fill(0.0); // the floor, k = 0
+        beta[(3 * 5 + 4) * 5 + 1] = 0.0;
+        let (at, open) = survey([&EDGES; 3], &beta).expect("lengths fit");
+        assert_eq!((at, open), ([1, 4, 3], 99.0 / 125.0));
+    }
+
+    #[test]
+    fn the_mean_counts_volumes() {
+        let (_, open) = survey([&[0.0, 3.0, 4.0], &[0.0, 1.0], &[0.0, 2.0]], &[1.0, 0.0]).expect("lengths fit");
+        assert_eq!(open, 0.75);
+        assert!(survey([&[0.0, 3.0], &[0.0], &[0.0, 1.0]], &[]).is_none());
+    }
+
+    #[test]
+    fn the_note_names_grid_and_units() {
+        let text = note([&[0.0, 0.1, 0.2, 0.30000000000000004], &[0.0, 1.0], &[0.0, 1.0, 3.0]], "m", 0.5);
+        assert_eq!(text, "3 × 1 × 2 cells of 0.1 × 1 × 1–2 m · domain 0.3 × 1 × 3 m · 50 % of the volume blocked");
+    }
+}
