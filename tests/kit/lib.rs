@@ -5,3 +5,8 @@ pub mod lattice;
 pub mod rng;
 pub mod solids;
 pub mod truth;
+
+/// The README's example compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;
