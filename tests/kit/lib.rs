@@ -1,1 +1,3 @@
 //! Generators, oracles and properties shared by tests, fuzz targets and benches.
+
+pub mod corpus;

@@ -1,0 +1,288 @@
+//! Support mappings: the point of a convex body farthest along a direction.
+//!
+//! A body enters [`crate::gjk`] only through [`Support`]. Besides the point it states how far rounding may have moved that point, so that
+//! an answer can be proved. Adaptors compose bodies from bodies.
+//!
+//! Reference: G. van den Bergen, *Collision Detection in Interactive 3D Environments*, 2003, section 3.2.
+
+use crate::real::{Real, Vector};
+
+/// Scalar of a body.
+pub type ScalarOf<S> = <<S as Support>::Vector as Vector>::Scalar;
+
+/// A support point, and where a search for the next one should start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupportPoint<V> {
+    /// The point.
+    pub point: V,
+    /// Index of the vertex, for bodies that have any.
+    pub index: u32,
+}
+
+/// A convex body: a core, given by its support mapping, thickened by a radius.
+///
+/// For any finite direction `d` that is not zero, with `p` the returned point of the core:
+/// - some point of the core lies within `slack` of `p` in every component;
+/// - no point of the core lies farther along `d` than `d·p + |d|₁ (4 ε extent + slack)`.
+pub trait Support {
+    /// The vectors of the space.
+    type Vector: Vector;
+    /// Whether [`Support::radius`] may be other than zero.
+    const ROUNDED: bool = false;
+
+    /// A point of the core farthest along `direction`, of any length but zero. `start` is the index of an earlier answer, or 0; it may
+    /// shorten the search. A body may return a point that is only locally farthest: see [`Support::farthest`].
+    fn support(&self, direction: Self::Vector, start: u32) -> SupportPoint<Self::Vector>;
+
+    /// As [`Support::support`], but always with a point that is farthest of all, as a proof needs it.
+    fn farthest(&self, direction: Self::Vector, start: u32) -> SupportPoint<Self::Vector> {
+        self.support(direction, start)
+    }
+
+    /// Some point well inside, to start from.
+    fn center(&self) -> Self::Vector;
+
+    /// No coordinate of the body exceeds this in absolute value. NaN or infinite if anything in the body is.
+    fn extent(&self) -> ScalarOf<Self>;
+
+    /// Radius of the balls around the core's points which, together, are the body.
+    fn radius(&self) -> ScalarOf<Self> {
+        Real::ZERO
+    }
+
+    /// How far rounding may have moved a support point, in each component. Zero for bodies given by their vertices.
+    fn slack(&self) -> ScalarOf<Self> {
+        Real::ZERO
+    }
+}
+
+impl<S: Support> Support for &S {
+    type Vector = S::Vector;
+    const ROUNDED: bool = S::ROUNDED;
+    #[inline(always)]
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        (**self).support(direction, start)
+    }
+    #[inline(always)]
+    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        (**self).farthest(direction, start)
+    }
+    #[inline(always)]
+    fn center(&self) -> S::Vector {
+        (**self).center()
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<S> {
+        (**self).extent()
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<S> {
+        (**self).radius()
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<S> {
+        (**self).slack()
+    }
+}
+
+/// Largest absolute component; NaN if any component is NaN or infinite.
+#[inline(always)]
+pub(crate) fn magnitude<V: Vector>(v: V) -> V::Scalar {
+    v.norm_max() + v.norm_1() * V::Scalar::ZERO
+}
+
+/// A body thickened by a radius: all points within `radius` of it. The radius is finite and not negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounded<S: Support> {
+    /// What is thickened.
+    pub core: S,
+    /// By how much.
+    pub radius: ScalarOf<S>,
+}
+
+impl<S: Support> Support for Rounded<S> {
+    type Vector = S::Vector;
+    const ROUNDED: bool = true;
+    #[inline(always)]
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        self.core.support(direction, start)
+    }
+    #[inline(always)]
+    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        self.core.farthest(direction, start)
+    }
+    #[inline(always)]
+    fn center(&self) -> S::Vector {
+        self.core.center()
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<S> {
+        let radius = if self.radius >= Real::ZERO { self.radius } else { Real::INFINITY };
+        (self.core.extent() + radius) * (ScalarOf::<S>::ONE + ScalarOf::<S>::EPSILON)
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<S> {
+        self.core.radius() + self.radius
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<S> {
+        self.core.slack()
+    }
+}
+
+/// A body scaled along its own axes, then rotated, then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transformed<S: Support> {
+    shape: S,
+    columns: [S::Vector; 3],
+    translation: S::Vector,
+    norm: ScalarOf<S>,
+    /// Scale of the radius; zero if the scale differs by axis and the ball becomes an ellipsoid.
+    round: ScalarOf<S>,
+}
+
+impl<S: Support> Transformed<S> {
+    /// Maps a point `p` to `translation + rotation (scale ∘ p)`; `rotation` holds the images of the three axes, orthonormal.
+    pub fn new(shape: S, rotation: [S::Vector; 3], scale: S::Vector, translation: S::Vector) -> Self {
+        let [sx, sy, sz] = scale.to_array();
+        let columns = [rotation[0] * sx, rotation[1] * sy, rotation[2] * sz];
+        let rows = columns[0].abs() + columns[1].abs() + columns[2].abs();
+        let even = sx.abs() == sy.abs() && sy.abs() == sz.abs();
+        let round = if even { sx.abs() } else { Real::ZERO };
+        Transformed { shape, columns, translation, norm: magnitude(rows), round }
+    }
+
+    #[inline(always)]
+    fn apply(&self, p: S::Vector) -> S::Vector {
+        self.columns[0] * p.x() + self.columns[1] * p.y() + self.columns[2] * p.z() + self.translation
+    }
+
+    #[inline(always)]
+    fn map(
+        &self,
+        direction: S::Vector,
+        find: impl Fn(S::Vector) -> SupportPoint<S::Vector>,
+    ) -> SupportPoint<S::Vector> {
+        let local = S::Vector::new(
+            self.columns[0].dot(direction),
+            self.columns[1].dot(direction),
+            self.columns[2].dot(direction),
+        );
+        let found = find(local);
+        let mut point = found.point;
+        if S::ROUNDED && self.round == Real::ZERO {
+            let length = local.length();
+            if length > Real::ZERO {
+                // Divided first: the quotient is below one whatever the scale.
+                let unit = S::Vector::new(local.x() / length, local.y() / length, local.z() / length);
+                point += unit * self.shape.radius();
+            }
+        }
+        SupportPoint { point: self.apply(point), index: found.index }
+    }
+}
+
+impl<S: Support> Support for Transformed<S> {
+    type Vector = S::Vector;
+    const ROUNDED: bool = S::ROUNDED;
+    #[inline(always)]
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        self.map(direction, |d| self.shape.support(d, start))
+    }
+    #[inline(always)]
+    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        self.map(direction, |d| self.shape.farthest(d, start))
+    }
+    #[inline(always)]
+    fn center(&self) -> S::Vector {
+        self.apply(self.shape.center())
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<S> {
+        let one = ScalarOf::<S>::ONE;
+        // The rotation may be off by some roundings: a little more than the sum.
+        (self.norm * self.shape.extent() + magnitude(self.translation))
+            * (one + ScalarOf::<S>::from_f64(64.0) * ScalarOf::<S>::EPSILON)
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<S> {
+        self.shape.radius() * self.round
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<S> {
+        // Mapping the direction and the point, each with some roundings of its terms; what the shape itself is off by is mapped too.
+        self.norm * self.shape.slack() + ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON * self.extent()
+    }
+}
+
+/// All differences `b - a` of points of two bodies. It holds the origin exactly if they meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MinkowskiDifference<A, B> {
+    /// What is subtracted.
+    pub a: A,
+    /// What it is subtracted from.
+    pub b: B,
+}
+
+impl<A: Support, B: Support<Vector = A::Vector>> Support for MinkowskiDifference<A, B> {
+    type Vector = A::Vector;
+    const ROUNDED: bool = A::ROUNDED || B::ROUNDED;
+    #[inline(always)]
+    fn support(&self, direction: A::Vector, _: u32) -> SupportPoint<A::Vector> {
+        let point = self.b.support(direction, 0).point - self.a.support(-direction, 0).point;
+        SupportPoint { point, index: 0 }
+    }
+    #[inline(always)]
+    fn farthest(&self, direction: A::Vector, _: u32) -> SupportPoint<A::Vector> {
+        let point = self.b.farthest(direction, 0).point - self.a.farthest(-direction, 0).point;
+        SupportPoint { point, index: 0 }
+    }
+    #[inline(always)]
+    fn center(&self) -> A::Vector {
+        self.b.center() - self.a.center()
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<A> {
+        (self.a.extent() + self.b.extent()) * (ScalarOf::<A>::ONE + ScalarOf::<A>::EPSILON)
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<A> {
+        self.a.radius() + self.b.radius()
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<A> {
+        self.a.slack() + self.b.slack() + ScalarOf::<A>::EPSILON * self.extent()
+    }
+}
+
+/// A body times a power of two, exactly.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scaled<'a, S: Support> {
+    pub shape: &'a S,
+    pub factor: ScalarOf<S>,
+}
+
+impl<S: Support> Support for Scaled<'_, S> {
+    type Vector = S::Vector;
+    const ROUNDED: bool = S::ROUNDED;
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        let found = self.shape.support(direction, start);
+        SupportPoint { point: found.point * self.factor, index: found.index }
+    }
+    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        let found = self.shape.farthest(direction, start);
+        SupportPoint { point: found.point * self.factor, index: found.index }
+    }
+    fn center(&self) -> S::Vector {
+        self.shape.center() * self.factor
+    }
+    fn extent(&self) -> ScalarOf<S> {
+        self.shape.extent() * self.factor
+    }
+    fn radius(&self) -> ScalarOf<S> {
+        self.shape.radius() * self.factor
+    }
+    fn slack(&self) -> ScalarOf<S> {
+        self.shape.slack() * self.factor
+    }
+}

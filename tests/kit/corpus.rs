@@ -1,0 +1,224 @@
+//! Files of labelled pairs of hulls, one JSON object a line, and how answers are scored against them.
+//!
+//! Keys read: `kind`, `f32` (every coordinate is exact in single precision), `a`, `b` (vertex lists), `intersect` ("interior", "touch" or
+//! "disjoint"), `dist` and `scale` (largest component difference or length; the clear pairs are those with `dist / scale` above 1e-6).
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde_json::Value;
+use voidage_core::exact::{self, Contact, Relation};
+use voidage_core::gjk::{self, Distance, Intersection, Overlap};
+use voidage_core::real::{Real, Vector};
+use voidage_core::shape::Hull;
+
+/// One labelled pair.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The family it comes from.
+    pub kind: String,
+    /// Whether single precision holds every coordinate.
+    pub f32: bool,
+    /// Vertices of the first hull.
+    pub a: Vec<[f64; 3]>,
+    /// Vertices of the second hull.
+    pub b: Vec<[f64; 3]>,
+    /// The truth.
+    pub contact: Contact,
+    /// The true distance.
+    pub distance: f64,
+    /// Size of the pair.
+    pub scale: f64,
+}
+
+/// Reads a whole file; the error names the line.
+pub fn read(text: &str) -> Result<Vec<Case>, String> {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    lines.map(|(i, line)| case(line).map_err(|e| format!("line {}: {e}", i + 1))).collect()
+}
+
+fn case(line: &str) -> Result<Case, String> {
+    let value: Value = serde_json::from_str(line).map_err(|e| e.to_string())?;
+    let contact = match value["intersect"].as_str() {
+        Some("interior") => Contact::Overlapping,
+        Some("touch") => Contact::Touching,
+        Some("disjoint") => Contact::Disjoint,
+        other => return Err(format!("unknown label {other:?}")),
+    };
+    Ok(Case {
+        kind: value["kind"].as_str().unwrap_or("?").to_string(),
+        f32: value["f32"].as_bool().unwrap_or(false),
+        a: points(&value["a"]).ok_or("no vertices a")?,
+        b: points(&value["b"]).ok_or("no vertices b")?,
+        contact,
+        distance: value["dist"].as_f64().unwrap_or(0.0),
+        scale: value["scale"].as_f64().unwrap_or(0.0),
+    })
+}
+
+/// A list of points, if it is one.
+pub fn points(value: &Value) -> Option<Vec<[f64; 3]>> {
+    let point = |p: &Value| {
+        let x = p.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<_>>>()?;
+        <[f64; 3]>::try_from(x).ok()
+    };
+    value.as_array()?.iter().map(point).collect()
+}
+
+/// Points in the precision of `V`.
+pub fn vectors<V: Vector>(points: &[[f64; 3]]) -> Vec<V> {
+    points.iter().map(|p| V::from_array(p.map(Real::from_f64))).collect()
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Score {
+    /// Pairs looked at.
+    pub cases: u64,
+    /// Answers that contradict the label, or that their own proof does not bear out.
+    pub wrong: u64,
+    /// Pairs that neither touch nor were decided.
+    pub undecided: u64,
+    /// Touching pairs that were not decided.
+    pub touch_undecided: u64,
+    /// Distances outside their stated bounds, or off by more than the tolerance on clear pairs.
+    pub distance_failures: u64,
+    /// Largest relative error of a distance on clear pairs.
+    pub max_relative_error: f64,
+    /// Pairs that the first stage left to the exact one.
+    pub second_stage: u64,
+}
+
+impl Score {
+    /// Nothing wrong, nothing off.
+    pub fn is_clean(&self) -> bool {
+        self.wrong == 0 && self.distance_failures == 0
+    }
+
+    /// Both counts together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Score {
+            cases: self.cases + other.cases,
+            wrong: self.wrong + other.wrong,
+            undecided: self.undecided + other.undecided,
+            touch_undecided: self.touch_undecided + other.touch_undecided,
+            distance_failures: self.distance_failures + other.distance_failures,
+            max_relative_error: self.max_relative_error.max(other.max_relative_error),
+            second_stage: self.second_stage + other.second_stage,
+        }
+    }
+}
+
+impl fmt::Display for Score {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Score { cases, wrong, undecided, touch_undecided, distance_failures, max_relative_error, .. } = self;
+        write!(
+            f,
+            "cases {cases} wrong {wrong} undecided {undecided} touch-undecided {touch_undecided} \
+             distance-failures {distance_failures} max-relative-error {max_relative_error:.3e}"
+        )
+    }
+}
+
+/// Distances of clear pairs must be this good, relatively: in single precision a few of its roundings.
+pub fn distance_tolerance<V: Vector>() -> f64 {
+    if V::Scalar::EPSILON.to_f64() < 1e-10 { 1e-9 } else { 1e-6 }
+}
+
+/// Scores one pair after scaling every coordinate by a power of two.
+pub fn score<V: Vector>(case: &Case, factor: f64) -> Score {
+    let scaled = |p: &[[f64; 3]]| vectors::<V>(&p.iter().map(|p| p.map(|x| x * factor)).collect::<Vec<_>>());
+    let (a, b) = (scaled(&case.a), scaled(&case.b));
+    let (a, b) = (Hull::new(&a), Hull::new(&b));
+    let mut score = Score { cases: 1, ..Score::default() };
+
+    // First stage, with proofs.
+    let first = gjk::intersect(&a, &b, None);
+    let sound = match first {
+        Intersection::Apart { axis } => case.contact != Contact::Overlapping && gjk::separates(&a, &b, axis),
+        Intersection::Overlapping { proof: Overlap::Inside(simplex) } => {
+            let of = |vertices: &[V], points: &[V]| points.iter().all(|p| vertices.contains(p));
+            case.contact == Contact::Overlapping
+                && simplex.holds_origin(Real::ZERO)
+                && of(a.vertices(), &simplex.a)
+                && of(b.vertices(), &simplex.b)
+        }
+        Intersection::Overlapping { .. } => false,
+        Intersection::Undecided { .. } => true,
+    };
+    if !sound {
+        score.wrong = 1;
+    }
+    // Both stages, and the second one with its own proofs where the first gave up.
+    let settled = exact::settle(&a, &b, None);
+    match settled {
+        Ok(contact) if contact == case.contact => {}
+        Ok(_) => score.wrong = 1,
+        Err(_) if case.contact == Contact::Touching => score.touch_undecided = 1,
+        Err(_) => score.undecided = 1,
+    }
+    if let Intersection::Undecided { .. } = first {
+        score.second_stage = 1;
+        if !proved(&a, &b, case.contact) {
+            score.wrong = 1;
+        }
+    }
+
+    let truth = case.distance * factor;
+    let clear = case.contact == Contact::Disjoint && case.distance > 1e-6 * case.scale;
+    let within = |lower: f64, upper: f64| {
+        // The label itself is rounded.
+        let room = 4.0 * f64::EPSILON * truth;
+        lower <= truth + room && truth - room <= upper
+    };
+    let mut off = |distance: f64| {
+        let error = ((distance - truth) / truth).abs();
+        score.max_relative_error = score.max_relative_error.max(error);
+        !(error <= distance_tolerance::<V>())
+    };
+    let failed = match gjk::distance(&a, &b, None) {
+        Distance::Separated { distance, lower, upper, .. } => {
+            let [distance, lower, upper] = [distance, lower, upper].map(Real::to_f64);
+            let inside = lower <= distance && distance <= upper && within(lower, upper);
+            case.contact != Contact::Disjoint
+                || !inside
+                || (clear && V::Scalar::EPSILON.to_f64() < 1e-10 && off(distance))
+        }
+        Distance::Overlapping { .. } => case.contact != Contact::Overlapping,
+        Distance::Undecided { lower, upper, .. } => {
+            !within(lower.to_f64(), upper.to_f64()) || (clear && V::Scalar::EPSILON.to_f64() < 1e-10)
+        }
+    };
+    let exact_failed = match exact::distance(&a, &b, None) {
+        Ok(nearest) => {
+            (clear && off(nearest.distance))
+                || ((nearest.distance > 0.0) != (case.contact == Contact::Disjoint) && truth > 0.0)
+        }
+        Err(_) => true,
+    };
+    score.distance_failures = u64::from(failed || exact_failed);
+    score
+}
+
+/// Whether the exact stage says so too, and proves it.
+pub fn proved<V: Vector>(a: &Hull<V>, b: &Hull<V>, contact: Contact) -> bool {
+    use std::cmp::Ordering;
+    let Ok(relation) = exact::relation(a, b, None) else { return false };
+    let sound = match &relation {
+        Relation::Disjoint(axis) => axis.gap(a, b) == Ok(Ordering::Greater),
+        Relation::Touching(axis) => axis.gap(a, b) == Ok(Ordering::Equal),
+        Relation::Overlapping(points) => points.holds(a, b) == Ok(true),
+    };
+    sound && relation.contact() == contact
+}
+
+/// Scores by kind.
+pub fn by_kind<V: Vector>(cases: &[Case], factor: f64) -> BTreeMap<String, Score> {
+    let mut kinds = BTreeMap::new();
+    for case in cases {
+        let sum: &mut Score = kinds.entry(case.kind.clone()).or_default();
+        *sum = sum.and(score::<V>(case, factor));
+    }
+    kinds
+}
