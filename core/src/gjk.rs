@@ -9,7 +9,7 @@
 
 use crate::real::{Real, Vector};
 use crate::simplex::{Side, Simplex, side};
-use crate::support::{ScalarOf, Scaled, Support, SupportPoint};
+use crate::support::{Scaled, ScalarOf, Support, SupportPoint, lengthened};
 
 mod distance;
 pub use distance::{Distance, distance};
@@ -70,12 +70,6 @@ pub const MAX_ITERATIONS: u32 = 48;
 /// Rounding of `d·(b - a)` against the true least value over both bodies, in units of ε |d|₁ (extents): two scalar products of the scan on
 /// each side (3), the difference and its product (2); rounded up for second-order terms and the bound's own rounding.
 const SUPPORT_ROUNDINGS: f64 = 8.0;
-
-/// Below this sum of components a direction is scaled up, so that products with it do not underflow.
-pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
-    let unit = direction.norm_max().binade();
-    if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
-}
 
 /// The power of two to multiply two bodies with, so that their extents add to something near one.
 pub(crate) enum Scale<R> {

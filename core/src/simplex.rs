@@ -86,13 +86,16 @@ impl<V: Vector> Simplex<V> {
             }
             reach = reach.max(w.norm_max());
         }
-        let unit = reach.binade();
+        // Subnormal differences are exact; this makes them normal.
+        let lift = if reach < V::Scalar::MIN_POSITIVE { V::Scalar::ONE / V::Scalar::EPSILON } else { V::Scalar::ONE };
+        let unit = (reach * lift).binade();
         if !(unit > V::Scalar::ZERO) {
             return false;
         }
         let factor = V::Scalar::ONE / unit;
+        let lifted = |x: V::Scalar| x * lift * factor;
         let two = V::Scalar::TWO;
-        side(w.map(|w| w * factor), reach * factor, two * slack * factor) == Side::Inside
+        side(w.map(|w| w * lift * factor), lifted(reach), lifted(two * slack)) == Side::Inside
     }
 }
 

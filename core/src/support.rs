@@ -255,6 +255,13 @@ impl<A: Support, B: Support<Vector = A::Vector>> Support for MinkowskiDifference
     }
 }
 
+/// Scaled up or down by a power of two, so that the largest component is between 1 and 2; zero and non-finite vectors as they are.
+#[inline(always)]
+pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
+    let unit = direction.norm_max().binade();
+    if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
+}
+
 /// A body times a power of two, exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scaled<'a, S: Support> {
@@ -262,15 +269,23 @@ pub(crate) struct Scaled<'a, S: Support> {
     pub factor: ScalarOf<S>,
 }
 
+impl<S: Support> Scaled<'_, S> {
+    /// As long as the unscaled points are small, and the reverse, so that products with them neither overflow nor underflow.
+    fn fitted(&self, direction: S::Vector) -> S::Vector {
+        let longest = ScalarOf::<S>::EPSILON / ScalarOf::<S>::MIN_POSITIVE;
+        lengthened(direction) * self.factor.min(longest).max(ScalarOf::<S>::ONE / longest)
+    }
+}
+
 impl<S: Support> Support for Scaled<'_, S> {
     type Vector = S::Vector;
     const ROUNDED: bool = S::ROUNDED;
     fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        let found = self.shape.support(direction, start);
+        let found = self.shape.support(self.fitted(direction), start);
         SupportPoint { point: found.point * self.factor, index: found.index }
     }
     fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        let found = self.shape.farthest(direction, start);
+        let found = self.shape.farthest(self.fitted(direction), start);
         SupportPoint { point: found.point * self.factor, index: found.index }
     }
     fn center(&self) -> S::Vector {

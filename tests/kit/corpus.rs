@@ -8,7 +8,7 @@ use std::fmt;
 
 use serde_json::Value;
 use voidage_core::exact::{self, Contact, Relation};
-use voidage_core::gjk::{self, Distance, Intersection, Overlap};
+use voidage_core::gjk::{self, Distance, Intersection, Overlap, Reason};
 use voidage_core::real::{Real, Vector};
 use voidage_core::shape::Hull;
 
@@ -165,40 +165,43 @@ pub fn score<V: Vector>(case: &Case, factor: f64) -> Score {
         }
     }
 
+    score.distance_failures = u64::from(!distances_hold(case, &a, &b, factor, &mut score.max_relative_error));
+    score
+}
+
+/// Whether the distances of both stages are inside their bounds and, for clear pairs, near enough to the truth.
+fn distances_hold<V: Vector>(case: &Case, a: &Hull<V>, b: &Hull<V>, factor: f64, largest_error: &mut f64) -> bool {
     let truth = case.distance * factor;
-    let clear = case.contact == Contact::Disjoint && case.distance > 1e-6 * case.scale;
+    let disjoint = case.contact == Contact::Disjoint;
+    let clear = disjoint && case.distance > 1e-6 * case.scale;
+    let double = V::Scalar::EPSILON.to_f64() < 1e-10;
+    let step = (V::Scalar::MIN_POSITIVE * V::Scalar::EPSILON).to_f64();
     let within = |lower: f64, upper: f64| {
         // The label itself is rounded.
-        let room = 4.0 * f64::EPSILON * truth;
+        let room = 4.0 * f64::EPSILON * truth + step;
         lower <= truth + room && truth - room <= upper
     };
-    let mut off = |distance: f64| {
-        let error = ((distance - truth) / truth).abs();
-        score.max_relative_error = score.max_relative_error.max(error);
-        !(error <= distance_tolerance::<V>())
+    let mut near = |distance: f64| {
+        // Nothing is nearer than half a step of the subnormal numbers.
+        let error = ((distance - truth).abs() - step).max(0.0) / truth;
+        *largest_error = largest_error.max(error);
+        error <= distance_tolerance::<V>()
     };
-    let failed = match gjk::distance(&a, &b, None) {
+    let Ok(nearest) = exact::distance(a, b, None) else { return false };
+    let exact_holds = (!clear || near(nearest.distance)) && (truth == 0.0 || (nearest.distance > 0.0) == disjoint);
+    let first_holds = match gjk::distance(a, b, None) {
         Distance::Separated { distance, lower, upper, .. } => {
             let [distance, lower, upper] = [distance, lower, upper].map(Real::to_f64);
             let inside = lower <= distance && distance <= upper && within(lower, upper);
-            case.contact != Contact::Disjoint
-                || !inside
-                || (clear && V::Scalar::EPSILON.to_f64() < 1e-10 && off(distance))
+            disjoint && inside && !(clear && double && !near(distance))
         }
-        Distance::Overlapping { .. } => case.contact != Contact::Overlapping,
-        Distance::Undecided { lower, upper, .. } => {
-            !within(lower.to_f64(), upper.to_f64()) || (clear && V::Scalar::EPSILON.to_f64() < 1e-10)
+        Distance::Overlapping { .. } => case.contact == Contact::Overlapping,
+        Distance::Undecided { lower, upper, reason } => {
+            let beyond_range = matches!(reason, Reason::NotFinite | Reason::TooSmall);
+            within(lower.to_f64(), upper.to_f64()) && (!clear || !double || beyond_range)
         }
     };
-    let exact_failed = match exact::distance(&a, &b, None) {
-        Ok(nearest) => {
-            (clear && off(nearest.distance))
-                || ((nearest.distance > 0.0) != (case.contact == Contact::Disjoint) && truth > 0.0)
-        }
-        Err(_) => true,
-    };
-    score.distance_failures = u64::from(failed || exact_failed);
-    score
+    exact_holds && first_holds
 }
 
 /// Whether the exact stage says so too, and proves it.
@@ -213,10 +216,22 @@ pub fn proved<V: Vector>(a: &Hull<V>, b: &Hull<V>, contact: Contact) -> bool {
     sound && relation.contact() == contact
 }
 
-/// Scores by kind.
+impl Case {
+    /// Whether all coordinates of the case, times a factor, are exact in the precision of `V`.
+    pub fn scales_exactly<V: Vector>(&self, factor: f64) -> bool {
+        let exact = |x: &f64| {
+            let scaled = x * factor;
+            let rounded = <V::Scalar as Real>::from_f64(scaled).to_f64();
+            Real::is_finite(rounded) && rounded == scaled && rounded / factor == *x
+        };
+        self.a.iter().chain(&self.b).flatten().all(exact)
+    }
+}
+
+/// Scores by kind the cases that are exact with all coordinates times a factor, a power of two.
 pub fn by_kind<V: Vector>(cases: &[Case], factor: f64) -> BTreeMap<String, Score> {
     let mut kinds = BTreeMap::new();
-    for case in cases {
+    for case in cases.iter().filter(|case| factor == 1.0 || case.scales_exactly::<V>(factor)) {
         let sum: &mut Score = kinds.entry(case.kind.clone()).or_default();
         *sum = sum.and(score::<V>(case, factor));
     }

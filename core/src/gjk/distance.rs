@@ -3,10 +3,10 @@
 //! Each round yields two bounds. The support plane across `v` is a lower bound, the simplex point `v` itself an upper one; rounding widens
 //! both. Their difference is the duality gap: how far the stated distance can be from the truth.
 
-use super::{Intersection, Overlap, Reason, SUPPORT_ROUNDINGS, Scale, across, lengthened, scale, seed, within_radii};
+use super::{Intersection, Overlap, Reason, SUPPORT_ROUNDINGS, Scale, across, scale, seed, within_radii};
 use crate::real::{Real, Vector};
 use crate::simplex::{Nearest, Side, Simplex, nearest, side};
-use crate::support::{ScalarOf, Scaled, Support};
+use crate::support::{Scaled, ScalarOf, Support, lengthened};
 
 /// What [`distance`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
