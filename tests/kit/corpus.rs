@@ -183,12 +183,12 @@ fn distances_hold<V: Vector>(case: &Case, a: &Hull<V>, b: &Hull<V>, factor: f64,
     };
     let mut near = |distance: f64| {
         // Nothing is nearer than half a step of the subnormal numbers.
-        let error = ((distance - truth).abs() - step).max(0.0) / truth;
+        let error = if distance == truth { 0.0 } else { ((distance - truth).abs() - step).max(0.0) / truth };
         *largest_error = largest_error.max(error);
         error <= distance_tolerance::<V>()
     };
     let Ok(nearest) = exact::distance(a, b, None) else { return false };
-    let exact_holds = (!clear || near(nearest.distance)) && (truth == 0.0 || (nearest.distance > 0.0) == disjoint);
+    let exact_holds = (!clear || near(nearest.distance)) && (truth <= step || (nearest.distance > 0.0) == disjoint);
     let first_holds = match gjk::distance(a, b, None) {
         Distance::Separated { distance, lower, upper, .. } => {
             let [distance, lower, upper] = [distance, lower, upper].map(Real::to_f64);

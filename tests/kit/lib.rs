@@ -1,3 +1,5 @@
 //! Generators, oracles and properties shared by tests, fuzz targets and benches.
 
 pub mod corpus;
+pub mod pairs;
+pub mod random;
