@@ -30,8 +30,8 @@ impl<S: Support> Support for Counted<'_, S> {
         self.1.set(self.1.get() + 1);
         self.0.support(direction, start)
     }
-    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        self.0.farthest(direction, start)
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        self.0.farther(direction, found)
     }
     fn center(&self) -> S::Vector {
         self.0.center()

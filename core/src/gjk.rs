@@ -9,7 +9,7 @@
 
 use crate::real::{Real, Vector};
 use crate::simplex::{Side, Simplex, side};
-use crate::support::{Scaled, ScalarOf, Support, SupportPoint, lengthened};
+use crate::support::{ScalarOf, Scaled, Support, SupportPoint, lengthened};
 
 mod distance;
 pub use distance::{Distance, distance};
@@ -222,7 +222,8 @@ where
         let mut from_b = b.support(-axis, start_b);
         let mut new = from_b.point - from_a.point;
         if new.dot(axis) > margin * size {
-            (from_a, from_b) = (a.farthest(axis, from_a.index), b.farthest(-axis, from_b.index));
+            from_a = a.farther(axis, from_a.index).unwrap_or(from_a);
+            from_b = b.farther(-axis, from_b.index).unwrap_or(from_b);
             new = from_b.point - from_a.point;
             if new.dot(axis) > margin * size {
                 return Intersection::Apart { axis };
@@ -338,8 +339,8 @@ where
     if !(size > S::<A>::ZERO) || !size.is_finite() {
         return None;
     }
-    let SupportPoint { point: pa, .. } = a.farthest(axis, 0);
-    let SupportPoint { point: pb, .. } = b.farthest(-axis, 0);
+    let SupportPoint { point: pa, .. } = a.farthest(axis);
+    let SupportPoint { point: pb, .. } = b.farthest(-axis);
     let margin = S::<A>::from_f64(SUPPORT_ROUNDINGS) * S::<A>::EPSILON * (a.extent() + b.extent())
         + a.slack()
         + b.slack()

@@ -466,6 +466,19 @@ impl<'a> Adjacency<'a> {
     }
 }
 
+/// Directions by the signs of their components and by which of these is largest.
+const SECTORS: usize = 24;
+
+#[inline(always)]
+fn sector<V: Vector>(direction: V) -> usize {
+    let zero = V::Scalar::ZERO;
+    let [x, y, z] = direction.to_array();
+    let octant = usize::from(x > zero) | usize::from(y > zero) << 1 | usize::from(z > zero) << 2;
+    let [x, y, z] = [x.abs(), y.abs(), z.abs()];
+    let largest = if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) };
+    largest << 3 | octant
+}
+
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hull<'a, V: Vector> {
@@ -473,6 +486,8 @@ pub struct Hull<'a, V: Vector> {
     adjacency: Option<Adjacency<'a>>,
     center: V,
     extent: V::Scalar,
+    /// Where to start climbing: the farthest vertex along the middle of each sector.
+    starts: [u32; SECTORS],
 }
 
 impl<'a, V: Vector> Hull<'a, V> {
@@ -486,13 +501,21 @@ impl<'a, V: Vector> Hull<'a, V> {
         }
         let center = bounds.min * V::Scalar::HALF + bounds.max * V::Scalar::HALF;
         let extent = bounds.min.abs().max(bounds.max.abs()).norm_max() + poison;
-        Hull { vertices, adjacency: None, center, extent }
+        Hull { vertices, adjacency: None, center, extent, starts: [0; SECTORS] }
     }
 
     /// Climbs along edges instead of scanning all vertices, which pays from some fifty on. Wrong or missing edges cost time, not truth.
     #[must_use]
     pub fn with_adjacency(self, adjacency: Adjacency<'a>) -> Self {
-        Hull { adjacency: Some(adjacency), ..self }
+        let mut starts = [0; SECTORS];
+        for (i, start) in starts.iter_mut().enumerate() {
+            let side = |k: usize| {
+                let size = if i >> 3 == k { V::Scalar::TWO } else { V::Scalar::ONE };
+                if i >> k & 1 == 0 { -size } else { size }
+            };
+            *start = self.scan(V::new(side(0), side(1), side(2))).index;
+        }
+        Hull { adjacency: Some(adjacency), starts, ..self }
     }
 
     /// The points.
@@ -500,17 +523,32 @@ impl<'a, V: Vector> Hull<'a, V> {
         self.vertices
     }
 
+    /// The farthest vertex. Selections instead of branches, and one comparison in a chain for every four vertices.
     #[inline(always)]
     fn scan(&self, direction: V) -> SupportPoint<V> {
-        let Some((&first, rest)) = self.vertices.split_first() else { return only(self.center) };
-        let (mut best, mut index, mut point) = (first.dot(direction), 0, first);
-        for (i, &v) in rest.iter().enumerate() {
-            let along = v.dot(direction);
-            if along > best {
-                (best, index, point) = (along, i as u32 + 1, v);
+        let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
+        let mut fours = self.vertices.chunks_exact(4);
+        let mut first = 0;
+        for four in &mut fours {
+            if let [p, q, r, s] = *four {
+                let along = [p.dot(direction), q.dot(direction), r.dot(direction), s.dot(direction)];
+                let (pq, rs) = (along[1] > along[0], along[3] > along[2]);
+                let low = if pq { along[1] } else { along[0] };
+                let high = if rs { along[3] } else { along[2] };
+                let top = if high > low { high } else { low };
+                let at = first + if high > low { 2 + u32::from(rs) } else { u32::from(pq) };
+                index = if top > best { at } else { index };
+                best = if top > best { top } else { best };
             }
+            first += 4;
         }
-        SupportPoint { point, index }
+        for v in fours.remainder() {
+            let along = v.dot(direction);
+            index = if along > best { first } else { index };
+            best = if along > best { along } else { best };
+            first += 1;
+        }
+        SupportPoint { point: self.vertices.get(index as usize).copied().unwrap_or(self.center), index }
     }
 
     /// The greatest coordinate along a direction; four chains, so that it runs as fast as the additions allow.
@@ -532,9 +570,15 @@ impl<'a, V: Vector> Hull<'a, V> {
 
     #[inline(always)]
     fn climb(&self, adjacency: Adjacency<'a>, direction: V, start: u32) -> SupportPoint<V> {
-        let mut index = start;
-        let Some(&(mut point)) = self.vertices.get(start as usize) else { return self.scan(direction) };
+        let mut index = self.starts.get(sector(direction)).copied().unwrap_or(0);
+        let Some(&(mut point)) = self.vertices.get(index as usize) else { return self.scan(direction) };
         let mut best = point.dot(direction);
+        if let Some(&v) = self.vertices.get(start as usize) {
+            let along = v.dot(direction);
+            if along > best {
+                (best, index, point) = (along, start, v);
+            }
+        }
         loop {
             let from = index;
             for &n in adjacency.of(from) {
@@ -561,12 +605,10 @@ impl<V: Vector> Support for Hull<'_, V> {
         }
     }
     #[inline(always)]
-    fn farthest(&self, direction: V, start: u32) -> SupportPoint<V> {
-        let found = self.support(direction, start);
-        if self.adjacency.is_some() && self.reach(direction) > found.point.dot(direction) {
-            return self.scan(direction);
-        }
-        found
+    fn farther(&self, direction: V, found: u32) -> Option<SupportPoint<V>> {
+        let climbed = self.adjacency.is_some();
+        let found = self.vertices.get(found as usize)?;
+        (climbed && self.reach(direction) > found.dot(direction)).then(|| self.scan(direction))
     }
     #[inline(always)]
     fn center(&self) -> V {

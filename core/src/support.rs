@@ -21,7 +21,7 @@ pub struct SupportPoint<V> {
 
 /// A convex body: a core, given by its support mapping, thickened by a radius.
 ///
-/// For any finite direction `d` that is not zero, with `p` the returned point of the core:
+/// For any finite direction `d` that is not zero, with `p` the point of the core that [`Support::farthest`] returns:
 /// - some point of the core lies within `slack` of `p` in every component;
 /// - no point of the core lies farther along `d` than `d·p + |d|₁ (4 ε extent + slack)`.
 pub trait Support {
@@ -31,12 +31,20 @@ pub trait Support {
     const ROUNDED: bool = false;
 
     /// A point of the core farthest along `direction`, of any length but zero. `start` is the index of an earlier answer, or 0; it may
-    /// shorten the search. A body may return a point that is only locally farthest: see [`Support::farthest`].
+    /// shorten the search. The point may be farthest only among its neighbours: see [`Support::farther`].
     fn support(&self, direction: Self::Vector, start: u32) -> SupportPoint<Self::Vector>;
 
-    /// As [`Support::support`], but always with a point that is farthest of all, as a proof needs it.
-    fn farthest(&self, direction: Self::Vector, start: u32) -> SupportPoint<Self::Vector> {
-        self.support(direction, start)
+    /// A point farther along `direction` than the one of index `found`, which is what [`Support::support`] returned for it; if there is
+    /// one. Asked before a proof is built on the answer.
+    fn farther(&self, direction: Self::Vector, found: u32) -> Option<SupportPoint<Self::Vector>> {
+        let _ = (direction, found);
+        None
+    }
+
+    /// The point of the core farthest along `direction`.
+    fn farthest(&self, direction: Self::Vector) -> SupportPoint<Self::Vector> {
+        let found = self.support(direction, 0);
+        self.farther(direction, found.index).unwrap_or(found)
     }
 
     /// Some point well inside, to start from.
@@ -64,8 +72,8 @@ impl<S: Support> Support for &S {
         (**self).support(direction, start)
     }
     #[inline(always)]
-    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        (**self).farthest(direction, start)
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        (**self).farther(direction, found)
     }
     #[inline(always)]
     fn center(&self) -> S::Vector {
@@ -108,8 +116,8 @@ impl<S: Support> Support for Rounded<S> {
         self.core.support(direction, start)
     }
     #[inline(always)]
-    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        self.core.farthest(direction, start)
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        self.core.farther(direction, found)
     }
     #[inline(always)]
     fn center(&self) -> S::Vector {
@@ -158,17 +166,14 @@ impl<S: Support> Transformed<S> {
     }
 
     #[inline(always)]
-    fn map(
-        &self,
-        direction: S::Vector,
-        find: impl Fn(S::Vector) -> SupportPoint<S::Vector>,
-    ) -> SupportPoint<S::Vector> {
-        let local = S::Vector::new(
-            self.columns[0].dot(direction),
-            self.columns[1].dot(direction),
-            self.columns[2].dot(direction),
-        );
-        let found = find(local);
+    fn local(&self, direction: S::Vector) -> S::Vector {
+        let [x, y, z] = self.columns;
+        S::Vector::new(x.dot(direction), y.dot(direction), z.dot(direction))
+    }
+
+    /// A point of the shape as one of ours; `local` is the direction it was found in.
+    #[inline(always)]
+    fn image(&self, found: SupportPoint<S::Vector>, local: S::Vector) -> SupportPoint<S::Vector> {
         let mut point = found.point;
         if S::ROUNDED && self.round == Real::ZERO {
             let length = local.length();
@@ -187,11 +192,13 @@ impl<S: Support> Support for Transformed<S> {
     const ROUNDED: bool = S::ROUNDED;
     #[inline(always)]
     fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        self.map(direction, |d| self.shape.support(d, start))
+        let local = self.local(direction);
+        self.image(self.shape.support(local, start), local)
     }
     #[inline(always)]
-    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        self.map(direction, |d| self.shape.farthest(d, start))
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        let local = self.local(direction);
+        self.shape.farther(local, found).map(|found| self.image(found, local))
     }
     #[inline(always)]
     fn center(&self) -> S::Vector {
@@ -229,12 +236,8 @@ impl<A: Support, B: Support<Vector = A::Vector>> Support for MinkowskiDifference
     const ROUNDED: bool = A::ROUNDED || B::ROUNDED;
     #[inline(always)]
     fn support(&self, direction: A::Vector, _: u32) -> SupportPoint<A::Vector> {
-        let point = self.b.support(direction, 0).point - self.a.support(-direction, 0).point;
-        SupportPoint { point, index: 0 }
-    }
-    #[inline(always)]
-    fn farthest(&self, direction: A::Vector, _: u32) -> SupportPoint<A::Vector> {
-        let point = self.b.farthest(direction, 0).point - self.a.farthest(-direction, 0).point;
+        // One index cannot name two vertices, so both are made sure of at once.
+        let point = self.b.farthest(direction).point - self.a.farthest(-direction).point;
         SupportPoint { point, index: 0 }
     }
     #[inline(always)]
@@ -284,9 +287,9 @@ impl<S: Support> Support for Scaled<'_, S> {
         let found = self.shape.support(self.fitted(direction), start);
         SupportPoint { point: found.point * self.factor, index: found.index }
     }
-    fn farthest(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        let found = self.shape.farthest(self.fitted(direction), start);
-        SupportPoint { point: found.point * self.factor, index: found.index }
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        let found = self.shape.farther(self.fitted(direction), found)?;
+        Some(SupportPoint { point: found.point * self.factor, index: found.index })
     }
     fn center(&self) -> S::Vector {
         self.shape.center() * self.factor

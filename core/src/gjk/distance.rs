@@ -6,7 +6,7 @@
 use super::{Intersection, Overlap, Reason, SUPPORT_ROUNDINGS, Scale, across, scale, seed, within_radii};
 use crate::real::{Real, Vector};
 use crate::simplex::{Nearest, Side, Simplex, nearest, side};
-use crate::support::{Scaled, ScalarOf, Support, lengthened};
+use crate::support::{ScalarOf, Scaled, Support, lengthened};
 
 /// What [`distance`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,7 +209,8 @@ where
         };
         let mut new = from_b.point - from_a.point;
         if bound(new) > best.lower {
-            (from_a, from_b) = (a.farthest(direction, from_a.index), b.farthest(-direction, from_b.index));
+            from_a = a.farther(direction, from_a.index).unwrap_or(from_a);
+            from_b = b.farther(-direction, from_b.index).unwrap_or(from_b);
             new = from_b.point - from_a.point;
             let lower = bound(new);
             if lower > best.lower {
