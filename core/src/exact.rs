@@ -452,10 +452,8 @@ where
                 }
             }
             let here = self.along(shape, d, i);
-            if let Some((_, there)) = best {
-                if here.minus(&there).is_positive() {
-                    best = Some((i, here));
-                }
+            if best.is_some_and(|(_, there)| here.minus(&there).is_positive()) {
+                best = Some((i, here));
             }
         }
         best.map(|b| b.0).or(single).unwrap_or(0)
@@ -519,6 +517,7 @@ where
     }
 
     /// Points strictly on both sides of the plane through the origin across `d`, or the axis that has none below.
+    #[expect(clippy::result_large_err, reason = "as large as the other outcome")]
     fn both_sides(&self, d: &V3) -> Result<(Difference, Difference), Axis> {
         let low = self.lowest(d);
         if !dot::<_, _, DEGREE_4>(d, &low.w).is_negative() {

@@ -63,9 +63,9 @@ pub enum Reason {
     Iterations,
 }
 
-/// How many support points a query may look at. Polytopes of a hundred vertices need at most some fifteen; a smooth body near touch may
-/// use all, and then counts as undecided.
-pub const MAX_ITERATIONS: u32 = 48;
+/// How many support points a search may look at. Polytopes of some hundred vertices need twenty at most; after that it is a symmetry, or a
+/// smooth body near touch, and another search takes over.
+pub const MAX_ITERATIONS: u32 = 32;
 
 /// Rounding of `d·(b - a)` against the true least value over both bodies, in units of ε |d|₁ (extents): two scalar products of the scan on
 /// each side (3), the difference and its product (2); rounded up for second-order terms and the bound's own rounding.
@@ -115,7 +115,7 @@ where
     let extent = a.extent() + b.extent();
     match scale(extent) {
         Scale::Keep if A::ROUNDED || B::ROUNDED => distance::intersect_rounded(a, b, hint),
-        Scale::Keep => search(a, b, extent, hint),
+        Scale::Keep => search(a, b, extent, hint, false),
         Scale::Multiply(factor) => intersect_scaled(a, b, factor, hint),
         Scale::Refuse(reason) => Intersection::Undecided { reason, axis: A::Vector::ZERO },
     }
@@ -132,7 +132,7 @@ where
     let found = if A::ROUNDED || B::ROUNDED {
         distance::intersect_rounded(&sa, &sb, hint)
     } else {
-        search(&sa, &sb, sa.extent() + sb.extent(), hint)
+        search(&sa, &sb, sa.extent() + sb.extent(), hint, false)
     };
     let back = ScalarOf::<A>::ONE / factor;
     match found {
@@ -184,9 +184,38 @@ pub(crate) fn across<V: Vector>(e: V) -> V {
     })
 }
 
-/// The boolean search. `extent` bounds the components of all differences.
+/// Directions to lean towards when a search has met a symmetry: none of them, nor any sum or difference of two, lies in a plane of one.
+const LEANINGS: [[f64; 3]; 5] =
+    [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
+
+/// A direction near another; a different one each round.
+fn leaning<V: Vector>(axis: V, round: u32) -> V {
+    let [x, y, z] = LEANINGS[(round % 5) as usize];
+    let by = axis.norm_max() * V::Scalar::from_f64(1.0 / 16.0);
+    let real = V::Scalar::from_f64;
+    axis + V::new(real(x), real(y), real(z)) * by
+}
+
+/// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
+/// the distance, which has more patience.
+#[cold]
+#[inline(never)]
+fn search_harder<A, B>(a: &A, b: &B, extent: ScalarOf<A>, axis: A::Vector, reason: Reason) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let found = search(a, b, extent, None, true);
+    if !matches!(found, Intersection::Undecided { .. }) {
+        return found;
+    }
+    let harder = distance::intersect_rounded(a, b, Some(axis));
+    if matches!(harder, Intersection::Undecided { .. }) { Intersection::Undecided { reason, axis } } else { harder }
+}
+
+/// The boolean search. `extent` bounds the components of all differences; `lean` is for the second try.
 #[inline(always)]
-fn search<A, B>(a: &A, b: &B, extent: ScalarOf<A>, hint: Option<A::Vector>) -> Intersection<A::Vector>
+fn search<A, B>(a: &A, b: &B, extent: ScalarOf<A>, hint: Option<A::Vector>, lean: bool) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
@@ -207,7 +236,12 @@ where
     let mut count = 0usize;
     let mut reason = Reason::Iterations;
 
-    for _ in 0..MAX_ITERATIONS {
+    // Deep inside, yet without a simplex that proves it.
+    let mut deep = false;
+    for round in 0..MAX_ITERATIONS {
+        if lean {
+            axis = leaning(axis, round);
+        }
         let mut size = axis.norm_1();
         if !(size > S::<A>::SCALE_MIN) {
             axis = lengthened(axis);
@@ -233,6 +267,7 @@ where
 
         if (0..4).any(|i| i < count && w[i & 3] == new) {
             reason = Reason::Rounding;
+            deep = new.dot(axis) < -(margin * size);
             break;
         }
         // The newest goes first; its points into the free slot.
@@ -297,6 +332,9 @@ where
                 }
             }
         }
+    }
+    if !lean && (deep || reason == Reason::Iterations || slack > zero) {
+        return search_harder(a, b, extent, axis, reason);
     }
     Intersection::Undecided { reason, axis }
 }

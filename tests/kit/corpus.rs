@@ -12,6 +12,10 @@ use voidage_core::gjk::{self, Distance, Intersection, Overlap, Reason};
 use voidage_core::real::{Real, Vector};
 use voidage_core::shape::Hull;
 
+use crate::oracle;
+use crate::random::Random;
+use crate::recipe::{FAMILIES, Recipe};
+
 /// One labelled pair.
 #[derive(Clone, Debug)]
 pub struct Case {
@@ -236,4 +240,33 @@ pub fn by_kind<V: Vector>(cases: &[Case], factor: f64) -> BTreeMap<String, Score
         *sum = sum.and(score::<V>(case, factor));
     }
     kinds
+}
+
+/// Lines of a file like those read here, from random recipes and labelled by the oracle.
+pub fn made(seed: u64, count: u64) -> Vec<Value> {
+    let mut random = Random::new(seed);
+    let mut case = |i: u64| {
+        let family = FAMILIES[i as usize % FAMILIES.len()];
+        let mut points = || {
+            let count = 1 + random.below(6);
+            (0..count).map(|_| std::array::from_fn(|_| random.below(9) as i8 - 4)).collect::<Vec<_>>()
+        };
+        let (a, b) = (points(), points());
+        let shift = std::array::from_fn(|_| random.below(9) as i8 - 4);
+        let recipe = Recipe { family, a, b, shift, ulps: random.below(7) as i8 - 3, exponent: 0 };
+        let (a, b) = recipe.make();
+        let label = match oracle::contact(&a, &b) {
+            Contact::Disjoint => "disjoint",
+            Contact::Touching => "touch",
+            Contact::Overlapping => "interior",
+        };
+        let difference = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+        let scale = a.iter().flat_map(|p| b.iter().map(move |q| difference(p, q))).fold(0.0, f64::max);
+        let single = a.iter().chain(&b).flatten().all(|&x| f64::from(x as f32) == x);
+        let dist = oracle::distance(&a, &b);
+        serde_json::json!({
+            "id": i, "kind": format!("{family:?}"), "f32": single, "a": a, "b": b, "intersect": label, "dist": dist, "scale": scale,
+        })
+    };
+    (0..count).map(&mut case).collect()
 }
