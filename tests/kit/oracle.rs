@@ -143,5 +143,8 @@ pub fn distance(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     // Room for sixty-four bits before the root.
     let shift = 2 * ((sq.denom().bits() as i64 - sq.numer().bits() as i64 + 140) / 2).max(0);
     let root = ((sq.numer() << shift as usize) / sq.denom()).sqrt();
-    root.to_f64().unwrap_or(f64::INFINITY) * 2f64.powi(unit / 2) * 2f64.powi(-(shift as i32) / 2)
+    let spare = root.bits().saturating_sub(70) as i32;
+    let e = unit / 2 - shift as i32 / 2 + spare;
+    let m = (root >> spare as usize).to_f64().unwrap_or(f64::INFINITY);
+    m * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
 }
