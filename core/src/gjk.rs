@@ -184,6 +184,9 @@ pub(crate) fn across<V: Vector>(e: V) -> V {
     })
 }
 
+/// Where a second try looks first: the points of a body along these surround its middle, also those of a box.
+const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+
 /// Directions to lean towards when a search has met a symmetry: none of them, nor any sum or difference of two, lies in a plane of one.
 const LEANINGS: [[f64; 3]; 5] =
     [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
@@ -239,7 +242,11 @@ where
     // Deep inside, yet without a simplex that proves it.
     let mut deep = false;
     for round in 0..MAX_ITERATIONS {
+        let surrounding = lean && round < 4;
         if lean {
+            if surrounding {
+                axis = Vector::from_array(CORNERS[(round & 3) as usize].map(S::<A>::from_f64));
+            }
             axis = leaning(axis, round);
         }
         let mut size = axis.norm_1();
@@ -266,6 +273,9 @@ where
         (start_a, start_b) = (from_a.index, from_b.index);
 
         if (0..4).any(|i| i < count && w[i & 3] == new) {
+            if surrounding {
+                continue;
+            }
             reason = Reason::Rounding;
             deep = new.dot(axis) < -(margin * size);
             break;
@@ -282,6 +292,9 @@ where
         };
         count += 1;
 
+        if surrounding && round < 3 {
+            continue;
+        }
         let mut outward = None;
         if count == 4 {
             match side(w, extent, slack) {

@@ -3,7 +3,7 @@
 //! Each round yields two bounds. The support plane across `v` is a lower bound, the simplex point `v` itself an upper one; rounding widens
 //! both. Their difference is the duality gap: how far the stated distance can be from the truth.
 
-use super::{Intersection, Overlap, Reason, SUPPORT_ROUNDINGS, Scale, across, scale, seed, within_radii};
+use super::{Intersection, Overlap, Reason, SUPPORT_ROUNDINGS, Scale, across, scale, search, seed, within_radii};
 use crate::real::{Real, Vector};
 use crate::simplex::{Nearest, Side, Simplex, nearest, side};
 use crate::support::{ScalarOf, Scaled, Support, lengthened};
@@ -71,13 +71,30 @@ where
     B: Support<Vector = A::Vector>,
 {
     match scale(a.extent() + b.extent()) {
-        Scale::Keep => stated(walk(a, b, hint, Goal::Distance), a.radius() + b.radius(), Real::ONE),
+        Scale::Keep => measure(a, b, hint, Real::ONE),
         Scale::Multiply(factor) => {
             let (a, b) = (Scaled { shape: a, factor }, Scaled { shape: b, factor });
-            stated(walk(&a, &b, hint, Goal::Distance), a.radius() + b.radius(), ScalarOf::<A>::ONE / factor)
+            measure(&a, &b, hint, ScalarOf::<A>::ONE / factor)
         }
         Scale::Refuse(reason) => Distance::Undecided { lower: Real::ZERO, upper: Real::INFINITY, reason },
     }
+}
+
+fn measure<A, B>(a: &A, b: &B, hint: Option<A::Vector>, back: ScalarOf<A>) -> Distance<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let radii = a.radius() + b.radius();
+    let mut found = walk(a, b, hint, Goal::Distance);
+    if found.inside.is_none() && !(found.lower > Real::ZERO) {
+        // Near the origin a symmetry may keep it on the simplex's rim: the boolean knows a way round that.
+        let again = search(a, b, a.extent() + b.extent(), None, true);
+        if let Intersection::Overlapping { proof: Overlap::Inside(simplex) } = again {
+            found.inside = Some(simplex);
+        }
+    }
+    stated(found, radii, back)
 }
 
 /// A walk's result in the words of the caller: radii taken off, scale undone.
