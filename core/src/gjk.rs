@@ -253,7 +253,7 @@ where
         if !(size > S::<A>::SCALE_MIN) {
             axis = lengthened(axis);
             size = axis.norm_1();
-            if !(size > zero) || !size.is_finite() {
+            if !(size >= S::<A>::ONE) || !size.is_finite() {
                 // The origin is a vertex of the difference, or the simplex is flat.
                 reason = Reason::Rounding;
                 break;
@@ -387,7 +387,7 @@ where
     type S<A> = ScalarOf<A>;
     let axis = lengthened(axis);
     let size = axis.norm_1();
-    if !(size > S::<A>::ZERO) || !size.is_finite() {
+    if !(size >= S::<A>::ONE) || !size.is_finite() {
         return None;
     }
     let SupportPoint { point: pa, .. } = a.farthest(axis);

@@ -261,6 +261,9 @@ impl<A: Support, B: Support<Vector = A::Vector>> Support for MinkowskiDifference
 /// Scaled up or down by a power of two, so that the largest component is between 1 and 2; zero and non-finite vectors as they are.
 #[inline(always)]
 pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
+    // Subnormal numbers have no power of two of their own to divide by.
+    let subnormal = direction.norm_max() < V::Scalar::MIN_POSITIVE;
+    let direction = if subnormal { direction * (V::Scalar::ONE / V::Scalar::EPSILON) } else { direction };
     let unit = direction.norm_max().binade();
     if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
 }

@@ -213,7 +213,7 @@ where
     for _ in 0..MAX_DISTANCE_ITERATIONS {
         let direction = lengthened(axis);
         let size = direction.norm_1();
-        if !(size > zero) || !size.is_finite() {
+        if !(size >= one) || !size.is_finite() {
             best.reason = Reason::Rounding;
             break;
         }
