@@ -5,20 +5,34 @@
 //!
 //! 1. [`real`]: the two scalars and their vectors
 //! 2. [`aabb`]: axis-aligned boxes
-//! 3. [`clip`]: convex polygons cut by planes
-//! 4. [`grid`]: cells, faces, index order
-//! 5. [`layer`]: solid fractions of one layer of cells, as bounds that bodies share
-//! 6. [`surface`]: cells, x and y faces of a layer from a triangulated surface
-//! 7. [`section`]: its z faces
-//! 8. [`overlap`]: the exact union of bodies in a cell
+//! 3. [`support`]: support mappings, and bodies made of bodies
+//! 4. [`shape`]: convex bodies
+//! 5. [`sat`]: triangle against box
+//! 6. [`simplex`]: where the origin lies in a simplex, with proof
+//! 7. [`gjk`]: do two bodies meet, and how far apart are they
+//! 8. [`exact`]: the same without rounding, for bodies given by vertices
+//! 9. [`contain`]: is a box inside a body
+//! 10. [`clip`]: convex polygons cut by planes
+//! 11. [`grid`]: cells, faces, index order
+//! 12. [`layer`]: solid fractions of one layer of cells, as bounds that bodies share
+//! 13. [`surface`]: cells, x and y faces of a layer from a triangulated surface
+//! 14. [`section`]: its z faces
+//! 15. [`overlap`]: the exact union of bodies in a cell
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
 pub mod aabb;
 pub mod clip;
+pub mod contain;
+pub mod exact;
+pub mod gjk;
 pub mod grid;
 pub mod layer;
 pub mod overlap;
 pub mod real;
+pub mod sat;
 pub mod section;
+pub mod shape;
+pub mod simplex;
+pub mod support;
 pub mod surface;

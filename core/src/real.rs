@@ -56,6 +56,12 @@ pub trait Real:
     const MAX: Self;
     /// Positive infinity.
     const INFINITY: Self;
+    /// Below this the first stage of [`crate::gjk`] rescales its input, so that products of four lengths stay normal.
+    const SCALE_MIN: Self;
+    /// Above this it rescales too, so that products of four lengths stay finite.
+    const SCALE_MAX: Self;
+    /// Covers every underflow in a product of up to four lengths below [`Real::SCALE_MAX`].
+    const UNDERFLOW: Self;
 
     /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;
@@ -75,6 +81,10 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
+    /// The largest power of two not above the absolute value of a normal number; 0 for subnormal numbers.
+    fn binade(self) -> Self;
+    /// The magnitude of `self` with the sign of `sign`.
+    fn copysign(self, sign: Self) -> Self;
 }
 
 /// Three scalars in space: `glam::Vec3` or `glam::DVec3`.
@@ -129,10 +139,30 @@ pub trait Vector:
     fn abs(self) -> Self;
     /// All components finite.
     fn is_finite(self) -> bool;
+    /// Sum of the absolute components.
+    #[inline(always)]
+    fn norm_1(self) -> Self::Scalar {
+        self.x().abs() + self.y().abs() + self.z().abs()
+    }
+    /// Largest absolute component; NaN components are passed over.
+    #[inline(always)]
+    fn norm_max(self) -> Self::Scalar {
+        self.x().abs().max(self.y().abs()).max(self.z().abs())
+    }
+    /// Length, free of overflow and underflow.
+    fn length(self) -> Self::Scalar {
+        let unit = self.norm_max().binade();
+        if !(unit > Self::Scalar::ZERO) || !unit.is_finite() {
+            return self.norm_max();
+        }
+        let inv = Self::Scalar::ONE / unit;
+        let scaled = self * inv;
+        scaled.dot(scaled).sqrt() * unit
+    }
 }
 
 macro_rules! real {
-    ($scalar:ty, $vector:ty, $sqrt:path, $floor:path) => {
+    ($scalar:ty, $vector:ty, $sqrt:path, $floor:path, $exponent:expr, $scale:expr, $underflow:expr) => {
         impl Real for $scalar {
             type Vector = $vector;
             const ZERO: Self = 0.0;
@@ -143,6 +173,9 @@ macro_rules! real {
             const MIN_POSITIVE: Self = <$scalar>::MIN_POSITIVE;
             const MAX: Self = <$scalar>::MAX;
             const INFINITY: Self = <$scalar>::INFINITY;
+            const SCALE_MIN: Self = 1.0 / $scale;
+            const SCALE_MAX: Self = $scale;
+            const UNDERFLOW: Self = <$scalar>::MIN_POSITIVE * $underflow;
 
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
@@ -185,6 +218,14 @@ macro_rules! real {
             #[inline(always)]
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)
+            }
+            #[inline(always)]
+            fn binade(self) -> Self {
+                <$scalar>::from_bits(self.to_bits() & $exponent)
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                <$scalar>::copysign(self, sign)
             }
         }
 
@@ -240,5 +281,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, glam::Vec3, libm::sqrtf, libm::floorf);
-real!(f64, glam::DVec3, libm::sqrt, libm::floor);
+real!(f32, glam::Vec3, libm::sqrtf, libm::floorf, 0x7f80_0000, 65536.0, 65536.0);
+real!(f64, glam::DVec3, libm::sqrt, libm::floor, 0x7ff0_0000_0000_0000, 1.2676506002282294e30, 2.582249878086909e120);

@@ -1,6 +1,6 @@
 //! The oracle for boxes whose corners lie on a lattice: count voxels.
 
-use crate::rng::Rng;
+use crate::random::Random;
 use crate::solids::{Triangle, cuboid};
 use glam::DVec3;
 
@@ -26,7 +26,7 @@ impl Lattice {
 
     /// Some random boxes; corners fall on a coarse sublattice half of the time, so that many faces coincide.
     #[must_use]
-    pub fn random(rng: &mut Rng, count: usize) -> Self {
+    pub fn random(rng: &mut Random, count: usize) -> Self {
         let mut corner = |lo: usize| {
             let step = if rng.below(2) == 0 { 4 } else { 1 };
             let room = (SIDE - lo) / step;

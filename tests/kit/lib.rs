@@ -1,8 +1,15 @@
 //! Generators, oracles and properties shared by tests, fuzz targets and benches.
 
+pub mod corpus;
+pub mod dirty;
 pub mod fields;
+pub mod fuzzed;
+pub mod gjk;
 pub mod lattice;
-pub mod rng;
+pub mod oracle;
+pub mod pairs;
+pub mod random;
+pub mod recipe;
 pub mod solids;
 pub mod truth;
 

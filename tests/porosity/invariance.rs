@@ -5,12 +5,12 @@ use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Options, Porosity, porosity};
 use voidage_tests::fields::assert_close;
 use voidage_tests::lattice::Lattice;
-use voidage_tests::rng::Rng;
+use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, scene, sphere, turned_box};
 
 fn solids() -> Vec<Vec<Triangle>> {
-    let mut rng = Rng(7);
-    let turned = |rng: &mut Rng| {
+    let mut rng = Random::new(7);
+    let turned = |rng: &mut Random| {
         turned_box(rng.point(DVec3::splat(0.3), DVec3::splat(0.7)), DVec3::new(0.3, 0.1, 0.05), rng.turn())
     };
     vec![turned(&mut rng), turned(&mut rng), turned(&mut rng), sphere(DVec3::splat(0.5), 0.2, 5)]
@@ -57,7 +57,7 @@ fn translation_by_whole_numbers_changes_only_rounding() {
 #[test]
 fn simple_solids_are_exact_anywhere_and_along_any_axis() {
     for seed in 0..20 {
-        let solids = Lattice::random(&mut Rng(seed), 4).solids();
+        let solids = Lattice::random(&mut Random::new(seed), 4).solids();
         let edges = Edges([vec![0.0, 4.0, 8.0, 16.0], vec![0.0, 2.0, 8.0, 12.0, 16.0], vec![0.0, 8.0, 16.0]]);
         let plain = run(&edges, &solids);
         let shift = DVec3::new(1024.0, -512.0, 64.0);

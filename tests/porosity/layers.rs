@@ -3,7 +3,10 @@
 use std::path::Path;
 
 /// Modules from the bottom up; `a/b.rs` counts as `a`.
-const ORDER: [&str; 8] = ["real", "aabb", "clip", "grid", "layer", "surface", "section", "overlap"];
+const ORDER: [&str; 15] = [
+    "real", "aabb", "support", "shape", "sat", "simplex", "gjk", "exact", "contain", "clip", "grid", "layer",
+    "surface", "section", "overlap",
+];
 
 #[test]
 fn core_modules_import_downwards_only() {

@@ -1,6 +1,7 @@
 //! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
 
 mod core_alone;
+mod dirty;
 mod invariance;
 mod known;
 mod layers;

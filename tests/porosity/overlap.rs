@@ -5,7 +5,7 @@ use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Options, porosity};
 use voidage_tests::fields::assert_close;
 use voidage_tests::lattice::{Lattice, SIDE};
-use voidage_tests::rng::Rng;
+use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, scene, sphere, turned_box};
 
 fn oracle(lattice: &Lattice, edges: &[Vec<usize>; 3]) -> FieldSet {
@@ -41,7 +41,7 @@ fn boxes_on_a_lattice() {
     ];
     let (mut shared, mut walls) = (0, 0);
     for seed in 0..200 {
-        let mut rng = Rng(seed);
+        let mut rng = Random::new(seed);
         let count = 1 + rng.below(6);
         let lattice = Lattice::random(&mut rng, count);
         let bodies = scene(&lattice.solids());
@@ -61,13 +61,13 @@ fn boxes_on_a_lattice() {
     );
 }
 
-fn random_solids(rng: &mut Rng) -> Vec<Vec<Triangle>> {
+fn random_solids(rng: &mut Random) -> Vec<Vec<Triangle>> {
     let (lo, hi) = (DVec3::splat(0.2), DVec3::splat(0.8));
     let count = 2 + rng.below(5);
-    let one = |rng: &mut Rng| {
+    let one = |rng: &mut Random| {
         let center = rng.point(lo, hi);
         if rng.below(3) == 0 {
-            sphere(center, rng.range(0.05, 0.25), 1 + rng.below(4))
+            sphere(center, rng.between(0.05, 0.25), 1 + rng.below(4))
         } else {
             turned_box(center, rng.point(DVec3::splat(0.02), DVec3::splat(0.3)), rng.turn())
         }
@@ -80,7 +80,7 @@ fn random_solids(rng: &mut Rng) -> Vec<Vec<Triangle>> {
 fn parts_sum_to_the_whole() {
     let mut shared = 0;
     for seed in 1000..1040 {
-        let bodies = scene(&random_solids(&mut Rng(seed)));
+        let bodies = scene(&random_solids(&mut Random::new(seed)));
         let axis = |n: usize| -> Vec<f64> { (0..=n).map(|i| i as f64 / n as f64).collect() };
         let run = |n: usize| {
             let edges = Edges([axis(n), axis(n), axis(n)]);

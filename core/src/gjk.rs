@@ -1,0 +1,414 @@
+//! Do two convex bodies meet, and how far apart are they? An answer comes with a proof, or is [`Undecided`](Intersection::Undecided).
+//!
+//! Gilbert, Johnson and Keerthi's search in the Minkowski difference `b - a` of all differences of points. If a direction has all of it
+//! on one side, the bodies are apart; if four of its points hold the origin, they overlap. Interiors decide: bodies that only touch do not
+//! overlap. Every comparison is relative to the size of what is compared; no tolerance has a unit.
+//!
+//! Reference: E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast procedure for computing the distance between complex objects in
+//! three-dimensional space", *IEEE J. Robotics and Automation* 4 (1988).
+
+use crate::real::{Real, Vector};
+use crate::simplex::{Side, Simplex, side};
+use crate::support::{ScalarOf, Scaled, Support, SupportPoint, lengthened};
+
+mod distance;
+pub use distance::{Distance, distance};
+
+/// What [`intersect`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Intersection<V: Vector> {
+    /// The bodies share no interior point: proved by [`separates`].
+    Apart {
+        /// A direction, of any length, along which no point of `a` lies beyond any point of `b`.
+        axis: V,
+    },
+    /// The bodies share an interior point.
+    Overlapping {
+        /// Why.
+        proof: Overlap<V>,
+    },
+    /// Neither could be proved with the arithmetic at hand.
+    Undecided {
+        /// Why not.
+        reason: Reason,
+        /// The last direction tried; a good hint for whoever tries harder. May be zero.
+        axis: V,
+    },
+}
+
+/// A proof that two bodies overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Overlap<V: Vector> {
+    /// Four pairs of points: [`Simplex::holds_origin`].
+    Inside(Simplex<V>),
+    /// For rounded bodies: a point of each core, closer together than the sum of the radii. See [`within_radii`].
+    Within {
+        /// A point of the first core.
+        a: V,
+        /// A point of the second core.
+        b: V,
+    },
+}
+
+/// Why a query was left undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// A coordinate is NaN or infinite, a body is empty or a radius is negative, or the numbers are too large to add.
+    NotFinite,
+    /// All coordinates are so small that their products vanish.
+    TooSmall,
+    /// The bodies touch, or come closer to it than rounding lets us tell.
+    Rounding,
+    /// The cap on iterations was reached.
+    Iterations,
+}
+
+/// How many support points a search may look at. Polytopes of some hundred vertices need twenty at most; after that it is a symmetry, or a
+/// smooth body near touch, and another search takes over.
+pub const MAX_ITERATIONS: u32 = 32;
+
+/// Rounding of `d·(b - a)` against the true least value over both bodies, in units of ε |d|₁ (extents): two scalar products of the scan on
+/// each side (3), the difference and its product (2); rounded up for second-order terms and the bound's own rounding.
+const SUPPORT_ROUNDINGS: f64 = 8.0;
+
+/// The power of two to multiply two bodies with, so that their extents add to something near one.
+pub(crate) enum Scale<R> {
+    Keep,
+    Multiply(R),
+    Refuse(Reason),
+}
+
+pub(crate) fn scale<R: Real>(extent: R) -> Scale<R> {
+    if extent >= R::SCALE_MIN && extent <= R::SCALE_MAX {
+        return Scale::Keep;
+    }
+    if !extent.is_finite() {
+        return Scale::Refuse(Reason::NotFinite);
+    }
+    let unit = extent.binade();
+    // 1/unit must be finite, and ε times the extent, as slacks are made of, well above the subnormal step.
+    if !(unit >= R::MIN_POSITIVE * R::from_f64(4_194_304.0)) {
+        return Scale::Refuse(Reason::TooSmall);
+    }
+    Scale::Multiply(R::ONE / unit)
+}
+
+/// Do the interiors of two bodies share a point?
+///
+/// `hint` is a direction from `a` towards `b`, of any length: the axis of a similar query, say. Without one the search starts along the
+/// centres. It changes the work, not the truth.
+///
+/// ```
+/// use glam::DVec3;
+/// use voidage_core::{gjk::{Intersection, intersect}, shape::Sphere};
+///
+/// let a = Sphere { center: DVec3::ZERO, radius: 1.0 };
+/// let b = Sphere { center: DVec3::new(3.0, 0.0, 0.0), radius: 1.5 };
+/// assert!(matches!(intersect(&a, &b, None), Intersection::Apart { .. }));
+/// ```
+#[inline]
+pub fn intersect<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let extent = a.extent() + b.extent();
+    match scale(extent) {
+        Scale::Keep if A::ROUNDED || B::ROUNDED => distance::intersect_rounded(a, b, hint),
+        Scale::Keep => search(a, b, extent, hint, false),
+        Scale::Multiply(factor) => intersect_scaled(a, b, factor, hint),
+        Scale::Refuse(reason) => Intersection::Undecided { reason, axis: A::Vector::ZERO },
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn intersect_scaled<A, B>(a: &A, b: &B, factor: ScalarOf<A>, hint: Option<A::Vector>) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let (sa, sb) = (Scaled { shape: a, factor }, Scaled { shape: b, factor });
+    let found = if A::ROUNDED || B::ROUNDED {
+        distance::intersect_rounded(&sa, &sb, hint)
+    } else {
+        search(&sa, &sb, sa.extent() + sb.extent(), hint, false)
+    };
+    let back = ScalarOf::<A>::ONE / factor;
+    match found {
+        Intersection::Overlapping { proof: Overlap::Inside(simplex) } => {
+            let simplex = Simplex { a: simplex.a.map(|p| p * back), b: simplex.b.map(|p| p * back) };
+            Intersection::Overlapping { proof: Overlap::Inside(simplex) }
+        }
+        Intersection::Overlapping { proof: Overlap::Within { a, b } } => {
+            Intersection::Overlapping { proof: Overlap::Within { a: a * back, b: b * back } }
+        }
+        other => other,
+    }
+}
+
+/// A first direction from `a` to `b`: never zero, always finite.
+#[inline(always)]
+pub(crate) fn seed<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> A::Vector
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let direction = match hint {
+        Some(hint) => hint,
+        None => b.center() - a.center(),
+    };
+    let size = direction.norm_1();
+    let usual = size > ScalarOf::<A>::SCALE_MIN && size < ScalarOf::<A>::SCALE_MAX;
+    if usual { direction } else { unusual_seed(direction) }
+}
+
+#[cold]
+fn unusual_seed<V: Vector>(direction: V) -> V {
+    let direction = lengthened(direction);
+    let fine = direction.is_finite() && direction.norm_1() > V::Scalar::SCALE_MIN;
+    if fine { direction } else { V::new(V::Scalar::ONE, V::Scalar::ZERO, V::Scalar::ZERO) }
+}
+
+/// Some vector across another: its product with the coordinate axis least along it.
+#[inline(always)]
+pub(crate) fn across<V: Vector>(e: V) -> V {
+    let [x, y, z] = e.abs().to_array();
+    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+    e.cross(if x <= y && x <= z {
+        V::new(one, zero, zero)
+    } else if y <= z {
+        V::new(zero, one, zero)
+    } else {
+        V::new(zero, zero, one)
+    })
+}
+
+/// Where a second try looks first: the points of a body along these surround its middle, also those of a box.
+const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+
+/// Directions to lean towards when a search has met a symmetry: none of them, nor any sum or difference of two, lies in a plane of one.
+const LEANINGS: [[f64; 3]; 5] =
+    [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
+
+/// A direction near another; a different one each round.
+fn leaning<V: Vector>(axis: V, round: u32) -> V {
+    let [x, y, z] = LEANINGS[(round % 5) as usize];
+    let by = axis.norm_max() * V::Scalar::from_f64(1.0 / 16.0);
+    let real = V::Scalar::from_f64;
+    axis + V::new(real(x), real(y), real(z)) * by
+}
+
+/// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
+/// the distance, which has more patience.
+#[cold]
+#[inline(never)]
+fn search_harder<A, B>(a: &A, b: &B, extent: ScalarOf<A>, axis: A::Vector, reason: Reason) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let found = search(a, b, extent, None, true);
+    if !matches!(found, Intersection::Undecided { .. }) {
+        return found;
+    }
+    let harder = distance::intersect_rounded(a, b, Some(axis));
+    if matches!(harder, Intersection::Undecided { .. }) { Intersection::Undecided { reason, axis } } else { harder }
+}
+
+/// The boolean search. `extent` bounds the components of all differences; `lean` is for the second try.
+#[inline(always)]
+fn search<A, B>(a: &A, b: &B, extent: ScalarOf<A>, hint: Option<A::Vector>, lean: bool) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    type S<A> = ScalarOf<A>;
+    let zero = S::<A>::ZERO;
+    let slack = a.slack() + b.slack();
+    // Apart if d·w exceeds this times |d|₁.
+    let margin = S::<A>::from_f64(SUPPORT_ROUNDINGS) * S::<A>::EPSILON * extent + slack + S::<A>::UNDERFLOW;
+    let mut axis = seed(a, b, hint);
+    let (mut start_a, mut start_b) = (0, 0);
+
+    // Differences, newest first, and where their points are kept.
+    let origin = A::Vector::ZERO;
+    let mut w = [origin; 4];
+    let mut slot = [0usize, 1, 2, 3];
+    let mut pairs = [(origin, origin); 4];
+    let mut count = 0usize;
+    let mut reason = Reason::Iterations;
+
+    // Deep inside, yet without a simplex that proves it.
+    let mut deep = false;
+    for round in 0..MAX_ITERATIONS {
+        let surrounding = lean && round < 4;
+        if lean {
+            if surrounding {
+                axis = Vector::from_array(CORNERS[(round & 3) as usize].map(S::<A>::from_f64));
+            }
+            axis = leaning(axis, round);
+        }
+        let mut size = axis.norm_1();
+        if !(size > S::<A>::SCALE_MIN) {
+            axis = lengthened(axis);
+            size = axis.norm_1();
+            if !(size >= S::<A>::ONE) || !size.is_finite() {
+                // The origin is a vertex of the difference, or the simplex is flat.
+                reason = Reason::Rounding;
+                break;
+            }
+        }
+        let mut from_a = a.support(axis, start_a);
+        let mut from_b = b.support(-axis, start_b);
+        let mut new = from_b.point - from_a.point;
+        if new.dot(axis) > margin * size {
+            from_a = a.farther(axis, from_a.index).unwrap_or(from_a);
+            from_b = b.farther(-axis, from_b.index).unwrap_or(from_b);
+            new = from_b.point - from_a.point;
+            if new.dot(axis) > margin * size {
+                return Intersection::Apart { axis };
+            }
+        }
+        (start_a, start_b) = (from_a.index, from_b.index);
+
+        if (0..4).any(|i| i < count && w[i & 3] == new) {
+            if surrounding {
+                continue;
+            }
+            reason = Reason::Rounding;
+            deep = new.dot(axis) < -(margin * size);
+            break;
+        }
+        // The newest goes first; its points into the free slot.
+        let free = slot[count & 3];
+        pairs[free & 3] = (from_a.point, from_b.point);
+        w = [new, w[0], w[1], w[2]];
+        slot = match count {
+            0 => [free, slot[1], slot[2], slot[3]],
+            1 => [free, slot[0], slot[2], slot[3]],
+            2 => [free, slot[0], slot[1], slot[3]],
+            _ => [free, slot[0], slot[1], slot[2]],
+        };
+        count += 1;
+
+        if surrounding && round < 3 {
+            continue;
+        }
+        let mut outward = None;
+        if count == 4 {
+            match side(w, extent, slack) {
+                Side::Inside => {
+                    let pair = slot.map(|s| pairs[s & 3]);
+                    let simplex = Simplex { a: pair.map(|p| p.0), b: pair.map(|p| p.1) };
+                    return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
+                }
+                Side::Beyond(dropped) => {
+                    let behind = match dropped {
+                        1 => {
+                            slot = [slot[0], slot[2], slot[3], slot[1]];
+                            w = [w[0], w[2], w[3], w[1]];
+                            w[3]
+                        }
+                        2 => {
+                            slot = [slot[0], slot[1], slot[3], slot[2]];
+                            w = [w[0], w[1], w[3], w[2]];
+                            w[3]
+                        }
+                        _ => w[3],
+                    };
+                    outward = Some(behind);
+                    count = 3;
+                }
+            }
+        }
+        match count {
+            1 => axis = new,
+            2 => axis = beside(w[0], w[1]),
+            _ => {
+                let (ab, ac) = (w[1] - w[0], w[2] - w[0]);
+                let normal = ab.cross(ac);
+                if ab.cross(normal).dot(w[0]) < zero {
+                    count = 2;
+                    axis = beside(w[0], w[1]);
+                } else if normal.cross(ac).dot(w[0]) < zero {
+                    count = 2;
+                    w = [w[0], w[2], w[1], w[3]];
+                    slot = [slot[0], slot[2], slot[1], slot[3]];
+                    axis = beside(w[0], w[1]);
+                } else {
+                    let ahead = match outward {
+                        Some(behind) => normal.dot(behind - w[0]),
+                        None => normal.dot(w[0]),
+                    };
+                    axis = if ahead < zero { -normal } else { normal };
+                }
+            }
+        }
+    }
+    if !lean && (deep || reason == Reason::Iterations || slack > zero) {
+        return search_harder(a, b, extent, axis, reason);
+    }
+    Intersection::Undecided { reason, axis }
+}
+
+/// From the origin towards the line through two points, at right angles to it.
+#[inline(always)]
+fn beside<V: Vector>(a: V, b: V) -> V {
+    let e = b - a;
+    let towards = e.cross(a.cross(e));
+    if towards == V::ZERO { across(e) } else { towards }
+}
+
+/// Proves that no interior point is shared: no point of `a` lies beyond any point of `b` along `axis`, whatever the rounding. It looks at
+/// all of each body, and at nothing a search may have left behind.
+pub fn separates<A, B>(a: &A, b: &B, axis: A::Vector) -> bool
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let extent = a.extent() + b.extent();
+    match scale(extent) {
+        Scale::Keep => gap(a, b, axis).is_some_and(|gap| gap > ScalarOf::<A>::ZERO),
+        Scale::Multiply(factor) => {
+            let (a, b) = (Scaled { shape: a, factor }, Scaled { shape: b, factor });
+            gap(&a, &b, axis).is_some_and(|gap| gap > ScalarOf::<A>::ZERO)
+        }
+        Scale::Refuse(_) => false,
+    }
+}
+
+/// A lower bound of the distance, by the support planes across `axis`.
+fn gap<A, B>(a: &A, b: &B, axis: A::Vector) -> Option<ScalarOf<A>>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    type S<A> = ScalarOf<A>;
+    let axis = lengthened(axis);
+    let size = axis.norm_1();
+    if !(size >= S::<A>::ONE) || !size.is_finite() {
+        return None;
+    }
+    let SupportPoint { point: pa, .. } = a.farthest(axis);
+    let SupportPoint { point: pb, .. } = b.farthest(-axis);
+    let margin = S::<A>::from_f64(SUPPORT_ROUNDINGS) * S::<A>::EPSILON * (a.extent() + b.extent())
+        + a.slack()
+        + b.slack()
+        + S::<A>::UNDERFLOW;
+    let along = (pb - pa).dot(axis) - margin * size;
+    let length = axis.dot(axis).sqrt();
+    let relative = S::<A>::from_f64(4.0) * S::<A>::EPSILON;
+    let less = along - along.abs() * relative;
+    let radii = (a.radius() + b.radius()) * (S::<A>::ONE + relative);
+    Some(less / length - radii)
+}
+
+/// Proves that a point of one core and a point of another, each off by at most `slack` in each component, are closer than the radii.
+pub fn within_radii<V: Vector>(a: V, b: V, radii: V::Scalar, slack: V::Scalar) -> bool {
+    let relative = V::Scalar::from_f64(8.0) * V::Scalar::EPSILON;
+    let w = b - a;
+    // The root of three, rounded up, turns a bound by component into one of length.
+    let apart = w.length() * (V::Scalar::ONE + relative) + V::Scalar::from_f64(1.75) * (slack + slack);
+    apart < radii * (V::Scalar::ONE - relative)
+}

@@ -1,0 +1,4 @@
+//! Any bytes as a mesh file.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| voidage_tests::dirty::any_file_is_measured_or_refused(bytes));
