@@ -112,7 +112,7 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
         let up = from[1] < to[1];
         let (mut lo, hi) = if up { (from, to) } else { (to, from) };
         let mut row = self.y.cell(lo[1]);
-        while hi[1] > self.y.upper(row) {
+        while row < self.y.count && hi[1] > self.y.upper(row) {
             let p = crossing(lo, hi, 1, self.y.upper(row));
             self.scatter_row(row, up, lo, p);
             lo = p;
@@ -129,7 +129,7 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
         let (mut left, right) = if lo[0] <= hi[0] { (lo, hi) } else { (hi, lo) };
         let positive = up == (lo[0] <= hi[0]);
         let mut c = self.x.cell(left[0]);
-        while right[0] > self.x.upper(c) {
+        while c < self.x.count && right[0] > self.x.upper(c) {
             let p = crossing(left, right, 0, self.x.upper(c));
             self.add(row, c, positive, left, p);
             left = p;

@@ -119,7 +119,8 @@ impl<'a, R: Real> Axis<'a, R> {
     pub fn cell(&self, value: R) -> isize {
         let mut cell = match crate::grid::locate(self.edges, value + self.origin) {
             Located::Below => -1,
-            Located::Cell(i) => i as isize - self.first as isize,
+            // A cut may place a corner a rounding error outside the window.
+            Located::Cell(i) => (i as isize - self.first as isize).clamp(0, self.count),
             Located::Above => self.count,
         };
         if self.origin != R::ZERO {
@@ -264,7 +265,7 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             b.row = b.slab;
             return self.scatter_row(if begins { row - 1 } else { row }, Some(row), b);
         }
-        while max > self.y.upper(row) {
+        while row < self.y.count && max > self.y.upper(row) {
             split(&b.slab, 1, self.y.upper(row), &mut b.row, &mut b.spare);
             core::mem::swap(&mut b.slab, &mut b.spare);
             self.scatter_row(row, None, b);
@@ -285,7 +286,7 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
         if min == max && self.x.opens(c, min) {
             return self.wall_x(row, c, &b.row);
         }
-        while max > self.x.upper(c) {
+        while c < self.x.count && max > self.x.upper(c) {
             split(&b.row, 0, self.x.upper(c), &mut b.cell, &mut b.spare);
             core::mem::swap(&mut b.row, &mut b.spare);
             self.add(row, c, wall, &b.cell);

@@ -29,6 +29,17 @@ pub fn any_triangles_are_measured(bytes: &[u8]) {
     measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, warnings: Vec::new() }, 0);
 }
 
+/// Any triangles with corners from 2⁻⁶⁴ to 2⁶³ in size are measured within 0..1. A cut of so long an edge is a rounding error
+/// off, and that error can be many cells.
+pub fn any_sizes_are_measured(bytes: &[u8]) {
+    let number = |b: &[u8]| f64::from(b[0] as i8) * 2.0_f64.powi(i32::from(b[1] as i8) / 2 - 6);
+    let corner = |b: &[u8]| DVec3::new(number(b), number(&b[2..]), number(&b[4..]));
+    let chunks = bytes.chunks_exact(18).take(64);
+    let triangles: Vec<_> = chunks.map(|c| [corner(c), corner(&c[6..]), corner(&c[12..])]).collect();
+    let solids = vec![Solid { name: String::new(), triangles: 0..triangles.len() }];
+    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, warnings: Vec::new() }, 0);
+}
+
 /// Measure a mesh on an aligned and on an odd grid.
 fn measure(mesh: &Mesh, depth: u32) {
     let mut bodies = Bodies::default();

@@ -1,6 +1,6 @@
 //! Any triangles: seeded runs of the properties that the fuzzer drives, and its findings.
 
-use voidage_tests::dirty::{any_file_is_measured_or_refused, any_triangles_are_measured};
+use voidage_tests::dirty::{any_file_is_measured_or_refused, any_sizes_are_measured, any_triangles_are_measured};
 use voidage_tests::random::Random;
 
 #[test]
@@ -10,6 +10,16 @@ fn random_triangles() {
         let count = 6 * (1 + random.below(40));
         let bytes: Vec<u8> = (0..count).map(|_| random.bits() as u8).collect();
         any_triangles_are_measured(&bytes);
+    }
+}
+
+#[test]
+fn random_sizes() {
+    for seed in 0..2000 {
+        let mut random = Random::new(seed);
+        let count = 18 * (1 + random.below(20));
+        let bytes: Vec<u8> = (0..count).map(|_| random.bits() as u8).collect();
+        any_sizes_are_measured(&bytes);
     }
 }
 

@@ -21,6 +21,9 @@ use weld::Indexed;
 /// Points closer than this many units in the last place of `f32` may be one point that an exporter wrote twice.
 const WELD_ULPS: f64 = 4.0;
 
+/// Larger coordinates would overflow when multiplied.
+const LARGEST: f64 = 1e60;
+
 /// A closed surface around solid, possibly with cavities.
 #[derive(Debug, Clone, Serialize)]
 pub struct Body {
@@ -109,9 +112,13 @@ impl Bodies {
     /// Add the bodies of a file; its coordinates are multiplied by `scale`.
     ///
     /// # Errors
-    /// If nothing in it has an area.
+    /// If nothing in it has an area, or a coordinate is beyond all measure.
     pub fn add(&mut self, mesh: &Mesh, scale: f64) -> crate::error::Result<()> {
         let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
+        if let Some(n) = scaled.iter().position(|t| t.iter().any(|p| !(p.abs().max_element() <= LARGEST))) {
+            let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(scaled[n][0]));
+            return Err(crate::error::Error::at(&mesh.path, format!("triangle {n}"), reason));
+        }
         let mut report = Reporter { file: mesh.path.display().to_string(), warnings: Vec::new() };
         let mut d = Diagnosis {
             file: report.file.clone(),

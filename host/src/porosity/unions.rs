@@ -155,7 +155,7 @@ impl Unions {
                     continue;
                 }
                 let bounds = if layer.marks.z[c] != 0 {
-                    self.wall(grid, bins, 2, [i, j, k + 1])
+                    Some(self.wall(grid, bins, 2, [i, j, k + 1]))
                 } else {
                     let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                     let (lo, hi) = grid.cell_box([i, j, k]);
@@ -224,34 +224,73 @@ impl Unions {
                 _ => (&mut *lower.z, &mut *sum.z, &*marks.z),
             };
             for f in 0..shape[0] * shape[1] {
-                if marks[f] != 0
-                    && gap(lower[f], sum[f]) > KNOWN
-                    && let Some(bounds) = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k])
-                {
+                if marks[f] != 0 && gap(lower[f], sum[f]) > KNOWN {
+                    let bounds = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k]);
                     improve(&mut lower[f], &mut sum[f], bounds);
                 }
             }
         }
     }
 
-    /// The union on a face from what both its cells see.
-    fn wall(&mut self, grid: &Grid<f64>, bins: &Bins, axis: usize, face: [usize; 3]) -> Option<Bounds> {
-        let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
-        let (lo, hi) = side_cell(grid, axis, face, true);
-        let mut overlap = Overlap::new(&mut space, lo, hi);
-        for below in [true, false] {
+    /// Bounds of the union on a face from what both its cells see.
+    fn wall(&mut self, grid: &Grid<f64>, bins: &Bins, axis: usize, face: [usize; 3]) -> Bounds {
+        let layers = grid.cells()[2] as isize;
+        let sides = [true, false].map(|below| {
             let (lo, hi) = side_cell(grid, axis, face, below);
-            let layers = grid.cells()[2] as isize;
-            let k = face[2] as isize - isize::from(axis == 2 && below);
             // Beyond the outer planes the nearest layer knows all that touches them.
-            let k = k.clamp(0, layers - 1) as usize;
-            let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
-            for group in bins.groups(k).iter().filter(|g| g.min.cmplt(max).all() && g.max.cmpgt(min).all()) {
-                overlap.add(lo, hi, below, bins.triangles(), bins.ids(group)).ok()?;
+            let k = face[2] as isize - isize::from(axis == 2 && below);
+            WallSide { lo, hi, k: k.clamp(0, layers - 1) as usize, below }
+        });
+        self.wall_between(bins, axis, sides, self.options.depth)
+    }
+
+    /// As [`Unions::wall`], by quarters where there is too much surface.
+    fn wall_between(&mut self, bins: &Bins, axis: usize, sides: [WallSide; 2], depth: u32) -> Bounds {
+        match self.wall_union(bins, axis, &sides) {
+            Ok(closed) => (closed, closed),
+            Err(Full) if depth == 0 => (0.0, 1.0),
+            Err(Full) => {
+                let quarters = [0, 1, 2, 3].map(|quarter| {
+                    let parts = sides.map(|side| side.quarter(axis, quarter));
+                    self.wall_between(bins, axis, parts, depth - 1)
+                });
+                let (lower, upper) = quarters.iter().fold((0.0, 0.0), |(l, u), q| (l + q.0, u + q.1));
+                (lower * 0.25, upper * 0.25)
             }
         }
-        let closed = overlap.face(axis, 1.0, Limit::Both).ok()?;
-        Some((closed, closed))
+    }
+
+    fn wall_union(&mut self, bins: &Bins, axis: usize, sides: &[WallSide; 2]) -> Result<f64, Full> {
+        let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
+        let mut overlap = Overlap::new(&mut space, sides[0].lo, sides[0].hi);
+        for &WallSide { lo, hi, k, below } in sides {
+            let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
+            for group in bins.groups(k).iter().filter(|g| g.min.cmplt(max).all() && g.max.cmpgt(min).all()) {
+                overlap.add(lo, hi, below, bins.triangles(), bins.ids(group))?;
+            }
+        }
+        overlap.face(axis, 1.0, Limit::Both)
+    }
+}
+
+/// What one side of a face sees: a box in a layer.
+#[derive(Clone, Copy)]
+struct WallSide {
+    lo: [f64; 3],
+    hi: [f64; 3],
+    k: usize,
+    below: bool,
+}
+
+impl WallSide {
+    /// The box halved along each axis, the half that touches the face; `quarter` (0..4) picks the halves across it.
+    fn quarter(mut self, axis: usize, quarter: usize) -> Self {
+        let upper_half = [(axis, self.below), ((axis + 1) % 3, quarter & 1 == 1), ((axis + 2) % 3, quarter & 2 == 2)];
+        for (a, upper) in upper_half {
+            let middle = self.lo[a] + (self.hi[a] - self.lo[a]) * 0.5;
+            *(if upper { &mut self.lo[a] } else { &mut self.hi[a] }) = middle;
+        }
+        self
     }
 }
 
