@@ -466,6 +466,9 @@ impl<'a> Adjacency<'a> {
     }
 }
 
+/// Up to this many vertices a scan is as fast as a climb, and needs no second look.
+const CLIMBED: usize = 64;
+
 /// Directions by the signs of their components and by which of these is largest.
 const SECTORS: usize = 24;
 
@@ -570,26 +573,25 @@ impl<'a, V: Vector> Hull<'a, V> {
 
     #[inline(always)]
     fn climb(&self, adjacency: Adjacency<'a>, direction: V, start: u32) -> SupportPoint<V> {
+        let along = |index: u32| self.vertices.get(index as usize).map_or(-V::Scalar::INFINITY, |v| v.dot(direction));
         let mut index = self.starts.get(sector(direction)).copied().unwrap_or(0);
-        let Some(&(mut point)) = self.vertices.get(index as usize) else { return self.scan(direction) };
-        let mut best = point.dot(direction);
-        if let Some(&v) = self.vertices.get(start as usize) {
-            let along = v.dot(direction);
-            if along > best {
-                (best, index, point) = (along, start, v);
-            }
-        }
+        let mut best = along(index);
+        let earlier = along(start);
+        index = if earlier > best { start } else { index };
+        best = if earlier > best { earlier } else { best };
         loop {
+            // Selections, as in `scan`.
             let from = index;
             for &n in adjacency.of(from) {
-                let Some(&v) = self.vertices.get(n as usize) else { continue };
-                let along = v.dot(direction);
-                if along > best {
-                    (best, index, point) = (along, n, v);
-                }
+                let there = along(n);
+                index = if there > best { n } else { index };
+                best = if there > best { there } else { best };
             }
             if index == from {
-                return SupportPoint { point, index };
+                return SupportPoint {
+                    point: self.vertices.get(index as usize).copied().unwrap_or(self.center),
+                    index,
+                };
             }
         }
     }
@@ -600,13 +602,13 @@ impl<V: Vector> Support for Hull<'_, V> {
     #[inline(always)]
     fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
         match self.adjacency {
-            Some(adjacency) => self.climb(adjacency, direction, start),
-            None => self.scan(direction),
+            Some(adjacency) if self.vertices.len() > CLIMBED => self.climb(adjacency, direction, start),
+            _ => self.scan(direction),
         }
     }
     #[inline(always)]
     fn farther(&self, direction: V, found: u32) -> Option<SupportPoint<V>> {
-        let climbed = self.adjacency.is_some();
+        let climbed = self.adjacency.is_some() && self.vertices.len() > CLIMBED;
         let found = self.vertices.get(found as usize)?;
         (climbed && self.reach(direction) > found.dot(direction)).then(|| self.scan(direction))
     }

@@ -146,23 +146,34 @@ fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> Ne
     let normal = (b - a).cross(c - a);
     let sq = normal.dot(normal);
     let weights = [normal.dot(b.cross(c)), normal.dot(c.cross(a)), normal.dot(a.cross(b))];
-    if sq > V::Scalar::UNDERFLOW && weights[0] > zero && weights[1] > zero && weights[2] > zero {
-        let total = weights[0] + weights[1] + weights[2];
-        let at = |p: V| normal.dot(p);
-        // The vertex nearest to the plane's foot has the least rounding in its product; any will do.
-        let height = (at(a) * weights[0] + at(b) * weights[1] + at(c) * weights[2]) / total;
-        let l = 6 - i - j - k;
+    let beyond = weights.map(|weight| !(weight > zero));
+    if sq > V::Scalar::UNDERFLOW && !(beyond[0] || beyond[1] || beyond[2]) {
+        let inv = V::Scalar::ONE / (weights[0] + weights[1] + weights[2]);
+        let weights = weights.map(|weight| weight * inv);
+        let height = normal.dot(a) * weights[0] + normal.dot(b) * weights[1] + normal.dot(c) * weights[2];
+        let [weight_a, weight_b, weight_c] = weights;
         return Nearest {
             point: normal * (height / sq),
-            weights: [weights[0] / total, weights[1] / total, weights[2] / total, zero],
+            weights: [weight_a, weight_b, weight_c, zero],
             count: 3,
-            order: [i, j, k, l & 3],
+            order: [i, j, k, (6 - i - j - k) & 3],
         };
     }
-    nearest_of_segment(w, i, j).closer(nearest_of_segment(w, i, k)).closer(nearest_of_segment(w, j, k))
+    // The nearest edge is one that the origin lies beyond. With a degenerate triangle it may be any.
+    let sides = [(1, 2), (0, 2), (0, 1)].map(|(p, q)| ([i, j, k][p], [i, j, k][q]));
+    let any = !(sq > V::Scalar::UNDERFLOW) || beyond == [false; 3];
+    let mut nearest: Option<Nearest<V>> = None;
+    for ((p, q), beyond) in sides.into_iter().zip(beyond) {
+        if beyond || any {
+            let found = nearest_of_segment(w, p, q);
+            nearest = Some(nearest.map_or(found, |n| n.closer(found)));
+        }
+    }
+    nearest.unwrap_or_else(|| nearest_of_segment(w, i, j))
 }
 
-/// The point nearest to the origin among the first `count` vertices, the newest first. The origin is taken not to be inside of four.
+/// The point nearest to the origin among the first `count` vertices, the newest first. Of four, the origin is taken to be outside.
+#[inline(always)]
 pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> Nearest<V> {
     match count {
         0 | 1 => {
@@ -171,9 +182,26 @@ pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> Nearest<V> {
         }
         2 => nearest_of_segment(w, 0, 1),
         3 => nearest_of_triangle(w, 0, 1, 2),
-        _ => nearest_of_triangle(w, 0, 1, 2)
-            .closer(nearest_of_triangle(w, 0, 1, 3))
-            .closer(nearest_of_triangle(w, 0, 2, 3))
-            .closer(nearest_of_triangle(w, 1, 2, 3)),
+        _ => {
+            let zero = V::Scalar::ZERO;
+            let (ab, ac, ad) = (w[1] - w[0], w[2] - w[0], w[3] - w[0]);
+            // Faces at the newest vertex; each is seen if the origin and the vertex it lacks are on different sides.
+            let faces = [(ab.cross(ac), ad, [0, 1, 2]), (ab.cross(ad), ac, [0, 1, 3]), (ac.cross(ad), ab, [0, 2, 3])];
+            let mut nearest: Option<Nearest<V>> = None;
+            for (normal, other, [i, j, k]) in faces {
+                let (origin, other) = (-normal.dot(w[0]), normal.dot(other));
+                if origin * other <= zero {
+                    let found = nearest_of_triangle(w, i, j, k);
+                    nearest = Some(nearest.map_or(found, |n| n.closer(found)));
+                }
+            }
+            // None is seen: the origin is too close to a face to tell.
+            nearest.unwrap_or_else(|| {
+                nearest_of_triangle(w, 0, 1, 2)
+                    .closer(nearest_of_triangle(w, 0, 1, 3))
+                    .closer(nearest_of_triangle(w, 0, 2, 3))
+                    .closer(nearest_of_triangle(w, 1, 2, 3))
+            })
+        }
     }
 }

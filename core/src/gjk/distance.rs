@@ -211,18 +211,21 @@ where
     };
 
     for _ in 0..MAX_DISTANCE_ITERATIONS {
-        let direction = lengthened(axis);
-        let size = direction.norm_1();
-        if !(size >= one) || !size.is_finite() {
-            best.reason = Reason::Rounding;
-            break;
+        let (mut direction, mut size) = (axis, axis.norm_1());
+        if !(size > S::<A>::SCALE_MIN) {
+            direction = lengthened(axis);
+            size = direction.norm_1();
+            if !(size >= one) || !size.is_finite() {
+                best.reason = Reason::Rounding;
+                break;
+            }
         }
         let mut from_a = a.support(direction, start_a);
         let mut from_b = b.support(-direction, start_b);
-        let length = direction.dot(direction).sqrt();
+        let inv_length = one / direction.dot(direction).sqrt();
         let bound = |w: A::Vector| {
             let along = w.dot(direction) - margin * size;
-            (along - along.abs() * relative) / length
+            (along - along.abs() * relative) * inv_length
         };
         let mut new = from_b.point - from_a.point;
         if bound(new) > best.lower {
@@ -265,9 +268,9 @@ where
             reach = reach.max(p.0.norm_max());
         }
         let error = real(COMBINATION_ROUNDINGS) * S::<A>::EPSILON * reach + real(1.75) * slack + S::<A>::UNDERFLOW;
-        let upper = combined[0].length() * (one + relative) + error;
+        let upper = norm(combined[0]) * (one + relative) + error;
         let progress = v.dot(v) < best.v.dot(best.v) || !(best.upper < S::<A>::INFINITY);
-        if upper < best.upper || (progress && v.length() < best.upper) {
+        if upper < best.upper || (progress && norm(v) < best.upper) {
             best.upper = best.upper.min(upper);
             best.v = v;
             best.a = combined[1];
@@ -285,6 +288,13 @@ where
         }
     }
     best
+}
+
+/// Length of a vector not too large to square.
+#[inline(always)]
+fn norm<V: Vector>(v: V) -> V::Scalar {
+    let sq = v.dot(v);
+    if sq > V::Scalar::UNDERFLOW { sq.sqrt() } else { v.length() }
 }
 
 fn w_of<V: Vector>(points: &[(V, V, V); 4], i: usize) -> V {
