@@ -297,7 +297,7 @@ where
         }
         let mut outward = None;
         if count == 4 {
-            match side(w, extent, slack) {
+            match side(w, slack) {
                 Side::Inside => {
                     let pair = slot.map(|s| pairs[s & 3]);
                     let simplex = Simplex { a: pair.map(|p| p.0), b: pair.map(|p| p.1) };

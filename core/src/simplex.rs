@@ -27,18 +27,15 @@ pub(crate) enum Side {
 /// two products, one difference and two sums come to 4; doubled to cover second-order terms and the rounding of the bound.
 const DETERMINANT_ROUNDINGS: f64 = 8.0;
 
-/// How a determinant of four-component size `m` answers to a displacement `s` of its points: three factors, six products, and room to spare.
-const DETERMINANT_SLACK: f64 = 32.0;
-
 #[inline(always)]
 fn cross_abs<V: Vector>(a: V, b: V) -> V {
     let ([ax, ay, az], [bx, by, bz]) = (a.abs().to_array(), b.abs().to_array());
     V::new(ay * bz + az * by, az * bx + ax * bz, ax * by + ay * bx)
 }
 
-/// The origin against a tetrahedron of differences, each component at most `reach` and off by at most `slack` (besides one rounding).
+/// The origin against a tetrahedron of differences, each component off by at most `slack` (besides one rounding).
 #[inline(always)]
-pub(crate) fn side<V: Vector>(w: [V; 4], reach: V::Scalar, slack: V::Scalar) -> Side {
+pub(crate) fn side<V: Vector>(w: [V; 4], slack: V::Scalar) -> Side {
     let [a, b, c, d] = w;
     let real = V::Scalar::from_f64;
     let zero = V::Scalar::ZERO;
@@ -48,19 +45,16 @@ pub(crate) fn side<V: Vector>(w: [V; 4], reach: V::Scalar, slack: V::Scalar) -> 
     let volume = weight[0] + weight[1] + weight[2] + weight[3];
     let weight = if volume < zero { weight.map(|x| -x) } else { weight };
     let least = weight[1].min(weight[2]).min(weight[3]);
-    let slack_error = real(DETERMINANT_SLACK) * slack * reach * reach + V::Scalar::UNDERFLOW;
     if least > zero && weight[0] > zero {
         let least = least.min(weight[0]);
-        // Six products of three components.
-        let coarse = real(6.0 * DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON * (reach * reach * reach);
-        if least > coarse + slack_error {
+        let rounding = real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON;
+        // At most six products of three components; a displacement of the points enters each of the three factors.
+        let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs()).norm_max() + slack;
+        let coarse = real(6.0) * (rounding * size + real(4.0) * slack) * size * size;
+        if least > coarse + V::Scalar::UNDERFLOW {
             return Side::Inside;
         }
-        let (bc, cd, db) = (cross_abs(b, c), cross_abs(c, d), cross_abs(d, b));
-        let a_abs = a.abs();
-        let size = [b.abs().dot(cd), a_abs.dot(cd), a_abs.dot(db), a_abs.dot(bc)];
-        let sure = |i: usize| weight[i] > real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON * size[i] + slack_error;
-        if sure(0) && sure(1) && sure(2) && sure(3) {
+        if surely_inside(w, weight, slack) {
             return Side::Inside;
         }
     }
@@ -71,6 +65,27 @@ pub(crate) fn side<V: Vector>(w: [V; 4], reach: V::Scalar, slack: V::Scalar) -> 
     } else {
         Side::Beyond(3)
     }
+}
+
+/// Whether the four weights are positive for sure: by their actual products and areas, not by a bound on their sizes.
+#[cold]
+#[inline(never)]
+fn surely_inside<V: Vector>(w: [V; 4], weight: [V::Scalar; 4], slack: V::Scalar) -> bool {
+    let [a, b, c, d] = w;
+    let real = V::Scalar::from_f64;
+    let rounding = real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON;
+    let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs()).norm_max() + slack;
+    let [bc, cd, db] = [cross_abs(b, c), cross_abs(c, d), cross_abs(d, b)];
+    let products = [b.abs().dot(cd), a.abs().dot(cd), a.abs().dot(db), a.abs().dot(bc)];
+    let area = |p: V, q: V| p.cross(q).norm_1();
+    let [ab, ac, ad, bc, cd, db] = [area(a, b), area(a, c), area(a, d), area(b, c), area(c, d), area(d, b)];
+    // To first order a displacement moves a determinant by the area across it; then come squares and the cube.
+    let areas = [bc + cd + db, cd + ac + ad, db + ab + ad, bc + ab + ac];
+    let higher = real(24.0) * slack * slack * size;
+    (0..4).all(|i| {
+        let moved = slack * (areas[i] + real(8.0) * rounding * size * size) + higher;
+        weight[i] > rounding * products[i] + real(1.0 + 1e-6) * moved + V::Scalar::UNDERFLOW
+    })
 }
 
 impl<V: Vector> Simplex<V> {
@@ -95,7 +110,7 @@ impl<V: Vector> Simplex<V> {
         let factor = V::Scalar::ONE / unit;
         let lifted = |x: V::Scalar| x * lift * factor;
         let two = V::Scalar::TWO;
-        side(w.map(|w| w * lift * factor), lifted(reach), lifted(two * slack)) == Side::Inside
+        side(w.map(|w| w * lift * factor), lifted(two * slack)) == Side::Inside
     }
 }
 

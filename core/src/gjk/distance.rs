@@ -252,7 +252,7 @@ where
         points = [(new, from_a.point, from_b.point), points[0], points[1], points[2]];
         count = (count + 1).min(4);
         let w = points.map(|p| p.0);
-        if count == 4 && side(w, extent, slack) == Side::Inside {
+        if count == 4 && side(w, slack) == Side::Inside {
             best.inside = Some(Simplex { a: points.map(|p| p.1), b: points.map(|p| p.2) });
             return best;
         }
