@@ -469,17 +469,38 @@ impl<'a> Adjacency<'a> {
 /// Up to this many vertices a scan is as fast as a climb, and needs no second look.
 const CLIMBED: usize = 64;
 
-/// Directions by the signs of their components and by which of these is largest.
-const SECTORS: usize = 24;
+/// Directions by where they leave a cube, each face of which is cut four by four.
+const SECTORS: usize = 6 * 16;
 
 #[inline(always)]
 fn sector<V: Vector>(direction: V) -> usize {
     let zero = V::Scalar::ZERO;
     let [x, y, z] = direction.to_array();
-    let octant = usize::from(x > zero) | usize::from(y > zero) << 1 | usize::from(z > zero) << 2;
-    let [x, y, z] = [x.abs(), y.abs(), z.abs()];
-    let largest = if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) };
-    largest << 3 | octant
+    let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
+    let (face, out, u, v) = if ax >= ay && ax >= az {
+        (0, x, y, z)
+    } else if ay >= az {
+        (1, y, z, x)
+    } else {
+        (2, z, x, y)
+    };
+    let half = out.abs() * V::Scalar::HALF;
+    let quarter = |t: V::Scalar| usize::from(t > -half) + usize::from(t > zero) + usize::from(t > half);
+    (2 * face + usize::from(out > zero)) << 4 | quarter(u) << 2 | quarter(v)
+}
+
+/// The middle of a sector.
+fn middle<V: Vector>(sector: usize) -> V {
+    let one = V::Scalar::ONE;
+    let out = if sector >> 4 & 1 == 1 { one } else { -one };
+    let quarter =
+        |bits: usize| V::Scalar::from_usize(2 * (bits & 3)) * V::Scalar::from_f64(0.25) - V::Scalar::from_f64(0.75);
+    let (u, v) = (quarter(sector >> 2), quarter(sector));
+    match sector >> 5 {
+        0 => V::new(out, u, v),
+        1 => V::new(v, out, u),
+        _ => V::new(u, v, out),
+    }
 }
 
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.
@@ -511,12 +532,8 @@ impl<'a, V: Vector> Hull<'a, V> {
     #[must_use]
     pub fn with_adjacency(self, adjacency: Adjacency<'a>) -> Self {
         let mut starts = [0; SECTORS];
-        for (i, start) in starts.iter_mut().enumerate() {
-            let side = |k: usize| {
-                let size = if i >> 3 == k { V::Scalar::TWO } else { V::Scalar::ONE };
-                if i >> k & 1 == 0 { -size } else { size }
-            };
-            *start = self.scan(V::new(side(0), side(1), side(2))).index;
+        for (sector, start) in starts.iter_mut().enumerate() {
+            *start = self.scan(middle(sector)).index;
         }
         Hull { adjacency: Some(adjacency), starts, ..self }
     }
