@@ -52,6 +52,9 @@ const COMBINATION_ROUNDINGS: f64 = 16.0;
 /// Gap at which a search stops, in units of ε times the distance: a few roundings, below which no step makes progress.
 const GAP_ROUNDINGS: f64 = 16.0;
 
+/// How many steps may go by without a gain. Fewer leave distances to needles off by their thickness; more cost time near touch.
+const PATIENCE: u32 = 8;
+
 /// The distance of two bodies, with the points where it is attained.
 ///
 /// `hint` is a direction from `a` towards `b`, of any length; see [`super::intersect`].
@@ -196,6 +199,7 @@ where
     let (mut start_a, mut start_b) = (0, 0);
     let mut points = [(origin, origin, origin); 4];
     let mut count = 0;
+    let mut stalled = 0;
     let mut best = Walk {
         inside: None,
         lower: zero,
@@ -276,9 +280,13 @@ where
             best.a = combined[1];
             best.b = combined[2];
         }
+        // Along a needle the first steps gain less than one rounding, and yet lead to the nearest point.
         if !progress {
-            best.reason = Reason::Rounding;
-            break;
+            stalled += 1;
+            if stalled > PATIENCE {
+                best.reason = Reason::Rounding;
+                break;
+            }
         }
         axis = v;
         if v == origin && count == 3 {
