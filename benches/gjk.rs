@@ -182,7 +182,8 @@ fn main() {
                 .expect("a hull");
         for (name, nearness) in [("near", Nearness::Near), ("separated", Nearness::Separated)] {
             let mut random = Random::new(5);
-            let hull = Hull::new(&sphere.vertices).with_adjacency(sphere.adjacency());
+            let edges = sphere.adjacency();
+            let hull = Hull::new(&sphere.vertices).with_adjacency(&edges);
             let poses = boxes(13, PAIRS, nearness).into_iter().map(|(_, mut b)| {
                 b.center = DVec3::from_array(random.on_sphere()) * 5.0;
                 if nearness == Nearness::Near {
@@ -210,7 +211,8 @@ fn octree() {
         return;
     }
     let sphere = Geodesic::new(6);
-    let hull = Hull::new(&sphere.vertices).with_adjacency(sphere.adjacency());
+    let edges = sphere.adjacency();
+    let hull = Hull::new(&sphere.vertices).with_adjacency(&edges);
     let polyhedron = ConvexPolyhedron::from_convex_hull(&sphere.vertices.iter().copied().map(peer).collect::<Vec<_>>())
         .expect("a hull");
     let cells: Vec<Aabb<DVec3>> = (0..1u32 << 15)

@@ -446,16 +446,26 @@ impl<V: Vector> Support for Cone<V> {
     }
 }
 
-/// Which vertices of a hull share an edge: those of vertex `i` are `neighbours[offsets[i]..offsets[i + 1]]`.
+/// Which vertices of a hull share an edge, and where to start climbing along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adjacency<'a> {
-    /// One more than there are vertices, not decreasing.
-    pub offsets: &'a [u32],
-    /// Indices of vertices.
-    pub neighbours: &'a [u32],
+    offsets: &'a [u32],
+    neighbours: &'a [u32],
+    /// The farthest vertex along the middle of each sector.
+    starts: [u32; SECTORS],
 }
 
 impl<'a> Adjacency<'a> {
+    /// The neighbours of vertex `i` are `neighbours[offsets[i]..offsets[i + 1]]`; so `offsets` is one longer than `vertices`. Looks at each
+    /// vertex 96 times. Wrong or missing edges cost time, not truth.
+    pub fn new<V: Vector>(vertices: &[V], offsets: &'a [u32], neighbours: &'a [u32]) -> Self {
+        let mut starts = [0; SECTORS];
+        for (sector, start) in starts.iter_mut().enumerate() {
+            *start = scan(vertices, middle(sector));
+        }
+        Adjacency { offsets, neighbours, starts }
+    }
+
     #[inline(always)]
     fn of(&self, vertex: u32) -> &'a [u32] {
         let i = vertex as usize;
@@ -503,15 +513,41 @@ fn middle<V: Vector>(sector: usize) -> V {
     }
 }
 
+/// The farthest vertex. Selections instead of branches, and one comparison in a chain for every four vertices.
+#[inline(always)]
+fn scan<V: Vector>(vertices: &[V], direction: V) -> u32 {
+    let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
+    let mut fours = vertices.chunks_exact(4);
+    let mut first = 0;
+    for four in &mut fours {
+        if let [p, q, r, s] = *four {
+            let along = [p.dot(direction), q.dot(direction), r.dot(direction), s.dot(direction)];
+            let (pq, rs) = (along[1] > along[0], along[3] > along[2]);
+            let low = if pq { along[1] } else { along[0] };
+            let high = if rs { along[3] } else { along[2] };
+            let top = if high > low { high } else { low };
+            let at = first + if high > low { 2 + u32::from(rs) } else { u32::from(pq) };
+            index = if top > best { at } else { index };
+            best = if top > best { top } else { best };
+        }
+        first += 4;
+    }
+    for v in fours.remainder() {
+        let along = v.dot(direction);
+        index = if along > best { first } else { index };
+        best = if along > best { along } else { best };
+        first += 1;
+    }
+    index
+}
+
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hull<'a, V: Vector> {
     vertices: &'a [V],
-    adjacency: Option<Adjacency<'a>>,
+    adjacency: Option<&'a Adjacency<'a>>,
     center: V,
     extent: V::Scalar,
-    /// Where to start climbing: the farthest vertex along the middle of each sector.
-    starts: [u32; SECTORS],
 }
 
 impl<'a, V: Vector> Hull<'a, V> {
@@ -525,17 +561,13 @@ impl<'a, V: Vector> Hull<'a, V> {
         }
         let center = bounds.min * V::Scalar::HALF + bounds.max * V::Scalar::HALF;
         let extent = bounds.min.abs().max(bounds.max.abs()).norm_max() + poison;
-        Hull { vertices, adjacency: None, center, extent, starts: [0; SECTORS] }
+        Hull { vertices, adjacency: None, center, extent }
     }
 
-    /// Climbs along edges instead of scanning all vertices, which pays from some fifty on. Wrong or missing edges cost time, not truth.
+    /// Climbs along edges instead of scanning all vertices, if there are more than 64.
     #[must_use]
-    pub fn with_adjacency(self, adjacency: Adjacency<'a>) -> Self {
-        let mut starts = [0; SECTORS];
-        for (sector, start) in starts.iter_mut().enumerate() {
-            *start = self.scan(middle(sector)).index;
-        }
-        Hull { adjacency: Some(adjacency), starts, ..self }
+    pub fn with_adjacency(self, adjacency: &'a Adjacency<'a>) -> Self {
+        Hull { adjacency: Some(adjacency), ..self }
     }
 
     /// The points.
@@ -543,31 +575,9 @@ impl<'a, V: Vector> Hull<'a, V> {
         self.vertices
     }
 
-    /// The farthest vertex. Selections instead of branches, and one comparison in a chain for every four vertices.
     #[inline(always)]
     fn scan(&self, direction: V) -> SupportPoint<V> {
-        let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
-        let mut fours = self.vertices.chunks_exact(4);
-        let mut first = 0;
-        for four in &mut fours {
-            if let [p, q, r, s] = *four {
-                let along = [p.dot(direction), q.dot(direction), r.dot(direction), s.dot(direction)];
-                let (pq, rs) = (along[1] > along[0], along[3] > along[2]);
-                let low = if pq { along[1] } else { along[0] };
-                let high = if rs { along[3] } else { along[2] };
-                let top = if high > low { high } else { low };
-                let at = first + if high > low { 2 + u32::from(rs) } else { u32::from(pq) };
-                index = if top > best { at } else { index };
-                best = if top > best { top } else { best };
-            }
-            first += 4;
-        }
-        for v in fours.remainder() {
-            let along = v.dot(direction);
-            index = if along > best { first } else { index };
-            best = if along > best { along } else { best };
-            first += 1;
-        }
+        let index = scan(self.vertices, direction);
         SupportPoint { point: self.vertices.get(index as usize).copied().unwrap_or(self.center), index }
     }
 
@@ -589,9 +599,9 @@ impl<'a, V: Vector> Hull<'a, V> {
     }
 
     #[inline(always)]
-    fn climb(&self, adjacency: Adjacency<'a>, direction: V, start: u32) -> SupportPoint<V> {
+    fn climb(&self, adjacency: &Adjacency<'a>, direction: V, start: u32) -> SupportPoint<V> {
         let along = |index: u32| self.vertices.get(index as usize).map_or(-V::Scalar::INFINITY, |v| v.dot(direction));
-        let mut index = self.starts.get(sector(direction)).copied().unwrap_or(0);
+        let mut index = adjacency.starts.get(sector(direction)).copied().unwrap_or(0);
         let mut best = along(index);
         let earlier = along(start);
         index = if earlier > best { start } else { index };

@@ -223,8 +223,10 @@ fn extreme<S: Support<Vector = DVec3>>(body: &S, d: DVec3, member: DVec3) {
 fn climbing_finds_what_scanning_finds() {
     let sphere = voidage_tests::pairs::Geodesic::new(6);
     let scan = Hull::new(&sphere.vertices);
-    let climb = scan.with_adjacency(sphere.adjacency());
-    let broken = scan.with_adjacency(Adjacency { offsets: &[0, 1, 2], neighbours: &[700, 1] });
+    let edges = sphere.adjacency();
+    let climb = scan.with_adjacency(&edges);
+    let edges = Adjacency::new(&sphere.vertices, &[0, 1, 2], &[700, 1]);
+    let broken = scan.with_adjacency(&edges);
     let mut random = Random::new(5);
     for _ in 0..2000 {
         let d = DVec3::from_array(random.on_sphere());

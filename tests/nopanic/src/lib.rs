@@ -53,7 +53,8 @@ fn inside<S: Contains>(body: &S, cell: &Aabb<S::Vector>) -> u32 {
 fn all<V: Vector>(p: &[V], q: &[V], offsets: &[u32], neighbours: &[u32], r: V::Scalar) -> u32 {
     let (Some(&a), Some(&b), Some(&c)) = (p.first(), p.last(), q.first()) else { return 0 };
     let (cell, triangle) = (Aabb { min: a, max: b }, Triangle { a, b, c });
-    let hull = Hull::new(p).with_adjacency(Adjacency { offsets, neighbours });
+    let edges = Adjacency::new(p, offsets, neighbours);
+    let hull = Hull::new(p).with_adjacency(&edges);
     let other = Hull::new(q);
     let boxed = OrientedBox { center: a, half_axes: [a, b, c] };
     let (sphere, capsule) = (Sphere { center: a, radius: r }, Capsule { from: a, to: b, radius: r });
