@@ -1,5 +1,8 @@
 //! The boolean and the distance against parry3d-f64 and parry3d, in one run: `cargo bench -p voidage-benches --bench gjk [-- NAME]`.
 //!
+//! Instructions per query: `valgrind --tool=callgrind` on the bench's binary with `--rounds=1 NAME`, then the inclusive cost of `ours_boolean`
+//! and the like divided by the 4096 pairs (each is run twice: once timed, once for the counts).
+//!
 //! `parry` is its GJK for these two shapes, called without dynamic dispatch; `special` its own test for the pair, where it has one.
 
 use std::cell::Cell;
@@ -12,13 +15,23 @@ use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, SupportMap};
 use voidage_benches::compare;
 use voidage_core::aabb::Aabb;
 use voidage_core::gjk::{Distance, Intersection, distance, intersect};
-use voidage_core::shape::{Hull, Triangle};
+use voidage_core::shape::{Hull, OrientedBox, Triangle};
 use voidage_core::support::{Support, SupportPoint};
 use voidage_tests::pairs::{Geodesic, Nearness, Pose, approach, boxes, triangles};
 use voidage_tests::random::Random;
 
 const PAIRS: usize = 4096;
-const ROUNDS: usize = 21;
+
+/// How often each way is timed: `--rounds=N`, or 21 times.
+fn rounds() -> usize {
+    std::env::args().find_map(|arg| arg.strip_prefix("--rounds=")?.parse().ok()).unwrap_or(21)
+}
+
+/// Whether a row is asked for.
+fn wanted(name: &str) -> bool {
+    let mut only = std::env::args().skip(1).filter(|arg| !arg.starts_with('-')).peekable();
+    only.peek().is_none() || only.any(|only| name.contains(&only))
+}
 
 /// A body that counts what is asked of it.
 struct Counted<'a, S>(&'a S, &'a Cell<usize>);
@@ -56,6 +69,17 @@ fn meets<A: Support<Vector = DVec3>, B: Support<Vector = DVec3>>(a: &A, b: &B) -
     usize::from(matches!(intersect(a, b, None), Intersection::Overlapping { .. }))
 }
 
+#[inline(never)]
+fn ours_boolean<A: Support<Vector = DVec3>, B: Support<Vector = DVec3>>(pairs: &[(A, B)]) -> usize {
+    pairs.iter().map(|(a, b)| meets(black_box(a), black_box(b))).sum()
+}
+
+#[inline(never)]
+fn parry_boolean<P: SupportMap, Q: SupportMap>(pairs: &[(ParryPose, P, Q)]) -> usize {
+    let meet = |(p, a, b): &(ParryPose, P, Q)| parry::intersection_test_support_map_support_map(black_box(p), a, b);
+    pairs.iter().map(|pair| usize::from(meet(pair))).sum()
+}
+
 /// One line of the table: our pairs, and the same ones for parry, each relative to the first body.
 fn row<A, B, P, Q>(
     name: &str,
@@ -68,17 +92,12 @@ fn row<A, B, P, Q>(
     P: SupportMap,
     Q: SupportMap,
 {
-    if std::env::args().skip(1).any(|only| !only.starts_with('-') && !name.contains(&only)) {
+    if !wanted(name) {
         return;
     }
     let sum = |each: &dyn Fn(usize) -> usize| (0..pairs.len()).map(each).sum::<usize>();
-    let mut ours = || pairs.iter().map(|(a, b)| meets(black_box(a), black_box(b))).sum();
-    let mut gjk = || {
-        theirs
-            .iter()
-            .map(|(p, a, b)| usize::from(parry::intersection_test_support_map_support_map(black_box(p), a, b)))
-            .sum()
-    };
+    let mut ours = || ours_boolean(pairs);
+    let mut gjk = || parry_boolean(theirs);
     let mut own = || {
         let Some(test) = special else { return 0 };
         theirs.iter().map(|(p, a, b)| usize::from(test(black_box(p), a, b))).sum()
@@ -92,7 +111,7 @@ fn row<A, B, P, Q>(
         theirs.iter().map(|p| usize::from(far(p))).sum()
     };
     let times =
-        compare(pairs.len(), ROUNDS, &mut [&mut ours, &mut gjk, &mut own, &mut ours_distance, &mut gjk_distance]);
+        compare(pairs.len(), rounds(), &mut [&mut ours, &mut gjk, &mut own, &mut ours_distance, &mut gjk_distance]);
     let asked = Cell::new(0);
     let undecided = sum(&|i| {
         let (a, b) = &pairs[i];
@@ -163,7 +182,8 @@ fn main() {
                 .expect("a hull");
         for (name, nearness) in [("near", Nearness::Near), ("separated", Nearness::Separated)] {
             let mut random = Random::new(5);
-            let hull = Hull::new(&sphere.vertices).with_adjacency(sphere.adjacency());
+            let edges = sphere.adjacency();
+            let hull = Hull::new(&sphere.vertices).with_adjacency(&edges);
             let poses = boxes(13, PAIRS, nearness).into_iter().map(|(_, mut b)| {
                 b.center = DVec3::from_array(random.on_sphere()) * 5.0;
                 if nearness == Nearness::Near {
@@ -182,12 +202,17 @@ fn main() {
     }
 
     octree();
+    single_precision();
 }
 
 /// Cells of 32³ in Morton order against a ball of 362 vertices that fills most of them, with and without the last axis as a hint.
 fn octree() {
+    if !wanted("octree Morton") {
+        return;
+    }
     let sphere = Geodesic::new(6);
-    let hull = Hull::new(&sphere.vertices).with_adjacency(sphere.adjacency());
+    let edges = sphere.adjacency();
+    let hull = Hull::new(&sphere.vertices).with_adjacency(&edges);
     let polyhedron = ConvexPolyhedron::from_convex_hull(&sphere.vertices.iter().copied().map(peer).collect::<Vec<_>>())
         .expect("a hull");
     let cells: Vec<Aabb<DVec3>> = (0..1u32 << 15)
@@ -229,4 +254,52 @@ fn octree() {
         times[2],
         times[2] / times[1].min(times[0])
     );
+}
+
+/// The same boxes in single precision, against parry3d.
+fn single_precision() {
+    use glam::Vec3;
+    use parry3d::math::{Pose, Rotation, Vector};
+    let peer = |v: DVec3| Vector::from_array(v.as_vec3().to_array());
+    for (name, nearness) in [
+        ("box-box separated f32", Nearness::Separated),
+        ("box-box near f32", Nearness::Near),
+        ("box-box overlapping f32", Nearness::Overlapping),
+    ] {
+        if !wanted(name) {
+            continue;
+        }
+        let poses = boxes(7, PAIRS, nearness);
+        let body = |p: &voidage_tests::pairs::Pose| {
+            let b = p.body();
+            OrientedBox { center: b.center.as_vec3(), half_axes: b.half_axes.map(|u| u.as_vec3()) }
+        };
+        let ours: Vec<(OrientedBox<Vec3>, OrientedBox<Vec3>)> = poses.iter().map(|(a, b)| (body(a), body(b))).collect();
+        let place = |p: &voidage_tests::pairs::Pose| {
+            let [x, y, z, w] = p.rotation.as_quat().to_array();
+            Pose::from_parts(peer(p.center), Rotation::from_xyzw(x, y, z, w))
+        };
+        let cuboid = |half: DVec3| parry3d::shape::Cuboid::new(peer(half));
+        let theirs: Vec<_> =
+            poses.iter().map(|(a, b)| (place(a).inv_mul(&place(b)), cuboid(a.half), cuboid(b.half))).collect();
+        let mut boolean = || {
+            let meet = |(a, b): &(_, _)| {
+                matches!(intersect(black_box(a), black_box(b), None), Intersection::Overlapping { .. })
+            };
+            ours.iter().map(|pair| usize::from(meet(pair))).sum()
+        };
+        let mut gjk = || {
+            use parry3d::query::details::intersection_test_support_map_support_map as test;
+            theirs.iter().map(|(p, a, b)| usize::from(test(black_box(p), a, b))).sum()
+        };
+        let times = compare(PAIRS, rounds(), &mut [&mut boolean, &mut gjk]);
+        println!(
+            "{name:22} {:7.1} {:7.1} {:5.2}x   meet {} {}",
+            times[0],
+            times[1],
+            times[1] / times[0],
+            boolean(),
+            gjk()
+        );
+    }
 }

@@ -33,7 +33,6 @@ pub enum Contact {
 
 /// How two bodies lie, with the proof.
 #[derive(Clone, Copy, Debug)]
-#[allow(clippy::large_enum_variant, reason = "lives on the stack, once a query; there is nowhere to box it")]
 pub enum Relation {
     /// No point is shared: the axis separates strictly.
     Disjoint(Axis),

@@ -272,7 +272,9 @@ where
         }
         (start_a, start_b) = (from_a.index, from_b.index);
 
-        if (0..4).any(|i| i < count && w[i & 3] == new) {
+        // A point again can only come where there is no progress to speak of.
+        let stalled = count > 0 && new.dot(axis) + margin * size >= w[0].dot(axis);
+        if stalled && (0..4).any(|i| i < count && w[i & 3] == new) {
             if surrounding {
                 continue;
             }
@@ -297,7 +299,7 @@ where
         }
         let mut outward = None;
         if count == 4 {
-            match side(w, extent, slack) {
+            match side(w, slack) {
                 Side::Inside => {
                     let pair = slot.map(|s| pairs[s & 3]);
                     let simplex = Simplex { a: pair.map(|p| p.0), b: pair.map(|p| p.1) };

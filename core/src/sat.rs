@@ -112,14 +112,15 @@ pub fn box_triangle<V: Vector>(cell: &Aabb<V>, triangle: &Triangle<V>) -> BoxTri
     let reach = [fy * fz, fz * fx, fx * fy].map(|r| r + r + r + r);
     for edge in edges {
         let [x, y, z] = edge.to_array();
-        for (k, axis) in [V::new(zero, -z, y), V::new(z, zero, -x), V::new(-y, x, zero)].into_iter().enumerate() {
+        let axes = [V::new(zero, -z, y), V::new(z, zero, -x), V::new(-y, x, zero)];
+        for (axis, reach) in axes.into_iter().zip(reach) {
             if axis == V::ZERO {
                 continue;
             }
             let along = p.map(|p| axis.dot(p));
             let low = along[0].min(along[1]).min(along[2]);
             let high = along[0].max(along[1]).max(along[2]);
-            match order(axis, size, low, high, reach[k]) {
+            match order(axis, size, low, high, reach) {
                 Order::Apart => return BoxTriangle::Apart { axis },
                 Order::Beyond => return BoxTriangle::Apart { axis: -axis },
                 Order::Overlap => {}

@@ -446,16 +446,26 @@ impl<V: Vector> Support for Cone<V> {
     }
 }
 
-/// Which vertices of a hull share an edge: those of vertex `i` are `neighbours[offsets[i]..offsets[i + 1]]`.
+/// Which vertices of a hull share an edge, and where to start climbing along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adjacency<'a> {
-    /// One more than there are vertices, not decreasing.
-    pub offsets: &'a [u32],
-    /// Indices of vertices.
-    pub neighbours: &'a [u32],
+    offsets: &'a [u32],
+    neighbours: &'a [u32],
+    /// The farthest vertex along the middle of each sector.
+    starts: [u32; SECTORS],
 }
 
 impl<'a> Adjacency<'a> {
+    /// The neighbours of vertex `i` are `neighbours[offsets[i]..offsets[i + 1]]`; so `offsets` is one longer than `vertices`. Looks at each
+    /// vertex 96 times. Wrong or missing edges cost time, not truth.
+    pub fn new<V: Vector>(vertices: &[V], offsets: &'a [u32], neighbours: &'a [u32]) -> Self {
+        let mut starts = [0; SECTORS];
+        for (sector, start) in starts.iter_mut().enumerate() {
+            *start = scan(vertices, middle(sector));
+        }
+        Adjacency { offsets, neighbours, starts }
+    }
+
     #[inline(always)]
     fn of(&self, vertex: u32) -> &'a [u32] {
         let i = vertex as usize;
@@ -466,28 +476,78 @@ impl<'a> Adjacency<'a> {
     }
 }
 
-/// Directions by the signs of their components and by which of these is largest.
-const SECTORS: usize = 24;
+/// Up to this many vertices a scan is as fast as a climb, and needs no second look.
+const CLIMBED: usize = 64;
+
+/// Directions by where they leave a cube, each face of which is cut four by four.
+const SECTORS: usize = 6 * 16;
 
 #[inline(always)]
 fn sector<V: Vector>(direction: V) -> usize {
     let zero = V::Scalar::ZERO;
     let [x, y, z] = direction.to_array();
-    let octant = usize::from(x > zero) | usize::from(y > zero) << 1 | usize::from(z > zero) << 2;
-    let [x, y, z] = [x.abs(), y.abs(), z.abs()];
-    let largest = if x >= y && x >= z { 0 } else { 1 + usize::from(z > y) };
-    largest << 3 | octant
+    let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
+    let (face, out, u, v) = if ax >= ay && ax >= az {
+        (0, x, y, z)
+    } else if ay >= az {
+        (1, y, z, x)
+    } else {
+        (2, z, x, y)
+    };
+    let half = out.abs() * V::Scalar::HALF;
+    let quarter = |t: V::Scalar| usize::from(t > -half) + usize::from(t > zero) + usize::from(t > half);
+    (2 * face + usize::from(out > zero)) << 4 | quarter(u) << 2 | quarter(v)
+}
+
+/// The middle of a sector.
+fn middle<V: Vector>(sector: usize) -> V {
+    let one = V::Scalar::ONE;
+    let out = if sector >> 4 & 1 == 1 { one } else { -one };
+    let quarter =
+        |bits: usize| V::Scalar::from_usize(2 * (bits & 3)) * V::Scalar::from_f64(0.25) - V::Scalar::from_f64(0.75);
+    let (u, v) = (quarter(sector >> 2), quarter(sector));
+    match sector >> 5 {
+        0 => V::new(out, u, v),
+        1 => V::new(v, out, u),
+        _ => V::new(u, v, out),
+    }
+}
+
+/// The farthest vertex. Selections instead of branches, and one comparison in a chain for every four vertices.
+#[inline(always)]
+fn scan<V: Vector>(vertices: &[V], direction: V) -> u32 {
+    let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
+    let mut fours = vertices.chunks_exact(4);
+    let mut first = 0;
+    for four in &mut fours {
+        if let [p, q, r, s] = *four {
+            let along = [p.dot(direction), q.dot(direction), r.dot(direction), s.dot(direction)];
+            let (pq, rs) = (along[1] > along[0], along[3] > along[2]);
+            let low = if pq { along[1] } else { along[0] };
+            let high = if rs { along[3] } else { along[2] };
+            let top = if high > low { high } else { low };
+            let at = first + if high > low { 2 + u32::from(rs) } else { u32::from(pq) };
+            index = if top > best { at } else { index };
+            best = if top > best { top } else { best };
+        }
+        first += 4;
+    }
+    for v in fours.remainder() {
+        let along = v.dot(direction);
+        index = if along > best { first } else { index };
+        best = if along > best { along } else { best };
+        first += 1;
+    }
+    index
 }
 
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hull<'a, V: Vector> {
     vertices: &'a [V],
-    adjacency: Option<Adjacency<'a>>,
+    adjacency: Option<&'a Adjacency<'a>>,
     center: V,
     extent: V::Scalar,
-    /// Where to start climbing: the farthest vertex along the middle of each sector.
-    starts: [u32; SECTORS],
 }
 
 impl<'a, V: Vector> Hull<'a, V> {
@@ -501,21 +561,13 @@ impl<'a, V: Vector> Hull<'a, V> {
         }
         let center = bounds.min * V::Scalar::HALF + bounds.max * V::Scalar::HALF;
         let extent = bounds.min.abs().max(bounds.max.abs()).norm_max() + poison;
-        Hull { vertices, adjacency: None, center, extent, starts: [0; SECTORS] }
+        Hull { vertices, adjacency: None, center, extent }
     }
 
-    /// Climbs along edges instead of scanning all vertices, which pays from some fifty on. Wrong or missing edges cost time, not truth.
+    /// Climbs along edges instead of scanning all vertices, if there are more than 64.
     #[must_use]
-    pub fn with_adjacency(self, adjacency: Adjacency<'a>) -> Self {
-        let mut starts = [0; SECTORS];
-        for (i, start) in starts.iter_mut().enumerate() {
-            let side = |k: usize| {
-                let size = if i >> 3 == k { V::Scalar::TWO } else { V::Scalar::ONE };
-                if i >> k & 1 == 0 { -size } else { size }
-            };
-            *start = self.scan(V::new(side(0), side(1), side(2))).index;
-        }
-        Hull { adjacency: Some(adjacency), starts, ..self }
+    pub fn with_adjacency(self, adjacency: &'a Adjacency<'a>) -> Self {
+        Hull { adjacency: Some(adjacency), ..self }
     }
 
     /// The points.
@@ -523,31 +575,9 @@ impl<'a, V: Vector> Hull<'a, V> {
         self.vertices
     }
 
-    /// The farthest vertex. Selections instead of branches, and one comparison in a chain for every four vertices.
     #[inline(always)]
     fn scan(&self, direction: V) -> SupportPoint<V> {
-        let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
-        let mut fours = self.vertices.chunks_exact(4);
-        let mut first = 0;
-        for four in &mut fours {
-            if let [p, q, r, s] = *four {
-                let along = [p.dot(direction), q.dot(direction), r.dot(direction), s.dot(direction)];
-                let (pq, rs) = (along[1] > along[0], along[3] > along[2]);
-                let low = if pq { along[1] } else { along[0] };
-                let high = if rs { along[3] } else { along[2] };
-                let top = if high > low { high } else { low };
-                let at = first + if high > low { 2 + u32::from(rs) } else { u32::from(pq) };
-                index = if top > best { at } else { index };
-                best = if top > best { top } else { best };
-            }
-            first += 4;
-        }
-        for v in fours.remainder() {
-            let along = v.dot(direction);
-            index = if along > best { first } else { index };
-            best = if along > best { along } else { best };
-            first += 1;
-        }
+        let index = scan(self.vertices, direction);
         SupportPoint { point: self.vertices.get(index as usize).copied().unwrap_or(self.center), index }
     }
 
@@ -569,27 +599,26 @@ impl<'a, V: Vector> Hull<'a, V> {
     }
 
     #[inline(always)]
-    fn climb(&self, adjacency: Adjacency<'a>, direction: V, start: u32) -> SupportPoint<V> {
-        let mut index = self.starts.get(sector(direction)).copied().unwrap_or(0);
-        let Some(&(mut point)) = self.vertices.get(index as usize) else { return self.scan(direction) };
-        let mut best = point.dot(direction);
-        if let Some(&v) = self.vertices.get(start as usize) {
-            let along = v.dot(direction);
-            if along > best {
-                (best, index, point) = (along, start, v);
-            }
-        }
+    fn climb(&self, adjacency: &Adjacency<'a>, direction: V, start: u32) -> SupportPoint<V> {
+        let along = |index: u32| self.vertices.get(index as usize).map_or(-V::Scalar::INFINITY, |v| v.dot(direction));
+        let mut index = adjacency.starts.get(sector(direction)).copied().unwrap_or(0);
+        let mut best = along(index);
+        let earlier = along(start);
+        index = if earlier > best { start } else { index };
+        best = if earlier > best { earlier } else { best };
         loop {
+            // Selections, as in `scan`.
             let from = index;
             for &n in adjacency.of(from) {
-                let Some(&v) = self.vertices.get(n as usize) else { continue };
-                let along = v.dot(direction);
-                if along > best {
-                    (best, index, point) = (along, n, v);
-                }
+                let there = along(n);
+                index = if there > best { n } else { index };
+                best = if there > best { there } else { best };
             }
             if index == from {
-                return SupportPoint { point, index };
+                return SupportPoint {
+                    point: self.vertices.get(index as usize).copied().unwrap_or(self.center),
+                    index,
+                };
             }
         }
     }
@@ -600,13 +629,13 @@ impl<V: Vector> Support for Hull<'_, V> {
     #[inline(always)]
     fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
         match self.adjacency {
-            Some(adjacency) => self.climb(adjacency, direction, start),
-            None => self.scan(direction),
+            Some(adjacency) if self.vertices.len() > CLIMBED => self.climb(adjacency, direction, start),
+            _ => self.scan(direction),
         }
     }
     #[inline(always)]
     fn farther(&self, direction: V, found: u32) -> Option<SupportPoint<V>> {
-        let climbed = self.adjacency.is_some();
+        let climbed = self.adjacency.is_some() && self.vertices.len() > CLIMBED;
         let found = self.vertices.get(found as usize)?;
         (climbed && self.reach(direction) > found.dot(direction)).then(|| self.scan(direction))
     }

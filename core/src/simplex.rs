@@ -27,18 +27,15 @@ pub(crate) enum Side {
 /// two products, one difference and two sums come to 4; doubled to cover second-order terms and the rounding of the bound.
 const DETERMINANT_ROUNDINGS: f64 = 8.0;
 
-/// How a determinant of four-component size `m` answers to a displacement `s` of its points: three factors, six products, and room to spare.
-const DETERMINANT_SLACK: f64 = 32.0;
-
 #[inline(always)]
 fn cross_abs<V: Vector>(a: V, b: V) -> V {
     let ([ax, ay, az], [bx, by, bz]) = (a.abs().to_array(), b.abs().to_array());
     V::new(ay * bz + az * by, az * bx + ax * bz, ax * by + ay * bx)
 }
 
-/// The origin against a tetrahedron of differences, each component at most `reach` and off by at most `slack` (besides one rounding).
+/// The origin against a tetrahedron of differences, each component off by at most `slack` (besides one rounding).
 #[inline(always)]
-pub(crate) fn side<V: Vector>(w: [V; 4], reach: V::Scalar, slack: V::Scalar) -> Side {
+pub(crate) fn side<V: Vector>(w: [V; 4], slack: V::Scalar) -> Side {
     let [a, b, c, d] = w;
     let real = V::Scalar::from_f64;
     let zero = V::Scalar::ZERO;
@@ -48,19 +45,16 @@ pub(crate) fn side<V: Vector>(w: [V; 4], reach: V::Scalar, slack: V::Scalar) -> 
     let volume = weight[0] + weight[1] + weight[2] + weight[3];
     let weight = if volume < zero { weight.map(|x| -x) } else { weight };
     let least = weight[1].min(weight[2]).min(weight[3]);
-    let slack_error = real(DETERMINANT_SLACK) * slack * reach * reach + V::Scalar::UNDERFLOW;
     if least > zero && weight[0] > zero {
         let least = least.min(weight[0]);
-        // Six products of three components.
-        let coarse = real(6.0 * DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON * (reach * reach * reach);
-        if least > coarse + slack_error {
+        let rounding = real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON;
+        // At most six products of three components; a displacement of the points enters each of the three factors.
+        let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs()).norm_max() + slack;
+        let coarse = real(6.0) * (rounding * size + real(4.0) * slack) * size * size;
+        if least > coarse + V::Scalar::UNDERFLOW {
             return Side::Inside;
         }
-        let (bc, cd, db) = (cross_abs(b, c), cross_abs(c, d), cross_abs(d, b));
-        let a_abs = a.abs();
-        let size = [b.abs().dot(cd), a_abs.dot(cd), a_abs.dot(db), a_abs.dot(bc)];
-        let sure = |i: usize| weight[i] > real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON * size[i] + slack_error;
-        if sure(0) && sure(1) && sure(2) && sure(3) {
+        if surely_inside(w, weight, slack) {
             return Side::Inside;
         }
     }
@@ -71,6 +65,27 @@ pub(crate) fn side<V: Vector>(w: [V; 4], reach: V::Scalar, slack: V::Scalar) -> 
     } else {
         Side::Beyond(3)
     }
+}
+
+/// Whether the four weights are positive for sure: by their actual products and areas, not by a bound on their sizes.
+#[cold]
+#[inline(never)]
+fn surely_inside<V: Vector>(w: [V; 4], weight: [V::Scalar; 4], slack: V::Scalar) -> bool {
+    let [a, b, c, d] = w;
+    let real = V::Scalar::from_f64;
+    let rounding = real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON;
+    let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs()).norm_max() + slack;
+    let [bc, cd, db] = [cross_abs(b, c), cross_abs(c, d), cross_abs(d, b)];
+    let products = [b.abs().dot(cd), a.abs().dot(cd), a.abs().dot(db), a.abs().dot(bc)];
+    let area = |p: V, q: V| p.cross(q).norm_1();
+    let [ab, ac, ad, bc, cd, db] = [area(a, b), area(a, c), area(a, d), area(b, c), area(c, d), area(d, b)];
+    // To first order a displacement moves a determinant by the area across it; then come squares and the cube.
+    let areas = [bc + cd + db, cd + ac + ad, db + ab + ad, bc + ab + ac];
+    let higher = real(24.0) * slack * slack * size;
+    (0..4).all(|i| {
+        let moved = slack * (areas[i] + real(8.0) * rounding * size * size) + higher;
+        weight[i] > rounding * products[i] + real(1.0 + 1e-6) * moved + V::Scalar::UNDERFLOW
+    })
 }
 
 impl<V: Vector> Simplex<V> {
@@ -95,7 +110,7 @@ impl<V: Vector> Simplex<V> {
         let factor = V::Scalar::ONE / unit;
         let lifted = |x: V::Scalar| x * lift * factor;
         let two = V::Scalar::TWO;
-        side(w.map(|w| w * lift * factor), lifted(reach), lifted(two * slack)) == Side::Inside
+        side(w.map(|w| w * lift * factor), lifted(two * slack)) == Side::Inside
     }
 }
 
@@ -146,23 +161,34 @@ fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> Ne
     let normal = (b - a).cross(c - a);
     let sq = normal.dot(normal);
     let weights = [normal.dot(b.cross(c)), normal.dot(c.cross(a)), normal.dot(a.cross(b))];
-    if sq > V::Scalar::UNDERFLOW && weights[0] > zero && weights[1] > zero && weights[2] > zero {
-        let total = weights[0] + weights[1] + weights[2];
-        let at = |p: V| normal.dot(p);
-        // The vertex nearest to the plane's foot has the least rounding in its product; any will do.
-        let height = (at(a) * weights[0] + at(b) * weights[1] + at(c) * weights[2]) / total;
-        let l = 6 - i - j - k;
+    let beyond = weights.map(|weight| !(weight > zero));
+    if sq > V::Scalar::UNDERFLOW && !(beyond[0] || beyond[1] || beyond[2]) {
+        let inv = V::Scalar::ONE / (weights[0] + weights[1] + weights[2]);
+        let weights = weights.map(|weight| weight * inv);
+        let height = normal.dot(a) * weights[0] + normal.dot(b) * weights[1] + normal.dot(c) * weights[2];
+        let [weight_a, weight_b, weight_c] = weights;
         return Nearest {
             point: normal * (height / sq),
-            weights: [weights[0] / total, weights[1] / total, weights[2] / total, zero],
+            weights: [weight_a, weight_b, weight_c, zero],
             count: 3,
-            order: [i, j, k, l & 3],
+            order: [i, j, k, (6 - i - j - k) & 3],
         };
     }
-    nearest_of_segment(w, i, j).closer(nearest_of_segment(w, i, k)).closer(nearest_of_segment(w, j, k))
+    // The nearest edge is one that the origin lies beyond. With a degenerate triangle it may be any.
+    let sides = [(1, 2), (0, 2), (0, 1)].map(|(p, q)| ([i, j, k][p], [i, j, k][q]));
+    let any = !(sq > V::Scalar::UNDERFLOW) || beyond == [false; 3];
+    let mut nearest: Option<Nearest<V>> = None;
+    for ((p, q), beyond) in sides.into_iter().zip(beyond) {
+        if beyond || any {
+            let found = nearest_of_segment(w, p, q);
+            nearest = Some(nearest.map_or(found, |n| n.closer(found)));
+        }
+    }
+    nearest.unwrap_or_else(|| nearest_of_segment(w, i, j))
 }
 
-/// The point nearest to the origin among the first `count` vertices, the newest first. The origin is taken not to be inside of four.
+/// The point nearest to the origin among the first `count` vertices, the newest first. Of four, the origin is taken to be outside.
+#[inline(always)]
 pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> Nearest<V> {
     match count {
         0 | 1 => {
@@ -171,9 +197,26 @@ pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> Nearest<V> {
         }
         2 => nearest_of_segment(w, 0, 1),
         3 => nearest_of_triangle(w, 0, 1, 2),
-        _ => nearest_of_triangle(w, 0, 1, 2)
-            .closer(nearest_of_triangle(w, 0, 1, 3))
-            .closer(nearest_of_triangle(w, 0, 2, 3))
-            .closer(nearest_of_triangle(w, 1, 2, 3)),
+        _ => {
+            let zero = V::Scalar::ZERO;
+            let (ab, ac, ad) = (w[1] - w[0], w[2] - w[0], w[3] - w[0]);
+            // Faces at the newest vertex; each is seen if the origin and the vertex it lacks are on different sides.
+            let faces = [(ab.cross(ac), ad, [0, 1, 2]), (ab.cross(ad), ac, [0, 1, 3]), (ac.cross(ad), ab, [0, 2, 3])];
+            let mut nearest: Option<Nearest<V>> = None;
+            for (normal, other, [i, j, k]) in faces {
+                let (origin, other) = (-normal.dot(w[0]), normal.dot(other));
+                if origin * other <= zero {
+                    let found = nearest_of_triangle(w, i, j, k);
+                    nearest = Some(nearest.map_or(found, |n| n.closer(found)));
+                }
+            }
+            // None is seen: the origin is too close to a face to tell.
+            nearest.unwrap_or_else(|| {
+                nearest_of_triangle(w, 0, 1, 2)
+                    .closer(nearest_of_triangle(w, 0, 1, 3))
+                    .closer(nearest_of_triangle(w, 0, 2, 3))
+                    .closer(nearest_of_triangle(w, 1, 2, 3))
+            })
+        }
     }
 }

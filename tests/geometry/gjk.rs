@@ -223,8 +223,10 @@ fn extreme<S: Support<Vector = DVec3>>(body: &S, d: DVec3, member: DVec3) {
 fn climbing_finds_what_scanning_finds() {
     let sphere = voidage_tests::pairs::Geodesic::new(6);
     let scan = Hull::new(&sphere.vertices);
-    let climb = scan.with_adjacency(sphere.adjacency());
-    let broken = scan.with_adjacency(Adjacency { offsets: &[0, 1, 2], neighbours: &[700, 1] });
+    let edges = sphere.adjacency();
+    let climb = scan.with_adjacency(&edges);
+    let edges = Adjacency::new(&sphere.vertices, &[0, 1, 2], &[700, 1]);
+    let broken = scan.with_adjacency(&edges);
     let mut random = Random::new(5);
     for _ in 0..2000 {
         let d = DVec3::from_array(random.on_sphere());
@@ -451,4 +453,98 @@ fn regressions_stay_fixed() {
         count += 1;
     }
     println!("{count} regressions");
+}
+
+/// Distance from a point to a solid cylinder, in closed form.
+fn to_cylinder(p: DVec3, from: DVec3, to: DVec3, radius: f64) -> f64 {
+    let axis = to - from;
+    let along = (p - from).dot(axis) / axis.length();
+    let across = ((p - from) - axis.normalize() * along).length();
+    let beyond = (along - axis.length()).max(-along).max(0.0);
+    beyond.hypot((across - radius).max(0.0))
+}
+
+/// Gaps of both signs and all sizes between curved bodies whose distance has a closed form: never wrong, seldom undecided.
+#[test]
+fn curved_bodies_agree_with_closed_forms() {
+    let mut random = Random::new(23);
+    let (mut decided, mut near, mut undecided_clear) = (0, 0, 0);
+    for i in 0..6000 {
+        let (p, q) = (random.vector::<DVec3>(2.0), random.vector::<DVec3>(2.0));
+        let (r, s) = (random.between(0.1, 1.5), random.between(0.1, 1.5));
+        let gap = 10f64.powi(-(i % 12)) * if random.below(2) == 0 { 1.0 } else { -0.5 * r.min(s) };
+        let away = DVec3::from_array(random.on_sphere());
+        let mut check = |truth: f64, a: &dyn Fn() -> (Intersection<DVec3>, Distance<DVec3>), size: f64| {
+            let (boolean, measured) = a();
+            let noise = 64.0 * f64::EPSILON * size;
+            match boolean {
+                Intersection::Apart { .. } => assert!(truth > -noise, "said apart at {truth:e}"),
+                Intersection::Overlapping { .. } => assert!(truth < noise, "said overlapping at {truth:e}"),
+                Intersection::Undecided { .. } if truth.abs() > 1e-6 * size => undecided_clear += 1,
+                Intersection::Undecided { .. } => {}
+            }
+            match measured {
+                Distance::Separated { distance, lower, upper, .. } => {
+                    assert!(lower - noise <= truth && truth <= upper + noise, "{lower:e} {truth:e} {upper:e}");
+                    assert!((distance - truth).abs() <= 1e-9 * truth + noise, "{distance:e} for {truth:e}");
+                    decided += 1;
+                }
+                Distance::Overlapping { .. } => assert!(truth < noise, "distance said overlapping at {truth:e}"),
+                Distance::Undecided { lower, upper, .. } => {
+                    assert!(lower - noise <= truth.max(0.0) && truth <= upper + noise);
+                    near += 1;
+                }
+            }
+        };
+        // Sphere and sphere, also as an ellipsoid and as a scaled and turned one.
+        let b = Sphere { center: p + away * (r + s + gap), radius: s };
+        let a = Sphere { center: p, radius: r };
+        let exact = (b.center - p).length() - r - s;
+        let size = 8.0;
+        check(exact, &|| (intersect(&a, &b, None), distance(&a, &b, None)), size);
+        let round = Ellipsoid { center: p, semi_axes: DVec3::splat(r) };
+        check(exact, &|| (intersect(&round, &b, None), distance(&round, &b, None)), size);
+        let turn = glam::DMat3::from_quat(glam::DQuat::from_array(random.rotation()));
+        let unit = Sphere { center: DVec3::ZERO, radius: 1.0 };
+        let turned = Transformed::new(unit, [turn.x_axis, turn.y_axis, turn.z_axis], DVec3::splat(r), p);
+        check(exact, &|| (intersect(&turned, &b, None), distance(&turned, &b, None)), size);
+        // Cylinder and sphere.
+        let cylinder = Cylinder::new(p, q, r);
+        let height = to_cylinder(b.center, p, q, r);
+        if height > 0.0 {
+            check(height - s, &|| (intersect(&cylinder, &b, None), distance(&cylinder, &b, None)), size);
+            let point = Point(b.center);
+            check(height, &|| (intersect(&point, &cylinder, None), distance(&point, &cylinder, None)), size);
+        }
+        // A ball on the axis beyond a cone's apex.
+        let u = (q - p).normalize();
+        let ball = Sphere { center: q + u * (s + gap.abs()), radius: s };
+        check(
+            (ball.center - q).length() - s,
+            &|| {
+                let cone = Cone::new(p, q, r);
+                (intersect(&cone, &ball, None), distance(&cone, &ball, None))
+            },
+            size,
+        );
+    }
+    println!("distances decided {decided}, left open {near}; clear booleans left open {undecided_clear}");
+    assert!(decided > 10_000 && undecided_clear == 0);
+}
+
+/// Found by scoring 15 000 random recipes: a search along a needle stopped at its first step that gained less than one rounding, and left
+/// the distance off by the needle's thickness.
+#[test]
+fn distances_to_needles_do_not_stop_early() {
+    let needle = [
+        [-2.0, -9.313225746154785e-10, -1.7881393432617188e-7],
+        [1.0, 0.0, 0.0],
+        [-3.0, -3.725290298461914e-9, 2.384185791015625e-7],
+        [4.0, -9.313225746154785e-10, -1.1920928955078125e-7],
+        [-3.0, -9.313225746154785e-10, -5.960464477539063e-8],
+    ];
+    let other = [[-4.0, 3.0, 5.0], [-3.0, 2.0, 0.0], [-5.0, 4.0, -3.0]];
+    let (a, b) = (needle.map(DVec3::from_array), other.map(DVec3::from_array));
+    let Distance::Separated { distance, .. } = distance(&Hull::new(&a), &Hull::new(&b), None) else { panic!("apart") };
+    assert!((distance - 2.0000000009313235).abs() < 1e-14, "{distance}");
 }

@@ -15,8 +15,11 @@ use crate::gjk::{
 use crate::oracle;
 use crate::recipe::Recipe;
 
+/// A name and what it runs.
+pub type Target = (&'static str, fn(&[u8]));
+
 /// All targets by name.
-pub const TARGETS: [(&str, fn(&[u8])); 5] = [
+pub const TARGETS: [Target; 5] = [
     ("intersect", intersect),
     ("distance", distance),
     ("containment", containment),

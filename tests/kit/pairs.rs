@@ -154,6 +154,6 @@ impl Geodesic {
 
     /// Its edges.
     pub fn adjacency(&self) -> Adjacency<'_> {
-        Adjacency { offsets: &self.offsets, neighbours: &self.neighbours }
+        Adjacency::new(&self.vertices, &self.offsets, &self.neighbours)
     }
 }

@@ -52,6 +52,9 @@ const COMBINATION_ROUNDINGS: f64 = 16.0;
 /// Gap at which a search stops, in units of ε times the distance: a few roundings, below which no step makes progress.
 const GAP_ROUNDINGS: f64 = 16.0;
 
+/// How many steps may go by without a gain. Fewer leave distances to needles off by their thickness; more cost time near touch.
+const PATIENCE: u32 = 8;
+
 /// The distance of two bodies, with the points where it is attained.
 ///
 /// `hint` is a direction from `a` towards `b`, of any length; see [`super::intersect`].
@@ -196,6 +199,7 @@ where
     let (mut start_a, mut start_b) = (0, 0);
     let mut points = [(origin, origin, origin); 4];
     let mut count = 0;
+    let mut stalled = 0;
     let mut best = Walk {
         inside: None,
         lower: zero,
@@ -211,18 +215,21 @@ where
     };
 
     for _ in 0..MAX_DISTANCE_ITERATIONS {
-        let direction = lengthened(axis);
-        let size = direction.norm_1();
-        if !(size >= one) || !size.is_finite() {
-            best.reason = Reason::Rounding;
-            break;
+        let (mut direction, mut size) = (axis, axis.norm_1());
+        if !(size > S::<A>::SCALE_MIN) {
+            direction = lengthened(axis);
+            size = direction.norm_1();
+            if !(size >= one) || !size.is_finite() {
+                best.reason = Reason::Rounding;
+                break;
+            }
         }
         let mut from_a = a.support(direction, start_a);
         let mut from_b = b.support(-direction, start_b);
-        let length = direction.dot(direction).sqrt();
+        let inv_length = one / direction.dot(direction).sqrt();
         let bound = |w: A::Vector| {
             let along = w.dot(direction) - margin * size;
-            (along - along.abs() * relative) / length
+            (along - along.abs() * relative) * inv_length
         };
         let mut new = from_b.point - from_a.point;
         if bound(new) > best.lower {
@@ -249,7 +256,7 @@ where
         points = [(new, from_a.point, from_b.point), points[0], points[1], points[2]];
         count = (count + 1).min(4);
         let w = points.map(|p| p.0);
-        if count == 4 && side(w, extent, slack) == Side::Inside {
+        if count == 4 && side(w, slack) == Side::Inside {
             best.inside = Some(Simplex { a: points.map(|p| p.1), b: points.map(|p| p.2) });
             return best;
         }
@@ -265,17 +272,21 @@ where
             reach = reach.max(p.0.norm_max());
         }
         let error = real(COMBINATION_ROUNDINGS) * S::<A>::EPSILON * reach + real(1.75) * slack + S::<A>::UNDERFLOW;
-        let upper = combined[0].length() * (one + relative) + error;
+        let upper = norm(combined[0]) * (one + relative) + error;
         let progress = v.dot(v) < best.v.dot(best.v) || !(best.upper < S::<A>::INFINITY);
-        if upper < best.upper || (progress && v.length() < best.upper) {
+        if upper < best.upper || (progress && norm(v) < best.upper) {
             best.upper = best.upper.min(upper);
             best.v = v;
             best.a = combined[1];
             best.b = combined[2];
         }
+        // Along a needle the first steps gain less than one rounding, and yet lead to the nearest point.
         if !progress {
-            best.reason = Reason::Rounding;
-            break;
+            stalled += 1;
+            if stalled > PATIENCE {
+                best.reason = Reason::Rounding;
+                break;
+            }
         }
         axis = v;
         if v == origin && count == 3 {
@@ -285,6 +296,13 @@ where
         }
     }
     best
+}
+
+/// Length of a vector not too large to square.
+#[inline(always)]
+fn norm<V: Vector>(v: V) -> V::Scalar {
+    let sq = v.dot(v);
+    if sq > V::Scalar::UNDERFLOW { sq.sqrt() } else { v.length() }
 }
 
 fn w_of<V: Vector>(points: &[(V, V, V); 4], i: usize) -> V {
