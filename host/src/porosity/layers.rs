@@ -200,15 +200,22 @@ fn settle(lower: &mut [f64], sum: &[f64], low: Option<&mut [f64]>, high: Option<
     if let Some(high) = high {
         high.iter_mut().zip(&*lower).for_each(|(high, lower)| *high = 1.0 - lower);
     }
-    // Eight running maxima, so that the loop needs no order.
-    let mut gaps = [0.0_f64; 8];
-    for (lower, sum) in lower.chunks_mut(8).zip(sum.chunks(8)) {
-        for ((l, s), gap) in lower.iter_mut().zip(sum).zip(&mut gaps) {
-            let upper = if *s < 1.0 { *s } else { 1.0 };
-            let wide = upper - *l;
-            *gap = if wide > *gap { wide } else { *gap };
-            *l = 1.0 - (*l + upper) * 0.5;
+    out.max_gap = out.max_gap.max(widest(lower, sum));
+    let open = |l: &mut f64, s: f64| *l = 1.0 - (*l + if s < 1.0 { s } else { 1.0 }) * 0.5;
+    lower.iter_mut().zip(sum).for_each(|(l, s)| open(l, *s));
+}
+
+/// The largest gap between bounds. Eight running maxima need no order, so the loop is done by vectors.
+pub fn widest(lower: &[f64], sum: &[f64]) -> f64 {
+    let gap = |l: f64, s: f64| if s < 1.0 { s - l } else { 1.0 - l };
+    let ((lower, lower_rest), (sum, sum_rest)) = (lower.as_chunks::<8>(), sum.as_chunks::<8>());
+    let mut widest = [0.0_f64; 8];
+    for (l, s) in lower.iter().zip(sum) {
+        for n in 0..8 {
+            let g = gap(l[n], s[n]);
+            widest[n] = if g > widest[n] { g } else { widest[n] };
         }
     }
-    out.max_gap = gaps.into_iter().fold(out.max_gap, f64::max);
+    let rest = lower_rest.iter().zip(sum_rest).map(|(l, s)| gap(*l, *s));
+    rest.chain(widest).fold(0.0, f64::max)
 }

@@ -2,7 +2,7 @@
 
 use super::bins::{Bins, Group};
 use super::fields::FieldSet;
-use super::layers::Worker;
+use super::layers::{Worker, widest};
 use super::{Options, targets};
 use glam::DVec3;
 use voidage_core::grid::Grid;
@@ -223,6 +223,9 @@ impl Unions {
                 1 => (&mut *lower.y, &mut *sum.y, &*marks.y),
                 _ => (&mut *lower.z, &mut *sum.z, &*marks.z),
             };
+            if !marks.contains(&1) {
+                continue;
+            }
             for f in 0..shape[0] * shape[1] {
                 if marks[f] != 0 && gap(lower[f], sum[f]) > KNOWN {
                     let bounds = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k]);
@@ -322,10 +325,7 @@ const KNOWN: f64 = 1e-13;
 
 /// Is there a gap anywhere in a row, its upper y faces included?
 fn row_is_open(layer: &Layer<f64>, nx: usize, j: usize) -> bool {
-    let any = |lower: &[f64], sum: &[f64], run: std::ops::Range<usize>| {
-        // Sums are compared as they are: a closed item with a sum above 1 only costs a second look.
-        lower[run.clone()].iter().zip(&sum[run]).fold(false, |any, (l, s)| any | (*s - *l > KNOWN))
-    };
+    let any = |lower: &[f64], sum: &[f64], run: std::ops::Range<usize>| widest(&lower[run.clone()], &sum[run]) > KNOWN;
     any(layer.lower.cell, layer.sum.cell, j * nx..(j + 1) * nx)
         || any(layer.lower.x, layer.sum.x, j * (nx + 1)..(j + 1) * (nx + 1))
         || any(layer.lower.y, layer.sum.y, j * nx..(j + 2) * nx)
