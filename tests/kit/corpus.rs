@@ -183,7 +183,7 @@ fn distances_hold<V: Vector>(case: &Case, a: &Hull<V>, b: &Hull<V>, factor: f64,
     let within = |lower: f64, upper: f64| {
         // The label itself is rounded.
         let room = 4.0 * f64::EPSILON * truth + step;
-        lower <= truth + room && truth - room <= upper
+        lower <= truth + room && (upper.is_infinite() || truth - room <= upper)
     };
     let mut near = |distance: f64| {
         // Nothing is nearer than half a step of the subnormal numbers.
