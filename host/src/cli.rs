@@ -123,7 +123,7 @@ pub struct PorosityArgs {
     #[arg(long)]
     pub no_areas: bool,
     /// Number of threads (default: all cores)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Write fields for ParaView (VTK rectilinear grid)
     #[arg(short, long, value_name = "OUT.vtr")]
