@@ -4,3 +4,4 @@
 pub mod error;
 pub mod input;
 pub mod output;
+pub mod solve;
