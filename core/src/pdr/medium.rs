@@ -159,13 +159,17 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     }
 }
 
-/// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than a share of the wider duct.
+/// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
+/// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
+/// point has large shares of small differences: those below a fifth of the threshold do not count).
 fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
     let (least, most) = (lesser(left, right), greater(left, right));
-    most - least > threshold * most || least - face > threshold * most
+    let difference = greater(most - least, least - face);
+    let narrow = difference > R::from_f64(3.0) * threshold * most && difference > R::from_f64(0.2) * threshold;
+    difference > threshold || narrow
 }
 
-/// Writes the marks of all cells: which faces are jumps (differences above `threshold` of the wider duct; infinity for
+/// Writes the marks of all cells: which faces are jumps (differences of the open fraction above `threshold`; infinity for
 /// none), which cells are small, which are sealed.
 ///
 /// The slices must have the lengths of the mesh; `marks` one byte per cell.

@@ -102,6 +102,8 @@ pub struct Flow<R, const D: usize> {
     marks: Vec<u8>,
     scratch: Vec<Vec<R>>,
     rate: Option<R>,
+    /// First steps to take at a fifth of the stable step: a blast starts from states whose speeds the estimate cannot know.
+    pub careful_steps: usize,
     /// Time reached.
     pub time: R,
     /// Steps done.
@@ -115,8 +117,7 @@ pub struct Flow<R, const D: usize> {
 /// How often a step that needed floors is repeated with half the step before the floors stand.
 const REPEATS: usize = 4;
 
-/// The first steps are short: a blast starts from states whose speeds the first estimate cannot know.
-const CAREFUL_STEPS: usize = 5;
+/// Share of the stable step that careful steps take.
 const CAREFUL_SHARE: f64 = 0.2;
 
 impl<R: Real, const D: usize> Flow<R, D> {
@@ -136,6 +137,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
             marks: vec![0; cells],
             scratch: Vec::new(),
             rate: None,
+            careful_steps: 0,
             time: R::ZERO,
             steps: 0,
             total: Report::new(),
@@ -153,13 +155,20 @@ impl<R: Real, const D: usize> Flow<R, D> {
         Self::new(std::array::from_fn(|d| vec![width[d]; cells[d]]), gas, boundaries)
     }
 
-    /// Gives the space its open fractions. Cells without an open face are set at rest.
+    /// Gives the space its open fractions. Fractions within a few rounding errors of 0 (negative ones too) count as 0:
+    /// geometry leaves such dust where a cell is closed.
     pub fn set_porosity(
         &mut self,
-        volume: Vec<R>,
-        faces: [Vec<R>; D],
+        mut volume: Vec<R>,
+        mut faces: [Vec<R>; D],
         treatment: Treatment<R>,
     ) -> Result<(), Error> {
+        let dust = R::from_f64(16.0) * R::EPSILON;
+        for x in volume.iter_mut().chain(faces.iter_mut().flatten()) {
+            if !(*x > dust) {
+                *x = R::ZERO;
+            }
+        }
         let mesh = Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) };
         let n = mesh.len();
         let fits = |expected: usize, found: usize| {
@@ -332,7 +341,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// The largest stable step at a CFL number; infinite where nothing can move.
     pub fn stable_dt(&mut self, cfl: R) -> Result<R, Error> {
         let rate = self.rate()?;
-        let share = if self.steps < CAREFUL_STEPS { R::from_f64(CAREFUL_SHARE) } else { R::ONE };
+        let share = if self.steps < self.careful_steps { R::from_f64(CAREFUL_SHARE) } else { R::ONE };
         Ok(if rate > R::ZERO { cfl * share / rate } else { R::INFINITY })
     }
 

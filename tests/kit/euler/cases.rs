@@ -393,6 +393,9 @@ fn riemann(case: &Case) -> Outcome {
     if pass.contains("rate between") {
         let limit = number_after(pass, "N=200 and 800 >=").unwrap_or(0.7);
         v.at_least("rate", rate(error[&200], error[&800], 4.0), limit);
+        if let (Some(a), Some(b)) = (case.yardstick(200), case.yardstick(800)) {
+            v.note("yardstick's own rate", rate(a, b, 4.0));
+        }
     }
     if pass.contains("round-off") {
         let limit = number_after(pass, "round-off (<=").unwrap_or(1e-13);
@@ -724,7 +727,9 @@ fn nozzle(case: &Case) -> Outcome {
         * (1.0 + 0.5 * (gamma - 1.0) * mach(0).powi(2)).powf(gamma / (gamma - 1.0));
     let p_exit = number_after(case.text("/bc/right"), "static pressure");
     let mut errors = BTreeMap::new();
-    for n in [50, 100, 200] {
+    // The coarse mesh serves the order of the smooth cases.
+    let sizes: &[usize] = if shock.is_some() { &[100, 200] } else { &[50, 100, 200] };
+    for &n in sizes {
         let line = Line { n, domain };
         let left = match (p0, rho0) {
             (Some(p), Some(r)) if !low_mach => Boundary::Reservoir { density: r, pressure: p },
@@ -737,12 +742,15 @@ fn nozzle(case: &Case) -> Outcome {
         };
         let mut flow = line.flow(Gas::Ideal { gamma }, [left, right]);
         let (volume, faces) = formula_porosity(&line, &formula)?;
-        flow.set_porosity(volume.clone(), faces, Treatment::default())?;
+        flow.set_porosity(volume.clone(), faces, smooth_duct())?;
         let (r, s, q) = (resample(rho, n), resample(u, n), resample(p, n));
         for i in 0..n {
             flow.set(i, &State::new(r[i], s[i], q[i]).primitive());
         }
-        flow.run(CFL, t)?;
+        // No shortened last step: the discrete steady state depends (to second order) on dt.
+        while flow.time < t {
+            flow.advance(CFL, f64::MAX)?;
+        }
         // Spread of the mass flux over the faces, from one more step.
         let before: Vec<f64> = (0..n).map(|i| flow.get(i).density).collect();
         let entered = flow.total.inflow[0][0].density;
@@ -796,7 +804,12 @@ fn drag(case: &Case) -> Outcome {
     let (ks, ts, us) = (case.column("k")?, case.column("t")?, case.column("u")?);
     let limit = number_after(case.pass(), "relative error <=").unwrap_or(1e-12);
     let (mut error, mut energy, mut heat, mut kept, mut coupling) = (0.0f64, 0.0f64, 0.0f64, true, 0.0f64);
-    for ((&k, &t), &exact) in ks.iter().zip(ts).zip(us) {
+    let mut table = 0.0f64;
+    for ((&k, &t), &tabulated) in ks.iter().zip(ts).zip(us) {
+        // The formula of the case with expm1: at k u0 t >> 1 and a t << 1 the tabulated 1 − e^(−a t) has lost digits.
+        let phi = if a > 0.0 { -(-a * t).exp_m1() / a } else { t };
+        let exact = u0 * (-a * t).exp() / (1.0 + k * u0.abs() * phi);
+        table = table.max((tabulated / exact - 1.0).abs());
         let n = [4, 3, 2];
         let cells = 24;
         let start = Primitive { density: rho, velocity: [u0, 0.0, 0.0], pressure: p0 };
@@ -811,6 +824,7 @@ fn drag(case: &Case) -> Outcome {
         for i in 0..cells {
             let w = flow.get(i);
             error = error.max((w.velocity[0] / exact - 1.0).abs());
+
             kept &= w.velocity[0] * u0 >= 0.0 && w.velocity[1] == 0.0 && w.velocity[2] == 0.0;
             let hot = p0 + (case.gamma()? - 1.0) * rho * 0.5 * (u0 * u0 - exact * exact);
             heat = heat.max((w.pressure / hot - 1.0).abs());
@@ -841,6 +855,8 @@ fn drag(case: &Case) -> Outcome {
     }
     v.at_most("error", error, limit);
     v.at_most("energy", energy, number_after(case.pass(), "total energy constant to").unwrap_or(1e-14));
+    v.note("table", table);
+    v.holds("table agrees to 1e-10", table < 1e-10);
     v.note("pressure", heat);
     v.holds("sign and other components kept", kept);
     v.at_most("coupling d(dt/2)/d(dt)", coupling, 0.6);
@@ -938,7 +954,7 @@ fn shock_slab(case: &Case) -> Outcome {
         let mut flow =
             line.flow(Gas::Ideal { gamma }, [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?]);
         let (volume, faces) = formula_porosity(&line, &formula)?;
-        flow.set_porosity(volume, faces, Treatment::default())?;
+        flow.set_porosity(volume, faces, smooth_duct())?;
         if cr > 0.0 {
             let inside = |i: usize| line.centre(i) > inside[0] && line.centre(i) < inside[1];
             flow.set_drag([(0..n).map(|i| if inside(i) { cr } else { 0.0 }).collect()], [vec![]]);
@@ -1397,6 +1413,9 @@ fn noh(case: &Case) -> Outcome {
     let mut flow = line.flow(Gas::Ideal { gamma }, [Boundary::Wall, ghost(0.0)]);
     let (volume, faces) = radial_porosity(&line, e);
     flow.set_porosity(volume, faces, smooth_duct())?;
+    // An infinitely strong shock that starts at the axis: the two-wave solver heats the axis least.
+    flow.scheme.riemann = voidage_core::pdr::Riemann::Hlle;
+    flow.scheme.limiter = Limiter::VanLeer;
     flow.fill(|_| State::new(rho0, -u0, p0).primitive());
     while flow.time < t {
         flow.boundaries[0][1] = ghost(flow.time);
@@ -1412,6 +1431,7 @@ fn noh(case: &Case) -> Outcome {
     let inner = (shock / line.dx()) as usize;
     let worst = (5..inner.saturating_sub(5)).map(|i| (flow.get(i).density / plateau - 1.0).abs()).fold(0.0, f64::max);
     v.at_most("plateau", worst, number_after(case.pass(), "rho plateau within").unwrap_or(5.0) / 100.0);
+
     v.note("at origin", flow.get(0).density / plateau);
     match e {
         1 => noh_cartesian::<2>(case, 200, &mut v)?,
@@ -1621,7 +1641,6 @@ fn double_mach(case: &Case) -> Outcome {
     // Two rows below the wall and above the top belong to the domain and are set after every step.
     let ny = inner + 4;
     let front = |y: f64, time: f64| foot + (y + speed * time / angle.cos()) / angle.tan();
-    let at = |x: f64, y: f64, time: f64| if x < front(y, time) { post } else { pre };
     let mut flow = Flow::uniform(
         [nx, ny],
         [dx, dx],
@@ -1786,7 +1805,7 @@ fn run_channel(
     flow.set_porosity(volume.clone(), faces.clone(), Treatment::default())?;
     for c in 0..flow.len() {
         let mut w = state;
-        if volume[c] == 0.0 {
+        if volume[c] < 1e-12 {
             w.velocity = [0.0; 3];
         }
         flow.set(c, &w);
@@ -1871,7 +1890,7 @@ fn channel(case: &Case) -> Outcome {
     v.holds("finite,positive", finite_positive(flow));
     report_events(&mut v, flow);
     let fast = (0..flow.len())
-        .filter(|&c| volume[c] == 0.0)
+        .filter(|&c| volume[c] < 1e-12)
         .map(|c| flow.get(c).velocity.iter().fold(0.0f64, |m, x| m.max(x.abs())))
         .fold(0.0, f64::max);
     v.at_most("u in the box", fast, 0.0);
