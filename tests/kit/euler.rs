@@ -4,6 +4,7 @@
 //! 3rd ed., ch. 4; stationary waves as in M. D. Thanh, D. Kröner, J. Sci. Comput. 51 (2012) 1.
 
 pub mod cases;
+pub mod property;
 pub mod expression;
 
 use voidage_core::pdr::Primitive;
