@@ -133,7 +133,7 @@ fn exchanged_axes_give_the_same_bits() {
         for seed in 0..3 {
             let reference = cube([0, 1, 2], seed, riemann);
             for order in [[1, 0, 2], [2, 1, 0], [0, 2, 1], [1, 2, 0], [2, 0, 1]] {
-                assert_eq!(cube(order, seed, riemann), reference, "{riemann:?} {order:?} seed {seed}");
+                assert!(cube(order, seed, riemann) == reference, "{riemann:?} {order:?} seed {seed}");
             }
         }
     }

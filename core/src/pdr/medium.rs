@@ -136,26 +136,31 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         greater(a, b)
     }
 
+    /// Throat area of the jump at the low face of `at` along `d`.
+    pub fn passage(&self, d: usize, at: [usize; D], periodic: bool) -> R {
+        let (left, right) = self.ducts(d, at, periodic);
+        throat_area(left, self.porosity.faces[d][self.mesh.face(d, at)], right)
+    }
+
     /// The two duct areas at the low face of `at` along `d`, where `at[d]` may be one past the end. Beyond the domain stands
     /// the cell on the other side if the axis is periodic, else a copy of the inner cell.
     pub fn ducts(&self, d: usize, at: [usize; D], periodic: bool) -> (R, R) {
         let n = self.mesh.cells()[d];
-        let cell = |i: usize| {
+        let (i, stride, b) = (at[d], self.mesh.face_stride(d), self.porosity.faces[d]);
+        let face = self.mesh.face(d, at);
+        let inner = b[face];
+        // Inside, both cells share this face: only the outer face of each is still to be read.
+        if i > 0 && i < n {
+            return (greater(b[face - stride], inner), greater(inner, b[face + stride]));
+        }
+        let cell = |k: usize| {
             let mut c = at;
-            c[d] = i;
+            c[d] = k;
             self.duct(d, c)
         };
-        let i = at[d];
         let left = if i > 0 { i - 1 } else if periodic { n - 1 } else { 0 };
         let right = if i < n { i } else if periodic { 0 } else { n - 1 };
         (cell(left), cell(right))
-    }
-
-    /// Area that the flux at the low face of `at` along `d` uses: the throat's at a jump, else the face's own.
-    pub fn passage(&self, d: usize, at: [usize; D], periodic: bool, jump: bool) -> R {
-        let face = self.porosity.faces[d][self.mesh.face(d, at)];
-        let (left, right) = self.ducts(d, at, periodic);
-        if jump { throat_area(left, face, right) } else { face }
     }
 }
 
@@ -201,7 +206,7 @@ pub fn mark<R: Real, const D: usize>(
             }
         }
         if !(widest > R::ZERO) {
-            bits = SEALED;
+            bits |= SEALED;
         } else if volume[cell] < R::from_f64(SMALL_SHARE) * widest {
             bits |= SMALL;
         }

@@ -363,11 +363,15 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let periodic = self.boundaries[d][0] == Boundary::Periodic;
         let mut above = at;
         above[d] += 1;
-        let low = medium.passage(d, at, periodic, marks & jump_low(d) != 0);
-        let high = medium.passage(d, above, periodic, marks & jump_high(d) != 0);
-        let ratio = greater(low, high) / greater(medium.porosity.volume[cell], least_volume());
+        let (low, high) = medium.openings(d, at);
+        let low = if marks & jump_low(d) != 0 { medium.passage(d, at, periodic) } else { low };
+        let high = if marks & jump_high(d) != 0 { medium.passage(d, above, periodic) } else { high };
+        let passage = greater(low, high);
+        let ratio = passage / greater(medium.porosity.volume[cell], least_volume());
         let merged = marks & SMALL != 0 && !self.clusters.0.is_empty();
-        if merged { lesser(ratio, R::from_f64(1.0 / SMALL_SHARE)) } else { ratio }
+        // A cluster holds its share of the volume that its widest face asks for; a throat may be wider than its face.
+        let widening = if marks & (jump_low(d) | jump_high(d)) != 0 { R::TWO } else { R::ONE };
+        if merged { lesser(ratio, widening * R::from_f64(1.0 / SMALL_SHARE)) } else { ratio }
     }
 
     /// Largest signal rate of a field, for the first step; refuses an unphysical cell.
@@ -389,6 +393,13 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let w = self.gas.primitive(u);
         let finite = u.momentum.iter().all(|m| m.is_finite()) && u.density.is_finite() && w.pressure.is_finite();
         finite && u.density > R::ZERO && w.pressure > R::ZERO
+    }
+
+    /// Prepares a starting field: clusters whose cells differ much share one state. Gas at rest is left alone.
+    pub fn settle(&self, field: &mut FieldsMut<'_, R, D>) {
+        if let Some(p) = &self.porosity {
+            merge::settle(self.clusters, &self.mesh, p.volume, self.gas, field);
+        }
     }
 
     /// Merges the small cells of a new field in place; the report's rate and count cover the merged cells.
@@ -447,13 +458,20 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
                 continue;
             }
             let before = self.gas.primitive(&old.get(cell));
-            let sound = u.density.is_finite() && u.density > R::ZERO && u.momentum.iter().all(|m| m.is_finite());
+            // The kinetic energy must fit the scalar with room for what a step multiplies it by.
+            let kinetic = u.density * sum::<R, D>(u.momentum.map(|m| (m / u.density) * (m / u.density)));
+            let sound = u.density > R::ZERO && u.density.is_finite() && kinetic < R::MAX * R::EPSILON;
             let mut w = if sound { self.gas.primitive(&u) } else { before };
             if !sound {
                 w.density = greater(before.density * share, R::MIN_POSITIVE);
             }
             w.pressure = match self.gas {
-                Gas::Ideal { .. } => greater(before.pressure * share, R::MIN_POSITIVE),
+                // Above the rounding of the kinetic energy it is stored with.
+                Gas::Ideal { gamma } => {
+                    let kinetic = w.density * sum::<R, D>(w.velocity.map(|u| u * u));
+                    let least = R::from_f64(64.0) * R::EPSILON * (gamma - R::ONE) * kinetic;
+                    greater(greater(before.pressure * share, least), R::MIN_POSITIVE)
+                }
                 gas => gas.pressure(w.density, R::ZERO),
             };
             let floored = self.gas.conserved(&w);
@@ -1385,7 +1403,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                         let mut at = row.at;
                         at[0] = i;
                         for d in 0..D {
-                            metric.open[d][i] = self.problem.openness(medium, row.start + i, at, d);
+                            let jump = marks[i] & (jump_low(d) | jump_high(d)) != 0;
+                            if jump || marks[i] & SMALL != 0 {
+                                metric.open[d][i] = self.problem.openness(medium, row.start + i, at, d);
+                            }
                         }
                     }
                 }

@@ -179,18 +179,66 @@ impl<R: Real, const D: usize> Flow<R, D> {
             fits(mesh.faces(d), faces[d].len())?;
         }
         let periodic = self.boundaries.map(|b| b[0] == Boundary::Periodic);
-        let views = faces.each_ref().map(|f| f.as_slice());
-        let mut marks = vec![0; n];
-        medium::mark(&mesh, &volume, &views, periodic, treatment.jump, &mut marks);
-        let mut clusters = Vec::new();
-        if treatment.merge && marks.iter().any(|m| m & medium::SMALL != 0) {
+        let cells = mesh.cells();
+        let (marks, clusters) = loop {
+            let views = faces.each_ref().map(|f| f.as_slice());
+            let mut marks = vec![0; n];
+            medium::mark(&mesh, &volume, &views, periodic, treatment.jump, &mut marks);
+            if !treatment.merge || marks.iter().all(|m| m & medium::SMALL == 0) {
+                break (marks, Vec::new());
+            }
             let mut parent = vec![0; n];
             let mut work = vec![R::ZERO; merge::cluster_scratch(n)];
-            clusters = vec![0; n];
+            let mut clusters = vec![0; n];
             let used = merge::clusters(&mesh, &volume, &views, periodic, &mut clusters, &mut parent, &mut work);
             clusters.truncate(used);
             clusters.shrink_to_fit();
-        }
+            // A cluster that found no more neighbours and is still too small for its faces must not stand open to the
+            // outside: its faces on the sides of the domain are closed.
+            let mut outside: Vec<(usize, usize)> = Vec::new();
+            let mut clustered = vec![false; n];
+            let mut examine = |members: &mut dyn Iterator<Item = usize>| {
+                let (mut held, mut wanted, mut edge) = (R::ZERO, R::ZERO, Vec::new());
+                for cell in members {
+                    let at = mesh.coordinates(cell);
+                    let own = mesh.volume(at);
+                    held += volume[cell] * own;
+                    for d in 0..D {
+                        let low = mesh.face(d, at);
+                        let high = low + mesh.face_stride(d);
+                        for (face, last) in [(low, 0), (high, cells[d] - 1)] {
+                            let open = faces[d][face] * own;
+                            if open > wanted {
+                                wanted = open;
+                            }
+                            if !periodic[d] && at[d] == last && open > R::ZERO {
+                                edge.push((d, face));
+                            }
+                        }
+                    }
+                }
+                if held < R::HALF * wanted {
+                    outside.append(&mut edge);
+                }
+            };
+            for group in Clusters(&clusters).groups() {
+                group.clone().for_each(|cell| clustered[cell] = true);
+                examine(&mut group.clone());
+            }
+            for cell in (0..n).filter(|&c| marks[c] & medium::SMALL != 0 && !clustered[c]) {
+                examine(&mut std::iter::once(cell));
+            }
+            if outside.is_empty() {
+                // What found no company (a periodic axis of one cell) limits the step like any other cell.
+                for cell in (0..n).filter(|&c| !clustered[c]) {
+                    marks[cell] &= !medium::SMALL;
+                }
+                break (marks, clusters);
+            }
+            for (d, face) in outside {
+                faces[d][face] = R::ZERO;
+            }
+        };
         self.space = Some(Space { volume, faces, marks, clusters });
         self.rate = None;
         Ok(())
@@ -333,6 +381,9 @@ impl<R: Real, const D: usize> Flow<R, D> {
         if let Some(rate) = self.rate {
             return Ok(rate);
         }
+        let mut state = std::mem::replace(&mut self.state, Field::new(0, self.gas));
+        self.with_problem(|problem, _, _, _, _| problem.settle(&mut state.view_mut()));
+        self.state = state;
         let rate = self.with_problem(|problem, old, _, _, _| problem.rate(&old.view()))?;
         self.rate = Some(rate);
         Ok(rate)
@@ -352,6 +403,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
 
     /// One step of `dt`, whatever its stability. Returns what it did.
     pub fn step(&mut self, dt: R) -> Result<Report<R, D>, Error> {
+        self.rate()?;
         let report = self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
         self.accept(dt, &report);
         Ok(report)
