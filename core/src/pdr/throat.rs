@@ -36,7 +36,13 @@ pub struct ThroatGas<R> {
 }
 
 /// A power by squaring.
+#[inline]
 fn whole_power<R: Real>(mut x: R, mut n: u32) -> R {
+    if n == 5 {
+        // gamma = 1.4
+        let square = x * x;
+        return square * square * x;
+    }
     let mut result = R::ONE;
     while n > 0 {
         if n & 1 == 1 {
@@ -95,25 +101,31 @@ impl<R: Real> ThroatGas<R> {
     fn isentropic(&self, mach_sq: R, k: R) -> (R, R, R) {
         let n = self.n;
         let a = mach_sq / n;
-        let sonic = (R::ONE + a) * n / (n + R::ONE);
-        let largest_sq = (R::ONE + a) / (n + R::ONE) * self.power(sonic) / a;
         let ratio = |t: R| match self.whole {
             Some(n) => whole_power(t.sqrt(), n),
             None => t.pow(R::HALF * n),
         };
-        if k * k >= largest_sq {
-            return (ratio(sonic), sonic, largest_sq.sqrt());
-        }
         let ak_sq = a * (k * k);
         let slope = |d: R, inv_power: R| R::ONE - n * ak_sq * inv_power / (R::ONE + d);
         let inv_power = |d: R| R::ONE / self.power(R::ONE + d);
-        let start = if mach_sq < R::ONE {
-            let bernoulli = a - ak_sq;
-            let good = bernoulli > sonic - R::ONE && slope(bernoulli, inv_power(bernoulli)) > R::HALF;
-            if good { bernoulli } else { a }
+        let bernoulli = a - ak_sq;
+        // M k below 0.45 cannot choke (the bound is 0.5 to 0.61 for gamma from 3 to 1), and Bernoulli is a good start.
+        let slow = mach_sq < R::ONE && n * ak_sq < R::from_f64(0.2);
+        let start = if slow {
+            bernoulli
         } else {
-            // Left of the minimum of the left side, t^(n+1) = n A k².
-            R::from_f64(0.8) * (n * ak_sq).pow(R::ONE / (n + R::ONE)) - R::ONE
+            let sonic = (R::ONE + a) * n / (n + R::ONE);
+            let largest_sq = (R::ONE + a) / (n + R::ONE) * self.power(sonic) / a;
+            if k * k >= largest_sq {
+                return (ratio(sonic), sonic, largest_sq.sqrt());
+            }
+            if mach_sq < R::ONE {
+                let good = bernoulli > sonic - R::ONE && slope(bernoulli, inv_power(bernoulli)) > R::HALF;
+                if good { bernoulli } else { a }
+            } else {
+                // Left of the minimum of the left side, t^(n+1) = n A k².
+                R::from_f64(0.8) * (n * ak_sq).pow(R::ONE / (n + R::ONE)) - R::ONE
+            }
         };
         let d = newton(start, a, |d| {
             let q = inv_power(d);
@@ -162,17 +174,22 @@ impl<R: Real> ThroatGas<R> {
     }
 }
 
-/// Newton's method on a convex function with a known upper bound of the root; stops when a step no longer counts.
+/// Newton's method on a convex function with a known upper bound of the root.
+///
+/// Convergence is quadratic, so a step below this share (of the square root of the rounding error) of the root is the last
+/// that counts. At the double root of a throat about to choke the steps halve instead, and the root itself is only known to
+/// that share.
 fn newton<R: Real>(start: R, bound: R, f: impl Fn(R) -> (R, R)) -> R {
+    let enough = R::from_f64(0.0625) * R::EPSILON.sqrt();
     let mut x = start;
     for _ in 0..MAX_STEPS {
         let (value, slope) = f(x);
         let step = value / slope;
-        if !(step.abs() > R::EPSILON * (x.abs() + R::EPSILON * bound)) {
-            break;
-        }
         let next = x - step;
         x = if next > bound { bound } else { next };
+        if !(step.abs() > enough * x.abs()) {
+            break;
+        }
     }
     x
 }
