@@ -1,8 +1,8 @@
 //! Cell updates per second of the PDR Euler kernel, one thread: medians over runs.
 
 use std::time::Instant;
-use voidage_core::pdr::{Boundary, Gas, Primitive};
 use voidage::solve::flow::{Flow, Treatment};
+use voidage_core::pdr::{Boundary, Gas, Primitive};
 
 fn median(mut t: Vec<f64>) -> f64 {
     t.sort_by(f64::total_cmp);
@@ -49,7 +49,12 @@ fn measure<const D: usize>(name: &str, n: [usize; D], porous: Option<f64>) {
             cells * steps as f64 / start.elapsed().as_secs_f64() / 1e6
         })
         .collect();
-    println!("{name:32} {:8.2} M cell updates/s   memory {:.2} x conserved   fallen {}", median(times), flow.memory_ratio(), flow.total.first_order);
+    println!(
+        "{name:32} {:8.2} M cell updates/s   memory {:.2} x conserved   fallen {}",
+        median(times),
+        flow.memory_ratio(),
+        flow.total.first_order
+    );
 }
 
 fn main() {

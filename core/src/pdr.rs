@@ -14,16 +14,16 @@
 //!
 //! Read in this order:
 //!
-//! 1. [`state`]: the gas, one cell, a field
-//! 2. [`limiter`]: slopes
-//! 3. [`flux`]: the Riemann problem at a face
-//! 4. [`throat`]: the same where the porosity jumps
-//! 5. [`drag`]: resistance of the obstacles, at any stiffness
-//! 6. [`boundary`]: the sides of the domain
-//! 7. [`medium`]: porosity as slices, and marks
-//! 8. [`merge`]: small cells
-//! 9. `row`: the loops
-//! 10. [`step`]: a slab, a step
+//! 1. [`state`] — the gas, one cell, a field
+//! 2. [`limiter`] — slopes
+//! 3. [`flux`] — the Riemann problem at a face
+//! 4. [`throat`] — the same where the porosity jumps
+//! 5. [`drag`] — resistance of the obstacles, at any stiffness
+//! 6. [`boundary`] — the sides of the domain
+//! 7. [`medium`] — porosity as slices, and marks
+//! 8. [`merge`] — small cells
+//! 9. `row` — the loops
+//! 10. [`step`] — a slab, a step
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.

@@ -4,8 +4,8 @@
 //! 3rd ed., ch. 4; stationary waves as in M. D. Thanh, D. Kröner, J. Sci. Comput. 51 (2012) 1.
 
 pub mod cases;
-pub mod property;
 pub mod expression;
+pub mod property;
 
 use voidage_core::pdr::Primitive;
 
@@ -89,8 +89,7 @@ impl Riemann {
             if f(middle) > 0.0 { high = middle } else { low = middle }
         }
         let p = (low * high).sqrt();
-        let u = 0.5 * (left.u + right.u)
-            + 0.5 * (velocity_change(p, right, gamma) - velocity_change(p, left, gamma));
+        let u = 0.5 * (left.u + right.u) + 0.5 * (velocity_change(p, right, gamma) - velocity_change(p, left, gamma));
         Riemann { left, right, gamma, star: Some((p, u)) }
     }
 
@@ -169,11 +168,7 @@ impl Riemann {
             Some((p, u)) => mirror(one_side(mirror(self.right), -xi, Some((p, -u)))),
             None => {
                 let l = if self.left.rho > 0.0 { one_side(self.left, xi, None) } else { self.left };
-                if l.rho > 0.0 || !(self.right.rho > 0.0) {
-                    l
-                } else {
-                    mirror(one_side(mirror(self.right), -xi, None))
-                }
+                if l.rho > 0.0 || !(self.right.rho > 0.0) { l } else { mirror(one_side(mirror(self.right), -xi, None)) }
             }
         }
     }
@@ -192,8 +187,7 @@ pub struct IsothermalRiemann {
 impl IsothermalRiemann {
     /// Solves for the star state.
     pub fn new(left: State, right: State, c: f64) -> Self {
-        let change =
-            |r: f64, k: f64| if r > k { c * (r - k) / (r * k).sqrt() } else { c * (r / k).ln() };
+        let change = |r: f64, k: f64| if r > k { c * (r - k) / (r * k).sqrt() } else { c * (r / k).ln() };
         let f = |r: f64| change(r, left.rho) + change(r, right.rho) + right.u - left.u;
         let (mut low, mut high) = (left.rho.min(right.rho), left.rho.max(right.rho));
         while f(low) > 0.0 {

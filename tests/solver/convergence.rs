@@ -128,11 +128,11 @@ fn stretched_cells_converge_too() {
             s + 0.08 * (tau * s).sin()
         };
         let widths: Vec<f64> = (0..n).map(|i| edge(i + 1) - edge(i)).collect();
-        let mut flow: Flow<f64, 1> = Flow::new([widths], IDEAL, [[Boundary::FarField(Primitive {
-            density: 1.0,
-            velocity: [1.0],
-            pressure: 1.0,
-        }); 2]]);
+        let mut flow: Flow<f64, 1> = Flow::new(
+            [widths],
+            IDEAL,
+            [[Boundary::FarField(Primitive { density: 1.0, velocity: [1.0], pressure: 1.0 }); 2]],
+        );
         let pulse = |x: f64| 1.0 + 0.3 * (-((x - 0.3) / 0.08).powi(2)).exp();
         for i in 0..n {
             let x = 0.5 * (edge(i) + edge(i + 1));

@@ -23,8 +23,7 @@ fn finite<const D: usize>(flow: &Flow<f64, D>) -> bool {
 /// A mesh of `n` cells across the unit interval along axis 0 with thin cells of open volume `tiny` strewn in.
 fn thin_cells<const D: usize>(n: [usize; D], tiny: f64) -> (usize, usize) {
     let make = |porous: bool| {
-        let mut flow: Flow<f64, D> =
-            Flow::uniform(n, [1.0 / n[0] as f64; D], IDEAL, [[Boundary::Wall; 2]; D]);
+        let mut flow: Flow<f64, D> = Flow::uniform(n, [1.0 / n[0] as f64; D], IDEAL, [[Boundary::Wall; 2]; D]);
         if porous {
             let volume = (0..flow.len()).map(|c| if c % 7 == 3 || c % 11 == 4 { tiny } else { 1.0 }).collect();
             let faces = std::array::from_fn(|d| vec![1.0; (0..D).map(|a| n[a] + usize::from(a == d)).product()]);
@@ -45,9 +44,7 @@ fn thin_cells<const D: usize>(n: [usize; D], tiny: f64) -> (usize, usize) {
 #[test]
 fn tiny_cells_cost_at_most_four_times_the_steps() {
     for tiny in [0.3, 1e-3, 1e-12] {
-        for (porous, plain) in
-            [thin_cells([200], tiny), thin_cells([48, 9], tiny), thin_cells([24, 6, 5], tiny)]
-        {
+        for (porous, plain) in [thin_cells([200], tiny), thin_cells([48, 9], tiny), thin_cells([24, 6, 5], tiny)] {
             assert!(porous <= 4 * plain, "{tiny}: {porous} {plain}");
         }
     }

@@ -14,11 +14,8 @@ fn line<R: Real, const D: usize>(axis: usize, mirrored: bool) -> Vec<[u64; 3]> {
     n[axis] = m;
     let gas = Gas::Ideal { gamma: R::from_f64(1.4) };
     let mut boundaries = [[Boundary::Periodic; 2]; D];
-    boundaries[axis] = if mirrored {
-        [Boundary::ZeroGradient, Boundary::Wall]
-    } else {
-        [Boundary::Wall, Boundary::ZeroGradient]
-    };
+    boundaries[axis] =
+        if mirrored { [Boundary::ZeroGradient, Boundary::Wall] } else { [Boundary::Wall, Boundary::ZeroGradient] };
     let mut flow: Flow<R, D> = Flow::uniform(n, [R::from_f64(0.025); D], gas, boundaries);
     let stride: usize = n[..axis].iter().product();
     let along = |cell: usize| cell / stride % m;
@@ -199,8 +196,7 @@ fn open_equals_plain<R: Real, const D: usize>(form: PressureForm) {
         );
         flow.scheme.pressure = form;
         if porous {
-            let faces =
-                std::array::from_fn(|d| vec![R::ONE; (0..D).map(|a| n[a] + usize::from(a == d)).product()]);
+            let faces = std::array::from_fn(|d| vec![R::ONE; (0..D).map(|a| n[a] + usize::from(a == d)).product()]);
             flow.set_porosity(vec![R::ONE; n.iter().product()], faces, Treatment::default()).unwrap();
         }
         for cell in 0..flow.len() {

@@ -127,8 +127,7 @@ impl Solver for Hllc {
         // Mass swept by the outer waves, Toro eq. (10.37); negative on the left, positive on the right.
         let (swept_l, swept_r) = (l.density * (speed_l - u_l), r.density * (speed_r - u_r));
         let star = ((r.pressure - l.pressure) + (swept_l * u_l - swept_r * u_r)) / (swept_l - swept_r);
-        let p_star =
-            R::HALF * ((l.pressure + swept_l * (star - u_l)) + (r.pressure + swept_r * (star - u_r)));
+        let p_star = R::HALF * ((l.pressure + swept_l * (star - u_l)) + (r.pressure + swept_r * (star - u_r)));
         let p_star = greater(p_star, R::ZERO);
 
         let from_left = star >= R::ZERO;
@@ -180,7 +179,7 @@ fn blend<R: Real, const D: usize, const ENERGY: bool>(
         momentum[c] =
             mix(m_l * l.velocity[c], m_r * r.velocity[c], l.density * l.velocity[c], r.density * r.velocity[c]);
     }
-    momentum[0] = momentum[0] + pressure;
+    momentum[0] += pressure;
     let energy = if ENERGY {
         let (e_l, e_r) = (gas.energy(l), gas.energy(r));
         mix((e_l + l.pressure) * l.velocity[0], (e_r + r.pressure) * r.velocity[0], e_l, e_r)

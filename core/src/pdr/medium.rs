@@ -158,8 +158,20 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
             c[d] = k;
             self.duct(d, c)
         };
-        let left = if i > 0 { i - 1 } else if periodic { n - 1 } else { 0 };
-        let right = if i < n { i } else if periodic { 0 } else { n - 1 };
+        let left = if i > 0 {
+            i - 1
+        } else if periodic {
+            n - 1
+        } else {
+            0
+        };
+        let right = if i < n {
+            i
+        } else if periodic {
+            0
+        } else {
+            n - 1
+        };
         (cell(left), cell(right))
     }
 }

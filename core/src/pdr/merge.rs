@@ -93,9 +93,8 @@ pub fn clusters<R: Real, const D: usize>(
             each_face(i, &mut |_, open| wanted[r] = greater(open, wanted[r]));
         }
         let short = |r: usize| held[r] < R::from_f64(SMALL_SHARE) * wanted[r];
-        let outside = |picture: &[u32], i: usize, behind: Option<usize>| {
-            behind.filter(|&b| b != i && picture[b] != picture[i])
-        };
+        let outside =
+            |picture: &[u32], i: usize, behind: Option<usize>| behind.filter(|&b| b != i && picture[b] != picture[i]);
         for i in 0..n {
             let r = picture[i] as usize;
             if short(r) {
@@ -115,13 +114,13 @@ pub fn clusters<R: Real, const D: usize>(
             let r = picture[i] as usize;
             if short(r) {
                 each_face(i, &mut |behind, open| {
-                    if let Some(b) = outside(picture, i, behind) {
-                        if open == best_open[r] && held[picture[b] as usize] == best_volume[r] {
-                            let (p, q) = (root(parent, i as u32), root(parent, b as u32));
-                            let (low, high) = if p < q { (p, q) } else { (q, p) };
-                            parent[high as usize] = low;
-                            grown = true;
-                        }
+                    if let Some(b) = outside(picture, i, behind)
+                        .filter(|&b| open == best_open[r] && held[picture[b] as usize] == best_volume[r])
+                    {
+                        let (p, q) = (root(parent, i as u32), root(parent, b as u32));
+                        let (low, high) = if p < q { (p, q) } else { (q, p) };
+                        parent[high as usize] = low;
+                        grown = true;
                     }
                 });
             }

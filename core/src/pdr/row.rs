@@ -28,12 +28,12 @@ fn state<R, const D: usize>(block: &[R], n: usize) -> (&[R], [&[R]; D], &[R]) {
     (var(block, 0, n), core::array::from_fn(|c| var(block, 1 + c, n)), var(block, D + 1, n))
 }
 
+/// The first D + 2 variables of a block, and what follows.
+type Variables<'b, R, const D: usize> = (&'b mut [R], [&'b mut [R]; D], &'b mut [R], &'b mut [R]);
+
 /// The variables of a block to be written, D + 2 of them in the order of a state block, and what follows.
 #[inline(always)]
-fn split_mut<R, const D: usize>(
-    block: &mut [R],
-    n: usize,
-) -> (&mut [R], [&mut [R]; D], &mut [R], &mut [R]) {
+fn split_mut<R, const D: usize>(block: &mut [R], n: usize) -> Variables<'_, R, D> {
     let (first, mut rest) = block.split_at_mut(n);
     let middle = core::array::from_fn(|_| {
         let (a, b) = core::mem::take(&mut rest).split_at_mut(n);

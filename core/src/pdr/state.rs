@@ -128,9 +128,7 @@ impl<R: Real> Gas<R> {
         match self {
             Gas::Ideal { .. } => None,
             Gas::Isothermal { sound_speed } => Some(pressure / (sound_speed * sound_speed)),
-            Gas::Isentropic { gamma, density, pressure: p0 } => {
-                Some(density * (pressure / p0).pow(R::ONE / gamma))
-            }
+            Gas::Isentropic { gamma, density, pressure: p0 } => Some(density * (pressure / p0).pow(R::ONE / gamma)),
         }
     }
 

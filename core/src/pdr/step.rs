@@ -310,10 +310,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         }
         let layer = if D == 1 { cells[0] } else { self.mesh.layer() };
         self.fits(&new.as_fields(), layer * slab.len())?;
-        if let Some(f) = first_order {
-            if f.len() != self.mesh.len() {
-                return Err(Error::ShapeMismatch { expected: self.mesh.len(), found: f.len() });
-            }
+        if let Some(f) = first_order.filter(|f| f.len() != self.mesh.len()) {
+            return Err(Error::ShapeMismatch { expected: self.mesh.len(), found: f.len() });
         }
         let needed = self.scratch_len();
         if scratch.len() < needed {
@@ -620,13 +618,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 let row = Row { start: self.problem.mesh.index(at), at };
                 let counted = inside && !ghost;
                 let mut ignored = 0;
-                self.reconstruct(
-                    row,
-                    l,
-                    jw,
-                    &mut work,
-                    if counted { &mut report.first_order } else { &mut ignored },
-                );
+                self.reconstruct(row, l, jw, &mut work, if counted { &mut report.first_order } else { &mut ignored });
                 if !ghost {
                     if l == lo - 1 {
                         self.keep_last(jw, &mut work);
@@ -682,10 +674,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let (a, b) = if self.periodic[0] {
                 (state(block, s.n), state(block, 1))
             } else {
-                (
-                    low.ghost_cell(&state(block, 1), 0, true, gas),
-                    high.ghost_cell(&state(block, s.n), 0, false, gas),
-                )
+                (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
             };
             row::put_state(block, s.padded, 0, &a);
             row::put_state(block, s.padded, s.padded - 1, &b);
@@ -717,14 +706,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     // --- reconstruction ----------------------------------------------------------------------------------------------
 
     /// Slopes and half-step states of a row of real cells; `l` and `j` say where it stands in the window.
-    fn reconstruct(
-        &self,
-        row: Row<D>,
-        l: isize,
-        j: usize,
-        work: &mut Work<'_, R, D>,
-        fallen: &mut usize,
-    ) {
+    fn reconstruct(&self, row: Row<D>, l: isize, j: usize, work: &mut Work<'_, R, D>, fallen: &mut usize) {
         match self.problem.scheme.limiter {
             Limiter::MonotonizedCentral => self.reconstruct_with::<MonotonizedCentral>(row, l, j, work, fallen, true),
             Limiter::VanLeer => self.reconstruct_with::<VanLeer>(row, l, j, work, fallen, true),
@@ -1119,8 +1101,20 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             self.problem.mesh.index(a)
         };
         let k = at[d];
-        let above = row_of(if k < cells { k } else if self.periodic[d] { 0 } else { cells - 1 });
-        let below = row_of(if k > 0 { k - 1 } else if self.periodic[d] { cells - 1 } else { 0 });
+        let above = row_of(if k < cells {
+            k
+        } else if self.periodic[d] {
+            0
+        } else {
+            cells - 1
+        });
+        let below = row_of(if k > 0 {
+            k - 1
+        } else if self.periodic[d] {
+            cells - 1
+        } else {
+            0
+        });
         let openings = match &self.medium {
             None => Openings::None,
             Some(medium) => {

@@ -88,8 +88,7 @@ impl<R: Real> ThroatGas<R> {
         let k = from / to;
         let mach_sq = w.density * u * u / (self.gas.gamma() * w.pressure);
         let isothermal = matches!(self.gas, Gas::Isothermal { .. });
-        let (ratio, t, passing) =
-            if isothermal { self.isothermal(mach_sq, k) } else { self.isentropic(mach_sq, k) };
+        let (ratio, t, passing) = if isothermal { self.isothermal(mach_sq, k) } else { self.isentropic(mach_sq, k) };
         let passing = if passing < k { passing * to } else { from };
         let mut velocity = w.velocity;
         velocity[0] = u * (passing / to) / ratio;
@@ -233,12 +232,7 @@ pub fn jump_flux<R: Real, const D: usize>(
     let (at_l, at_r) = (throat.carry(l, area_left, to), throat.carry(r, area_right, to));
     let through = if to > R::ZERO {
         let f = flux(solver, &at_l.state, &at_r.state, gas);
-        Flux {
-            mass: to * f.mass,
-            momentum: f.momentum.map(|m| to * m),
-            energy: to * f.energy,
-            pressure: f.pressure,
-        }
+        Flux { mass: to * f.mass, momentum: f.momentum.map(|m| to * m), energy: to * f.energy, pressure: f.pressure }
     } else {
         Flux { mass: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO, pressure: R::ZERO }
     };

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use voidage_core::pdr::medium;
 use voidage_core::pdr::merge;
 use voidage_core::pdr::{
-    Boundary, Clusters, Conserved, Drag, Error, Fields, FieldsMut, Gas, Mesh, Porosity, Primitive, Problem, Report, Scheme,
+    Boundary, Clusters, Conserved, Drag, Error, Fields, FieldsMut, Gas, Mesh, Porosity, Primitive, Problem, Report,
+    Scheme,
 };
 use voidage_core::real::Real;
 
@@ -146,12 +147,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
     }
 
     /// Cells of equal widths along each axis.
-    pub fn uniform(
-        cells: [usize; D],
-        width: [R; D],
-        gas: Gas<R>,
-        boundaries: [[Boundary<R, D>; 2]; D],
-    ) -> Self {
+    pub fn uniform(cells: [usize; D], width: [R; D], gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Self {
         Self::new(std::array::from_fn(|d| vec![width[d]; cells[d]]), gas, boundaries)
     }
 
@@ -404,7 +400,8 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// One step of `dt`, whatever its stability. Returns what it did.
     pub fn step(&mut self, dt: R) -> Result<Report<R, D>, Error> {
         self.rate()?;
-        let report = self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
+        let report =
+            self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
         self.accept(dt, &report);
         Ok(report)
     }
@@ -474,7 +471,10 @@ fn step<R: Real, const D: usize>(
     if let [one] = scratch {
         return problem.step(&old.view(), &mut new.view_mut(), dt, marks, one);
     }
-    let attempt = |new: &mut Field<R, D>, scratch: &mut [Vec<R>], marks: Option<&[u8]>| -> Result<Report<R, D>, Error> {
+    let attempt = |new: &mut Field<R, D>,
+                   scratch: &mut [Vec<R>],
+                   marks: Option<&[u8]>|
+     -> Result<Report<R, D>, Error> {
         let layer = problem.mesh.layer();
         let mut rest = new.view_mut();
         let mut slabs = Vec::with_capacity(threads);
@@ -489,9 +489,7 @@ fn step<R: Real, const D: usize>(
         let reports: Result<Vec<_>, Error> = slabs
             .into_par_iter()
             .zip(scratch.par_iter_mut())
-            .map(|((range, mut slab), scratch)| {
-                problem.advance_slab(&old.view(), &mut slab, range, dt, marks, scratch)
-            })
+            .map(|((range, mut slab), scratch)| problem.advance_slab(&old.view(), &mut slab, range, dt, marks, scratch))
             .collect();
         let mut report = reports?.iter().fold(Report::new(), |a, b| a.and(b));
         problem.merge(&old.view(), &mut new.view_mut(), &mut report);

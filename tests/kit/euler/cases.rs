@@ -170,8 +170,7 @@ pub fn run_directory(directory: &Path, only: Option<&str>) -> std::io::Result<(u
     files.sort();
     let (mut passed, mut failed) = (0, 0);
     for file in files {
-        let case = Case::read(&file)
-            .map_err(|e| std::io::Error::new(e.kind(), format!("{}: {e}", file.display())))?;
+        let case = Case::read(&file).map_err(|e| std::io::Error::new(e.kind(), format!("{}: {e}", file.display())))?;
         let Some(id) = case.data["id"].as_str() else { continue };
         if only.is_some_and(|o| o != id) {
             continue;
@@ -243,7 +242,13 @@ impl Line {
         let gas = flow.gas();
         for i in 0..self.n {
             let share = ((x0 - self.edge(i)) / self.dx()).clamp(0.0, 1.0);
-            let share = if share < 1e-9 { 0.0 } else if share > 1.0 - 1e-9 { 1.0 } else { share };
+            let share = if share < 1e-9 {
+                0.0
+            } else if share > 1.0 - 1e-9 {
+                1.0
+            } else {
+                share
+            };
             let w = if share == 1.0 {
                 left.primitive()
             } else if share == 0.0 {
@@ -293,9 +298,7 @@ impl<const D: usize> Balance<D> {
         let mass = (after.density - self.before.density - entered[0]).abs() / scale(self.before.density, through[0]);
         let energy = (after.energy - self.before.energy - entered[2]).abs() / scale(self.before.energy, through[2]);
         let speed = (self.before.density * self.before.energy.abs()).sqrt();
-        let gap = (0..D)
-            .map(|c| (after.momentum[c] - self.before.momentum[c] - momentum[c]).abs())
-            .fold(0.0, f64::max);
+        let gap = (0..D).map(|c| (after.momentum[c] - self.before.momentum[c] - momentum[c]).abs()).fold(0.0, f64::max);
         [mass, gap / scale(speed, through[1]), energy]
     }
 }
@@ -316,7 +319,7 @@ fn l1<const D: usize>(flow: &Flow<f64, D>, reference: &[f64]) -> f64 {
 /// A table on fewer or more cells: means of groups, or interpolation between centres.
 fn resample(column: &[f64], n: usize) -> Vec<f64> {
     let m = column.len();
-    if m % n == 0 {
+    if m.is_multiple_of(n) {
         return column.chunks(m / n).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect();
     }
     (0..n)
@@ -412,10 +415,7 @@ fn riemann(case: &Case) -> Outcome {
         let shock = x0 + t * exact.right_shock().ok_or_else(|| Trouble::Field("no right shock".into()))?;
         let half = 0.5 * exact.at(exact.right_shock().unwrap_or(0.0) * (1.0 - 1e-9)).u;
         let list = &pass[pass.find("N=").map_or(0, |i| i + 2)..];
-        let sizes: Vec<usize> = list
-            .split([',', ':', ';', ' '])
-            .map_while(|w| w.parse().ok())
-            .collect();
+        let sizes: Vec<usize> = list.split([',', ':', ';', ' ']).map_while(|w| w.parse().ok()).collect();
         let mut last = f64::INFINITY;
         for n in sizes {
             let (flow, ..) = shock_tube(case, n)?;
@@ -441,10 +441,8 @@ fn riemann_barotropic(case: &Case) -> Outcome {
     let mut error = BTreeMap::new();
     for n in [200, 800] {
         let line = Line { n, domain };
-        let mut flow = line.flow(
-            Gas::Isothermal { sound_speed: c },
-            [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?],
-        );
+        let mut flow = line
+            .flow(Gas::Isothermal { sound_speed: c }, [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?]);
         line.fill_jump(&mut flow, x0, left, right);
         let balance = Balance::start(&flow);
         flow.run(CFL, t)?;
@@ -499,8 +497,7 @@ fn porous_riemann(case: &Case) -> Outcome {
     let mut error = BTreeMap::new();
     for n in [100, 200, 400, 800] {
         let line = Line { n, domain };
-        let mut flow =
-            line.flow(Gas::Ideal { gamma }, [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?]);
+        let mut flow = line.flow(Gas::Ideal { gamma }, [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?]);
         let (volume, faces) = jump_porosity(&line, x0, bl, br);
         flow.set_porosity(volume, faces, Treatment::default())?;
         line.fill_jump(&mut flow, x0, left, right);
@@ -511,7 +508,11 @@ fn porous_riemann(case: &Case) -> Outcome {
         v.holds(&format!("finite,positive@{n}"), finite_positive(&flow));
         report_events(&mut v, &flow);
         if n == 200 {
-            v.at_most("mass balance", balance.gap(&flow)[0], number_after(case.pass(), "boundary fluxes").unwrap_or(1e-12));
+            v.at_most(
+                "mass balance",
+                balance.gap(&flow)[0],
+                number_after(case.pass(), "boundary fluxes").unwrap_or(1e-12),
+            );
         }
     }
     let factor = number_after(case.pass(), "L1(rho) <=").unwrap_or(1.5);
@@ -563,10 +564,8 @@ fn fine_grid(case: &Case) -> Outcome {
     for n in [200, 400, 800] {
         let line = Line { n, domain };
         let ends = [at(line.centre(0))?, at(line.centre(n - 1))?];
-        let mut flow = line.flow(
-            Gas::Ideal { gamma },
-            [case.boundary("/bc/0", ends[0])?, case.boundary("/bc/1", ends[1])?],
-        );
+        let mut flow =
+            line.flow(Gas::Ideal { gamma }, [case.boundary("/bc/0", ends[0])?, case.boundary("/bc/1", ends[1])?]);
         for i in 0..n {
             // Averages of the conserved variables; the states differ in density alone or jump at an edge.
             let mut w = at(line.centre(i))?;
@@ -630,7 +629,9 @@ fn slab(case: &Case) -> Outcome {
         let drift = (0..line.n)
             .map(|i| {
                 let (w, e) = (flow.get(i), exact(i));
-                ((w.density / e.rho - 1.0).abs()).max((w.velocity[0] / e.u - 1.0).abs()).max((w.pressure / e.p - 1.0).abs())
+                ((w.density / e.rho - 1.0).abs())
+                    .max((w.velocity[0] / e.u - 1.0).abs())
+                    .max((w.pressure / e.p - 1.0).abs())
             })
             .fold(0.0, f64::max);
         v.at_most(&format!("M{mach} drift"), drift, held);
@@ -667,10 +668,8 @@ fn closure(case: &Case) -> Outcome {
         let q = 0.5 * up.rho * up.u * up.u;
         for n in [50, 200] {
             let line = Line { n, domain: [0.0, 1.0] };
-            let mut flow = line.flow(
-                Gas::Ideal { gamma },
-                [Boundary::FarField(up.primitive()), Boundary::FarField(down.primitive())],
-            );
+            let mut flow = line
+                .flow(Gas::Ideal { gamma }, [Boundary::FarField(up.primitive()), Boundary::FarField(down.primitive())]);
             let (volume, faces) = jump_porosity(&line, 0.5, b1, b2);
             flow.set_porosity(volume, faces, Treatment::default())?;
             for i in 0..n {
@@ -723,8 +722,7 @@ fn nozzle(case: &Case) -> Outcome {
     let shock = case.number("/exact/x_shock").ok();
     let last = State::new(rho[exit], u[exit], p[exit]);
     let first = State::new(rho[0], u[0], p[0]);
-    let stagnation = first.p
-        * (1.0 + 0.5 * (gamma - 1.0) * mach(0).powi(2)).powf(gamma / (gamma - 1.0));
+    let stagnation = first.p * (1.0 + 0.5 * (gamma - 1.0) * mach(0).powi(2)).powf(gamma / (gamma - 1.0));
     let p_exit = number_after(case.text("/bc/right"), "static pressure");
     let mut errors = BTreeMap::new();
     // The coarse mesh serves the order of the smooth cases.
@@ -837,7 +835,10 @@ fn drag(case: &Case) -> Outcome {
         let span = 1.0;
         for steps in [20, 40, 80] {
             let mut flow = Flow::uniform(n, [1.0; 3], gas, [[Boundary::Periodic; 2]; 3]);
-            flow.set_drag([vec![2.0 * soft; cells], vec![], vec![]], [vec![a / u0.abs().max(1.0); cells], vec![], vec![]]);
+            flow.set_drag(
+                [vec![2.0 * soft; cells], vec![], vec![]],
+                [vec![a / u0.abs().max(1.0); cells], vec![], vec![]],
+            );
             for i in 0..cells {
                 flow.set(i, &slanted);
             }
@@ -845,7 +846,8 @@ fn drag(case: &Case) -> Outcome {
                 flow.step(span / steps as f64)?;
             }
             let w = flow.get(0);
-            kept &= (w.velocity[1] / (0.5 * u0) - 1.0).abs() < 1e-13 && (w.velocity[2] / (-0.25 * u0) - 1.0).abs() < 1e-13;
+            kept &=
+                (w.velocity[1] / (0.5 * u0) - 1.0).abs() < 1e-13 && (w.velocity[2] / (-0.25 * u0) - 1.0).abs() < 1e-13;
             ends.push(w.velocity[0]);
         }
         let (d1, d2) = ((ends[0] - ends[1]).abs(), (ends[1] - ends[2]).abs());
@@ -951,8 +953,7 @@ fn shock_slab(case: &Case) -> Outcome {
     let reference = case.column("rho_avg")?;
     let run = |n: usize, cr: f64| -> Result<Flow<f64, 1>, Trouble> {
         let line = Line { n, domain };
-        let mut flow =
-            line.flow(Gas::Ideal { gamma }, [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?]);
+        let mut flow = line.flow(Gas::Ideal { gamma }, [case.boundary("/bc/0", left)?, case.boundary("/bc/1", right)?]);
         let (volume, faces) = formula_porosity(&line, &formula)?;
         flow.set_porosity(volume, faces, smooth_duct())?;
         if cr > 0.0 {
@@ -1010,8 +1011,7 @@ fn small_cell(case: &Case) -> Outcome {
     let (plain, _) = run(None)?;
     let exact = Riemann::new(left, right, gamma);
     let (x0, xs) = (case.number("/x0_physical")?, case.column("x_physical")?);
-    let error: f64 =
-        (0..n).map(|i| beta[i] * dx * (flow.get(i).density - exact.at((xs[i] - x0) / t).rho).abs()).sum();
+    let error: f64 = (0..n).map(|i| beta[i] * dx * (flow.get(i).density - exact.at((xs[i] - x0) / t).rho).abs()).sum();
     v.holds("finite,positive", finite_positive(&flow));
     report_events(&mut v, &flow);
     let ratio = flow.steps as f64 / plain.steps as f64;
@@ -1128,11 +1128,8 @@ fn rest(case: &Case) -> Outcome {
     let cells = n[0] * n[1] * n[2];
     let mut volume = vec![0.0; cells];
     let mut random = vec![1.0; cells];
-    let mut faces: [Vec<f64>; 3] = [
-        vec![0.0; (n[0] + 1) * n[1] * n[2]],
-        vec![0.0; n[0] * (n[1] + 1) * n[2]],
-        vec![0.0; n[0] * n[1] * (n[2] + 1)],
-    ];
+    let mut faces: [Vec<f64>; 3] =
+        [vec![0.0; (n[0] + 1) * n[1] * n[2]], vec![0.0; n[0] * (n[1] + 1) * n[2]], vec![0.0; n[0] * n[1] * (n[2] + 1)]];
     for row in 0..i.len() {
         let (a, b, c) = (i[row] as usize, j[row] as usize, k[row] as usize);
         let cell = (c * n[1] + b) * n[0] + a;
@@ -1353,8 +1350,10 @@ fn average(
     gas: Gas<f64>,
     sides: [[f64; 2]; 2],
 ) -> voidage_core::pdr::Conserved<f64, 2> {
-    const X: [f64; 4] = [-0.861_136_311_594_052_6, -0.339_981_043_584_856_3, 0.339_981_043_584_856_3, 0.861_136_311_594_052_6];
-    const W: [f64; 4] = [0.173_927_422_568_726_9, 0.326_072_577_431_273_1, 0.326_072_577_431_273_1, 0.173_927_422_568_726_9];
+    const X: [f64; 4] =
+        [-0.861_136_311_594_052_6, -0.339_981_043_584_856_3, 0.339_981_043_584_856_3, 0.861_136_311_594_052_6];
+    const W: [f64; 4] =
+        [0.173_927_422_568_726_9, 0.326_072_577_431_273_1, 0.326_072_577_431_273_1, 0.173_927_422_568_726_9];
     let mut sum = voidage_core::pdr::Conserved { density: 0.0, momentum: [0.0; 2], energy: 0.0 };
     for a in 0..4 {
         for b in 0..4 {
@@ -1427,7 +1426,11 @@ fn noh(case: &Case) -> Outcome {
     let i = (1..n).rev().find(|&i| flow.get(i - 1).density > half).unwrap_or(0);
     let (a, b) = (flow.get(i - 1).density, flow.get(i).density);
     let found = line.centre(i - 1) + line.dx() * (a - half) / (a - b);
-    v.at_most("radial shock/dx", (found - shock).abs() / line.dx(), number_after(case.pass(), "shock radius within").unwrap_or(2.0));
+    v.at_most(
+        "radial shock/dx",
+        (found - shock).abs() / line.dx(),
+        number_after(case.pass(), "shock radius within").unwrap_or(2.0),
+    );
     let inner = (shock / line.dx()) as usize;
     let worst = (5..inner.saturating_sub(5)).map(|i| (flow.get(i).density / plateau - 1.0).abs()).fold(0.0, f64::max);
     v.at_most("plateau", worst, number_after(case.pass(), "rho plateau within").unwrap_or(5.0) / 100.0);
@@ -1451,8 +1454,7 @@ fn noh_cartesian<const D: usize>(case: &Case, n: usize, v: &mut Verdict) -> Resu
     // Gas from outside arrives too early at the outer faces only within u0 t of them.
     let size = 1.15 * (shock + u0 * t);
     let dx = size / n as f64;
-    let mut flow =
-        Flow::uniform([n; D], [dx; D], Gas::Ideal { gamma }, [[Boundary::Wall, Boundary::ZeroGradient]; D]);
+    let mut flow = Flow::uniform([n; D], [dx; D], Gas::Ideal { gamma }, [[Boundary::Wall, Boundary::ZeroGradient]; D]);
     flow.fill(|x| {
         let r = x.iter().map(|x| x * x).sum::<f64>().sqrt();
         Primitive { density: rho0, velocity: x.map(|x| -u0 * x / r), pressure: p0 }
@@ -1494,7 +1496,8 @@ fn sedov(case: &Case) -> Outcome {
     let rho0 = case.number("/rho0")?;
     let (shock, peak) = (case.number("/exact/shock_radius")?, case.number("/exact/rho_post")?);
     let p0 = 1e-6 * case.number("/exact/p_post")?;
-    let share = number_after(case.text("/porous_variant"), "deposit E*").ok_or_else(|| Trouble::Field("/porous_variant".into()))?;
+    let share = number_after(case.text("/porous_variant"), "deposit E*")
+        .ok_or_else(|| Trouble::Field("/porous_variant".into()))?;
     let energy = case.number("/E_total")? * share;
     let n = 120;
     let line = Line { n, domain: [0.0, 1.2 * shock] };
@@ -1517,7 +1520,11 @@ fn sedov(case: &Case) -> Outcome {
     let i = (top + 1..n).find(|&i| flow.get(i).density < level).unwrap_or(n - 1);
     let (a, b) = (flow.get(i - 1).density, flow.get(i).density);
     let found = line.centre(i - 1) + line.dx() * (a - level) / (a - b);
-    v.at_most("radial shock/dx", (found - shock).abs() / line.dx(), number_after(case.pass(), "shock radius within").unwrap_or(1.5));
+    v.at_most(
+        "radial shock/dx",
+        (found - shock).abs() / line.dx(),
+        number_after(case.pass(), "shock radius within").unwrap_or(1.5),
+    );
     v.at_least("peak share", highest / peak, number_after(case.pass(), "peak rho >=").unwrap_or(60.0) / 100.0);
     match e {
         1 => sedov_cartesian::<2>(case, 120, &mut v)?,
@@ -1560,7 +1567,10 @@ fn sedov_cartesian<const D: usize>(case: &Case, n: usize, v: &mut Verdict) -> Re
     let total: f64 = parts.iter().sum::<f64>() * dx.powi(D as i32);
     let energy = case.number("/E_total")? / 2f64.powi(D as i32);
     for (c, part) in parts.iter().enumerate() {
-        flow.set(c, &Primitive { density: rho0, velocity: [0.0; D], pressure: p0 + (gamma - 1.0) * energy * part / total });
+        flow.set(
+            c,
+            &Primitive { density: rho0, velocity: [0.0; D], pressure: p0 + (gamma - 1.0) * energy * part / total },
+        );
     }
     let balance = Balance::start(&flow);
     flow.run(0.4, t)?;
@@ -1570,7 +1580,11 @@ fn sedov_cartesian<const D: usize>(case: &Case, n: usize, v: &mut Verdict) -> Re
     let level = 0.5 * (0.6 * case.number("/exact/rho_post")? + rho0);
     let (axis, diagonal) = radii(&flow, n, dx, |w, _| w.density - level);
     v.at_most(&format!("{D}D axis/dx"), (axis - shock).abs() / dx, 1.5);
-    v.at_most(&format!("{D}D spread/dx"), (axis - diagonal).abs() / dx, number_after(case.pass(), "diagonal <=").unwrap_or(1.0));
+    v.at_most(
+        &format!("{D}D spread/dx"),
+        (axis - diagonal).abs() / dx,
+        number_after(case.pass(), "diagonal <=").unwrap_or(1.0),
+    );
     Ok(())
 }
 
@@ -1602,7 +1616,10 @@ fn gresho(case: &Case) -> Outcome {
             Primitive { density: 1.0, velocity: [-u * s, u * c], pressure }
         });
         let kinetic = |f: &Flow<f64, 2>| {
-            (0..f.len()).map(|c| f.get(c)).map(|w| w.density * (w.velocity[0].powi(2) + w.velocity[1].powi(2))).sum::<f64>()
+            (0..f.len())
+                .map(|c| f.get(c))
+                .map(|w| w.density * (w.velocity[0].powi(2) + w.velocity[1].powi(2)))
+                .sum::<f64>()
         };
         let before = kinetic(&flow);
         flow.run(0.8, t)?;
@@ -1626,11 +1643,21 @@ fn double_mach(case: &Case) -> Outcome {
     let t = case.number("/t_end")?;
     let sides = [case.pair("/domain/0")?, case.pair("/domain/1")?];
     let value = |k: &str| case.number(&format!("/init/{k}"));
-    let post = Primitive { density: value("post/rho")?, velocity: [value("post/u")?, value("post/v")?], pressure: value("post/p")? };
-    let pre = Primitive { density: value("pre/rho")?, velocity: [value("pre/u")?, value("pre/v")?], pressure: value("pre/p")? };
+    let post = Primitive {
+        density: value("post/rho")?,
+        velocity: [value("post/u")?, value("post/v")?],
+        pressure: value("post/p")?,
+    };
+    let pre = Primitive {
+        density: value("pre/rho")?,
+        velocity: [value("pre/u")?, value("pre/v")?],
+        pressure: value("pre/p")?,
+    };
     let sentence = case.text("/init/shock");
     let mach = number_after(sentence, "Mach").ok_or_else(|| Trouble::Field("/init/shock".into()))?;
-    let angle = sentence.split(", ").find_map(|s| s.trim().split(' ').next()?.parse::<f64>().ok().filter(|_| s.contains("degrees")));
+    let angle = sentence
+        .split(", ")
+        .find_map(|s| s.trim().split(' ').next()?.parse::<f64>().ok().filter(|_| s.contains("degrees")));
     let angle = angle.unwrap_or(60.0).to_radians();
     let foot = sentence.split("x=").nth(1).and_then(|s| evaluate(s.split(' ').next()?, &[])).unwrap_or(1.0 / 6.0);
     let speed = mach * (gamma * pre.pressure / pre.density).sqrt();
@@ -1790,11 +1817,10 @@ fn run_channel(
     t_end: f64,
 ) -> Result<Channel, Trouble> {
     let dims: [f64; 3] = [case.number("/dims/0")?, case.number("/dims/1")?, case.number("/dims/2")?];
-    let solid = [[case.number("/box/0/0")?, case.number("/box/0/1")?, case.number("/box/0/2")?], [
-        case.number("/box/1/0")?,
-        case.number("/box/1/1")?,
-        case.number("/box/1/2")?,
-    ]];
+    let solid = [
+        [case.number("/box/0/0")?, case.number("/box/0/1")?, case.number("/box/0/2")?],
+        [case.number("/box/1/0")?, case.number("/box/1/1")?, case.number("/box/1/2")?],
+    ];
     let inlet = case.state("/inlet")?;
     let gamma = case.gamma().unwrap_or(1.4);
     let width: [f64; 3] = std::array::from_fn(|d| dims[d] / n[d] as f64);
@@ -1860,7 +1886,11 @@ fn channel(case: &Case) -> Outcome {
         [case.number("/grid/0")? as usize, case.number("/grid/1")? as usize, case.number("/grid/2")? as usize];
     let dims: [f64; 3] = [case.number("/dims/0")?, case.number("/dims/1")?, case.number("/dims/2")?];
     let corner = |s: usize| -> Result<[f64; 3], Trouble> {
-        Ok([case.number(&format!("/box/{s}/0"))?, case.number(&format!("/box/{s}/1"))?, case.number(&format!("/box/{s}/2"))?])
+        Ok([
+            case.number(&format!("/box/{s}/0"))?,
+            case.number(&format!("/box/{s}/1"))?,
+            case.number(&format!("/box/{s}/2"))?,
+        ])
     };
     let solid = [corner(0)?, corner(1)?];
     let inlet = case.state("/inlet")?;
@@ -1895,7 +1925,11 @@ fn channel(case: &Case) -> Outcome {
         .fold(0.0, f64::max);
     v.at_most("u in the box", fast, 0.0);
     v.at_most("mass balance", main.balance, number_after(case.pass(), "-dM/dt| <=").unwrap_or(1e-12));
-    v.at_most("plane flux spread", main.plane_spread, number_after(case.pass(), "equal to inflow within").unwrap_or(1e-6));
+    v.at_most(
+        "plane flux spread",
+        main.plane_spread,
+        number_after(case.pass(), "equal to inflow within").unwrap_or(1e-6),
+    );
     v.at_least("wake deficit", main.deficit, 0.05);
     // Mirror symmetry where box and grid are symmetric.
     for d in [1, 2] {

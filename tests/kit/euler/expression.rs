@@ -87,8 +87,8 @@ impl Parser<'_> {
             c if c.is_ascii_digit() || c == '.' => {
                 let start = self.at;
                 while let Some(&c) = self.text.get(self.at) {
-                    let exponent = c == 'e'
-                        && self.text.get(self.at + 1).is_some_and(|d| d.is_ascii_digit() || *d == '-');
+                    let exponent =
+                        c == 'e' && self.text.get(self.at + 1).is_some_and(|d| d.is_ascii_digit() || *d == '-');
                     let sign = c == '-' && self.at > start && self.text[self.at - 1] == 'e';
                     if !(c.is_ascii_digit() || c == '.' || exponent || sign) {
                         break;
@@ -136,7 +136,10 @@ pub fn number_after(text: &str, phrase: &str) -> Option<f64> {
         .char_indices()
         .find(|(i, c)| {
             let previous = rest[..*i].chars().next_back();
-            !(c.is_ascii_digit() || *c == '.' || *c == 'e' || (matches!(c, '-' | '+') && matches!(previous, None | Some('e'))))
+            !(c.is_ascii_digit()
+                || *c == '.'
+                || *c == 'e'
+                || (matches!(c, '-' | '+') && matches!(previous, None | Some('e'))))
         })
         .map_or(rest.len(), |(i, _)| i);
     rest[..end].trim_end_matches(['.', 'e']).parse().ok()

@@ -97,11 +97,13 @@ pub fn step_stays_physical<R: Real, const D: usize>(s: &mut Source<'_>) {
             other => other.pressure(density, R::ZERO),
         };
         let c = (gas.gamma() * pressure / density).sqrt();
-        let velocity = std::array::from_fn(|_| R::from_f64(4.0 * s.unit() - 2.0) * c * R::from_f64(s.pick(&[0.0, 1e-3, 1.0, 3.0])));
+        let velocity = std::array::from_fn(|_| {
+            R::from_f64(4.0 * s.unit() - 2.0) * c * R::from_f64(s.pick(&[0.0, 1e-3, 1.0, 3.0]))
+        });
         Primitive { density, velocity, pressure }
     };
     let boundaries = std::array::from_fn(|_| {
-        if s.bits() % 4 == 0 {
+        if s.bits().is_multiple_of(4) {
             return [Boundary::Periodic; 2];
         }
         std::array::from_fn(|_| {
@@ -117,28 +119,35 @@ pub fn step_stays_physical<R: Real, const D: usize>(s: &mut Source<'_>) {
         })
     });
     let widths = std::array::from_fn(|d| {
-        let even = s.bits() % 2 == 0;
+        let even = s.bits().is_multiple_of(2);
         (0..n[d]).map(|_| R::from_f64(if even { 0.1 } else { s.scale(1e-3, 1.0) })).collect()
     });
     let mut flow: Flow<R, D> = Flow::new(widths, gas, boundaries);
     flow.scheme.riemann = s.pick(&[Riemann::Hllc, Riemann::Hllc, Riemann::Hlle, Riemann::Rusanov]);
-    flow.scheme.limiter =
-        s.pick(&[Limiter::MonotonizedCentral, Limiter::VanLeer, Limiter::Minmod, Limiter::Unlimited, Limiter::FirstOrder]);
+    flow.scheme.limiter = s.pick(&[
+        Limiter::MonotonizedCentral,
+        Limiter::VanLeer,
+        Limiter::Minmod,
+        Limiter::Unlimited,
+        Limiter::FirstOrder,
+    ]);
     flow.scheme.pressure = s.pick(&[PressureForm::Geometric, PressureForm::Geometric, PressureForm::Paper]);
-    if s.bits() % 3 == 0 {
+    if s.bits().is_multiple_of(3) {
         flow.gravity = std::array::from_fn(|_| R::from_f64(s.pick(&[0.0, -9.81, 3.0])));
     }
-    if s.bits() % 4 != 0 {
+    if !s.bits().is_multiple_of(4) {
         let (volume, faces) = porosity(s, n);
         flow.set_porosity(volume, faces, Treatment::default()).expect("lengths fit");
     }
-    if s.bits() % 2 == 0 {
+    if s.bits().is_multiple_of(2) {
         let coefficients = |s: &mut Source<'_>| -> [Vec<R>; D] {
             std::array::from_fn(|_| {
-                if s.bits() % 3 == 0 {
+                if s.bits().is_multiple_of(3) {
                     return Vec::new();
                 }
-                (0..cells).map(|_| R::from_f64(if s.bits() % 3 == 0 { 0.0 } else { s.scale(1e-3, 1e12) })).collect()
+                (0..cells)
+                    .map(|_| R::from_f64(if s.bits().is_multiple_of(3) { 0.0 } else { s.scale(1e-3, 1e12) }))
+                    .collect()
             })
         };
         let (quadratic, linear) = (coefficients(s), coefficients(s));
