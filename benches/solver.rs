@@ -28,8 +28,8 @@ fn wave<const D: usize>(n: [usize; D], porous: Option<f64>) -> Flow<f64, D> {
         flow.set_porosity(volume, faces, Treatment::default()).unwrap();
     }
     flow.fill(|x| Primitive {
-        density: 1.0 + 0.2 * (6.283185307179586 * x.iter().sum::<f64>()).sin(),
-        velocity: std::array::from_fn(|d| 0.3 + 0.1 * (6.283185307179586 * x[(d + 1) % D]).cos()),
+        density: 1.0 + 0.2 * (std::f64::consts::TAU * x.iter().sum::<f64>()).sin(),
+        velocity: std::array::from_fn(|d| 0.3 + 0.1 * (std::f64::consts::TAU * x[(d + 1) % D]).cos()),
         pressure: 1.0,
     });
     flow

@@ -1,11 +1,15 @@
 //! Drag of the sub-grid obstacles, diagonal per cell, linear and quadratic.
 //!
-//!     d(rho u_i)/dt = F_i − rho (a_i + ½ CR_i |u|) u_i
+//! ```text
+//! d(rho u_i)/dt = F_i − rho (a_i + ½ CR_i |u|) u_i
+//! ```
 //!
 //! The obstacles rest, so drag does no work: lost kinetic energy stays in the cell as heat and the energy equation has no
 //! term for it. One step is
 //!
-//!     m' = (e^(−a dt) m + φ F) / (1 + ½ CR s φ),   φ = (1 − e^(−a dt))/a   (dt, if a = 0)
+//! ```text
+//! m' = (e^(−a dt) m + φ F) / (1 + ½ CR s φ),   φ = (1 − e^(−a dt))/a   (dt, if a = 0)
+//! ```
 //!
 //! with s = |u| while the flow slows down and s = |u'| (implicit) while it speeds up. It is exact at any dt for decay
 //! (F = 0), keeps every steady state (F = rho (a + ½ CR |u|) u) whatever the step, never turns the sign, and does not swing
