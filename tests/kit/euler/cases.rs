@@ -1840,7 +1840,8 @@ fn run_channel(
     let crossing = dims[0] / sound;
     let balance = Balance::start(&flow);
     while flow.time < t_end {
-        let dt = flow.advance(0.9, t_end)?;
+        // No shortened last step: the discrete steady state depends (to second order) on dt.
+        let dt = flow.advance(0.9, f64::MAX)?;
         let plane = n[1] * n[2];
         let mean = (0..plane).map(|r| flow.get(r * n[0]).velocity[0]).sum::<f64>() / plane as f64;
         flow.boundaries[0][0] = flow.boundaries[0][0].relaxed(0, mean, sound, dt / crossing);
@@ -1933,7 +1934,13 @@ fn channel(case: &Case) -> Outcome {
     v.at_least("wake deficit", main.deficit, 0.05);
     // Mirror symmetry where box and grid are symmetric.
     for d in [1, 2] {
-        if (solid[0][d] + solid[1][d] - dims[d]).abs() > 1e-12 * dims[d] {
+        // Only where the tabulated porosity is symmetric itself, not merely to its rounding.
+        let uneven = (0..volume.len()).any(|c| {
+            let mut at = [c % n[0], c / n[0] % n[1], c / n[0] / n[1]];
+            at[d] = n[d] - 1 - at[d];
+            volume[c] != volume[(at[2] * n[1] + at[1]) * n[0] + at[0]]
+        });
+        if (solid[0][d] + solid[1][d] - dims[d]).abs() > 1e-12 * dims[d] || uneven {
             continue;
         }
         let mut worst = 0.0f64;
