@@ -18,6 +18,10 @@
 //! 13. [`surface`]: cells, x and y faces of a layer from a triangulated surface
 //! 14. [`section`]: its z faces
 //! 15. [`overlap`]: the exact union of bodies in a cell
+//!
+//! Beside the geometry, and using none of it, stands the flow:
+//!
+//! - [`pdr`]: the Euler equations in a porous space; it sees porosity only as slices
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
@@ -29,6 +33,7 @@ pub mod gjk;
 pub mod grid;
 pub mod layer;
 pub mod overlap;
+pub mod pdr;
 pub mod real;
 pub mod sat;
 pub mod section;

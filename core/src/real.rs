@@ -73,6 +73,14 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Square root, correctly rounded; NaN for negative arguments.
     fn sqrt(self) -> Self;
+    /// e to this power, from libm always.
+    fn exp(self) -> Self;
+    /// e to this power, less one, exact for small arguments; from libm always.
+    fn exp_m1(self) -> Self;
+    /// Natural logarithm, from libm always.
+    fn ln(self) -> Self;
+    /// This value to a power, from libm always.
+    fn pow(self, exponent: Self) -> Self;
     /// Largest integer not above the value.
     fn floor(self) -> Self;
     /// The smaller of two values; the other one if one is NaN.
@@ -162,7 +170,7 @@ pub trait Vector:
 }
 
 macro_rules! real {
-    ($scalar:ty, $vector:ty, $sqrt:path, $floor:path, $exponent:expr, $scale:expr, $underflow:expr) => {
+    ($scalar:ty, $vector:ty, [$sqrt:path, $floor:path, $exp:path, $exp_m1:path, $ln:path, $pow:path], $exponent:expr, $scale:expr, $underflow:expr) => {
         impl Real for $scalar {
             type Vector = $vector;
             const ZERO: Self = 0.0;
@@ -199,6 +207,22 @@ macro_rules! real {
                 return <$scalar>::sqrt(self);
                 #[cfg(not(feature = "std"))]
                 $sqrt(self)
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            #[inline]
+            fn exp_m1(self) -> Self {
+                $exp_m1(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline]
+            fn pow(self, exponent: Self) -> Self {
+                $pow(self, exponent)
             }
             #[inline(always)]
             fn floor(self) -> Self {
@@ -281,5 +305,19 @@ macro_rules! real {
     };
 }
 
-real!(f32, glam::Vec3, libm::sqrtf, libm::floorf, 0x7f80_0000, 65536.0, 65536.0);
-real!(f64, glam::DVec3, libm::sqrt, libm::floor, 0x7ff0_0000_0000_0000, 1.2676506002282294e30, 2.582249878086909e120);
+real!(
+    f32,
+    glam::Vec3,
+    [libm::sqrtf, libm::floorf, libm::expf, libm::expm1f, libm::logf, libm::powf],
+    0x7f80_0000,
+    65536.0,
+    65536.0
+);
+real!(
+    f64,
+    glam::DVec3,
+    [libm::sqrt, libm::floor, libm::exp, libm::expm1, libm::log, libm::pow],
+    0x7ff0_0000_0000_0000,
+    1.2676506002282294e30,
+    2.582249878086909e120
+);

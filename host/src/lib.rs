@@ -13,3 +13,4 @@ pub mod output;
 pub mod porosity;
 pub mod progress;
 pub mod run;
+pub mod solve;

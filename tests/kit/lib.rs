@@ -1,7 +1,9 @@
 //! Generators, oracles and properties shared by tests, fuzz targets and benches.
+#![forbid(unsafe_code)]
 
 pub mod corpus;
 pub mod dirty;
+pub mod euler;
 pub mod fields;
 pub mod fuzzed;
 pub mod gjk;

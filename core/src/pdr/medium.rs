@@ -1,0 +1,227 @@
+//! The porous space: open fractions of cells and faces as the caller's slices, and one byte of marks per cell.
+//!
+//! Works on the live axes only: a plane flow has two axes, whichever they are.
+
+use super::state::{greater, lesser};
+use super::throat::throat_area;
+use crate::real::Real;
+
+/// Cells per live axis and their widths; axis 0 runs fastest.
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a, R, const D: usize> {
+    /// Cell widths along each axis; their number is the number of cells.
+    pub widths: [&'a [R]; D],
+}
+
+impl<R: Real, const D: usize> Mesh<'_, R, D> {
+    /// Cells along each axis.
+    #[inline(always)]
+    pub fn cells(&self) -> [usize; D] {
+        self.widths.map(<[R]>::len)
+    }
+
+    /// Cells in all.
+    pub fn len(&self) -> usize {
+        self.cells().iter().product()
+    }
+
+    /// No cell at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Faces normal to axis `d`.
+    pub fn faces(&self, d: usize) -> usize {
+        let n = self.cells();
+        (0..D).map(|a| if a == d { n[a] + 1 } else { n[a] }).product()
+    }
+
+    /// Cells of one layer: those that share an index of the last axis. Slabs for threads are whole layers.
+    pub fn layer(&self) -> usize {
+        self.cells()[..D - 1].iter().product()
+    }
+
+    /// Indices of a cell along each axis.
+    pub fn coordinates(&self, mut cell: usize) -> [usize; D] {
+        self.cells().map(|n| {
+            let i = cell % n;
+            cell /= n;
+            i
+        })
+    }
+
+    /// Flat index of a cell.
+    #[inline(always)]
+    pub fn index(&self, at: [usize; D]) -> usize {
+        let n = self.cells();
+        (0..D).rev().fold(0, |i, a| i * n[a] + at[a])
+    }
+
+    /// Flat index of the low face of a cell along axis `d`; the high face is [`Mesh::face_stride`] further.
+    #[inline(always)]
+    pub fn face(&self, d: usize, at: [usize; D]) -> usize {
+        let n = self.cells();
+        (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a])
+    }
+
+    /// Distance between the two faces of a cell along axis `d`.
+    #[inline(always)]
+    pub fn face_stride(&self, d: usize) -> usize {
+        self.cells()[..d].iter().product()
+    }
+
+    /// Volume of a cell, its obstacles included; length or area in fewer dimensions.
+    pub fn volume(&self, at: [usize; D]) -> R {
+        let mut v = R::ONE;
+        for a in 0..D {
+            v *= self.widths[a][at[a]];
+        }
+        v
+    }
+}
+
+/// Open fractions: of cell volumes, and of the faces normal to each axis (one longer along their own axis).
+#[derive(Clone, Copy, Debug)]
+pub struct Porosity<'a, R, const D: usize> {
+    /// `beta_v`.
+    pub volume: &'a [R],
+    /// `beta_x`, `beta_y`, `beta_z` of the live axes.
+    pub faces: [&'a [R]; D],
+    /// One byte of marks per cell, written by [`mark`].
+    pub marks: &'a [u8],
+}
+
+/// Mark of a cell whose own reconstruction stays first order: less open volume than half its largest face could empty.
+pub const SMALL: u8 = 1 << 6;
+/// Mark of a cell with no open face: nothing happens there.
+pub const SEALED: u8 = 1 << 7;
+
+/// Mark of a porosity jump at the low face of axis `d`.
+#[inline(always)]
+pub const fn jump_low(d: usize) -> u8 {
+    1 << (2 * d)
+}
+
+/// Mark of a porosity jump at the high face of axis `d`.
+#[inline(always)]
+pub const fn jump_high(d: usize) -> u8 {
+    2 << (2 * d)
+}
+
+/// A cell counts as small below this share of its largest open face: the share that merging restores, and so the factor
+/// (its inverse) by which the stable time step may shrink.
+pub(crate) const SMALL_SHARE: f64 = 0.5;
+
+/// Porosity as the kernel asks for it at single cells and faces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Medium<'a, R, const D: usize> {
+    pub mesh: Mesh<'a, R, D>,
+    pub porosity: Porosity<'a, R, D>,
+}
+
+impl<R: Real, const D: usize> Medium<'_, R, D> {
+    /// Open fractions of the low and high face of a cell along `d`.
+    #[inline(always)]
+    pub fn openings(&self, d: usize, at: [usize; D]) -> (R, R) {
+        let f = self.mesh.face(d, at);
+        let b = self.porosity.faces[d];
+        (b[f], b[f + self.mesh.face_stride(d)])
+    }
+
+    /// Directional duct area of a cell: the larger of its two faces. Not `beta_v`: a cell of tiny volume behind open faces
+    /// is a thin slice, not a narrow duct.
+    #[inline(always)]
+    pub fn duct(&self, d: usize, at: [usize; D]) -> R {
+        let (a, b) = self.openings(d, at);
+        greater(a, b)
+    }
+
+    /// Throat area of the jump at the low face of `at` along `d`.
+    pub fn passage(&self, d: usize, at: [usize; D], periodic: bool) -> R {
+        let (left, right) = self.ducts(d, at, periodic);
+        throat_area(left, self.porosity.faces[d][self.mesh.face(d, at)], right)
+    }
+
+    /// The two duct areas at the low face of `at` along `d`, where `at[d]` may be one past the end. Beyond the domain stands
+    /// the cell on the other side if the axis is periodic, else a copy of the inner cell.
+    pub fn ducts(&self, d: usize, at: [usize; D], periodic: bool) -> (R, R) {
+        let n = self.mesh.cells()[d];
+        let (i, stride, b) = (at[d], self.mesh.face_stride(d), self.porosity.faces[d]);
+        let face = self.mesh.face(d, at);
+        let inner = b[face];
+        // Inside, both cells share this face: only the outer face of each is still to be read.
+        if i > 0 && i < n {
+            return (greater(b[face - stride], inner), greater(inner, b[face + stride]));
+        }
+        let cell = |k: usize| {
+            let mut c = at;
+            c[d] = k;
+            self.duct(d, c)
+        };
+        let left = if i > 0 {
+            i - 1
+        } else if periodic {
+            n - 1
+        } else {
+            0
+        };
+        let right = if i < n {
+            i
+        } else if periodic {
+            0
+        } else {
+            n - 1
+        };
+        (cell(left), cell(right))
+    }
+}
+
+/// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
+/// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
+/// point has large shares of small differences: those below a fifth of the threshold do not count).
+fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
+    let (least, most) = (lesser(left, right), greater(left, right));
+    let difference = greater(most - least, least - face);
+    let narrow = difference > R::from_f64(3.0) * threshold * most && difference > R::from_f64(0.2) * threshold;
+    difference > threshold || narrow
+}
+
+/// Writes the marks of all cells: which faces are jumps (differences of the open fraction above `threshold`; infinity for
+/// none), which cells are small, which are sealed.
+///
+/// The slices must have the lengths of the mesh; `marks` one byte per cell.
+pub fn mark<R: Real, const D: usize>(
+    mesh: &Mesh<'_, R, D>,
+    volume: &[R],
+    faces: &[&[R]; D],
+    periodic: [bool; D],
+    threshold: R,
+    marks: &mut [u8],
+) {
+    let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
+    for cell in 0..marks.len() {
+        let at = mesh.coordinates(cell);
+        let mut bits = 0;
+        let mut widest = R::ZERO;
+        for d in 0..D {
+            let (low, high) = medium.openings(d, at);
+            widest = greater(widest, greater(low, high));
+            let mut above = at;
+            above[d] += 1;
+            let (l, r) = medium.ducts(d, at, periodic[d]);
+            if is_jump(l, low, r, threshold) {
+                bits |= jump_low(d);
+            }
+            let (l, r) = medium.ducts(d, above, periodic[d]);
+            if is_jump(l, high, r, threshold) {
+                bits |= jump_high(d);
+            }
+        }
+        if !(widest > R::ZERO) {
+            bits |= SEALED;
+        } else if volume[cell] < R::from_f64(SMALL_SHARE) * widest {
+            bits |= SMALL;
+        }
+        marks[cell] = bits;
+    }
+}

@@ -1,0 +1,3 @@
+//! Gas flow through porosity fields.
+
+pub mod flow;

@@ -1,0 +1,194 @@
+//! Corners of the input: tiny cells, blocked space, hardly any cells, states that are none.
+
+use voidage::solve::flow::{Flow, Treatment};
+use voidage_core::pdr::{Boundary, Error, Gas, Primitive};
+
+const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
+
+fn blast<const D: usize>(flow: &mut Flow<f64, D>) {
+    flow.fill(|x| Primitive {
+        density: if x[0] < 0.5 { 1.0 } else { 0.125 },
+        velocity: [0.0; D],
+        pressure: if x[0] < 0.5 { 1.0 } else { 0.1 },
+    });
+}
+
+fn finite<const D: usize>(flow: &Flow<f64, D>) -> bool {
+    (0..flow.len()).all(|c| {
+        let w = flow.get(c);
+        w.density > 0.0 && w.pressure > 0.0 && w.density.is_finite() && w.pressure.is_finite()
+    })
+}
+
+/// A mesh of `n` cells across the unit interval along axis 0 with thin cells of open volume `tiny` strewn in.
+fn thin_cells<const D: usize>(n: [usize; D], tiny: f64) -> (usize, usize) {
+    let make = |porous: bool| {
+        let mut flow: Flow<f64, D> = Flow::uniform(n, [1.0 / n[0] as f64; D], IDEAL, [[Boundary::Wall; 2]; D]);
+        if porous {
+            let volume = (0..flow.len()).map(|c| if c % 7 == 3 || c % 11 == 4 { tiny } else { 1.0 }).collect();
+            let faces = std::array::from_fn(|d| vec![1.0; (0..D).map(|a| n[a] + usize::from(a == d)).product()]);
+            flow.set_porosity(volume, faces, Treatment::default()).unwrap();
+        }
+        blast(&mut flow);
+        let before = flow.content();
+        flow.run(0.8, 0.2).unwrap();
+        let after = flow.content();
+        assert!(finite(&flow) && flow.total.floored == 0);
+        assert!((after.density / before.density - 1.0).abs() < 1e-12);
+        assert!((after.energy / before.energy - 1.0).abs() < 1e-12);
+        flow.steps
+    };
+    (make(true), make(false))
+}
+
+#[test]
+fn tiny_cells_cost_at_most_four_times_the_steps() {
+    for tiny in [0.3, 1e-3, 1e-12] {
+        for (porous, plain) in [thin_cells([200], tiny), thin_cells([48, 9], tiny), thin_cells([24, 6, 5], tiny)] {
+            assert!(porous <= 4 * plain, "{tiny}: {porous} {plain}");
+        }
+    }
+}
+
+#[test]
+fn blocked_and_enclosed_space_is_inert() {
+    // All blocked; a sealed pocket; a dead end; a blocked row.
+    let n = [8, 6];
+    for kind in 0..4 {
+        let mut volume = vec![1.0; 48];
+        let mut faces = [vec![1.0; 9 * 6], vec![1.0; 8 * 7]];
+        match kind {
+            0 => {
+                volume.fill(0.0);
+                faces.iter_mut().for_each(|f| f.fill(0.0));
+            }
+            1 => {
+                // Cell (4, 3) closed all round but open inside.
+                faces[0][3 * 9 + 4] = 0.0;
+                faces[0][3 * 9 + 5] = 0.0;
+                faces[1][3 * 8 + 4] = 0.0;
+                faces[1][4 * 8 + 4] = 0.0;
+            }
+            2 => {
+                faces[0][3 * 9 + 5] = 0.0;
+                faces[1][3 * 8 + 4] = 0.0;
+                faces[1][4 * 8 + 4] = 0.0;
+            }
+            _ => {
+                for i in 0..8 {
+                    volume[2 * 8 + i] = 0.0;
+                    faces[1][2 * 8 + i] = 0.0;
+                    faces[1][3 * 8 + i] = 0.0;
+                    faces[0][2 * 9 + i] = 0.0;
+                }
+                faces[0][2 * 9 + 8] = 0.0;
+            }
+        }
+        let mut flow = Flow::uniform(n, [0.125; 2], IDEAL, [[Boundary::Wall; 2]; 2]);
+        flow.set_porosity(volume.clone(), faces, Treatment::default()).unwrap();
+        blast(&mut flow);
+        let before: Vec<_> = (0..48).map(|c| flow.get(c)).collect();
+        for _ in 0..200 {
+            let dt = flow.stable_dt(0.8).unwrap();
+            flow.step(if dt.is_finite() { dt } else { 1.0 }).unwrap();
+        }
+        assert!(finite(&flow), "kind {kind}");
+        for c in 0..48 {
+            let still = kind == 0 || (kind == 1 && c == 3 * 8 + 4) || volume[c] == 0.0;
+            if still {
+                assert_eq!(flow.get(c), before[c], "kind {kind} cell {c}");
+            }
+        }
+    }
+}
+
+#[test]
+fn hardly_any_cells_and_odd_gases() {
+    for n in 1..4 {
+        for ends in [Boundary::Periodic, Boundary::Wall, Boundary::ZeroGradient] {
+            let mut flow: Flow<f64, 3> = Flow::uniform([n, 1, 2], [0.1, 1e-4, 0.1], IDEAL, [[ends; 2]; 3]);
+            flow.fill(|x| Primitive { density: 1.0 + x[0] + x[2], velocity: [0.1, 0.2, 0.3], pressure: 1.0 });
+            for _ in 0..20 {
+                flow.advance(0.8, f64::MAX).unwrap();
+            }
+            assert!(finite(&flow));
+        }
+    }
+    for gamma in [1.01, 1.4, 3.0] {
+        let mut flow: Flow<f64, 1> = Flow::uniform([100], [0.01], Gas::Ideal { gamma }, [[Boundary::Wall; 2]]);
+        blast(&mut flow);
+        flow.run(0.8, 0.2).unwrap();
+        assert!(finite(&flow), "{gamma}");
+    }
+}
+
+#[test]
+fn a_state_that_is_none_is_refused_with_its_cell() {
+    for (cell, density, pressure) in [(3, f64::NAN, 1.0), (4, -1.0, 1.0), (5, 1.0, -1.0), (6, 1.0, f64::INFINITY)] {
+        let mut flow: Flow<f64, 1> = Flow::uniform([10], [0.1], IDEAL, [[Boundary::Wall; 2]]);
+        flow.fill(|_| Primitive { density: 1.0, velocity: [0.0], pressure: 1.0 });
+        flow.set(cell, &Primitive { density, velocity: [0.0], pressure });
+        assert_eq!(flow.stable_dt(0.8), Err(Error::Unphysical { cell }));
+    }
+}
+
+#[test]
+fn broken_contracts_are_named() {
+    let mut flow: Flow<f64, 1> = Flow::uniform([10], [0.1], IDEAL, [[Boundary::Wall, Boundary::Periodic]]);
+    flow.fill(|_| Primitive { density: 1.0, velocity: [0.0], pressure: 1.0 });
+    assert_eq!(flow.stable_dt(0.8), Err(Error::HalfPeriodic { axis: 0 }));
+    let fit = flow.set_porosity(vec![1.0; 9], [vec![1.0; 11]], Treatment::default());
+    assert_eq!(fit, Err(Error::ShapeMismatch { expected: 10, found: 9 }));
+}
+
+#[test]
+fn channel_with_a_box_is_symmetric_and_still_in_the_box() {
+    let n = [20, 9, 9];
+    let solid = |c: usize| {
+        let (i, j, k) = (c % 20, c / 20 % 9, c / 180);
+        (8..10).contains(&i) && (3..6).contains(&j) && (3..6).contains(&k)
+    };
+    let volume: Vec<f64> = (0..1620).map(|c| if solid(c) { 0.0 } else { 1.0 }).collect();
+    let faces = std::array::from_fn(|d| {
+        let size: [usize; 3] = std::array::from_fn(|a| n[a] + usize::from(a == d));
+        (0..size.iter().product::<usize>())
+            .map(|f| {
+                let at = [f % size[0], f / size[0] % size[1], f / size[0] / size[1]];
+                let cell = |at: [usize; 3]| (at[2] * 9 + at[1]) * 20 + at[0];
+                let mut below = at;
+                let open_above = at[d] >= n[d] || !solid(cell(at));
+                let open_below = at[d] == 0 || {
+                    below[d] -= 1;
+                    !solid(cell(below))
+                };
+                f64::from(u8::from(open_above && open_below))
+            })
+            .collect()
+    });
+    let wind = Primitive { density: 1.2, velocity: [10.0, 0.0, 0.0], pressure: 101325.0 };
+    let mut boundaries = [[Boundary::Wall; 2]; 3];
+    boundaries[0] = [Boundary::FarField(wind); 2];
+    let mut flow: Flow<f64, 3> = Flow::uniform(n, [0.5; 3], IDEAL, boundaries);
+    flow.set_porosity(volume, faces, Treatment::default()).unwrap();
+    for c in 0..1620 {
+        let mut w = wind;
+        if solid(c) {
+            w.velocity = [0.0; 3];
+        }
+        flow.set(c, &w);
+    }
+    for _ in 0..600 {
+        flow.advance(0.8, f64::MAX).unwrap();
+    }
+    assert!(finite(&flow));
+    for c in 0..1620 {
+        let (i, j, k) = (c % 20, c / 20 % 9, c / 180);
+        let (w, m) = (flow.get(c), flow.get((k * 9 + 8 - j) * 20 + i));
+        assert_eq!(w.density.to_bits(), m.density.to_bits());
+        assert_eq!(w.velocity[1], -m.velocity[1]);
+        if solid(c) {
+            assert_eq!(w.velocity, [0.0; 3]);
+        }
+    }
+    assert!(flow.get((4 * 9 + 4) * 20 + 12).velocity[0] < 9.0, "no wake");
+}

@@ -1,0 +1,7 @@
+//! Tests of the PDR Euler kernel: invariances to the bit, conservation, convergence, extremes, reference cases.
+
+mod balance;
+mod convergence;
+mod extremes;
+mod invariance;
+mod reference;
