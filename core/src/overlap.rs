@@ -507,6 +507,8 @@ fn divide<R: Real>(
     for p in first + 1..end {
         let piece = growing[p];
         match side(&piece.polygon, divider.normal, divider.offset, thickness) {
+            // Solid thinner than rounding: which side of the plane holds it cannot be told.
+            Place::On if backs(&piece, divider, thickness) => return Err(Full),
             Place::On => {}
             Place::Negative => {
                 growing[behind] = piece;
@@ -545,6 +547,16 @@ fn divide<R: Real>(
     }
     growing.copy_within(end..before, behind);
     Ok((behind, behind + before - end))
+}
+
+/// Does a piece in the plane of another look the other way and lie, by their boxes, on the same spot?
+fn backs<R: Real>(a: &Piece<R>, b: &Piece<R>, thickness: R) -> bool {
+    let shared = [0, 1, 2].map(|axis| {
+        let ((a_lo, a_hi), (b_lo, b_hi)) = (a.polygon.extent(axis), b.polygon.extent(axis));
+        a_hi.min(b_hi) - a_lo.max(b_lo)
+    });
+    let wide = shared.iter().filter(|&&s| s > thickness).count();
+    dot(a.normal, b.normal) < R::ZERO && wide >= 2 && shared.iter().all(|&s| s >= -thickness)
 }
 
 /// Add ∫ n dA and ∫ n_a (1 − x_a) dA of a polygon.

@@ -76,6 +76,9 @@ fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
 /// Most cells of a grid: beyond, the fields would not fit into any memory this program will meet.
 const MAX_CELLS: f64 = 4e9;
 
+/// Most cells along one axis.
+const MAX_AXIS: f64 = 1e8;
+
 /// Make the edges. `scene` is the box of all bodies; what is odd but harmless goes to `warnings`.
 ///
 /// # Errors
@@ -156,6 +159,9 @@ enum AxisSpec {
 const HARMLESS: [&str; 6] = ["nx", "ny", "nz", "uniform", "name", "comment"];
 
 fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
+    if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
+        return Err(Error::file(path, "not a regular file"));
+    }
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
     let document: Document = if json {
@@ -203,7 +209,9 @@ fn axis(path: &Path, name: &str, spec: AxisSpec) -> Result<Vec<f64>> {
         let (p, c, r) = (points.len(), cells.len(), ratios.len());
         return Err(wrong(format!("{p} points need {} cells and ratios, not {c} and {r}", p.saturating_sub(1))));
     }
-    check_count(DVec3::new(cells.iter().map(|&n| n as f64).sum(), 1.0, 1.0))?;
+    if cells.iter().map(|&n| n as f64).sum::<f64>() > MAX_AXIS {
+        return Err(wrong(format!("more than {MAX_AXIS:e} cells along an axis")));
+    }
     let mut edges = vec![points.first().copied().unwrap_or(0.0)];
     for (ends, (&n, &ratio)) in points.windows(2).zip(cells.iter().zip(&ratios)) {
         if n == 0 || ratio == 0.0 || !ratio.is_finite() {

@@ -46,7 +46,7 @@ pub fn inspect(args: &InspectArgs) -> Result<()> {
     }
     if args.json {
         let text = serde_json::to_string_pretty(&inspection);
-        println!("{}", text.map_err(|e| crate::error::Error::new(format!("cannot write JSON: {e}")))?);
+        progress.print(&text.map_err(|e| crate::error::Error::new(format!("cannot write JSON: {e}")))?);
     } else {
         inspection.table(&progress);
     }

@@ -6,6 +6,7 @@
 mod bins;
 mod fields;
 mod layers;
+mod planes;
 mod unions;
 
 use crate::bodies::Bodies;
@@ -94,7 +95,8 @@ pub fn porosity_watched(
     options: Options,
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
-    let bins = Bins::new(grid, bodies);
+    let moved = planes::into_planes(grid, &bodies.triangles);
+    let bins = Bins::new(grid, bodies, moved.as_deref().unwrap_or(&bodies.triangles));
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())

@@ -3,7 +3,7 @@
 use crate::cli::TalkArgs;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::time::Instant;
 
 /// Messages to the terminal, warnings collected, stages timed.
@@ -43,8 +43,14 @@ impl Progress {
     /// Say something that is no warning.
     pub fn say(&self, sentence: impl AsRef<str>) {
         if !self.quiet {
-            println!("{}", sentence.as_ref());
+            // A reader that closes early (head) is no failure.
+            let _ = writeln!(std::io::stdout(), "{}", sentence.as_ref());
         }
+    }
+
+    /// Print a result, however quiet the run.
+    pub fn print(&self, text: &str) {
+        let _ = writeln!(std::io::stdout(), "{text}");
     }
 
     /// A bar of `steps` steps, on a terminal only.

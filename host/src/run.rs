@@ -56,6 +56,7 @@ fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
 /// Anything that keeps it from writing all that was asked for.
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
+    keep_inputs(args)?;
     let threads = args.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
@@ -74,6 +75,12 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
             porosity::porosity_watched(&grid, &bodies, options, &|| bar.inc(1))
         });
         report_leaks(&bodies, &result, &mut progress);
+        if result.max_gap > args.tol.max(ROUNDING) {
+            progress.warn(format!(
+                "where bodies overlap, the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
+                result.max_gap, args.tol
+            ));
+        }
         let report = Report::new(args, &edges, &bodies, &result);
         write(args, &edges, &result, &report, &mut progress)?;
         report.summary(&progress);
@@ -83,6 +90,24 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         }
         Ok(())
     })
+}
+
+/// No output may replace a file of the scene, the grid or another output.
+fn keep_inputs(args: &PorosityArgs) -> Result<()> {
+    let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    let outputs: Vec<&Path> =
+        [&args.output, &args.png, &args.report].into_iter().flatten().map(|p| p.as_path()).collect();
+    for (n, output) in outputs.iter().enumerate() {
+        let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
+        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
+        if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
+            return Err(Error::usage(format!(
+                "{}: an output would replace another file of this run",
+                output.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn source(args: &PorosityArgs, bodies: &Bodies) -> Source {
@@ -118,6 +143,9 @@ fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
         ));
     }
 }
+
+/// Bounds this close are one value.
+const ROUNDING: f64 = 1e-9;
 
 /// A row that misses zero by more than this fraction of a face deserves a warning; less is cracks of `f32` corners.
 const LEAK_TO_WARN: f64 = 1e-6;

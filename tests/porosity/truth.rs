@@ -22,7 +22,10 @@ fn check(mesh: &Path, set: &Path) {
     let d = truth.compare(&p.beta);
     let name = set.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     println!("{name:45} cell {:.1e} face {:.1e} wall {:.1e} gap {:.1e}", d.cell, d.face, d.wall, p.max_gap);
-    assert!(d.cell <= EXACT && d.face <= EXACT && d.wall <= WALL, "{name}: {d:?}");
+    // Where a union found no proof, the result says how far off it can be.
+    let allowed = EXACT.max(p.max_gap);
+    assert!(d.cell <= allowed && d.face <= allowed && d.wall <= WALL, "{name}: {d:?}");
+    assert!(p.cells.ambiguous > 0 || p.max_gap == 0.0, "{name}: a gap without an overlap");
     assert!(p.max_gap <= 1e-4, "{name}: gap {}", p.max_gap);
 }
 

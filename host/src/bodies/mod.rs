@@ -126,15 +126,13 @@ impl Bodies {
             solids: mesh.solids.len(),
             ..measure(&scaled)
         };
-        let indexed = clean(&scaled, &mut d, &mut report);
+        let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
+        let indexed = clean(&scaled, solid_of, &mut d, &mut report);
         let Some((indexed, shells)) = indexed else {
             let reason = format!("all {} triangles are degenerate (no area): nothing solid", d.triangles);
             return Err(crate::error::Error::file(&mesh.path, reason));
         };
-        let name_of = |n: u32| {
-            let solid = mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
-            mesh.solids.get(solid).map_or_else(String::new, |s| s.name.clone())
-        };
+        let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
         let (closed, names) = close(&indexed, &shells, name_of, &mut d, &mut report);
         self.assemble(closed, names, &mut d, &mut report);
         self.warnings.append(&mut report.warnings);
@@ -210,7 +208,12 @@ fn measure(triangles: &[[DVec3; 3]]) -> Diagnosis {
 }
 
 /// Weld, drop what is no surface, split into shells. None if nothing has an area.
-fn clean(triangles: &[[DVec3; 3]], d: &mut Diagnosis, report: &mut Reporter) -> Option<(Indexed, Vec<Shell>)> {
+fn clean(
+    triangles: &[[DVec3; 3]],
+    solid_of: impl Fn(u32) -> usize,
+    d: &mut Diagnosis,
+    report: &mut Reporter,
+) -> Option<(Indexed, Vec<Shell>)> {
     let mut mesh = weld::weld(triangles);
     d.points = mesh.points.len();
     let flat = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]) == DVec3::ZERO;
@@ -227,7 +230,7 @@ fn clean(triangles: &[[DVec3; 3]], d: &mut Diagnosis, report: &mut Reporter) -> 
         report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
     }
     close_cracks(&mut mesh, &mut alive, d, report);
-    let shells = shells::shells(&mut mesh, &alive);
+    let shells = shells::shells(&mut mesh, &alive, solid_of);
     d.shells = shells.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {

@@ -158,14 +158,22 @@ struct Link {
     same: bool,
 }
 
-/// Pair the uses of one edge: opposite directions first, nearest in the file first; what is left is boundary.
-fn pair(uses: &[(u64, Use)], links: &mut Vec<Link>, mut lonely: impl FnMut(Use)) {
-    if let [(_, p), (_, q)] = uses
-        && p.triangle != q.triangle
-    {
-        links.push(Link { a: p.triangle, b: q.triangle, same: p.up == q.up });
-        return;
+/// The two triangles of a plain edge.
+fn plain(uses: &[(u64, Use)]) -> Option<Link> {
+    match uses {
+        [(_, p), (_, q)] if p.triangle != q.triangle => Some(Link { a: p.triangle, b: q.triangle, same: p.up == q.up }),
+        _ => None,
     }
+}
+
+/// Pair the uses of one edge that is not plain: opposite directions first, the least `strangeness` first, nearest in the file
+/// first; what is left is boundary.
+fn pair(
+    uses: &[(u64, Use)],
+    mut strangeness: impl FnMut(u32, u32) -> u8,
+    links: &mut Vec<Link>,
+    mut lonely: impl FnMut(Use),
+) {
     let mut free = vec![true; uses.len()];
     for same in [false, true] {
         let mut candidates = Vec::new();
@@ -173,13 +181,13 @@ fn pair(uses: &[(u64, Use)], links: &mut Vec<Link>, mut lonely: impl FnMut(Use))
             // A long list would cost its square; its far ends are not neighbours anyway.
             for (n, (_, q)) in uses.iter().enumerate().skip(m + 1).take(64) {
                 if (p.up == q.up) == same && p.triangle != q.triangle {
-                    candidates.push((p.triangle.abs_diff(q.triangle), m, n));
+                    candidates.push((strangeness(p.triangle, q.triangle), p.triangle.abs_diff(q.triangle), m, n));
                 }
             }
         }
         candidates.sort_unstable();
         // Turning triangles over is for plain edges only: at an edge of many, an odd one out is a loose flap.
-        for (_, m, n) in candidates.into_iter().filter(|_| !same || uses.len() == 2) {
+        for (_, _, m, n) in candidates.into_iter().filter(|_| !same || uses.len() == 2) {
             if free[m] && free[n] {
                 (free[m], free[n]) = (false, false);
                 links.push(Link { a: uses[m].1.triangle, b: uses[n].1.triangle, same });
@@ -194,13 +202,25 @@ fn pair(uses: &[(u64, Use)], links: &mut Vec<Link>, mut lonely: impl FnMut(Use))
 }
 
 /// Split a mesh into shells and turn their triangles to agree with each other; `mesh` is changed where triangles turn.
-pub fn shells(mesh: &mut Indexed, alive: &[bool]) -> Vec<Shell> {
+/// `solid_of` tells which named solid a triangle came from: at edges of many, a solid's triangles belong together, and so do
+/// those that plain edges connect.
+pub fn shells(mesh: &mut Indexed, alive: &[bool], solid_of: impl Fn(u32) -> usize) -> Vec<Shell> {
     let count = mesh.triangles.len();
     let mut links = Vec::with_capacity(count * 3 / 2);
     let mut lonely = Vec::new();
-    for uses in Edges::new(mesh, alive).each() {
+    let edges = Edges::new(mesh, alive);
+    let mut connected = Sets::new(count);
+    for link in edges.each().filter_map(plain) {
+        connected.join(link.a as usize, link.b as usize);
+        links.push(link);
+    }
+    for uses in edges.each().filter(|uses| plain(uses).is_none()) {
         let edge = uses[0].0;
-        pair(uses, &mut links, |u| lonely.push((u.triangle, edge)));
+        let strangeness = |a: u32, b: u32| {
+            let strange = connected.find(a as usize) != connected.find(b as usize);
+            u8::from(solid_of(a) != solid_of(b)) * 2 + u8::from(strange)
+        };
+        pair(uses, strangeness, &mut links, |u| lonely.push((u.triangle, edge)));
     }
     let turn = orientations(count, &links);
     for (t, turn) in mesh.triangles.iter_mut().zip(&turn) {

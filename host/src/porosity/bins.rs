@@ -25,14 +25,18 @@ pub struct Group {
     pub min: DVec3,
     /// Highest corner.
     pub max: DVec3,
+    /// The body has no volume.
+    pub sheet: bool,
 }
 
 impl<'a> Bins<'a> {
-    /// Sort the triangles of all bodies.
+    /// Sort the triangles of all bodies; `triangles` are those of `bodies`, or a copy with corners moved.
     #[must_use]
-    pub fn new(grid: &Grid<f64>, bodies: &'a Bodies) -> Self {
+    pub fn new(grid: &Grid<f64>, bodies: &Bodies, triangles: &'a [[DVec3; 3]]) -> Self {
         let runs = bodies.bodies.iter().enumerate().map(|(b, body)| (b as u32, body.triangles.clone()));
-        Self::of(grid, &bodies.triangles, runs.flat_map(|(b, run)| run.map(move |t| (b, t as u32))))
+        let mut bins = Self::of(grid, triangles, runs.flat_map(|(b, run)| run.map(move |t| (b, t as u32))));
+        bins.groups.iter_mut().for_each(|g| g.sheet = bodies.bodies[g.body as usize].sheet);
+        bins
     }
 
     /// Sort some triangles, given as body and position, bodies in ascending order.
@@ -66,7 +70,7 @@ impl<'a> Bins<'a> {
             for same in run.chunk_by(|a, b| a.0 == b.0) {
                 let corners = same.iter().flat_map(|&(_, t)| triangles[t as usize]);
                 let (min, max) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
-                groups.push(Group { body: same[0].0, ids: at..at + same.len(), min, max });
+                groups.push(Group { body: same[0].0, ids: at..at + same.len(), min, max, sheet: false });
                 at += same.len();
             }
             layers.push(begin..groups.len());

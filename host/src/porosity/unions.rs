@@ -81,7 +81,7 @@ impl Row {
     fn new(bins: &Bins, k: usize, lo: f64, hi: f64) -> Self {
         let mut row = Row::default();
         for (g, group) in bins.groups(k).iter().enumerate() {
-            if group.max.y <= lo || group.min.y >= hi {
+            if group.sheet || group.max.y <= lo || group.min.y >= hi {
                 continue;
             }
             let first = row.ids.len();
@@ -95,11 +95,23 @@ impl Row {
     }
 }
 
-/// The bounds of one cell or face in a layer, open for a better result.
+/// By how much a union may leave the bounds given by the bodies' own shares and still be rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Narrow the bounds of a cell or face. Both pairs hold, so does their intersection, unless rounding has crossed it; a pair that
+/// contradicts the bodies' own shares is not believed.
 fn improve(lower: &mut f64, sum: &mut f64, (low, high): Bounds) {
-    // Both pairs hold; so does their intersection, unless rounding has crossed it.
     let (l, u) = (lower.max(low), sum.min(1.0).min(high));
-    (*lower, *sum) = if l <= u { (l, u) } else { ((l + u) * 0.5, (l + u) * 0.5) };
+    if l <= u {
+        (*lower, *sum) = (l, u);
+    } else if l - u <= ROUNDING {
+        (*lower, *sum) = (u, l);
+    }
+}
+
+/// Does a union lie within the bounds given by the bodies' own shares?
+fn fits(lower: f64, sum: f64, (low, high): Bounds) -> bool {
+    high >= lower - ROUNDING && low <= sum.min(1.0) + ROUNDING
 }
 
 impl Unions {
@@ -111,6 +123,7 @@ impl Unions {
     /// divided ones.
     pub fn resolve(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) -> (usize, usize) {
         let [nx, ny, _] = grid.cells();
+        let areas = self.options.areas;
         let (mut ambiguous, mut divided) = (0, 0);
         for j in 0..ny {
             if !row_is_open(layer, nx, j) {
@@ -126,8 +139,10 @@ impl Unions {
                 }
                 let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                 let (lo, hi) = grid.cell_box([i, j, k]);
-                let refined = match self.union(lo, hi, bins, k, row) {
-                    Ok(union) => Some(Refined::from(union)),
+                let union = self.union(lo, hi, bins, k, row).map(Refined::from);
+                let believed = union.and_then(|u| if agrees(layer, nx, i, j, &u, areas) { Ok(u) } else { Err(Full) });
+                let refined = match believed {
+                    Ok(refined) => Some(refined),
                     Err(Full) if open > self.options.tol => {
                         divided += 1;
                         self.divide(lo, hi, bins, k)
@@ -191,7 +206,7 @@ impl Unions {
         let edges = [0, 1, 2].map(|a| [lo[a], lo[a] + (hi[a] - lo[a]) * 0.5, hi[a]]);
         let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
         let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
-        let meets = |g: &&Group| g.min.cmple(max).all() && g.max.cmpge(min).all();
+        let meets = |g: &&Group| !g.sheet && g.min.cmple(max).all() && g.max.cmpge(min).all();
         // Rows and columns begin outside: what lies towards lower x or y counts too.
         let before = |t: &&u32| {
             let corners = bins.triangles()[**t as usize];
@@ -244,7 +259,9 @@ impl Unions {
             let k = face[2] as isize - isize::from(axis == 2 && below);
             WallSide { lo, hi, k: k.clamp(0, layers - 1) as usize, below }
         });
-        self.wall_between(bins, axis, sides, self.options.depth)
+        // What a sheet blocks beyond the solids is not known here.
+        let sheet = sides.iter().any(|side| bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g)));
+        if sheet { (0.0, 1.0) } else { self.wall_between(bins, axis, sides, self.options.depth) }
     }
 
     /// As [`Unions::wall`], by quarters where there is too much surface.
@@ -266,9 +283,9 @@ impl Unions {
     fn wall_union(&mut self, bins: &Bins, axis: usize, sides: &[WallSide; 2]) -> Result<f64, Full> {
         let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
         let mut overlap = Overlap::new(&mut space, sides[0].lo, sides[0].hi);
-        for &WallSide { lo, hi, k, below } in sides {
-            let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
-            for group in bins.groups(k).iter().filter(|g| g.min.cmplt(max).all() && g.max.cmpgt(min).all()) {
+        for side in sides {
+            let &WallSide { lo, hi, k, below } = side;
+            for group in bins.groups(k).iter().filter(|g| side.touches(g)) {
                 overlap.add(lo, hi, below, bins.triangles(), bins.ids(group))?;
             }
         }
@@ -286,6 +303,10 @@ struct WallSide {
 }
 
 impl WallSide {
+    fn touches(&self, group: &Group) -> bool {
+        group.min.cmple(DVec3::from_array(self.hi)).all() && group.max.cmpge(DVec3::from_array(self.lo)).all()
+    }
+
     /// The box halved along each axis, the half that touches the face; `quarter` (0..4) picks the halves across it.
     fn quarter(mut self, axis: usize, quarter: usize) -> Self {
         let upper_half = [(axis, self.below), ((axis + 1) % 3, quarter & 1 == 1), ((axis + 2) % 3, quarter & 2 == 2)];
@@ -349,6 +370,17 @@ fn open_gap(layer: &Layer<f64>, nx: usize, ny: usize, i: usize, j: usize) -> f64
         open = open.max(y(c + nx));
     }
     open
+}
+
+/// Does a union agree with the bodies' own shares of the cell and of those low faces that lie in no wall?
+/// Without `areas` nothing is known of z faces.
+fn agrees(layer: &Layer<f64>, nx: usize, i: usize, j: usize, u: &Refined, areas: bool) -> bool {
+    let Layer { lower, sum, marks } = layer;
+    let (c, x) = (j * nx + i, j * (nx + 1) + i);
+    fits(lower.cell[c], sum.cell[c], u.cell)
+        && (marks.x[x] != 0 || fits(lower.x[x], sum.x[x], u.low[0]))
+        && (marks.y[c] != 0 || fits(lower.y[c], sum.y[c], u.low[1]))
+        && (!areas || marks.z[c] != 0 || fits(lower.z[c], sum.z[c], u.low[2]))
 }
 
 /// Store what is known of a cell and of those of its faces that it decides.
