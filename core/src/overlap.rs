@@ -23,6 +23,12 @@ pub const MAX_SPREAD: f64 = 1e-9;
 /// one plane.
 const THICKNESS_IN_EPSILONS: f64 = 64.0;
 
+/// Planes of two bodies between one and so many thicknesses apart are neither one nor two for certain.
+const DOUBT: f64 = 4.0;
+
+/// Fragments smaller than this, in faces of the cell, cannot do harm.
+const SLIVER: f64 = 1e-9;
+
 /// Solid fractions of the union in one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellUnion<R> {
@@ -385,7 +391,15 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
                     }
                     Branch::Node(n) => &nodes[n as usize],
                 };
-                f.branch = match side(&f.polygon, node.normal, node.offset, self.thickness) {
+                let place = side(&f.polygon, node.normal, node.offset, self.thickness);
+                if place != Place::On
+                    && side(&f.polygon, node.normal, node.offset, self.thickness * R::from_f64(DOUBT)) == Place::On
+                    && f.polygon.doubled_area().iter().any(|a| a.abs() > R::from_f64(SLIVER))
+                {
+                    // Not quite one plane, not clearly two: another piece of the same faces may be judged otherwise.
+                    return Err(Full);
+                }
+                f.branch = match place {
                     Place::Positive => node.positive,
                     Place::Negative => node.negative,
                     Place::On => {

@@ -114,7 +114,7 @@ pub struct PorosityArgs {
     #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol)]
     pub tol: f64,
     /// How often a cell without a proof may be divided by two
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=10))]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=10))]
     pub depth: u32,
     /// Also certified lower and upper bounds of all fields
     #[arg(long)]

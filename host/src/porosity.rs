@@ -32,7 +32,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { tol: 1e-4, depth: 5, bounds: false, areas: true }
+        Options { tol: 1e-4, depth: 6, bounds: false, areas: true }
     }
 }
 

@@ -135,3 +135,57 @@ fn merge(fine: &FieldSet, n: usize) -> FieldSet {
     }
     f
 }
+
+/// Parts of one file that share corners are bodies of their own: a slab flush inside a box, in named solids.
+#[test]
+fn named_solids_that_share_corners_stay_apart() {
+    use voidage::input::{Mesh, Solid};
+    use voidage_tests::solids::cuboid;
+    let low = DVec3::new(1.25, 0.75, 0.25);
+    let mut triangles = cuboid(low, DVec3::new(2.0, 1.25, 1.0));
+    triangles.extend(cuboid(low, DVec3::new(2.0, 1.25, 0.5)));
+    let solids = [0..12, 12..24].map(|triangles| Solid { name: String::new(), triangles }).to_vec();
+    let mut bodies = voidage::bodies::Bodies::default();
+    let mesh = Mesh { path: "two.stl".into(), solids, triangles, warnings: Vec::new() };
+    bodies.add(&mesh, 1.0).expect("bodies");
+    assert_eq!(bodies.bodies.len(), 2);
+    let edges = Edges([vec![0.0, 3.0], vec![0.0, 3.0], vec![0.0, 3.0]]);
+    let p = porosity(&edges.grid(None).expect("a grid"), &bodies, Options::default());
+    assert!((p.solid_volume - 0.28125).abs() < 1e-14, "{}", p.solid_volume);
+}
+
+/// Bodies that differ by rounding have no provable union: the bounds must say so and hold the truth.
+#[test]
+fn nearly_coincident_bodies_are_bounded() {
+    for seed in 0..10 {
+        let mut rng = Random::new(seed);
+        let (turn, half) = (rng.turn(), rng.point(DVec3::splat(0.1), DVec3::splat(0.4)));
+        let solids: Vec<_> = (0..3)
+            .map(|_| turned_box(DVec3::splat(0.5) + rng.point(DVec3::splat(-2e-14), DVec3::splat(2e-14)), half, turn))
+            .collect();
+        let bodies = scene(&solids);
+        let axis: Vec<f64> = (0..=6).map(|i| -0.7 + 0.4 * f64::from(i)).collect();
+        let edges = Edges([axis.clone(), axis.clone(), axis]);
+        let grid = edges.grid(None).expect("a grid");
+        let run = |bodies| porosity(&grid, bodies, Options { bounds: true, ..Options::default() });
+        let (union, single) = (run(&bodies), run(&scene(&solids[..1])));
+        let [lower, upper] = union.bounds.expect("bounds");
+        for (n, b) in single.beta.v.iter().enumerate() {
+            assert!(lower.v[n] <= b + 1e-9 && upper.v[n] >= b - 1e-9, "seed {seed} cell {n}");
+        }
+    }
+}
+
+/// The skid's caps miss the plane x = 0 by up to 3e-17: its faces are the same on every grid through that plane.
+#[test]
+fn walls_that_miss_a_plane_by_rounding_lie_in_it() {
+    let mesh = voidage::input::read(&voidage_tests::truth::fixture("cad_skid.stl")).expect("a mesh");
+    let mut bodies = voidage::bodies::Bodies::default();
+    bodies.add(&mesh, 1.0).expect("bodies");
+    let run = |n: usize| {
+        let axis = |length: f64| (0..=n).map(|i| length * i as f64 / n as f64).collect();
+        let edges = Edges([axis(8.36885), axis(4.6), axis(3.6)]);
+        porosity(&edges.grid(None).expect("a grid"), &bodies, Options::default()).beta
+    };
+    assert_close(&run(8), &merge(&run(16), 8), 1e-9, "8 and 16 cells");
+}
