@@ -13,7 +13,6 @@
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
 use crate::clip::{Polygon, cross, dot, split, sub};
-use crate::layer::{ShapeMismatch, at_least};
 use crate::real::{Real, Vector};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
@@ -115,20 +114,6 @@ pub struct Workspace<'a, R: Real> {
     pub tasks: &'a mut [Task],
 }
 
-impl<R: Real> Workspace<'_, R> {
-    /// Check that no slice is empty.
-    ///
-    /// # Errors
-    /// [`ShapeMismatch`] for the first empty one.
-    pub fn check(&self) -> Result<(), ShapeMismatch> {
-        for len in [self.pieces.len(), self.growing.len(), self.nodes.len(), self.parts.len()] {
-            at_least(1, len)?;
-        }
-        at_least(1, self.fragments.len())?;
-        at_least(1, self.tasks.len())
-    }
-}
-
 /// The workspace is too small for this cell; divide the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full;
@@ -155,12 +140,6 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         }
         let thickness = R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach;
         Overlap { space, origin: lo, scale: size, thickness, part_count: 0, piece_count: 0, node_count: 0 }
-    }
-
-    /// Number of pieces of surface so far.
-    #[must_use]
-    pub fn pieces(&self) -> usize {
-        self.piece_count
     }
 
     /// Add what a body has of surface inside the cell `lo..hi`; nothing happens if it has none. With `below` the cell is the
@@ -261,7 +240,7 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         let count = part.end - part.first;
         let Workspace { pieces, growing, nodes, tasks, .. } = &mut *self.space;
         growing.get_mut(..count).ok_or(Full)?.copy_from_slice(&pieces[part.first..part.end]);
-        tasks[0] = Task { first: 0, end: count, parent: None };
+        *tasks.first_mut().ok_or(Full)? = Task { first: 0, end: count, parent: None };
         let (mut open_tasks, root) = (1, self.node_count as u32);
         while open_tasks > 0 {
             open_tasks -= 1;
@@ -300,7 +279,7 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         for own in 0..self.part_count {
             for p in self.space.parts[own].first..self.space.parts[own].end {
                 let Piece { polygon, normal, .. } = self.space.pieces[p];
-                self.outside(&polygon, normal, Some(own), |kept| integrate(kept, &mut flux, &mut moment))?;
+                self.descend(&polygon, normal, Some(own), false, |kept| integrate(kept, &mut flux, &mut moment))?;
             }
         }
         let (mut low, mut high, mut volume) = ([R::ZERO; 3], [R::ZERO; 3], [R::ZERO; 3]);
@@ -340,17 +319,6 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         Ok((R::ONE - open * R::HALF).max(R::ZERO).min(R::ONE))
     }
 
-    /// Hand the parts of a piece of body `own` that are surface of the union to `keep`.
-    fn outside(
-        &mut self,
-        polygon: &Polygon<R>,
-        normal: [R; 3],
-        own: Option<usize>,
-        keep: impl FnMut(&Polygon<R>),
-    ) -> Result<(), Full> {
-        self.descend(polygon, normal, own, false, keep)
-    }
-
     /// Send a polygon down all trees but its own; hand what ends in no solid leaf to `keep`. Where it lies in a plane
     /// of a tree it follows `toward`; with `both_sides`, bodies marked `below` take the opposite direction.
     fn descend(
@@ -369,7 +337,7 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
             Fragment { part, branch, inward: false, twin: false, ..f }
         };
         let first = enter(Fragment { polygon: *polygon, ..Fragment::default() }, 0);
-        fragments[0] = first;
+        *fragments.first_mut().ok_or(Full)? = first;
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
