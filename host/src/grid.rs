@@ -17,6 +17,8 @@ use voidage_core::grid::{Grid, GridError};
 pub enum Source {
     /// A grid file.
     File(PathBuf),
+    /// The scene's own.
+    Edges(Edges),
     /// A number of cells along each axis in a box; without one, in the scene's box and a margin of one cell.
     Cells([usize; 3], Option<[DVec3; 2]>),
     /// Cubes of this size that cover a box; without one, the scene's box and a margin of one cell.
@@ -86,6 +88,7 @@ const MAX_AXIS: f64 = 1e8;
 pub fn edges(source: &Source, scene: Option<[DVec3; 2]>, warnings: &mut Vec<String>) -> Result<Edges> {
     let edges = match source {
         Source::File(path) => return read(path, warnings),
+        Source::Edges(edges) => edges.clone(),
         Source::Cells(cells, bounds) => {
             // With n cells in all, n − 2 span the scene and one each side is the margin.
             let [lo, hi] = bounds.map_or_else(|| around(scene), Ok)?;
@@ -173,6 +176,24 @@ fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     for key in document.other.keys().filter(|k| !HARMLESS.contains(&k.as_str())) {
         warnings.push(format!("{}: key {key}: not known, ignored", path.display()));
     }
+    from_document(path, document)
+}
+
+/// The grid that a value of another TOML file describes. Unlike a grid file it holds nothing else.
+///
+/// # Errors
+/// If it is none; with the line in `text`.
+pub fn from_value(path: &Path, text: &str, value: toml::Spanned<toml::de::DeValue>) -> Result<Edges> {
+    let line = text.get(..value.span().start).unwrap_or("").matches('\n').count() + 1;
+    let document =
+        Document::deserialize(toml::de::ValueDeserializer::from(value)).map_err(|e| toml_error(path, text, &e))?;
+    if let Some(key) = document.other.keys().next() {
+        return Err(Error::at(path, format!("line {line}"), format!("grid: key {key} is not known here")));
+    }
+    from_document(path, document)
+}
+
+fn from_document(path: &Path, document: Document) -> Result<Edges> {
     let edges = match (document.x, document.y, document.z) {
         (Some(x), Some(y), Some(z)) => Edges([axis(path, "x", x)?, axis(path, "y", y)?, axis(path, "z", z)?]),
         (None, None, None) => match (document.origin, document.spacing, document.cells) {

@@ -33,7 +33,7 @@ struct Thin {
 /// A file that cannot be read, or a report that cannot be written.
 pub fn inspect(args: &InspectArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
-    let bodies = load(&args.scene, &mut progress)?;
+    let (bodies, _) = load(&args.scene, &mut progress)?;
     let inspection = Inspection {
         files: &bodies.diagnoses,
         overlapping_boxes: overlapping_boxes(&bodies.bodies),

@@ -9,19 +9,32 @@ use crate::output::vtr::{CellField, Field, Vtr};
 use crate::output::{npy, png, report};
 use crate::porosity::{self, Options, Porosity};
 use crate::progress::Progress;
+use crate::scene;
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// Read all files of a scene into bodies, in metres.
+/// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does.
 ///
 /// # Errors
-/// The first file that cannot be read or holds nothing solid.
-pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<Bodies> {
+/// The first file that cannot be read or holds nothing solid; or two grids.
+pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option<Edges>)> {
     let scale = args.unit.unwrap_or(Unit::M).metres();
-    let mut bodies = Bodies::default();
+    let (mut bodies, mut grid) = (Bodies::default(), None);
     for path in &args.scene {
+        if scene::is_scene(path) {
+            let found = progress.stage("read", |_| scene::read(path))?;
+            progress.stage("bodies", |_| scene::load::add(&found, &mut bodies))?;
+            if found.grid.is_some() && grid.is_some() {
+                return Err(Error::file(path, "a second scene with a [grid]: leave one of them out"));
+            }
+            grid = grid.or(found.grid);
+            if args.unit.is_some() {
+                progress.warn(format!("{}: a scene names its own units; --unit does not change them", path.display()));
+            }
+            continue;
+        }
         let mesh = progress.stage("read", |_| input::read(path))?;
         mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
         progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
@@ -30,7 +43,7 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<Bodies> {
         }
     }
     bodies.warnings.iter().for_each(|w| progress.warn(w.as_str()));
-    Ok(bodies)
+    Ok((bodies, grid))
 }
 
 /// No plant is larger than this in metres, and few parts are smaller than this in millimetres.
@@ -61,8 +74,9 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
     pool.install(|| {
-        let bodies = load(&args.scene, &mut progress)?;
-        let source = source(args, &bodies);
+        let (bodies, own_grid) = load(&args.scene, &mut progress)?;
+        need_surfaces(&bodies)?;
+        let source = source(args, &bodies, own_grid);
         let mut remarks = Vec::new();
         let edges = grid::edges(&source, bodies.bounds(), &mut remarks)?;
         remarks.into_iter().for_each(|r| progress.warn(r));
@@ -110,11 +124,24 @@ fn keep_inputs(args: &PorosityArgs) -> Result<()> {
     Ok(())
 }
 
-fn source(args: &PorosityArgs, bodies: &Bodies) -> Source {
-    match (&args.grid, args.cells, args.spacing) {
-        (Some(path), _, _) => Source::File(path.clone()),
-        (_, Some(cells), _) => Source::Cells(cells, args.bounds),
-        (_, _, Some(spacing)) => Source::Spacing(spacing, args.bounds),
+/// The sums over surfaces measure only what has one.
+fn need_surfaces(bodies: &Bodies) -> Result<()> {
+    match bodies.solids.iter().find(|s| bodies.bodies[s.bodies.clone()].iter().any(|b| b.triangles.is_empty())) {
+        None => Ok(()),
+        Some(solid) => Err(Error::new(format!(
+            "{}: solid \"{}\": a {} has no triangles to be measured by its surface",
+            solid.scene, solid.name, solid.shape
+        ))),
+    }
+}
+
+/// What was asked for; else the scene's own grid; else cubes that resolve the scene.
+fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
+    match (&args.grid, args.cells, args.spacing, own) {
+        (Some(path), ..) => Source::File(path.clone()),
+        (_, Some(cells), ..) => Source::Cells(cells, args.bounds),
+        (_, _, Some(spacing), _) => Source::Spacing(spacing, args.bounds),
+        (.., Some(edges)) if args.bounds.is_none() => Source::Edges(edges),
         _ => {
             let size = args.bounds.or_else(|| bodies.bounds()).map_or(1.0, |[lo, hi]| (hi - lo).max_element());
             Source::Spacing(if size > 0.0 { size / 64.0 } else { 1.0 }, args.bounds)

@@ -4,12 +4,14 @@
 //! defined meaning; see [`Diagnosis`].
 
 pub mod caps;
+pub mod form;
 pub mod nesting;
 pub mod shells;
 pub mod weld;
 
 use crate::input::Mesh;
 use caps::{cancels, rims};
+use form::Form;
 use glam::DVec3;
 use nesting::{Closed, Role};
 use rustc_hash::FxHashMap as HashMap;
@@ -24,13 +26,18 @@ const WELD_ULPS: f64 = 4.0;
 /// Larger coordinates would overflow when multiplied.
 const LARGEST: f64 = 1e60;
 
-/// A closed surface around solid, possibly with cavities.
+/// A closed surface around solid, possibly with cavities; or a convex body known by formula.
 #[derive(Debug, Clone, Serialize)]
 pub struct Body {
     /// Name of the solid that its first triangle came from.
     pub name: String,
-    /// Its run in [`Bodies::triangles`].
+    /// Its run in [`Bodies::triangles`]; empty if only its form is known.
     pub triangles: Range<usize>,
+    /// What it is by formula, if that is known.
+    #[serde(skip)]
+    pub form: Option<Form>,
+    /// Its own open fraction: 0 is solid.
+    pub porosity: f64,
     /// Solid volume of this body alone.
     pub volume: f64,
     /// Lowest and highest corner.
@@ -88,6 +95,27 @@ pub struct Diagnosis {
     pub bounds: [DVec3; 2],
 }
 
+/// A solid of a scene file, in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct Described {
+    /// The scene file.
+    pub scene: String,
+    /// Its name there.
+    pub name: String,
+    /// What it is there: `sphere`, …, `file`.
+    pub shape: &'static str,
+    /// Its own open fraction.
+    pub porosity: f64,
+    /// How many of it there are.
+    pub copies: usize,
+    /// Their run in [`Bodies::bodies`].
+    pub bodies: Range<usize>,
+    /// Sum of their volumes.
+    pub volume: f64,
+    /// Lowest and highest corner.
+    pub bounds: [DVec3; 2],
+}
+
 /// The bodies of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Bodies {
@@ -97,6 +125,8 @@ pub struct Bodies {
     pub bodies: Vec<Body>,
     /// One a file.
     pub diagnoses: Vec<Diagnosis>,
+    /// Solids of scene files.
+    pub solids: Vec<Described>,
     /// Sentences for the user; each names its file.
     pub warnings: Vec<String>,
 }
@@ -157,7 +187,8 @@ impl Bodies {
             d.cavities += count;
             d.sheets += usize::from(shell.is_sheet());
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
-            self.bodies.push(Body { name: names[s].clone(), triangles, volume, bounds, cavities: count, sheet });
+            let (name, form, porosity) = (names[s].clone(), None, 0.0);
+            self.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: count, sheet });
         }
         d.bodies = self.bodies.len() - first;
         d.body_volume = self.bodies[first..].iter().map(|b| b.volume).sum();
