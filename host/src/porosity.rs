@@ -4,6 +4,7 @@
 //! any number of threads.
 
 mod bins;
+pub mod convex;
 mod fields;
 mod layers;
 mod planes;
@@ -11,11 +12,48 @@ mod unions;
 
 use crate::bodies::Bodies;
 use bins::Bins;
+use clap::ValueEnum;
+use convex::Roads;
 pub use fields::FieldSet;
 use layers::{Summary, Target, Worker};
 use rayon::prelude::*;
 use serde::Serialize;
 use voidage_core::grid::Grid;
+use voidage_core::subdivide;
+
+/// How volumes are found.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision
+    #[default]
+    Auto,
+    /// Sums over the surface: exact for any closed surface of triangles
+    Surface,
+    /// Subdivision by GJK, as in the paper: bounds for convex bodies
+    Gjk,
+}
+
+/// What becomes of the smallest parts of a cell that a body still cuts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Leaf {
+    /// Touched counts as solid: the paper's rule, which finds too much
+    Solid,
+    /// Touched counts half
+    Half,
+    /// Bounded by planes and points: certified, of second order
+    #[default]
+    Plane,
+}
+
+impl From<Leaf> for subdivide::Leaf {
+    fn from(leaf: Leaf) -> Self {
+        match leaf {
+            Leaf::Solid => subdivide::Leaf::Solid,
+            Leaf::Half => subdivide::Leaf::Half,
+            Leaf::Plane => subdivide::Leaf::Plane,
+        }
+    }
+}
 
 /// What to compute and how far to refine.
 #[derive(Debug, Clone, Copy)]
@@ -28,11 +66,22 @@ pub struct Options {
     pub bounds: bool,
     /// Compute the faces; without, their fields stay empty.
     pub areas: bool,
+    /// How volumes are found.
+    pub method: Method,
+    /// What ends a subdivision by GJK.
+    pub leaf: Leaf,
+}
+
+impl Options {
+    /// Where between its bounds a value lies: in the middle; by the paper's rule at the solid end.
+    fn solid_end(&self) -> f64 {
+        if self.leaf == Leaf::Solid { 1.0 } else { 0.5 }
+    }
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { tol: 1e-4, depth: 6, bounds: false, areas: true }
+        Options { tol: 1e-4, depth: 6, bounds: false, areas: true, method: Method::Auto, leaf: Leaf::Plane }
     }
 }
 
@@ -47,6 +96,15 @@ pub struct CellCounts {
     pub closed: usize,
     /// Of the cut cells: shared by several bodies, so that their union had to be found.
     pub ambiguous: usize,
+}
+
+/// How often GJK was asked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Gjk {
+    /// Queries.
+    pub queries: u64,
+    /// Of these, without an answer: work, not error.
+    pub undecided: u64,
 }
 
 /// Where a body's surface fails to close.
@@ -77,6 +135,10 @@ pub struct Porosity {
     pub divided: usize,
     /// By how much a body's own share of a cell left 0..1: surface that crosses itself.
     pub winding: f64,
+    /// Bodies that went by subdivision, of all.
+    pub subdivided: usize,
+    /// Queries of GJK.
+    pub gjk: Gjk,
     /// Bodies whose rows did not return to zero, worst first, one entry a body.
     pub leaks: Vec<Leak>,
 }
@@ -96,7 +158,10 @@ pub fn porosity_watched(
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
     let moved = planes::into_planes(grid, &bodies.triangles);
-    let bins = Bins::new(grid, bodies, moved.as_deref().unwrap_or(&bodies.triangles));
+    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    let roads = Roads::choose(bodies, triangles, options);
+    let convex = roads.road(options);
+    let bins = Bins::new(grid, bodies, triangles, |body| roads.by_surface(body));
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
@@ -105,7 +170,7 @@ pub fn porosity_watched(
         .map_init(
             || Worker::new(grid, options),
             |worker, (k, target)| {
-                let summary = worker.layer(grid, &bins, k, target);
+                let summary = worker.layer(grid, &bins, &convex, k, target);
                 layer_done();
                 summary
             },
@@ -120,6 +185,8 @@ pub fn porosity_watched(
         max_gap: total.max_gap,
         divided: total.divided,
         winding: total.winding,
+        subdivided: roads.subdivided(),
+        gjk: Gjk { queries: total.tally.queries, undecided: total.tally.undecided },
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
     }
 }
