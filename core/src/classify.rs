@@ -5,7 +5,7 @@
 
 use crate::aabb::Aabb;
 use crate::columns::{Bounds, Columns};
-use crate::convex::{Convex, rounding};
+use crate::convex::{Convex, rounded, rounding};
 use crate::exact::Contact;
 use crate::gjk::{Intersection, intersect};
 use crate::real::{Real, Vector};
@@ -116,7 +116,8 @@ impl<B: Convex> Body for B {
         tally: &mut Tally,
     ) -> Occupancy {
         let zero = Real::ZERO;
-        let margin = (rounding(self) + rounding(cell)) * Real::HALF;
+        let far = cell.min.abs().max(cell.max.abs()).norm_max();
+        let margin = (rounding(self) + rounded(far)) * Real::HALF;
         for &id in near {
             let plane = self.facet(id as usize);
             let [low, high] = plane.range(cell);
@@ -137,28 +138,39 @@ impl<B: Convex> Body for B {
                 _ => {}
             }
         }
-        tally.queries += 1;
-        match intersect(cell, self, Some(*axis)) {
-            Intersection::Apart { axis: found } => {
-                *axis = found;
-                return Occupancy::Open;
-            }
-            Intersection::Undecided { .. } => {
-                let flat = cell.size().to_array().contains(&zero);
-                if !flat && matches!(self.settled(cell), Some(Contact::Disjoint | Contact::Touching)) {
-                    return Occupancy::Open;
-                }
-                tally.undecided += 1;
-            }
-            Intersection::Overlapping { .. } => {}
-        }
-        if !self.is_polytope() && edges_are_inside(self, cell) { Occupancy::Closed } else { Occupancy::Cut }
+        ask(self, cell, axis, tally)
     }
 
     #[inline]
-    fn measure(&self, cell: &Aabb<B::Vector>, near: &[u32], columns: &Columns<crate::support::ScalarOf<B>>) -> Bounds<crate::support::ScalarOf<B>> {
+    fn measure(
+        &self,
+        cell: &Aabb<B::Vector>,
+        near: &[u32],
+        columns: &Columns<crate::support::ScalarOf<B>>,
+    ) -> Bounds<crate::support::ScalarOf<B>> {
         columns.measure(self, cell, near)
     }
+}
+
+/// What GJK says, and for bodies that are no polytopes, chords.
+#[inline(never)]
+fn ask<B: Convex>(body: &B, cell: &Aabb<B::Vector>, axis: &mut B::Vector, tally: &mut Tally) -> Occupancy {
+    tally.queries += 1;
+    match intersect(cell, body, Some(*axis)) {
+        Intersection::Apart { axis: found } => {
+            *axis = found;
+            return Occupancy::Open;
+        }
+        Intersection::Undecided { .. } => {
+            let flat = cell.size().to_array().contains(&Real::ZERO);
+            if !flat && matches!(body.settled(cell), Some(Contact::Disjoint | Contact::Touching)) {
+                return Occupancy::Open;
+            }
+            tally.undecided += 1;
+        }
+        Intersection::Overlapping { .. } => {}
+    }
+    if !body.is_polytope() && edges_are_inside(body, cell) { Occupancy::Closed } else { Occupancy::Cut }
 }
 
 /// The corner farthest inward of the facets taken together lies inside all of them: then the interiors meet.
@@ -189,7 +201,9 @@ fn edges_are_inside<B: Convex>(body: &B, cell: &Aabb<B::Vector>) -> bool {
     let shrink = -rounding(body);
     let center = body.center().to_array();
     // The far corner is the likeliest to be outside.
-    let far = |axis: usize, other: bool| if (hi[axis] + lo[axis] > center[axis] + center[axis]) != other { hi[axis] } else { lo[axis] };
+    let far = |axis: usize, other: bool| {
+        if (hi[axis] + lo[axis] > center[axis] + center[axis]) != other { hi[axis] } else { lo[axis] }
+    };
     [(false, false), (false, true), (true, false), (true, true)].into_iter().all(|(other_u, other_v)| {
         let mut origin = [zero; 3];
         (origin[u], origin[v]) = (far(u, other_u), far(v, other_v));

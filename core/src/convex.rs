@@ -33,12 +33,17 @@ impl<V: Vector> Plane<V> {
         Plane { normal, offset: normal.dot(through), exact }
     }
 
-    /// Lowest and highest `normal·p - offset` over a box.
+    /// Lowest and highest `normal·p - offset` over a box, rounded unless the plane is exact.
     #[inline(always)]
     pub fn range(&self, cell: &Aabb<V>) -> [V::Scalar; 2] {
-        let high = cell.support(self.normal, 0).point;
-        let low = cell.support(-self.normal, 0).point;
-        [low.dot(self.normal) - self.offset, high.dot(self.normal) - self.offset]
+        if self.exact {
+            let high = cell.support(self.normal, 0).point;
+            let low = cell.support(-self.normal, 0).point;
+            return [low.dot(self.normal) - self.offset, high.dot(self.normal) - self.offset];
+        }
+        let middle = (cell.min + cell.max).dot(self.normal) * V::Scalar::HALF - self.offset;
+        let reach = (cell.max - cell.min).dot(self.normal.abs()) * V::Scalar::HALF;
+        [middle - reach, middle + reach]
     }
 
     /// Shortens the piece `t` of a line to the inner side of the plane moved outward by `grow`; false if nothing remains.
@@ -123,7 +128,13 @@ const MOVED_IN_EPSILONS: f64 = 64.0;
 /// The length by which to grow or shrink a body so that rounding cannot make its chords too short or too long.
 #[inline(always)]
 pub fn rounding<S: Support + ?Sized>(body: &S) -> ScalarOf<S> {
-    body.extent() * ScalarOf::<S>::EPSILON * ScalarOf::<S>::from_f64(MOVED_IN_EPSILONS)
+    rounded(body.extent())
+}
+
+/// The same for coordinates up to `extent`.
+#[inline(always)]
+pub(crate) fn rounded<R: Real>(extent: R) -> R {
+    extent * R::EPSILON * R::from_f64(MOVED_IN_EPSILONS)
 }
 
 /// The whole line.
@@ -132,45 +143,61 @@ fn endless<R: Real>() -> [R; 2] {
     [-R::INFINITY, R::INFINITY]
 }
 
+/// Where `|w + t e| <= q`.
+#[inline(always)]
+fn within<V: Vector>(w: V, e: V, q: V::Scalar) -> Option<[V::Scalar; 2]> {
+    let zero = V::Scalar::ZERO;
+    let (a, area) = (e.dot(e), w.cross(e));
+    let discriminant = a * (q * q) - area.dot(area);
+    if q < zero || discriminant < zero {
+        return None;
+    }
+    if !(a > zero) {
+        // Along the axis.
+        return (w.dot(w) <= q * q).then(endless);
+    }
+    let (b, root, inv) = (w.dot(e), discriminant.sqrt(), reciprocal(a));
+    Some([(-b - root) * inv, (root - b) * inv])
+}
+
 /// Where `|w + t e| <= q + t dq`, for `q + t dq` not negative.
 #[inline(always)]
-fn round<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V::Scalar; 2]> {
-    let zero = V::Scalar::ZERO;
+fn within_cone<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V::Scalar; 2]> {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::INFINITY);
+    if dq == zero {
+        return within(w, e, q);
+    }
     let (reach, area) = (e * q - w * dq, w.cross(e));
     let discriminant = reach.dot(reach) - area.dot(area);
     let (a, b) = (e.dot(e) - dq * dq, w.dot(e) - q * dq);
-    if dq == zero {
-        if q < zero || discriminant < zero {
-            return None;
-        }
-        if !(a > zero) {
-            // Along the axis.
-            return (w.dot(w) <= q * q).then(endless);
-        }
-        let root = discriminant.sqrt();
-        return Some([(-b - root) / a, (-b + root) / a]);
-    }
+    let beyond = |t: V::Scalar| if dq > zero { [t, infinity] } else { [-infinity, t] };
     if discriminant < zero {
-        let apex = -q / dq;
-        return (a < zero).then_some(if dq > zero { [apex, V::Scalar::INFINITY] } else { [-V::Scalar::INFINITY, apex] });
+        // Steeper than the cone, and through its apex but for rounding.
+        return (a < zero).then(|| beyond(-q / dq));
     }
     let root = discriminant.sqrt();
     let sum = if b > zero { -b - root } else { root - b };
-    let other = (w.dot(w) - q * q) / sum;
-    let one = if a > V::Scalar::HALF * e.dot(e) && b > zero { (-b + root) / a } else { other };
-    let ends = [sum / a, one];
-    let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+    let one = sum / a;
+    let flat = a > V::Scalar::HALF * e.dot(e);
+    let other = if flat { (-b - b - sum) / a } else { (w.dot(w) - q * q) / sum };
+    let (low, high) = (one.min(other), one.max(other));
     if a < zero {
-        return Some(if dq > zero { [high, V::Scalar::INFINITY] } else { [-V::Scalar::INFINITY, low] });
+        return Some(beyond(if dq > zero { high } else { low }));
     }
     // Of the two cones that meet at the apex only one is meant.
-    (q + one * dq >= zero).then_some([low, high])
+    (q + other * dq >= zero).then_some([low, high])
+}
+
+/// One over a number that often is one.
+#[inline(always)]
+fn reciprocal<R: Real>(a: R) -> R {
+    if a == R::ONE { a } else { R::ONE / a }
 }
 
 /// The parameter nearest to a body's centre, and the line's point there.
 #[inline(always)]
 fn beside<V: Vector>(origin: V, direction: V, center: V) -> (V::Scalar, V) {
-    let at = (center - origin).dot(direction) / direction.dot(direction);
+    let at = (center - origin).dot(direction) * reciprocal(direction.dot(direction));
     (at, origin + direction * at)
 }
 
@@ -187,7 +214,7 @@ fn no_facet<V: Vector>() -> Plane<V> {
 #[inline(always)]
 fn ball<V: Vector>(center: V, radius: V::Scalar, origin: V, direction: V) -> Option<[V::Scalar; 2]> {
     let (at, p) = beside(origin, direction, center);
-    Some(moved(round(p - center, direction, radius, V::Scalar::ZERO)?, at))
+    Some(moved(within(p - center, direction, radius)?, at))
 }
 
 impl<V: Vector> Convex for Sphere<V> {
@@ -215,7 +242,7 @@ impl<V: Vector> Convex for Ellipsoid<V> {
         let shortest = s.x().min(s.y()).min(s.z());
         let (at, p) = beside(origin, direction, self.center);
         let (w, e) = (divided(p - self.center, s), divided(direction, s));
-        Some(moved(round(w, e, V::Scalar::ONE + grow / shortest, V::Scalar::ZERO)?, at))
+        Some(moved(within(w, e, V::Scalar::ONE + grow / shortest)?, at))
     }
 }
 
@@ -240,7 +267,7 @@ impl<V: Vector> Frame<V> {
     fn tube(&self, origin: V, direction: V, grow: V::Scalar) -> Option<Chord<V>> {
         let (at, p) = beside(origin, direction, (self.base + self.top) * V::Scalar::HALF);
         let (w, e) = (self.lateral(p - self.base), self.lateral(direction));
-        Some(moved(round(w, e, self.radius + grow, V::Scalar::ZERO)?, at))
+        Some(moved(within(w, e, self.radius + grow)?, at))
     }
 }
 
@@ -291,7 +318,7 @@ impl<V: Vector> Convex for Cone<V> {
         let out = grow * (V::Scalar::ONE + slope * slope).sqrt();
         let (q, dq) = ((top - p).dot(axis) * slope + out, -(direction.dot(axis) * slope));
         let w = self.0.lateral(p - base);
-        let mut t = moved(round(w, self.0.lateral(direction), q, dq)?, at);
+        let mut t = moved(within_cone(w, self.0.lateral(direction), q, dq)?, at);
         self.0.base_facet().clip(origin, direction, grow, &mut t).then_some(t)
     }
 }

@@ -66,7 +66,8 @@ impl Range {
 
     fn longest(&self) -> (usize, u32) {
         let length = |axis: usize| self.hi[axis] - self.lo[axis];
-        let axis = if length(0) >= length(1) && length(0) >= length(2) { 0 } else { 1 + usize::from(length(2) > length(1)) };
+        let axis =
+            if length(0) >= length(1) && length(0) >= length(2) { 0 } else { 1 + usize::from(length(2) > length(1)) };
         (axis, length(axis))
     }
 
@@ -141,11 +142,54 @@ struct List {
     facets_end: usize,
 }
 
-/// Ranges that wait: each bisection leaves one, and three axes of 32 bits can be bisected 32 times each.
+/// Most ranges that wait. Depth first, each bisection takes one out and puts two in; a side of less than 2³² is single after 32 bisections, so
+/// that three sides allow 96 of them below each other.
 pub const MAX_RANGES: usize = 3 * 32 + 1;
 
-/// Boxes under way: one a level, the cell itself at level 0.
-const MAX_BOXES: usize = MAX_DEPTH as usize + 1;
+/// Boxes whose parts are being visited: one a level, from the cell itself at level 0 to the parents of the smallest parts.
+pub const MAX_BOXES: usize = MAX_DEPTH as usize;
+
+/// Ranges that wait to be visited, each with what its parent knows.
+#[derive(Debug)]
+pub struct Waiting<T> {
+    items: [(Range, T); MAX_RANGES],
+    count: usize,
+}
+
+impl<T: Copy> Waiting<T> {
+    /// One range.
+    pub fn new(range: Range, known: T) -> Self {
+        Waiting { items: [(range, known); MAX_RANGES], count: 1 }
+    }
+
+    /// How many wait.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The next range.
+    pub fn next(&mut self) -> Option<(Range, T)> {
+        self.count = self.count.checked_sub(1)?;
+        self.items.get(self.count).copied()
+    }
+
+    /// Lets both halves of a range just taken out wait, along its longest side; false if it is a single cell or face.
+    pub fn bisect(&mut self, range: Range, known: T) -> bool {
+        let (axis, length) = range.longest();
+        if length <= 1 {
+            return false;
+        }
+        let [low, high] = range.halves(axis);
+        for half in [high, low] {
+            debug_assert!(self.count < MAX_RANGES, "each bisection adds one, and a line of ranges has 96");
+            if let Some(place) = self.items.get_mut(self.count) {
+                *place = (half, known);
+                self.count += 1;
+            }
+        }
+        true
+    }
+}
 
 /// A box whose parts are being visited.
 #[derive(Clone, Copy)]
@@ -284,31 +328,16 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         list: List,
         mut fill: impl FnMut(Range, Bounds<Scalar<B>>),
     ) {
-        let mut waiting = [(Range::default(), List::default()); MAX_RANGES];
-        waiting[0] = (range, list);
-        let mut count = 1_usize;
-        while let Some((range, list)) = count.checked_sub(1).and_then(|top| waiting.get(top).copied()) {
-            count -= 1;
+        let mut waiting = Waiting::new(range, list);
+        while let Some((range, list)) = waiting.next() {
             let cell = box_of(grid, places, range);
-            let list = match self.narrow(&cell, list) {
-                Narrowed::Open => continue,
-                Narrowed::Closed => {
-                    fill(range, Bounds::CLOSED);
-                    continue;
-                }
-                Narrowed::Cut(list) => list,
-            };
-            let (axis, length) = range.longest();
-            if length == 1 {
-                fill(range, self.refine(&cell, list));
-                continue;
-            }
-            let [low, high] = range.halves(axis);
-            for half in [high, low] {
-                debug_assert!(count < MAX_RANGES);
-                if let Some(place) = waiting.get_mut(count) {
-                    *place = (half, list);
-                    count += 1;
+            match self.narrow(&cell, list) {
+                Narrowed::Open => {}
+                Narrowed::Closed => fill(range, Bounds::CLOSED),
+                Narrowed::Cut(list) => {
+                    if !waiting.bisect(range, list) {
+                        fill(range, self.refine(&cell, list));
+                    }
                 }
             }
         }

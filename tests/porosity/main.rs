@@ -6,4 +6,5 @@ mod invariance;
 mod known;
 mod layers;
 mod overlap;
+mod subdivide;
 mod truth;

@@ -26,8 +26,6 @@ pub enum Convex<'a> {
     Sphere(Sphere<DVec3>),
     /// An ellipsoid, turned and moved.
     Ellipsoid(Transformed<Ellipsoid<DVec3>>),
-    /// A box along the axes.
-    Box(Aabb<DVec3>),
     /// A cylinder with flat ends.
     Cylinder(Cylinder<DVec3>),
     /// A segment with a radius.
@@ -44,7 +42,6 @@ macro_rules! of_shape {
         match $body {
             Convex::Sphere($shape) => $value,
             Convex::Ellipsoid($shape) => $value,
-            Convex::Box($shape) => $value,
             Convex::Cylinder($shape) => $value,
             Convex::Capsule($shape) => $value,
             Convex::Cone($shape) => $value,
@@ -92,7 +89,7 @@ pub struct Roads {
 
 #[derive(Debug)]
 enum Known {
-    Form(Form),
+    Round(Convex<'static>),
     Faceted(Faceted),
 }
 
@@ -107,8 +104,7 @@ impl Roads {
             // Planes are measured by their surface: exact, and cheaper than any subdivision.
             (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
             (_, Method::Surface) => None,
-            (Some(form), _) if !matches!(form, Form::Hull(_)) => Some(Known::Form(form.clone())),
-            (_, Method::Auto) => None,
+            (Some(form), _) if body.triangles.is_empty() => round(form).map(Known::Round),
             _ => faceted(body, &triangles[body.triangles.clone()]).map(Known::Faceted),
         };
         use rayon::prelude::*;
@@ -138,16 +134,22 @@ impl Roads {
 impl Known {
     fn body(&self) -> Convex<'_> {
         match self {
-            Known::Form(Form::Sphere(s)) => Convex::Sphere(*s),
-            Known::Form(Form::Ellipsoid(s)) => Convex::Ellipsoid(*s),
-            Known::Form(Form::Box(s)) => Convex::Box(*s),
-            Known::Form(Form::Cylinder(s)) => Convex::Cylinder(*s),
-            Known::Form(Form::Capsule(s)) => Convex::Capsule(*s),
-            Known::Form(Form::Cone(s)) => Convex::Cone(*s),
-            Known::Form(Form::Hull(corners)) => Convex::Polytope(Polytope::new(Hull::new(corners), &[])),
+            Known::Round(body) => *body,
             Known::Faceted(f) => Convex::Polytope(Polytope::new(Hull::new(&f.vertices), &f.facets)),
         }
     }
+}
+
+/// A body without triangles; none if it should have some.
+fn round(form: &Form) -> Option<Convex<'static>> {
+    Some(match form {
+        Form::Sphere(s) => Convex::Sphere(*s),
+        Form::Ellipsoid(s) => Convex::Ellipsoid(*s),
+        Form::Cylinder(s) => Convex::Cylinder(*s),
+        Form::Capsule(s) => Convex::Capsule(*s),
+        Form::Cone(s) => Convex::Cone(*s),
+        Form::Box(_) | Form::Hull(_) => return None,
+    })
 }
 
 /// The body as a polytope, if it is certified to be one.
