@@ -64,6 +64,40 @@ impl<'a> Near<'a> {
     }
 }
 
+/// A box against a single plane.
+#[derive(Clone, Copy, Debug)]
+pub struct BesidePlane<R> {
+    /// Height of the box's middle above the plane.
+    pub middle: R,
+    /// How far the box reaches up and down from there, by axis.
+    pub reach: [R; 3],
+    /// Rounding of all these.
+    pub margin: R,
+}
+
+impl<R: Real> BesidePlane<R> {
+    /// Where the box lies.
+    #[inline(always)]
+    pub fn occupancy(&self) -> Occupancy {
+        let reach = self.reach[0] + self.reach[1] + self.reach[2];
+        if self.middle - reach >= self.margin {
+            Occupancy::Open
+        } else if self.middle + reach <= -self.margin {
+            Occupancy::Closed
+        } else {
+            Occupancy::Cut
+        }
+    }
+
+    /// Its eighth of some number; of a face, twice each quarter.
+    #[inline(always)]
+    pub fn part(&self, number: usize) -> Self {
+        let half = self.reach.map(|r| r * R::HALF);
+        let moved = |axis: usize| if number >> axis & 1 == 1 { half[axis] } else { -half[axis] };
+        BesidePlane { middle: self.middle + moved(0) + moved(1) + moved(2), reach: half, margin: self.margin }
+    }
+}
+
 /// A body as the subdivision sees it.
 pub trait Body {
     /// The vectors of the space.
@@ -85,6 +119,13 @@ pub trait Body {
         axis: &mut Self::Vector,
         tally: &mut Tally,
     ) -> Occupancy;
+
+    /// If the body is, as far as a box is concerned, what lies below a single plane: how the box lies to that.
+    fn beside_plane(
+        &self,
+        cell: &Aabb<Self::Vector>,
+        near: &[u32],
+    ) -> Option<BesidePlane<<Self::Vector as Vector>::Scalar>>;
 
     /// Bounds of the share of a box that is solid; `near` as [`Body::place`] kept it.
     fn measure(
@@ -139,6 +180,22 @@ impl<B: Convex> Body for B {
             }
         }
         ask(self, cell, axis, tally)
+    }
+
+    #[inline]
+    fn beside_plane(&self, cell: &Aabb<B::Vector>, near: &[u32]) -> Option<BesidePlane<crate::support::ScalarOf<B>>> {
+        let &[id] = near else { return None };
+        let plane = self.facet(id as usize);
+        // Whether a face lies in an exact plane must be seen exactly.
+        if plane.exact || !self.is_polytope() {
+            return None;
+        }
+        let far = cell.min.abs().max(cell.max.abs()).norm_max();
+        let margin = (rounding(self) + rounded(far)) * Real::HALF;
+        let (normal, size) = (plane.normal.abs().to_array(), cell.size().to_array());
+        let reach = [0, 1, 2].map(|axis| normal[axis] * size[axis] * Real::HALF);
+        let middle = cell.center().dot(plane.normal) - plane.offset;
+        Some(BesidePlane { middle, reach, margin })
     }
 
     #[inline]

@@ -9,7 +9,7 @@
 //! all with δ the part's size; `Plane` bounds what is left to second order.
 
 use crate::aabb::Aabb;
-use crate::classify::{Body, Near, Occupancy, Tally};
+use crate::classify::{BesidePlane, Body, Near, Occupancy, Tally};
 use crate::columns::{Bounds, Columns, MAX_PARTS};
 use crate::grid::Grid;
 use crate::real::{Real, Vector};
@@ -398,10 +398,15 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         type R<B> = Scalar<B>;
         let Rule { leaf, depth, tol } = self.rule;
         let last = level >= depth;
-        if leaf != Leaf::Plane {
-            return last.then_some(Bounds::UNKNOWN);
-        }
         let alone = list.end - list.first == 1;
+        if leaf != Leaf::Plane {
+            let only = self.memory.candidates.get(list.first).filter(|_| alone && !last);
+            let plane = only.and_then(|candidate| {
+                let near = self.memory.facets.get(candidate.first as usize..candidate.end as usize)?;
+                self.bodies.get(candidate.body as usize)?.beside_plane(cell, near)
+            });
+            return if last { Some(Bounds::UNKNOWN) } else { plane.map(|plane| below_plane(&plane, depth - level)) };
+        }
         if !(alone || last) {
             return None;
         }
@@ -442,6 +447,23 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         let room = reach * rows * R::<B>::EPSILON * R::<B>::TWO;
         Bounds { lower: (bounds.lower - room).max(zero), upper: (bounds.upper + room).min(one) }
     }
+}
+
+/// What the parts of a box say, halved so many times, that only a plane cuts. Nests no deeper than [`MAX_DEPTH`].
+fn below_plane<R: Real>(plane: &BesidePlane<R>, levels: u32) -> Bounds<R> {
+    let (mut lower, mut upper) = (R::ZERO, R::ZERO);
+    for part in (0..8).map(|number| plane.part(number)) {
+        let share = match part.occupancy() {
+            Occupancy::Open => Bounds::OPEN,
+            Occupancy::Closed => Bounds::CLOSED,
+            Occupancy::Cut if levels <= 1 => Bounds::UNKNOWN,
+            Occupancy::Cut => below_plane(&part, levels - 1),
+        };
+        lower += share.lower;
+        upper += share.upper;
+    }
+    let eighth = R::from_f64(0.125);
+    Bounds { lower: lower * eighth, upper: upper * eighth }
 }
 
 /// The box around a range of cells or faces.

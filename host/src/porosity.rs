@@ -34,7 +34,8 @@ pub enum Method {
 }
 
 /// What becomes of the smallest parts of a cell that a body still cuts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Leaf {
     /// Touched counts as solid: the paper's rule, which finds too much
     Solid,

@@ -93,9 +93,16 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
             porosity::porosity_watched(&grid, &bodies, options, &|| bar.inc(1))
         });
         report_leaks(&bodies, &result, &mut progress);
-        if result.max_gap > args.tol.max(ROUNDING) {
+        if args.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
             progress.warn(format!(
-                "where bodies overlap, the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
+                "{} of {} bodies are not convex, or not surely so: measured by their surface",
+                bodies.bodies.len() - result.subdivided,
+                bodies.bodies.len()
+            ));
+        }
+        if args.leaf == Leaf::Plane && result.max_gap > args.tol.max(ROUNDING) {
+            progress.warn(format!(
+                "the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
                 result.max_gap, args.tol
             ));
         }
@@ -275,6 +282,7 @@ struct Report {
     solid_volume: f64,
     bodies: usize,
     triangles: usize,
+    roads: RoadReport,
     cells: porosity::CellCounts,
     max_gap: f64,
     divided: usize,
@@ -283,6 +291,17 @@ struct Report {
     skipped: Vec<&'static str>,
     seconds: std::collections::BTreeMap<&'static str, f64>,
     gjk: porosity::Gjk,
+}
+
+/// How many bodies took which road.
+#[derive(Debug, Clone, Serialize)]
+struct RoadReport {
+    /// Sums over surfaces: exact.
+    surface: usize,
+    /// Subdivision by GJK: bounds.
+    subdivision: usize,
+    /// Of the latter, the rule at its end.
+    leaf: Leaf,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -294,7 +313,10 @@ struct GridReport {
 
 impl Report {
     fn new(args: &PorosityArgs, edges: &Edges, bodies: &Bodies, result: &Porosity) -> Self {
-        let mut skipped = vec!["gjk: no body was given as a convex solid; all are measured by their surface"];
+        let mut skipped = Vec::new();
+        if result.subdivided == 0 {
+            skipped.push("gjk: every body has triangles, and their sums are exact and cheaper");
+        }
         if args.no_areas {
             skipped.push("area porosities: --no-areas");
         }
@@ -314,6 +336,11 @@ impl Report {
             solid_volume: result.solid_volume,
             bodies: bodies.bodies.len(),
             triangles: bodies.triangles.len(),
+            roads: RoadReport {
+                surface: bodies.bodies.len() - result.subdivided,
+                subdivision: result.subdivided,
+                leaf: args.leaf,
+            },
             cells: result.cells,
             max_gap: result.max_gap,
             divided: result.divided,
@@ -331,6 +358,9 @@ impl Report {
         let c = self.cells;
         progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
         progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
+        if self.roads.subdivision > 0 {
+            progress.say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
+        }
         progress.say(format!("solid volume  {:.9} m³", self.solid_volume));
         progress.say(format!(
             "cells         {} open, {} cut, {} closed; {} shared by bodies",

@@ -19,12 +19,13 @@ use crate::recipe::Recipe;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets by name.
-pub const TARGETS: [Target; 5] = [
+pub const TARGETS: [Target; 6] = [
     ("intersect", intersect),
     ("distance", distance),
     ("containment", containment),
     ("certificates", certificates),
     ("raw", raw),
+    ("subdivide", subdivide),
 ];
 
 /// Booleans of both stages against the oracle.
@@ -59,6 +60,12 @@ pub fn containment(bytes: &[u8]) {
     if let [a, b, c, ..] = other[..] {
         box_and_triangle_agree(cell, [a, b, c]);
     }
+}
+
+/// Unions of up to six convex bodies by subdivision.
+pub fn subdivide(bytes: &[u8]) {
+    let Some((&depth, rest)) = bytes.split_first() else { return };
+    crate::convex::bounds_hold_the_union(&crate::convex::decode(rest), u32::from(depth % 4));
 }
 
 /// Proofs of what is not so.
