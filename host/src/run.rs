@@ -359,7 +359,8 @@ impl Report {
         progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
         progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
         if self.roads.subdivision > 0 {
-            progress.say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
+            progress
+                .say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
         }
         progress.say(format!("solid volume  {:.9} m³", self.solid_volume));
         progress.say(format!(

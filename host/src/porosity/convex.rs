@@ -188,13 +188,13 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// Enough for some bodies at once.
+    /// Enough for some bodies at once; as much for the same bodies whatever was there before, so that the bits are the same.
     fn memory(&mut self, bodies: &[Convex]) -> Memory<'_, DVec3> {
         let facets: usize = bodies.iter().map(classify::Body::facets).sum();
-        let grown = |now: usize, needed: usize| now.max(needed);
-        self.candidates.resize(grown(self.candidates.len(), 8 * bodies.len() + 1024), Candidate::default());
-        self.facets.resize(grown(self.facets.len(), 8 * facets + (1 << 14)), 0);
-        Memory { candidates: &mut self.candidates, facets: &mut self.facets }
+        let (candidates, facets) = (8 * bodies.len() + 1024, 8 * facets + (1 << 14));
+        self.candidates.resize(self.candidates.len().max(candidates), Candidate::default());
+        self.facets.resize(self.facets.len().max(facets), 0);
+        Memory { candidates: &mut self.candidates[..candidates], facets: &mut self.facets[..facets] }
     }
 }
 
