@@ -6,13 +6,16 @@
 mod bins;
 mod fields;
 mod layers;
+mod levels;
 mod planes;
 mod unions;
 
 use crate::bodies::Bodies;
 use bins::Bins;
 pub use fields::FieldSet;
+use glam::DVec3;
 use layers::{Summary, Target, Worker};
+pub use levels::levels;
 use rayon::prelude::*;
 use serde::Serialize;
 use voidage_core::grid::Grid;
@@ -87,7 +90,7 @@ pub fn porosity(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Porosity
     porosity_watched(grid, bodies, options, &|| ())
 }
 
-/// As [`porosity`]; `layer_done` is called after each layer of cells, from any thread.
+/// As [`porosity`]; `layer_done` is called after each layer of cells, from any thread, once for each of the [`levels`].
 #[must_use]
 pub fn porosity_watched(
     grid: &Grid<f64>,
@@ -96,7 +99,22 @@ pub fn porosity_watched(
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
     let moved = planes::into_planes(grid, &bodies.triangles);
-    let bins = Bins::new(grid, bodies, moved.as_deref().unwrap_or(&bodies.triangles));
+    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    let levels = levels(bodies);
+    let unions = levels.iter().map(|&level| union(grid, bodies, triangles, level, options, layer_done));
+    levels::join(&levels, unions)
+}
+
+/// Porosities of the union of all bodies up to a level, as if they were solid.
+fn union(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    triangles: &[[DVec3; 3]],
+    level: f64,
+    options: Options,
+    layer_done: &(dyn Fn() + Sync),
+) -> Porosity {
+    let bins = Bins::new(grid, bodies, triangles, level);
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())

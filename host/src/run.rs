@@ -83,7 +83,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let grid = edges.grid(None)?;
         look_for_misfit(&bodies, &edges, &mut progress);
         let options = Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
-        let layers = edges.cells()[2];
+        let layers = edges.cells()[2] * porosity::levels(&bodies).len();
         let result = progress.stage("porosity", |p| {
             let bar = p.bar("porosity", layers);
             porosity::porosity_watched(&grid, &bodies, options, &|| bar.inc(1))
