@@ -70,10 +70,10 @@ pub enum Method {
 /// The scene, shared by all commands.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
-    /// STL or OBJ files; their bodies form one scene
+    /// STL, OBJ or scene (TOML) files; their bodies form one scene
     #[arg(required = true, value_name = "SCENE")]
     pub scene: Vec<PathBuf>,
-    /// Unit of the files' coordinates (default: m)
+    /// Unit of the coordinates of STL and OBJ files (default: m)
     #[arg(long)]
     pub unit: Option<Unit>,
 }

@@ -1,6 +1,6 @@
 //! The stages of a run, in order: scene → bodies → grid → porosity → output.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Described};
 use crate::cli::{PorosityArgs, SceneArgs, Unit};
 use crate::error::{Error, Result};
 use crate::grid::{self, Edges, Source};
@@ -152,19 +152,18 @@ fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
 /// Geometry outside the grid does not count; say so.
 fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
-    let files = || bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
     let extent = |p: DVec3, q: DVec3| format!("({}, {}, {}) to ({}, {}, {})", p.x, p.y, p.z, q.x, q.y, q.z);
     if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
         progress.warn(format!(
             "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
-            files(),
+            bodies.files(),
             extent(min, max),
             extent(lo, hi)
         ));
     } else if min.cmplt(lo).any() || max.cmpgt(hi).any() {
         progress.warn(format!(
             "{}: the geometry, {}, extends beyond the grid, {}; only what is inside counts",
-            files(),
+            bodies.files(),
             extent(min, max),
             extent(lo, hi)
         ));
@@ -181,7 +180,7 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
     let leaks: Vec<_> = result.leaks.iter().filter(|l| l.fraction > LEAK_TO_WARN).collect();
     if let Some(worst) = leaks.first() {
         let body = &bodies.bodies[worst.body];
-        let files = bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+        let files = bodies.files();
         progress.warn(format!(
             "{files}: the surface of {} bodies leaks: in layer {} of body {} \"{}\" a row ends {:.3e} of a face away from zero",
             leaks.len(),
@@ -192,7 +191,7 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
         ));
     }
     if result.winding > WINDING_TO_WARN {
-        let files = bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+        let files = bodies.files();
         progress.warn(format!(
             "{files}: a surface cuts through itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
             result.winding
@@ -275,6 +274,8 @@ struct Report {
     max_gap: f64,
     divided: usize,
     leaks: Vec<porosity::Leak>,
+    /// Of scene files.
+    solids: Vec<Described>,
     warnings: Vec<String>,
     skipped: Vec<&'static str>,
     seconds: std::collections::BTreeMap<&'static str, f64>,
@@ -320,6 +321,7 @@ impl Report {
             max_gap: result.max_gap,
             divided: result.divided,
             leaks: result.leaks.clone(),
+            solids: bodies.solids.clone(),
             warnings: Vec::new(),
             skipped,
             seconds: std::collections::BTreeMap::new(),
