@@ -4,3 +4,4 @@ mod bad_inputs;
 mod inspect;
 mod kit;
 mod porosity;
+mod scene;

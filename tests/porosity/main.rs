@@ -2,8 +2,10 @@
 
 mod core_alone;
 mod dirty;
+mod hulls;
 mod invariance;
 mod known;
 mod layers;
 mod overlap;
+mod scenes;
 mod truth;
