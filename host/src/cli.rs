@@ -20,6 +20,8 @@ pub enum Command {
     Porosity(Box<PorosityArgs>),
     /// Say what is in a file: bodies, closure, orientation, overlaps, units, thin parts
     Inspect(InspectArgs),
+    /// Error against run time, for scenes, grids and methods of a case file
+    Study(StudyArgs),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -157,6 +159,20 @@ pub struct InspectArgs {
     /// Write the JSON to a file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage study`.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// The case file (TOML): scenes, grids, methods, threads
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Write study.csv, study.md and study.png into this directory (default: print the table)
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
     /// What goes to the terminal.
     #[command(flatten)]
     pub talk: TalkArgs,

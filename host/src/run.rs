@@ -125,7 +125,10 @@ fn keep_inputs(args: &PorosityArgs) -> Result<()> {
 }
 
 /// The sums over surfaces measure only what has one.
-fn need_surfaces(bodies: &Bodies) -> Result<()> {
+///
+/// # Errors
+/// The first solid that has none.
+pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
     match bodies.solids.iter().find(|s| bodies.bodies[s.bodies.clone()].iter().any(|b| b.triangles.is_empty())) {
         None => Ok(()),
         Some(solid) => Err(Error::new(format!(

@@ -4,11 +4,12 @@
 //! either untouched or replaced as a whole. Fields are x fastest: cell `(k*ny + j)*nx + i`.
 //!
 //! In reading order: [`atomic`], `bytes`; [`npy`], [`vtr`], [`report`]; then pictures from the pixel upwards:
-//! `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`].
+//! `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`chart`].
 
 pub mod atomic;
 mod bytes;
 pub mod canvas;
+pub mod chart;
 pub mod colour;
 pub mod figure;
 mod font;
