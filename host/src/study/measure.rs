@@ -59,6 +59,10 @@ pub fn all(path: &Path, case: &Case, progress: &mut Progress) -> Result<Vec<Row>
         for grid in &case.grids {
             let reference = reference(&bodies, grid, case.areas)?;
             for recipe in &case.recipes {
+                if let (Method::Surface, Err(why)) = (recipe.method, run::need_surfaces(&bodies)) {
+                    progress.warn(format!("method \"{}\" is left out: {why}", recipe.name));
+                    continue;
+                }
                 for &threads in &case.threads {
                     let run = run(case, subject, &bodies, grid, recipe, threads, reference.as_ref())?;
                     progress.say(super::table::line(&run));
@@ -95,9 +99,6 @@ fn run(
     threads: usize,
     reference: Option<&Porosity>,
 ) -> Result<Row> {
-    if recipe.method == Method::Surface {
-        run::need_surfaces(bodies)?;
-    }
     let grid = edges.grid(None)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
