@@ -12,12 +12,17 @@
 //! 7. [`gjk`]: do two bodies meet, and how far apart are they
 //! 8. [`exact`]: the same without rounding, for bodies given by vertices
 //! 9. [`contain`]: is a box inside a body
-//! 10. [`clip`]: convex polygons cut by planes
-//! 11. [`grid`]: cells, faces, index order
-//! 12. [`layer`]: solid fractions of one layer of cells, as bounds that bodies share
-//! 13. [`surface`]: cells, x and y faces of a layer from a triangulated surface
-//! 14. [`section`]: its z faces
-//! 15. [`overlap`]: the exact union of bodies in a cell
+//! 10. [`convex`]: chords, flat sides and reach of convex bodies
+//! 11. [`polytope`]: a hull that knows its facets
+//! 12. [`columns`]: bounds of a body's share of a box, from chords
+//! 13. [`classify`]: where a cell or face lies to a body
+//! 14. [`clip`]: convex polygons cut by planes
+//! 15. [`grid`]: cells, faces, index order
+//! 16. [`subdivide`]: cells and faces of convex bodies, by subdivision
+//! 17. [`layer`]: solid fractions of one layer of cells, as bounds that bodies share
+//! 18. [`surface`]: cells, x and y faces of a layer from a triangulated surface
+//! 19. [`section`]: its z faces
+//! 20. [`overlap`]: the exact union of bodies in a cell
 //!
 //! Beside the geometry, and using none of it, stands the flow:
 //!
@@ -26,18 +31,23 @@
 #![forbid(unsafe_code)]
 
 pub mod aabb;
+pub mod classify;
 pub mod clip;
+pub mod columns;
 pub mod contain;
+pub mod convex;
 pub mod exact;
 pub mod gjk;
 pub mod grid;
 pub mod layer;
 pub mod overlap;
 pub mod pdr;
+pub mod polytope;
 pub mod real;
 pub mod sat;
 pub mod section;
 pub mod shape;
 pub mod simplex;
+pub mod subdivide;
 pub mod support;
 pub mod surface;

@@ -287,7 +287,7 @@ support_of_rounded!(Sphere);
 support_of_rounded!(Capsule);
 
 /// `v` by its length; zero for zero. Components of any size.
-fn normalized<V: Vector>(v: V) -> V {
+pub(crate) fn normalized<V: Vector>(v: V) -> V {
     let unit = v.norm_max().binade();
     if !(unit > V::Scalar::ZERO) || !unit.is_finite() {
         return V::ZERO;
@@ -334,15 +334,16 @@ impl<V: Vector> Support for Ellipsoid<V> {
 
 /// A centre, an axis and two vectors across it: what cylinder and cone have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Frame<V: Vector> {
-    base: V,
+pub(crate) struct Frame<V: Vector> {
+    pub base: V,
+    pub top: V,
     axis: V,
-    across: [V; 2],
-    radius: V::Scalar,
+    pub across: [V; 2],
+    pub radius: V::Scalar,
 }
 
 impl<V: Vector> Frame<V> {
-    fn new(base: V, top: V, radius: V::Scalar) -> Self {
+    pub fn new(base: V, top: V, radius: V::Scalar) -> Self {
         let axis = top - base;
         let unit = normalized(axis);
         let [x, y, z] = unit.abs().to_array();
@@ -356,7 +357,7 @@ impl<V: Vector> Frame<V> {
             V::new(zero, zero, one)
         };
         let u = normalized(unit.cross(other));
-        Frame { base, axis, across: [u, unit.cross(u)], radius }
+        Frame { base, top, axis, across: [u, unit.cross(u)], radius }
     }
 
     /// From the axis to the point of the circle farthest along a direction.
@@ -382,7 +383,7 @@ impl<V: Vector> Frame<V> {
 
 /// A cylinder with flat ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cylinder<V: Vector>(Frame<V>);
+pub struct Cylinder<V: Vector>(pub(crate) Frame<V>);
 
 impl<V: Vector> Cylinder<V> {
     /// Between the centres of its ends. With both in one place it is that point.
@@ -415,7 +416,7 @@ impl<V: Vector> Support for Cylinder<V> {
 
 /// A cone with a flat base.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone<V: Vector>(Frame<V>);
+pub struct Cone<V: Vector>(pub(crate) Frame<V>);
 
 impl<V: Vector> Cone<V> {
     /// From the centre and radius of its base to its apex. With both in one place it is that point.

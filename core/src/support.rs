@@ -141,9 +141,9 @@ impl<S: Support> Support for Rounded<S> {
 /// A body scaled along its own axes, then rotated, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transformed<S: Support> {
-    shape: S,
-    columns: [S::Vector; 3],
-    translation: S::Vector,
+    pub(crate) shape: S,
+    pub(crate) columns: [S::Vector; 3],
+    pub(crate) translation: S::Vector,
     norm: ScalarOf<S>,
     /// Scale of the radius; zero if the scale differs by axis and the ball becomes an ellipsoid.
     round: ScalarOf<S>,

@@ -1,5 +1,6 @@
 //! What the user typed.
 
+use crate::porosity::{Leaf, Method};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -60,15 +61,6 @@ impl Unit {
     }
 }
 
-/// How volumes are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// The cheapest that is exact
-    Auto,
-    /// Sums over the surface: exact for any closed surface
-    Surface,
-}
-
 /// The scene, shared by all commands.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
@@ -115,9 +107,12 @@ pub struct PorosityArgs {
     /// Where bodies overlap and their union has no proof, divide cells until the bounds are this close
     #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol)]
     pub tol: f64,
-    /// How often a cell without a proof may be divided by two
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=10))]
-    pub depth: u32,
+    /// How often a cell without a proof may be divided by two (default: 6; 3 with --leaf solid or half)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10))]
+    pub depth: Option<u32>,
+    /// What becomes of parts still cut when a subdivision by GJK ends
+    #[arg(long, value_enum, default_value_t = Leaf::Plane)]
+    pub leaf: Leaf,
     /// Also certified lower and upper bounds of all fields
     #[arg(long)]
     pub bounds_fields: bool,

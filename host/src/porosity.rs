@@ -4,6 +4,7 @@
 //! any number of threads.
 
 mod bins;
+pub mod convex;
 mod fields;
 mod layers;
 mod levels;
@@ -12,6 +13,8 @@ mod unions;
 
 use crate::bodies::Bodies;
 use bins::Bins;
+use clap::ValueEnum;
+use convex::Roads;
 pub use fields::FieldSet;
 use glam::DVec3;
 use layers::{Summary, Target, Worker};
@@ -19,6 +22,49 @@ pub use levels::levels;
 use rayon::prelude::*;
 use serde::Serialize;
 use voidage_core::grid::Grid;
+use voidage_core::subdivide;
+
+/// How volumes are found.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision
+    #[default]
+    Auto,
+    /// Sums over the surface: exact for any closed surface of triangles
+    Surface,
+    /// Subdivision by GJK, as in the paper: bounds for convex bodies
+    Gjk,
+}
+
+/// What becomes of the smallest parts of a cell that a body still cuts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Leaf {
+    /// Touched counts as solid: the paper's rule, which finds too much
+    Solid,
+    /// Touched counts half
+    Half,
+    /// Bounded by planes and points: certified, of second order
+    #[default]
+    Plane,
+}
+
+impl Leaf {
+    /// How deep a subdivision goes unless another depth is asked for: the paper's, or far enough for the default tolerance.
+    #[must_use]
+    pub fn depth(self) -> u32 {
+        if self == Leaf::Plane { 6 } else { 3 }
+    }
+}
+
+impl From<Leaf> for subdivide::Leaf {
+    fn from(leaf: Leaf) -> Self {
+        match leaf {
+            Leaf::Solid => subdivide::Leaf::Solid,
+            Leaf::Half => subdivide::Leaf::Half,
+            Leaf::Plane => subdivide::Leaf::Plane,
+        }
+    }
+}
 
 /// What to compute and how far to refine.
 #[derive(Debug, Clone, Copy)]
@@ -31,11 +77,22 @@ pub struct Options {
     pub bounds: bool,
     /// Compute the faces; without, their fields stay empty.
     pub areas: bool,
+    /// How volumes are found.
+    pub method: Method,
+    /// What ends a subdivision by GJK.
+    pub leaf: Leaf,
+}
+
+impl Options {
+    /// Where between its bounds a value lies: in the middle; by the paper's rule at the solid end.
+    fn solid_end(&self) -> f64 {
+        if self.leaf == Leaf::Solid { 1.0 } else { 0.5 }
+    }
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { tol: 1e-4, depth: 6, bounds: false, areas: true }
+        Options { tol: 1e-4, depth: 6, bounds: false, areas: true, method: Method::Auto, leaf: Leaf::Plane }
     }
 }
 
@@ -50,6 +107,15 @@ pub struct CellCounts {
     pub closed: usize,
     /// Of the cut cells: shared by several bodies, so that their union had to be found.
     pub ambiguous: usize,
+}
+
+/// How often GJK was asked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Gjk {
+    /// Queries.
+    pub queries: u64,
+    /// Of these, without an answer: work, not error.
+    pub undecided: u64,
 }
 
 /// Where a body's surface fails to close.
@@ -80,6 +146,10 @@ pub struct Porosity {
     pub divided: usize,
     /// By how much a body's own share of a cell left 0..1: surface that crosses itself.
     pub winding: f64,
+    /// Bodies that went by subdivision, of all.
+    pub subdivided: usize,
+    /// Queries of GJK.
+    pub gjk: Gjk,
     /// Bodies whose rows did not return to zero, worst first, one entry a body.
     pub leaks: Vec<Leak>,
 }
@@ -101,7 +171,8 @@ pub fn porosity_watched(
     let moved = planes::into_planes(grid, &bodies.triangles);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
     let levels = levels(bodies);
-    let unions = levels.iter().map(|&level| union(grid, bodies, triangles, level, options, layer_done));
+    let roads = Roads::choose(bodies, triangles, options);
+    let unions = levels.iter().map(|&level| union(grid, bodies, triangles, &roads, level, options, layer_done));
     levels::join(&levels, unions)
 }
 
@@ -110,11 +181,14 @@ fn union(
     grid: &Grid<f64>,
     bodies: &Bodies,
     triangles: &[[DVec3; 3]],
+    roads: &Roads,
     level: f64,
     options: Options,
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
-    let bins = Bins::new(grid, bodies, triangles, level);
+    let counts = |body: usize| bodies.bodies[body].porosity <= level;
+    let convex = roads.road(options, counts);
+    let bins = Bins::new(grid, bodies, triangles, |body| counts(body) && roads.by_surface(body));
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
@@ -123,7 +197,7 @@ fn union(
         .map_init(
             || Worker::new(grid, options),
             |worker, (k, target)| {
-                let summary = worker.layer(grid, &bins, k, target);
+                let summary = worker.layer(grid, &bins, &convex, k, target);
                 layer_done();
                 summary
             },
@@ -138,6 +212,8 @@ fn union(
         max_gap: total.max_gap,
         divided: total.divided,
         winding: total.winding,
+        subdivided: roads.subdivided(),
+        gjk: Gjk { queries: total.tally.queries, undecided: total.tally.undecided },
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
     }
 }

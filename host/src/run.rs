@@ -7,7 +7,7 @@ use crate::grid::{self, Edges, Source};
 use crate::input;
 use crate::output::vtr::{CellField, Field, Vtr};
 use crate::output::{npy, png, report};
-use crate::porosity::{self, Options, Porosity};
+use crate::porosity::{self, Method, Options, Porosity};
 use crate::progress::Progress;
 use crate::scene;
 use glam::DVec3;
@@ -75,14 +75,18 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
     pool.install(|| {
         let (bodies, own_grid) = load(&args.scene, &mut progress)?;
-        need_surfaces(&bodies)?;
+        if args.method == Method::Surface {
+            need_surfaces(&bodies)?;
+        }
         let source = source(args, &bodies, own_grid);
         let mut remarks = Vec::new();
         let edges = grid::edges(&source, bodies.bounds(), &mut remarks)?;
         remarks.into_iter().for_each(|r| progress.warn(r));
         let grid = edges.grid(None)?;
         look_for_misfit(&bodies, &edges, &mut progress);
-        let options = Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
+        let depth = args.depth.unwrap_or(args.leaf.depth());
+        let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
+        let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
         let layers = edges.cells()[2] * porosity::levels(&bodies).len();
         let result = progress.stage("porosity", |p| {
             let bar = p.bar("porosity", layers);
@@ -282,7 +286,7 @@ struct Report {
     warnings: Vec<String>,
     skipped: Vec<&'static str>,
     seconds: std::collections::BTreeMap<&'static str, f64>,
-    gjk: Gjk,
+    gjk: porosity::Gjk,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -290,12 +294,6 @@ struct GridReport {
     cells: [usize; 3],
     bounds: [DVec3; 2],
     unit: &'static str,
-}
-
-#[derive(Debug, Clone, Default, Serialize)]
-struct Gjk {
-    queries: u64,
-    undecided: u64,
 }
 
 impl Report {
@@ -328,7 +326,7 @@ impl Report {
             warnings: Vec::new(),
             skipped,
             seconds: std::collections::BTreeMap::new(),
-            gjk: Gjk::default(),
+            gjk: result.gjk,
         }
     }
 

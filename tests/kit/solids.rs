@@ -2,9 +2,11 @@
 
 use glam::{DMat3, DVec3};
 use std::path::PathBuf;
-use voidage::bodies::Bodies;
+use voidage::bodies::form::Form;
+use voidage::bodies::{Bodies, Body};
 use voidage::input::{Mesh, Solid};
 use voidage::scene::hull::Hull;
+use voidage_core::shape::Sphere;
 
 /// A triangle: three corners, counter-clockwise from outside.
 pub type Triangle = [DVec3; 3];
@@ -94,10 +96,13 @@ pub fn sphere(center: DVec3, radius: f64, frequency: usize) -> Vec<Triangle> {
 /// Sixteen spheres of 362 points in the unit cube, as in the paper's largest case.
 #[must_use]
 pub fn sixteen_spheres() -> Vec<Vec<Triangle>> {
-    let centers = (0..16).map(|n| {
+    sixteen_centers().map(|c| sphere(c, 0.11, 6)).collect()
+}
+
+fn sixteen_centers() -> impl Iterator<Item = DVec3> {
+    (0..16).map(|n| {
         DVec3::new(0.125 + 0.25 * (n % 4) as f64, 0.25 + 0.5 * (n / 4 % 2) as f64, 0.25 + 0.5 * (n / 8) as f64)
-    });
-    centers.map(|c| sphere(c, 0.11, 6)).collect()
+    })
 }
 
 /// Volume enclosed by triangles.
@@ -151,4 +156,26 @@ pub fn obj(hull: &Hull) -> String {
         text += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
     }
     text
+}
+
+/// Sixteen balls where [`sixteen_spheres`] has geodesic ones.
+#[must_use]
+pub fn sixteen_balls() -> Vec<Sphere<DVec3>> {
+    sixteen_centers().map(|center| Sphere { center, radius: 0.11 }).collect()
+}
+
+/// A scene of bodies known by formula.
+#[must_use]
+pub fn formulas(forms: &[Form]) -> Bodies {
+    let body = |(n, form): (usize, &Form)| Body {
+        name: format!("solid {n}"),
+        triangles: 0..0,
+        form: Some(form.clone()),
+        porosity: 0.0,
+        volume: 0.0,
+        bounds: form.bounds(),
+        cavities: 0,
+        sheet: false,
+    };
+    Bodies { bodies: forms.iter().enumerate().map(body).collect(), ..Bodies::default() }
 }

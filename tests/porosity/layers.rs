@@ -3,9 +3,28 @@
 use std::path::Path;
 
 /// Modules from the bottom up; `a/b.rs` counts as `a`. The flow uses scalars only, and no geometry uses the flow.
-const ORDER: [&str; 16] = [
-    "real", "pdr", "aabb", "support", "shape", "sat", "simplex", "gjk", "exact", "contain", "clip", "grid", "layer",
-    "surface", "section", "overlap",
+const ORDER: [&str; 21] = [
+    "real",
+    "pdr",
+    "aabb",
+    "support",
+    "shape",
+    "sat",
+    "simplex",
+    "gjk",
+    "exact",
+    "contain",
+    "convex",
+    "polytope",
+    "columns",
+    "classify",
+    "clip",
+    "grid",
+    "subdivide",
+    "layer",
+    "surface",
+    "section",
+    "overlap",
 ];
 
 #[test]

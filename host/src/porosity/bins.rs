@@ -30,12 +30,16 @@ pub struct Group {
 }
 
 impl<'a> Bins<'a> {
-    /// Sort the triangles of all bodies whose porosity is at most `level`; `triangles` are those of `bodies`, or a copy with corners
-    /// moved.
+    /// Sort the triangles of the bodies that are `wanted`; `triangles` are those of `bodies`, or a copy with corners moved.
     #[must_use]
-    pub fn new(grid: &Grid<f64>, bodies: &Bodies, triangles: &'a [[DVec3; 3]], level: f64) -> Self {
-        let counted = bodies.bodies.iter().enumerate().filter(|(_, body)| body.porosity <= level);
-        let runs = counted.map(|(b, body)| (b as u32, body.triangles.clone()));
+    pub fn new(
+        grid: &Grid<f64>,
+        bodies: &Bodies,
+        triangles: &'a [[DVec3; 3]],
+        wanted: impl Fn(usize) -> bool + Clone,
+    ) -> Self {
+        let all = bodies.bodies.iter().enumerate().filter(|(b, _)| wanted(*b));
+        let runs = all.map(|(b, body)| (b as u32, body.triangles.clone()));
         let mut bins = Self::of(grid, triangles, runs.flat_map(|(b, run)| run.map(move |t| (b, t as u32))));
         bins.groups.iter_mut().for_each(|g| g.sheet = bodies.bodies[g.body as usize].sheet);
         bins

@@ -1,9 +1,11 @@
 //! One layer of cells after the other, in one thread's memory.
 
 use super::bins::Bins;
+use super::convex::{Lists, Road, joined};
 use super::fields::Slices;
 use super::unions::Unions;
 use super::{CellCounts, Options};
+use voidage_core::classify::Tally;
 use voidage_core::grid::Grid;
 use voidage_core::layer::{Fields, Layer};
 use voidage_core::section::{Side, add_section};
@@ -28,6 +30,8 @@ pub struct Summary {
     pub divided: usize,
     /// By how much a body's share left 0..1.
     pub winding: f64,
+    /// Queries of GJK.
+    pub tally: Tally,
     /// Body and residual of rows that leak.
     pub leaks: Vec<(u32, f64)>,
 }
@@ -44,6 +48,7 @@ impl Summary {
         self.max_gap = self.max_gap.max(other.max_gap);
         self.divided += other.divided;
         self.winding = self.winding.max(other.winding);
+        self.tally = joined(self.tally, other.tally);
         self
     }
 }
@@ -65,6 +70,7 @@ pub struct Worker {
     marks: Vec<u8>,
     /// Lower bounds of fields that have no slice of their own.
     spare: Vec<f64>,
+    lists: Lists,
     unions: Unions,
 }
 
@@ -78,12 +84,13 @@ impl Worker {
             sum: vec![0.0; Fields::<f64>::needed(grid)],
             marks: vec![0; Fields::<u8>::needed(grid)],
             spare: vec![0.0; Fields::<f64>::needed(grid)],
+            lists: Lists::default(),
             unions: Unions::new(options),
         }
     }
 
     /// Compute layer `k`: bounds body by body, unions where they differ.
-    pub fn layer(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, target: Target) -> Summary {
+    pub fn layer(&mut self, grid: &Grid<f64>, bins: &Bins, convex: &Road, k: usize, target: Target) -> Summary {
         let mut out = Summary::default();
         let Target { beta: Slices { v, x, y, z, top }, mut bounds } = target;
         let lower = if self.options.areas {
@@ -109,22 +116,24 @@ impl Worker {
                 out.leaks.push((body, defects.leak));
             }
         }
-        if bins.groups(k).len() > 1 {
-            (out.cells.ambiguous, out.divided) = self.unions.resolve(grid, bins, k, &mut layer);
+        out.tally = convex.add(grid, k, &mut self.lists, &mut layer);
+        if bins.groups(k).len() > usize::from(convex.is_empty()) {
+            (out.cells.ambiguous, out.divided) = self.unions.resolve(grid, bins, convex, k, &mut layer);
         }
-        tally(grid, k, &layer, &mut out);
+        let end = self.options.solid_end();
+        tally(grid, k, &layer, end, &mut out);
         let Layer { lower, sum, .. } = &mut layer;
         let [mut low, mut high] = split_bounds(&mut bounds);
-        settle(lower.cell, sum.cell, low.as_mut().map(|s| &mut *s.v), high.as_mut().map(|s| &mut *s.v), &mut out);
+        settle(lower.cell, sum.cell, low.as_mut().map(|s| &mut *s.v), high.as_mut().map(|s| &mut *s.v), end, &mut out);
         if self.options.areas {
-            settle(lower.x, sum.x, low.as_mut().map(|s| &mut *s.x), high.as_mut().map(|s| &mut *s.x), &mut out);
-            settle(lower.y, sum.y, low.as_mut().map(|s| &mut *s.y), high.as_mut().map(|s| &mut *s.y), &mut out);
-            settle(lower.z, sum.z, low.as_mut().map(|s| &mut *s.z), high.as_mut().map(|s| &mut *s.z), &mut out);
+            settle(lower.x, sum.x, low.as_mut().map(|s| &mut *s.x), high.as_mut().map(|s| &mut *s.x), end, &mut out);
+            settle(lower.y, sum.y, low.as_mut().map(|s| &mut *s.y), high.as_mut().map(|s| &mut *s.y), end, &mut out);
+            settle(lower.z, sum.z, low.as_mut().map(|s| &mut *s.z), high.as_mut().map(|s| &mut *s.z), end, &mut out);
         }
         if !top.is_empty() {
             let low = low.as_mut().map(|s| &mut *s.top);
             let high = high.as_mut().map(|s| &mut *s.top);
-            self.top(grid, bins, k, top, low, high, &mut out);
+            self.top(grid, bins, convex, k, top, low, high, &mut out);
         }
         out
     }
@@ -134,6 +143,7 @@ impl Worker {
         &mut self,
         grid: &Grid<f64>,
         bins: &Bins,
+        convex: &Road,
         k: usize,
         beta: &mut [f64],
         low: Option<&mut [f64]>,
@@ -150,8 +160,9 @@ impl Worker {
         for (_, ids) in bins.layer(k) {
             add_section(grid, k + 1, Side::Below, bins.triangles(), ids, &mut scratch, &mut layer);
         }
-        self.unions.resolve_top(grid, bins, k, &mut layer);
-        settle(layer.lower.z, layer.sum.z, low, high, out);
+        out.tally = joined(out.tally, convex.add_top(grid, k + 1, &mut self.lists, &mut layer));
+        self.unions.resolve_top(grid, bins, convex, k, &mut layer);
+        settle(layer.lower.z, layer.sum.z, low, high, self.options.solid_end(), out);
         beta.copy_from_slice(layer.lower.z);
     }
 }
@@ -165,7 +176,7 @@ fn split_bounds<'b, 'a>(bounds: &'b mut Option<[Slices<'a>; 2]>) -> [Option<&'b 
 }
 
 /// Count the cells of a layer and add up their solid volume.
-fn tally(grid: &Grid<f64>, k: usize, layer: &Layer<f64>, out: &mut Summary) {
+fn tally(grid: &Grid<f64>, k: usize, layer: &Layer<f64>, end: f64, out: &mut Summary) {
     let [nx, ny, _] = grid.cells();
     let width = |axis: usize, i: usize| grid.edges(axis)[i + 1] - grid.edges(axis)[i];
     for j in 0..ny {
@@ -179,7 +190,7 @@ fn tally(grid: &Grid<f64>, k: usize, layer: &Layer<f64>, out: &mut Summary) {
         let mut volume = 0.0;
         for i in 0..nx {
             let upper = sum[i].min(1.0);
-            volume += (lower[i] + upper) * 0.5 * width(0, i);
+            volume += (lower[i] * (1.0 - end) + upper * end) * width(0, i);
             if lower[i] == 1.0 {
                 out.cells.closed += 1;
             } else if upper == 0.0 && marks[i] == 0 {
@@ -192,8 +203,16 @@ fn tally(grid: &Grid<f64>, k: usize, layer: &Layer<f64>, out: &mut Summary) {
     }
 }
 
-/// Turn solid bounds into open fractions: the middle goes to `lower`, the bounds to `low` and `high` if wanted.
-fn settle(lower: &mut [f64], sum: &[f64], low: Option<&mut [f64]>, high: Option<&mut [f64]>, out: &mut Summary) {
+/// Turn solid bounds into open fractions: the value, a share `end` of the way between them, goes to `lower`, the bounds to `low` and
+/// `high` if wanted.
+fn settle(
+    lower: &mut [f64],
+    sum: &[f64],
+    low: Option<&mut [f64]>,
+    high: Option<&mut [f64]>,
+    end: f64,
+    out: &mut Summary,
+) {
     if let Some(low) = low {
         low.iter_mut().zip(sum).for_each(|(low, sum)| *low = 1.0 - sum.min(1.0));
     }
@@ -201,7 +220,7 @@ fn settle(lower: &mut [f64], sum: &[f64], low: Option<&mut [f64]>, high: Option<
         high.iter_mut().zip(&*lower).for_each(|(high, lower)| *high = 1.0 - lower);
     }
     out.max_gap = out.max_gap.max(widest(lower, sum));
-    let open = |l: &mut f64, s: f64| *l = 1.0 - (*l + if s < 1.0 { s } else { 1.0 }) * 0.5;
+    let open = |l: &mut f64, s: f64| *l = 1.0 - (*l * (1.0 - end) + if s < 1.0 { s } else { 1.0 } * end);
     lower.iter_mut().zip(sum).for_each(|(l, s)| open(l, *s));
 }
 

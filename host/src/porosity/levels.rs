@@ -47,6 +47,8 @@ pub fn join(levels: &[f64], mut unions: impl Iterator<Item = Porosity>) -> Poros
         total.cells.open = union.cells.open;
         total.cells.ambiguous = total.cells.ambiguous.max(union.cells.ambiguous);
         total.divided += union.divided;
+        total.gjk.queries += union.gjk.queries;
+        total.gjk.undecided += union.gjk.undecided;
         total.winding = total.winding.max(union.winding);
         // A body leaks alike at every level; the last holds them all.
         total.leaks = union.leaks;

@@ -1,6 +1,7 @@
 //! Cells and faces that several bodies share: exact unions, or division until there is one.
 
 use super::bins::{Bins, Group};
+use super::convex::{Lists, Road};
 use super::fields::FieldSet;
 use super::layers::{Worker, widest};
 use super::{Options, targets};
@@ -16,6 +17,7 @@ const MAX_PIECES: usize = 512;
 pub struct Unions {
     options: Options,
     memory: Option<Memory>,
+    lists: Lists,
     /// For the parts of a divided cell.
     inner: Option<Box<Worker>>,
 }
@@ -116,12 +118,19 @@ fn fits(lower: f64, sum: f64, (low, high): Bounds) -> bool {
 
 impl Unions {
     pub fn new(options: Options) -> Self {
-        Unions { options, memory: None, inner: None }
+        Unions { options, memory: None, lists: Lists::default(), inner: None }
     }
 
     /// Refine layer `k`: its cells, x and y faces, and the z faces below. Returns the numbers of ambiguous cells and of
     /// divided ones.
-    pub fn resolve(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) -> (usize, usize) {
+    pub fn resolve(
+        &mut self,
+        grid: &Grid<f64>,
+        bins: &Bins,
+        convex: &Road,
+        k: usize,
+        layer: &mut Layer<f64>,
+    ) -> (usize, usize) {
         let [nx, ny, _] = grid.cells();
         let areas = self.options.areas;
         let (mut ambiguous, mut divided) = (0, 0);
@@ -139,13 +148,13 @@ impl Unions {
                 }
                 let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                 let (lo, hi) = grid.cell_box([i, j, k]);
-                let union = self.union(lo, hi, bins, k, row).map(Refined::from);
+                let union = self.union(lo, hi, bins, convex, k, row).map(Refined::from);
                 let believed = union.and_then(|u| if agrees(layer, nx, i, j, &u, areas) { Ok(u) } else { Err(Full) });
                 let refined = match believed {
                     Ok(refined) => Some(refined),
                     Err(Full) if open > self.options.tol => {
                         divided += 1;
-                        self.divide(lo, hi, bins, k)
+                        self.divide(lo, hi, bins, convex, k)
                     }
                     Err(Full) => None,
                 };
@@ -154,12 +163,12 @@ impl Unions {
                 }
             }
         }
-        self.walls(grid, bins, k, layer);
+        self.walls(grid, bins, convex, k, layer);
         (ambiguous, divided)
     }
 
     /// Refine the z faces above layer `k`, held in `layer.…z`.
-    pub fn resolve_top(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) {
+    pub fn resolve_top(&mut self, grid: &Grid<f64>, bins: &Bins, convex: &Road, k: usize, layer: &mut Layer<f64>) {
         let [nx, ny, _] = grid.cells();
         for j in 0..ny {
             let mut row = None;
@@ -170,13 +179,13 @@ impl Unions {
                     continue;
                 }
                 let bounds = if layer.marks.z[c] != 0 {
-                    Some(self.wall(grid, bins, 2, [i, j, k + 1]))
+                    Some(self.wall(grid, bins, convex, 2, [i, j, k + 1]))
                 } else {
                     let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                     let (lo, hi) = grid.cell_box([i, j, k]);
-                    match self.union(lo, hi, bins, k, row) {
+                    match self.union(lo, hi, bins, convex, k, row) {
                         Ok(union) => Some(Refined::from(union).high[2]),
-                        Err(Full) if open > self.options.tol => self.divide(lo, hi, bins, k).map(|r| r.high[2]),
+                        Err(Full) if open > self.options.tol => self.divide(lo, hi, bins, convex, k).map(|r| r.high[2]),
                         Err(Full) => None,
                     }
                 };
@@ -187,8 +196,19 @@ impl Unions {
         }
     }
 
-    /// The exact union in a cell of layer `k`.
-    fn union(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, k: usize, row: &Row) -> Result<CellUnion<f64>, Full> {
+    /// The exact union in a cell of layer `k`; of triangles only.
+    fn union(
+        &mut self,
+        lo: [f64; 3],
+        hi: [f64; 3],
+        bins: &Bins,
+        convex: &Road,
+        k: usize,
+        row: &Row,
+    ) -> Result<CellUnion<f64>, Full> {
+        if convex.reaches(lo, hi, &mut self.lists) {
+            return Err(Full);
+        }
         let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
         let mut overlap = Overlap::new(&mut space, lo, hi);
         for (g, run) in &row.groups {
@@ -201,7 +221,7 @@ impl Unions {
     }
 
     /// Bounds of a cell of layer `k` from its eight parts; none if the depth is spent.
-    fn divide(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, k: usize) -> Option<Refined> {
+    fn divide(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, convex: &Road, k: usize) -> Option<Refined> {
         let options = Options { depth: self.options.depth.checked_sub(1)?, bounds: true, areas: true, ..self.options };
         let edges = [0, 1, 2].map(|a| [lo[a], lo[a] + (hi[a] - lo[a]) * 0.5, hi[a]]);
         let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
@@ -223,13 +243,13 @@ impl Unions {
         let mut beta = FieldSet::new(&grid, true);
         let mut bounds = [FieldSet::new(&grid, true), FieldSet::new(&grid, true)];
         for (k, target) in targets(&grid, &mut beta, Some(&mut bounds)).into_iter().enumerate() {
-            worker.layer(&grid, &parts, k, target);
+            worker.layer(&grid, &parts, convex, k, target);
         }
         Some(Refined::from_parts(&bounds))
     }
 
     /// Faces of layer `k` in whose plane surface lies: open where both sides are.
-    fn walls(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, layer: &mut Layer<f64>) {
+    fn walls(&mut self, grid: &Grid<f64>, bins: &Bins, convex: &Road, k: usize, layer: &mut Layer<f64>) {
         let [nx, ny, _] = grid.cells();
         for (axis, shape) in [(0, [nx + 1, ny]), (1, [nx, ny + 1]), (2, [nx, ny])] {
             let Layer { lower, sum, marks } = layer;
@@ -243,7 +263,7 @@ impl Unions {
             }
             for f in 0..shape[0] * shape[1] {
                 if marks[f] != 0 && gap(lower[f], sum[f]) > KNOWN {
-                    let bounds = self.wall(grid, bins, axis, [f % shape[0], f / shape[0], k]);
+                    let bounds = self.wall(grid, bins, convex, axis, [f % shape[0], f / shape[0], k]);
                     improve(&mut lower[f], &mut sum[f], bounds);
                 }
             }
@@ -251,7 +271,7 @@ impl Unions {
     }
 
     /// Bounds of the union on a face from what both its cells see.
-    fn wall(&mut self, grid: &Grid<f64>, bins: &Bins, axis: usize, face: [usize; 3]) -> Bounds {
+    fn wall(&mut self, grid: &Grid<f64>, bins: &Bins, convex: &Road, axis: usize, face: [usize; 3]) -> Bounds {
         let layers = grid.cells()[2] as isize;
         let sides = [true, false].map(|below| {
             let (lo, hi) = side_cell(grid, axis, face, below);
@@ -261,7 +281,8 @@ impl Unions {
         });
         // What a sheet blocks beyond the solids is not known here.
         let sheet = sides.iter().any(|side| bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g)));
-        if sheet { (0.0, 1.0) } else { self.wall_between(bins, axis, sides, self.options.depth) }
+        let other = sides.iter().any(|side| convex.reaches(side.lo, side.hi, &mut self.lists));
+        if sheet || other { (0.0, 1.0) } else { self.wall_between(bins, axis, sides, self.options.depth) }
     }
 
     /// As [`Unions::wall`], by quarters where there is too much surface.

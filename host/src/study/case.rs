@@ -23,16 +23,16 @@
 //! cells = [40, 40, 40]
 //!
 //! [[method]]
-//! name = "surface"
-//! method = "surface"                # auto, surface
+//! name = "certified"
+//! method = "gjk"                    # method, leaf, tol, depth: as on the command line
+//! leaf = "plane"
 //! tol = 1e-4
 //! depth = 6
 //! ```
 
-use crate::cli::Method;
 use crate::error::{Error, Result};
 use crate::grid::{Edges, toml_error};
-use crate::porosity::Options;
+use crate::porosity::{Leaf, Method, Options};
 use crate::scene::keys::{self, Keys, Source};
 use crate::scene::{self, Solid};
 use clap::ValueEnum;
@@ -87,9 +87,7 @@ pub struct Probe {
 pub struct Recipe {
     /// Its name in tables.
     pub name: String,
-    /// How volumes are found.
-    pub method: Method,
-    /// How far they are refined.
+    /// What it computes and how far.
     pub options: Options,
 }
 
@@ -166,12 +164,12 @@ fn probe(keys: &mut Keys) -> Result<Probe> {
 fn recipe(mut keys: Keys, areas: bool) -> Result<Recipe> {
     let name = keys.need("name", keys::text)?;
     keys.subject = format!("method \"{name}\"");
-    let method = keys.get("method", choice::<Method>)?.unwrap_or(Method::Auto);
-    let standard = Options::default();
-    let tol = keys.get("tol", keys::fraction)?.unwrap_or(standard.tol);
-    let depth = keys.get("depth", depth)?.unwrap_or(standard.depth);
+    let method = keys.get("method", choice::<Method>)?.unwrap_or_default();
+    let leaf = keys.get("leaf", choice::<Leaf>)?.unwrap_or_default();
+    let tol = keys.get("tol", keys::fraction)?.unwrap_or(Options::default().tol);
+    let depth = keys.get("depth", depth)?.unwrap_or(leaf.depth());
     keys.finish()?;
-    Ok(Recipe { name, method, options: Options { tol, depth, areas, ..standard } })
+    Ok(Recipe { name, options: Options { tol, depth, bounds: false, areas, method, leaf } })
 }
 
 /// A number of repeats or threads.

@@ -2,10 +2,10 @@
 
 use super::case::{Case, Probe, Recipe, Subject};
 use crate::bodies::Bodies;
-use crate::cli::{Method, SceneArgs};
+use crate::cli::SceneArgs;
 use crate::error::{Error, Result};
 use crate::grid::Edges;
-use crate::porosity::{self, FieldSet, Options, Porosity};
+use crate::porosity::{self, FieldSet, Leaf, Method, Options, Porosity};
 use crate::progress::Progress;
 use crate::run;
 use crate::scene::{Scene, load};
@@ -46,7 +46,8 @@ pub struct Row {
 }
 
 /// The reference by the surface: unions as exactly as they are found.
-const REFERENCE: Options = Options { tol: 0.0, depth: 6, bounds: false, areas: true };
+const REFERENCE: Options =
+    Options { tol: 0.0, depth: 6, bounds: false, areas: true, method: Method::Surface, leaf: Leaf::Plane };
 
 /// Run all.
 ///
@@ -59,7 +60,7 @@ pub fn all(path: &Path, case: &Case, progress: &mut Progress) -> Result<Vec<Row>
         for grid in &case.grids {
             let reference = reference(&bodies, grid, case.areas)?;
             for recipe in &case.recipes {
-                if let (Method::Surface, Err(why)) = (recipe.method, run::need_surfaces(&bodies)) {
+                if let (Method::Surface, Err(why)) = (recipe.options.method, run::need_surfaces(&bodies)) {
                     progress.warn(format!("method \"{}\" is left out: {why}", recipe.name));
                     continue;
                 }

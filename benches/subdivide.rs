@@ -1,0 +1,63 @@
+//! Time and error of subdivision by GJK: `cargo bench -p voidage-benches --bench subdivide`.
+//!
+//! One line a case: medians of the computation alone on one thread and on two, the solid found against the truth, the largest gap.
+
+use std::f64::consts::PI;
+use std::time::Instant;
+use voidage::bodies::Bodies;
+use voidage::bodies::form::Form;
+use voidage::grid::Edges;
+use voidage::porosity::{Leaf, Method, Options, Porosity, porosity};
+use voidage_tests::solids::{formulas, scene, sixteen_balls, sixteen_spheres, volume};
+
+const RUNS: usize = 5;
+
+fn main() {
+    println!("{:40} {:>9} {:>9} {:>9} {:>9} {:>9}", "case", "1 thread", "2", "solid", "max gap", "queries");
+    let axis: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
+    let unit = Edges([axis.clone(), axis.clone(), axis]);
+    let solids = sixteen_spheres();
+    let (spheres, truth) = (scene(&solids), solids.iter().map(|s| volume(s)).sum::<f64>());
+    let gjk = Options { method: Method::Gjk, depth: 3, ..Options::default() };
+    for (name, leaf) in [("solid", Leaf::Solid), ("half", Leaf::Half), ("plane", Leaf::Plane)] {
+        let name = format!("16 spheres of 362 points, {name}, depth 3");
+        case(&name, &spheres, &unit, Options { leaf, ..gjk }, truth);
+    }
+    let balls: Vec<Form> = sixteen_balls().into_iter().map(Form::Sphere).collect();
+    let truth = 16.0 * 4.0 / 3.0 * PI * 0.11_f64.powi(3);
+    case("16 balls, solid, depth 3", &formulas(&balls), &unit, Options { leaf: Leaf::Solid, ..gjk }, truth);
+    for tol in [1e-3, 1e-4, 1e-5] {
+        let name = format!("16 balls, plane, tol {tol:e}");
+        case(&name, &formulas(&balls), &unit, Options { tol, ..Options::default() }, truth);
+    }
+}
+
+fn case(name: &str, bodies: &Bodies, edges: &Edges, options: Options, truth: f64) {
+    let (one, _) = median(bodies, edges, 1, options);
+    let (two, result) = median(bodies, edges, 2, options);
+    println!(
+        "{name:40} {:>7.1}ms {:>7.1}ms {:>8.3}% {:>9.1e} {:>9}",
+        one * 1e3,
+        two * 1e3,
+        (result.solid_volume / truth - 1.0) * 100.0,
+        result.max_gap,
+        result.gjk.queries
+    );
+}
+
+fn median(bodies: &Bodies, edges: &Edges, threads: usize, options: Options) -> (f64, Porosity) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let grid = edges.grid(None).expect("a grid");
+    pool.install(|| {
+        let mut result = porosity(&grid, bodies, options);
+        let mut seconds: Vec<f64> = (0..RUNS)
+            .map(|_| {
+                let begin = Instant::now();
+                result = porosity(&grid, bodies, options);
+                begin.elapsed().as_secs_f64()
+            })
+            .collect();
+        seconds.sort_by(f64::total_cmp);
+        (seconds[RUNS / 2], result)
+    })
+}

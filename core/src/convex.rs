@@ -1,0 +1,403 @@
+//! Convex bodies as lines see them: where a line enters and leaves, which of their sides are flat, how far they reach.
+//!
+//! A chord is computed for the body grown by a length, or shrunk if that is negative. Rounding moves the ends of a chord as if the body
+//! had been moved or bent by less than [`rounding`]; so the chord of the body grown by that holds the true chord, and the chord of the body
+//! shrunk by it lies inside the true one. The quadratic forms below are arranged for that: each term is rounded relative to a
+//! length of the body, none by cancellation of squares.
+
+use crate::aabb::Aabb;
+use crate::exact::{Contact, settle};
+use crate::real::{Real, Vector};
+use crate::shape::{Capsule, Cone, Cylinder, Ellipsoid, Frame, OrientedBox, Sphere, normalized};
+use crate::support::{ScalarOf, Support, Transformed};
+
+/// A flat part of a body's surface: no point of the body has `normal·p > offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane<V: Vector> {
+    /// Outward, of length one.
+    pub normal: V,
+    /// Where it stands along the normal.
+    pub offset: V::Scalar,
+    /// Along a coordinate axis, so that neither normal nor offset are rounded, and the flat part lies exactly in it.
+    pub exact: bool,
+}
+
+impl<V: Vector> Plane<V> {
+    /// Across `normal`, of any length, through a point farthest along it.
+    pub fn new(normal: V, through: V) -> Self {
+        let [x, y, z] = normal.to_array();
+        let zero = V::Scalar::ZERO;
+        let exact = [x, y, z].iter().filter(|&&c| c != zero).count() == 1;
+        let sign = |c: V::Scalar| if c == zero { zero } else { V::Scalar::ONE.copysign(c) };
+        let normal = if exact { V::new(sign(x), sign(y), sign(z)) } else { normalized(normal) };
+        Plane { normal, offset: normal.dot(through), exact }
+    }
+
+    /// Lowest and highest `normal·p - offset` over a box.
+    #[inline(always)]
+    pub fn range(&self, cell: &Aabb<V>) -> [V::Scalar; 2] {
+        let high = cell.support(self.normal, 0).point;
+        let low = cell.support(-self.normal, 0).point;
+        [low.dot(self.normal) - self.offset, high.dot(self.normal) - self.offset]
+    }
+
+    /// Shortens the piece `t` of a line to the inner side of the plane moved outward by `grow`; false if nothing remains.
+    #[inline(always)]
+    fn clip(&self, origin: V, direction: V, grow: V::Scalar, t: &mut [V::Scalar; 2]) -> bool {
+        let zero = V::Scalar::ZERO;
+        let room = self.offset + if self.exact { zero } else { grow } - self.normal.dot(origin);
+        let rate = self.normal.dot(direction);
+        if rate > zero {
+            t[1] = t[1].min(room / rate);
+        } else if rate < zero {
+            t[0] = t[0].max(room / rate);
+        } else if room < zero {
+            return false;
+        }
+        t[0] <= t[1]
+    }
+}
+
+/// A piece of a line, by its parameters; infinite where it has no end.
+pub type Chord<V> = [<V as Vector>::Scalar; 2];
+
+/// A convex body that knows its chords.
+pub trait Convex: Support {
+    /// How many flat sides it has.
+    fn facets(&self) -> usize {
+        0
+    }
+
+    /// A flat side, by an index below [`Convex::facets`].
+    fn facet(&self, index: usize) -> Plane<Self::Vector>;
+
+    /// The body is what all its facets leave.
+    fn is_polytope(&self) -> bool {
+        false
+    }
+
+    /// The parameters `t` for which `origin + t direction` lies in the body grown by `grow`, none if it misses. `near` lists the facets
+    /// that matter where the caller looks; of a body that [is no polytope](Convex::is_polytope) all matter.
+    fn chord(
+        &self,
+        origin: Self::Vector,
+        direction: Self::Vector,
+        grow: ScalarOf<Self>,
+        near: &[u32],
+    ) -> Option<Chord<Self::Vector>>;
+
+    /// How it lies to a box with volume, decided exactly; nothing if it cannot be.
+    fn settled(&self, cell: &Aabb<Self::Vector>) -> Option<Contact> {
+        let _ = cell;
+        None
+    }
+
+    /// A box around the body, exact where it ends in exact planes.
+    fn bounds(&self) -> Aabb<Self::Vector> {
+        let (zero, one) = (ScalarOf::<Self>::ZERO, ScalarOf::<Self>::ONE);
+        let room = self.radius() + self.slack() + if Self::ROUNDED { rounding(self) } else { zero };
+        let [mut min, mut max] = [[zero; 3]; 2];
+        for axis in 0..3 {
+            let mut along = [zero; 3];
+            along[axis] = one;
+            let along = Self::Vector::from_array(along);
+            min[axis] = self.farthest(-along).point.to_array()[axis] - room;
+            max[axis] = self.farthest(along).point.to_array()[axis] + room;
+        }
+        for plane in (0..self.facets()).map(|i| self.facet(i)).filter(|p| p.exact) {
+            for (axis, n) in plane.normal.to_array().into_iter().enumerate() {
+                if n > zero {
+                    max[axis] = plane.offset;
+                } else if n < zero {
+                    min[axis] = -plane.offset;
+                }
+            }
+        }
+        Aabb { min: Self::Vector::from_array(min), max: Self::Vector::from_array(max) }
+    }
+}
+
+/// How far rounding may move a point of a body or of a line near it, in units of ε times the largest coordinate.
+const MOVED_IN_EPSILONS: f64 = 64.0;
+
+/// The length by which to grow or shrink a body so that rounding cannot make its chords too short or too long.
+#[inline(always)]
+pub fn rounding<S: Support + ?Sized>(body: &S) -> ScalarOf<S> {
+    body.extent() * ScalarOf::<S>::EPSILON * ScalarOf::<S>::from_f64(MOVED_IN_EPSILONS)
+}
+
+/// The whole line.
+#[inline(always)]
+fn endless<R: Real>() -> [R; 2] {
+    [-R::INFINITY, R::INFINITY]
+}
+
+/// Where `|w + t e| <= q + t dq`, for `q + t dq` not negative.
+#[inline(always)]
+fn round<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V::Scalar; 2]> {
+    let zero = V::Scalar::ZERO;
+    let (reach, area) = (e * q - w * dq, w.cross(e));
+    let discriminant = reach.dot(reach) - area.dot(area);
+    let (a, b) = (e.dot(e) - dq * dq, w.dot(e) - q * dq);
+    if dq == zero {
+        if q < zero || discriminant < zero {
+            return None;
+        }
+        if !(a > zero) {
+            // Along the axis.
+            return (w.dot(w) <= q * q).then(endless);
+        }
+        let root = discriminant.sqrt();
+        return Some([(-b - root) / a, (-b + root) / a]);
+    }
+    if discriminant < zero {
+        let apex = -q / dq;
+        return (a < zero).then_some(if dq > zero {
+            [apex, V::Scalar::INFINITY]
+        } else {
+            [-V::Scalar::INFINITY, apex]
+        });
+    }
+    let root = discriminant.sqrt();
+    let sum = if b > zero { -b - root } else { root - b };
+    let other = (w.dot(w) - q * q) / sum;
+    let one = if a > V::Scalar::HALF * e.dot(e) && b > zero { (-b + root) / a } else { other };
+    let ends = [sum / a, one];
+    let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+    if a < zero {
+        return Some(if dq > zero { [high, V::Scalar::INFINITY] } else { [-V::Scalar::INFINITY, low] });
+    }
+    // Of the two cones that meet at the apex only one is meant.
+    (q + one * dq >= zero).then_some([low, high])
+}
+
+/// The parameter nearest to a body's centre, and the line's point there.
+#[inline(always)]
+fn beside<V: Vector>(origin: V, direction: V, center: V) -> (V::Scalar, V) {
+    let at = (center - origin).dot(direction) / direction.dot(direction);
+    (at, origin + direction * at)
+}
+
+#[inline(always)]
+fn moved<R: Real>(t: [R; 2], by: R) -> [R; 2] {
+    [t[0] + by, t[1] + by]
+}
+
+/// No flat side.
+fn no_facet<V: Vector>() -> Plane<V> {
+    Plane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false }
+}
+
+#[inline(always)]
+fn ball<V: Vector>(center: V, radius: V::Scalar, origin: V, direction: V) -> Option<[V::Scalar; 2]> {
+    let (at, p) = beside(origin, direction, center);
+    Some(moved(round(p - center, direction, radius, V::Scalar::ZERO)?, at))
+}
+
+impl<V: Vector> Convex for Sphere<V> {
+    fn facet(&self, _: usize) -> Plane<V> {
+        no_facet()
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
+        ball(self.center, self.radius + grow, origin, direction)
+    }
+}
+
+#[inline(always)]
+fn divided<V: Vector>(a: V, b: V) -> V {
+    V::new(a.x() / b.x(), a.y() / b.y(), a.z() / b.z())
+}
+
+impl<V: Vector> Convex for Ellipsoid<V> {
+    fn facet(&self, _: usize) -> Plane<V> {
+        no_facet()
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
+        let s = self.semi_axes;
+        let shortest = s.x().min(s.y()).min(s.z());
+        let (at, p) = beside(origin, direction, self.center);
+        let (w, e) = (divided(p - self.center, s), divided(direction, s));
+        Some(moved(round(w, e, V::Scalar::ONE + grow / shortest, V::Scalar::ZERO)?, at))
+    }
+}
+
+impl<V: Vector> Frame<V> {
+    fn base_facet(&self) -> Plane<V> {
+        Plane::new(self.base - self.top, self.base)
+    }
+
+    fn top_facet(&self) -> Plane<V> {
+        Plane::new(self.top - self.base, self.top)
+    }
+
+    /// The components of a vector across the axis.
+    #[inline(always)]
+    fn lateral(&self, v: V) -> V {
+        let [u1, u2] = self.across;
+        V::new(u1.dot(v), u2.dot(v), V::Scalar::ZERO)
+    }
+
+    /// The chord of the endless cylinder.
+    #[inline(always)]
+    fn tube(&self, origin: V, direction: V, grow: V::Scalar) -> Option<Chord<V>> {
+        let (at, p) = beside(origin, direction, (self.base + self.top) * V::Scalar::HALF);
+        let (w, e) = (self.lateral(p - self.base), self.lateral(direction));
+        Some(moved(round(w, e, self.radius + grow, V::Scalar::ZERO)?, at))
+    }
+}
+
+impl<V: Vector> Convex for Cylinder<V> {
+    fn facets(&self) -> usize {
+        2
+    }
+    #[inline(always)]
+    fn facet(&self, index: usize) -> Plane<V> {
+        if index == 0 { self.0.base_facet() } else { self.0.top_facet() }
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
+        let mut t = self.0.tube(origin, direction, grow)?;
+        let between = |plane: Plane<V>, t: &mut Chord<V>| plane.clip(origin, direction, grow, t);
+        (between(self.0.base_facet(), &mut t) && between(self.0.top_facet(), &mut t)).then_some(t)
+    }
+}
+
+impl<V: Vector> Convex for Capsule<V> {
+    fn facet(&self, _: usize) -> Plane<V> {
+        no_facet()
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
+        let balls = [self.from, self.to].map(|center| ball(center, self.radius + grow, origin, direction));
+        let middle = Cylinder::new(self.from, self.to, self.radius).chord(origin, direction, grow, &[]);
+        let middle = middle.filter(|_| self.from != self.to);
+        let join = |a: Chord<V>, b: Chord<V>| [a[0].min(b[0]), a[1].max(b[1])];
+        balls.into_iter().chain([middle]).flatten().reduce(join)
+    }
+}
+
+impl<V: Vector> Convex for Cone<V> {
+    fn facets(&self) -> usize {
+        1
+    }
+    #[inline(always)]
+    fn facet(&self, _: usize) -> Plane<V> {
+        self.0.base_facet()
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
+        let Frame { base, top, across: [u1, u2], radius, .. } = self.0;
+        let (at, p) = beside(origin, direction, (base + top) * V::Scalar::HALF);
+        let axis = u1.cross(u2);
+        let slope = radius / (top - base).length();
+        let out = grow * (V::Scalar::ONE + slope * slope).sqrt();
+        let (q, dq) = ((top - p).dot(axis) * slope + out, -(direction.dot(axis) * slope));
+        let w = self.0.lateral(p - base);
+        let mut t = moved(round(w, self.0.lateral(direction), q, dq)?, at);
+        self.0.base_facet().clip(origin, direction, grow, &mut t).then_some(t)
+    }
+}
+
+impl<V: Vector> Convex for Aabb<V> {
+    fn facets(&self) -> usize {
+        6
+    }
+    #[inline(always)]
+    fn facet(&self, index: usize) -> Plane<V> {
+        let (high, mut normal) = (index & 1 == 1, [V::Scalar::ZERO; 3]);
+        normal[(index >> 1) % 3] = if high { V::Scalar::ONE } else { -V::Scalar::ONE };
+        Plane::new(V::from_array(normal), if high { self.max } else { self.min })
+    }
+    fn is_polytope(&self) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, near: &[u32]) -> Option<Chord<V>> {
+        through_facets(self, origin, direction, grow, near)
+    }
+    fn settled(&self, cell: &Aabb<V>) -> Option<Contact> {
+        settle(cell, self, None).ok()
+    }
+}
+
+impl<V: Vector> Convex for OrientedBox<V> {
+    fn facets(&self) -> usize {
+        6
+    }
+    #[inline(always)]
+    fn facet(&self, index: usize) -> Plane<V> {
+        let axis = (index >> 1) % 3;
+        let [out, u, v] = [0, 1, 2].map(|i| self.half_axes[(axis + i) % 3]);
+        let normal = u.cross(v);
+        let outward = if (normal.dot(out) > V::Scalar::ZERO) == (index & 1 == 1) { normal } else { -normal };
+        let plane = Plane::new(outward, self.support(outward, 0).point);
+        // Its corners are rounded, even if its axes are not.
+        Plane { exact: false, ..plane }
+    }
+    fn is_polytope(&self) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn chord(&self, origin: V, direction: V, grow: V::Scalar, near: &[u32]) -> Option<Chord<V>> {
+        through_facets(self, origin, direction, grow, near)
+    }
+}
+
+/// The chord of a polytope.
+#[inline(always)]
+pub(crate) fn through_facets<B: Convex>(
+    body: &B,
+    origin: B::Vector,
+    direction: B::Vector,
+    grow: ScalarOf<B>,
+    near: &[u32],
+) -> Option<Chord<B::Vector>> {
+    let mut t = endless();
+    for &i in near {
+        if !body.facet(i as usize).clip(origin, direction, grow, &mut t) {
+            return None;
+        }
+    }
+    Some(t)
+}
+
+impl<S: Convex> Convex for Transformed<S> {
+    fn facets(&self) -> usize {
+        self.shape.facets()
+    }
+    fn facet(&self, index: usize) -> Plane<S::Vector> {
+        let plane = self.shape.facet(index);
+        let [n1, n2, n3] = plane.normal.to_array();
+        let [x, y, z] = self.inverse();
+        let normal = x * n1 + y * n2 + z * n3;
+        let inner = normalized(normal);
+        Plane { normal: inner, offset: inner.dot(self.farthest(inner).point) + self.radius(), exact: false }
+    }
+    fn is_polytope(&self) -> bool {
+        self.shape.is_polytope()
+    }
+    #[inline(always)]
+    fn chord(
+        &self,
+        origin: S::Vector,
+        direction: S::Vector,
+        grow: ScalarOf<S>,
+        near: &[u32],
+    ) -> Option<Chord<S::Vector>> {
+        let rows = self.inverse();
+        let local = |v: S::Vector| Vector::new(rows[0].dot(v), rows[1].dot(v), rows[2].dot(v));
+        // One over the shortest column, but for a rounding.
+        let stretch = rows[0].dot(rows[0]).max(rows[1].dot(rows[1])).max(rows[2].dot(rows[2])).sqrt();
+        self.shape.chord(local(origin - self.translation), local(direction), grow * stretch, near)
+    }
+}
+
+impl<S: Support> Transformed<S> {
+    /// The rows of the inverse map: rotation and scale leave the columns at right angles.
+    #[inline(always)]
+    fn inverse(&self) -> [S::Vector; 3] {
+        self.columns.map(|c| c * (ScalarOf::<S>::ONE / c.dot(c)))
+    }
+}

@@ -1,0 +1,447 @@
+//! Depth-first subdivision of a grid against convex bodies: solid shares of cells or faces, as bounds.
+//!
+//! A range of cells is asked of every body that may reach it: open, closed or cut ([`crate::classify`]). Open bodies leave the list, one
+//! closed body closes the range, and what is cut is bisected down to single cells; these into eight parts, or four of a face, down to
+//! `depth`. So the union is counted once. Each part takes over the bodies that cut its parent, the facets of them that did, and the last
+//! separating axis.
+//!
+//! At the end of the road stands a [`Leaf`] rule: `Solid` is that of the paper, whose shares lie (δ/2)∮(|n_x|+|n_y|+|n_z|)dS too high in
+//! all with δ the part's size; `Plane` bounds what is left to second order.
+
+use crate::aabb::Aabb;
+use crate::classify::{Body, Near, Occupancy, Tally};
+use crate::columns::{Bounds, Columns, MAX_PARTS};
+use crate::grid::Grid;
+use crate::real::{Real, Vector};
+
+/// What becomes of a part that is still cut when the depth is spent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leaf {
+    /// Its bounds are 0 and 1. The paper takes the upper one.
+    Solid,
+    /// Its bounds are 0 and 1. Their middle is the value.
+    Half,
+    /// It is measured by support planes from outside and by points from inside.
+    Plane,
+}
+
+/// How far to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule<R> {
+    /// What ends the road.
+    pub leaf: Leaf,
+    /// How often a cell may be halved along each axis; not more than [`MAX_DEPTH`].
+    pub depth: u32,
+    /// With [`Leaf::Plane`]: stop where the bounds of a cell or face are this close.
+    pub tol: R,
+}
+
+/// Deepest subdivision of a cell: parts of a hundred-thousandth of its size.
+pub const MAX_DEPTH: u32 = 16;
+
+/// What is computed: shares of cells, or of the faces normal to an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Places {
+    /// Cells.
+    Cells,
+    /// Faces normal to axis 0, 1 or 2.
+    Faces(usize),
+}
+
+/// Some cells or faces: indices `lo..hi` along each axis, counted as in [`Grid`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Range {
+    /// First index along each axis.
+    pub lo: [u32; 3],
+    /// One past the last.
+    pub hi: [u32; 3],
+}
+
+impl Range {
+    /// Holds nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        (0..3).any(|axis| self.lo[axis] >= self.hi[axis])
+    }
+
+    fn longest(&self) -> (usize, u32) {
+        let length = |axis: usize| self.hi[axis] - self.lo[axis];
+        let axis =
+            if length(0) >= length(1) && length(0) >= length(2) { 0 } else { 1 + usize::from(length(2) > length(1)) };
+        (axis, length(axis))
+    }
+
+    /// The halves along an axis, the lower one not longer.
+    fn halves(&self, axis: usize) -> [Self; 2] {
+        let middle = self.lo[axis] + (self.hi[axis] - self.lo[axis]) / 2;
+        let (mut low, mut high) = (*self, *self);
+        (low.hi[axis], high.lo[axis]) = (middle, middle);
+        [low, high]
+    }
+
+    /// Around the cells or faces that a box touches.
+    #[must_use]
+    pub fn touched<V: Vector>(grid: &Grid<V::Scalar>, places: Places, bounds: &Aabb<V>) -> Self {
+        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+        let mut range = Range::default();
+        for axis in 0..3 {
+            let edges = grid.edges(axis);
+            let first = edges.partition_point(|&e| e < min[axis]);
+            let last = edges.partition_point(|&e| e <= max[axis]);
+            let (lo, hi) = if places == Places::Faces(axis) {
+                (first, last)
+            } else {
+                (first.saturating_sub(1), last.min(edges.len() - 1))
+            };
+            (range.lo[axis], range.hi[axis]) = (lo as u32, hi as u32);
+        }
+        range
+    }
+
+    /// What both hold.
+    #[must_use]
+    pub fn common(self, other: Self) -> Self {
+        let both = |f: fn(u32, u32) -> u32, a: [u32; 3], b: [u32; 3]| [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])];
+        Range { lo: both(u32::max, self.lo, other.lo), hi: both(u32::min, self.hi, other.hi) }
+    }
+}
+
+/// A body that cuts a box: which, what separated it last, and where its facets are listed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Candidate<V> {
+    body: u32,
+    first: u32,
+    end: u32,
+    axis: V,
+}
+
+/// Caller's memory for the lists, used as stacks; contents do not matter. Where it is full a part keeps the longer list of its
+/// parent, which costs work, not truth; only bodies beyond the length of `candidates` cannot be seen.
+#[derive(Debug)]
+pub struct Memory<'a, V> {
+    /// Bodies: a multiple of their number, say 64 times.
+    pub candidates: &'a mut [Candidate<V>],
+    /// Facets: all of them, and as much again.
+    pub facets: &'a mut [u32],
+}
+
+/// The caller's memory does not hold one list of all bodies and their facets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoRoom {
+    /// Needed of candidates.
+    pub candidates: usize,
+    /// Needed of facets.
+    pub facets: usize,
+}
+
+/// A list of candidates, and where the free memory of both stacks begins behind it.
+#[derive(Clone, Copy, Debug, Default)]
+struct List {
+    first: usize,
+    end: usize,
+    facets_end: usize,
+}
+
+/// Ranges that wait: each bisection leaves one, and three axes of 32 bits can be bisected 32 times each.
+pub const MAX_RANGES: usize = 3 * 32 + 1;
+
+/// Boxes under way: one a level, the cell itself at level 0.
+const MAX_BOXES: usize = MAX_DEPTH as usize + 1;
+
+/// A box whose parts are being visited.
+#[derive(Clone, Copy)]
+struct Parent<V> {
+    cell: Aabb<V>,
+    list: List,
+    next: usize,
+}
+
+/// Computes the cells or faces of `range`, which must lie in the grid, and hands what is not open to `fill`: ranges all closed, or
+/// single cells or faces with bounds.
+///
+/// # Errors
+/// [`NoRoom`] if the memory does not hold a list of all bodies.
+pub fn subdivide<B: Body>(
+    grid: &Grid<<B::Vector as Vector>::Scalar>,
+    places: Places,
+    range: Range,
+    bodies: &[B],
+    rule: Rule<<B::Vector as Vector>::Scalar>,
+    memory: &mut Memory<B::Vector>,
+    fill: impl FnMut(Range, Bounds<<B::Vector as Vector>::Scalar>),
+) -> Result<Tally, NoRoom> {
+    let mut walk = Walk::new(bodies, rule, memory, Tally::default());
+    let list = walk.all()?;
+    if !range.is_empty() {
+        walk.ranges(grid, places, range, list, fill);
+    }
+    Ok(walk.tally)
+}
+
+/// The union's share of one box, which may be a face: a box without thickness.
+///
+/// # Errors
+/// [`NoRoom`] if the memory does not hold a list of all bodies.
+pub fn share<B: Body>(
+    cell: &Aabb<B::Vector>,
+    bodies: &[B],
+    rule: Rule<<B::Vector as Vector>::Scalar>,
+    memory: &mut Memory<B::Vector>,
+    tally: &mut Tally,
+) -> Result<Bounds<<B::Vector as Vector>::Scalar>, NoRoom> {
+    let mut walk = Walk::new(bodies, rule, memory, *tally);
+    let list = walk.all()?;
+    let bounds = match walk.narrow(cell, list) {
+        Narrowed::Open => Bounds::OPEN,
+        Narrowed::Closed => Bounds::CLOSED,
+        Narrowed::Cut(list) => walk.refine(cell, list),
+    };
+    *tally = walk.tally;
+    Ok(bounds)
+}
+
+struct Walk<'a, 'm, B: Body> {
+    bodies: &'a [B],
+    rule: Rule<<B::Vector as Vector>::Scalar>,
+    memory: &'a mut Memory<'m, B::Vector>,
+    tally: Tally,
+}
+
+/// What a box has of the bodies of its parent.
+enum Narrowed {
+    Open,
+    Cut(List),
+    Closed,
+}
+
+type Scalar<B> = <<B as Body>::Vector as Vector>::Scalar;
+
+impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
+    fn new(bodies: &'a [B], rule: Rule<Scalar<B>>, memory: &'a mut Memory<'m, B::Vector>, tally: Tally) -> Self {
+        Walk { bodies, rule: Rule { depth: rule.depth.min(MAX_DEPTH), ..rule }, memory, tally }
+    }
+
+    /// The list of all bodies and facets.
+    fn all(&mut self) -> Result<List, NoRoom> {
+        let facets = self.bodies.iter().map(Body::facets).sum();
+        let needed = NoRoom { candidates: self.bodies.len(), facets };
+        let Memory { candidates, facets } = &mut *self.memory;
+        if candidates.len() < needed.candidates || facets.len() < needed.facets {
+            return Err(needed);
+        }
+        let mut end = 0;
+        for (n, (body, candidate)) in self.bodies.iter().zip(candidates.iter_mut()).enumerate() {
+            let first = end;
+            for (facet, place) in facets.iter_mut().skip(first).take(body.facets()).enumerate() {
+                *place = facet as u32;
+                end += 1;
+            }
+            *candidate = Candidate { body: n as u32, first: first as u32, end: end as u32, axis: B::Vector::ZERO };
+        }
+        Ok(List { first: 0, end: needed.candidates, facets_end: end })
+    }
+
+    /// The candidates of `list` that cut a box inside its own.
+    #[inline]
+    fn narrow(&mut self, cell: &Aabb<B::Vector>, list: List) -> Narrowed {
+        let Memory { candidates, facets } = &mut *self.memory;
+        let (known, free) = candidates.split_at_mut(list.end.min(candidates.len()));
+        let (mut count, mut facets_end, mut overflow) = (0, list.facets_end, false);
+        for candidate in known.get_mut(list.first..).unwrap_or(&mut []) {
+            let Some(body) = self.bodies.get(candidate.body as usize) else { continue };
+            let (listed, room) = facets.split_at_mut(facets_end.min(facets.len()));
+            let near = listed.get(candidate.first as usize..candidate.end as usize).unwrap_or(&[]);
+            let mut keep = Near::new(room);
+            match body.place(cell, near, &mut keep, &mut candidate.axis, &mut self.tally) {
+                Occupancy::Open => {}
+                Occupancy::Closed => return Narrowed::Closed,
+                Occupancy::Cut => {
+                    let mut narrowed = *candidate;
+                    if let Some(kept) = keep.kept() {
+                        (narrowed.first, narrowed.end) = (facets_end as u32, (facets_end + kept) as u32);
+                        facets_end += kept;
+                    }
+                    match free.get_mut(count) {
+                        Some(place) => *place = narrowed,
+                        None => overflow = true,
+                    }
+                    count += 1;
+                }
+            }
+        }
+        match count {
+            0 => Narrowed::Open,
+            _ if overflow => Narrowed::Cut(list),
+            _ => Narrowed::Cut(List { first: list.end, end: list.end + count, facets_end }),
+        }
+    }
+
+    /// Bisects ranges down to single cells or faces.
+    fn ranges(
+        &mut self,
+        grid: &Grid<Scalar<B>>,
+        places: Places,
+        range: Range,
+        list: List,
+        mut fill: impl FnMut(Range, Bounds<Scalar<B>>),
+    ) {
+        let mut waiting = [(Range::default(), List::default()); MAX_RANGES];
+        waiting[0] = (range, list);
+        let mut count = 1_usize;
+        while let Some((range, list)) = count.checked_sub(1).and_then(|top| waiting.get(top).copied()) {
+            count -= 1;
+            let cell = box_of(grid, places, range);
+            let list = match self.narrow(&cell, list) {
+                Narrowed::Open => continue,
+                Narrowed::Closed => {
+                    fill(range, Bounds::CLOSED);
+                    continue;
+                }
+                Narrowed::Cut(list) => list,
+            };
+            let (axis, length) = range.longest();
+            if length == 1 {
+                fill(range, self.refine(&cell, list));
+                continue;
+            }
+            let [low, high] = range.halves(axis);
+            for half in [high, low] {
+                debug_assert!(count < MAX_RANGES);
+                if let Some(place) = waiting.get_mut(count) {
+                    *place = (half, list);
+                    count += 1;
+                }
+            }
+        }
+    }
+
+    /// Bounds of a box that is cut by the bodies of `list`.
+    fn refine(&mut self, cell: &Aabb<B::Vector>, list: List) -> Bounds<Scalar<B>> {
+        type R<B> = Scalar<B>;
+        let size = cell.size().to_array();
+        let flat = size.map(|s| s == R::<B>::ZERO);
+        let parts = if flat.contains(&true) { 4 } else { 8 };
+        if let Some(bounds) = self.leaf(cell, list, 0, parts) {
+            return bounds;
+        }
+        let root = Parent { cell: *cell, list, next: 0 };
+        let mut parents = [root; MAX_BOXES];
+        // Shares of parts, each a power of two: their sums are exact but for the measured ones.
+        let mut weights = [R::<B>::ONE; MAX_BOXES + 1];
+        for level in 0..MAX_BOXES {
+            weights[level + 1] = weights[level] / R::<B>::from_usize(parts);
+        }
+        let (mut level, mut sum) = (0, Bounds::OPEN);
+        loop {
+            let Some(parent) = parents.get_mut(level) else { break };
+            if parent.next == parts {
+                let Some(above) = level.checked_sub(1) else { break };
+                level = above;
+                continue;
+            }
+            let (part, from) = (part_of(&parent.cell, flat, parent.next), parent.list);
+            parent.next += 1;
+            let inner = match self.narrow(&part, from) {
+                Narrowed::Open => continue,
+                Narrowed::Closed => Some(Bounds::CLOSED),
+                Narrowed::Cut(list) => {
+                    let known = self.leaf(&part, list, level as u32 + 1, parts);
+                    if known.is_none() {
+                        level += 1;
+                        debug_assert!(level < MAX_BOXES);
+                        if let Some(place) = parents.get_mut(level) {
+                            *place = Parent { cell: part, list, next: 0 };
+                        }
+                    }
+                    known
+                }
+            };
+            if let Some(inner) = inner {
+                let weight = weights[(level + 1).min(MAX_BOXES)];
+                sum.lower += inner.lower * weight;
+                sum.upper += inner.upper * weight;
+            }
+        }
+        self.widened(sum, cell)
+    }
+
+    /// What is known of a box at a level without dividing it; none if it is to be divided.
+    fn leaf(&mut self, cell: &Aabb<B::Vector>, list: List, level: u32, parts: usize) -> Option<Bounds<Scalar<B>>> {
+        type R<B> = Scalar<B>;
+        let Rule { leaf, depth, tol } = self.rule;
+        let last = level >= depth;
+        if leaf != Leaf::Plane {
+            return last.then_some(Bounds::UNKNOWN);
+        }
+        let alone = list.end - list.first == 1;
+        if !(alone || last) {
+            return None;
+        }
+        // Of the parts a side has, as many are cut by a surface as there are on it.
+        let rows = 1_usize << level;
+        let on_surface = if parts == 8 { rows * rows } else { rows };
+        let spread = if level == 0 { 1 } else { 4 * on_surface };
+        // A part is allowed its share of the tolerance: a share of the cell, though, so the smaller the part the more of itself.
+        let enough = tol * R::<B>::from_usize(on_surface * rows) / R::<B>::from_usize(spread);
+        let columns = Columns { enough, parts: (1_usize << (depth - level).min(5)).min(MAX_PARTS) };
+        let (mut lower, mut upper) = (R::<B>::ZERO, R::<B>::ZERO);
+        for candidate in self.memory.candidates.get(list.first..list.end).unwrap_or(&[]) {
+            let Some(body) = self.bodies.get(candidate.body as usize) else { continue };
+            let near = self.memory.facets.get(candidate.first as usize..candidate.end as usize).unwrap_or(&[]);
+            let own = body.measure(cell, near, &columns);
+            lower = lower.max(own.lower);
+            upper += own.upper;
+        }
+        let bounds = Bounds { lower, upper: upper.min(R::<B>::ONE) };
+        (last || bounds.gap() <= enough).then_some(bounds)
+    }
+
+    /// Room for the rounding of the planes between parts, and of sums.
+    fn widened(&self, bounds: Bounds<Scalar<B>>, cell: &Aabb<B::Vector>) -> Bounds<Scalar<B>> {
+        type R<B> = Scalar<B>;
+        let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
+        if bounds == Bounds::OPEN || bounds == Bounds::CLOSED {
+            return bounds;
+        }
+        let (size, far) = (cell.size().to_array(), cell.min.abs().max(cell.max.abs()).to_array());
+        let mut reach = one;
+        for axis in 0..3 {
+            if size[axis] > zero {
+                reach += far[axis] / size[axis];
+            }
+        }
+        let rows = R::<B>::from_usize(1 << self.rule.depth);
+        let room = reach * rows * R::<B>::EPSILON * R::<B>::TWO;
+        Bounds { lower: (bounds.lower - room).max(zero), upper: (bounds.upper + room).min(one) }
+    }
+}
+
+/// The box around a range of cells or faces.
+fn box_of<V: Vector>(grid: &Grid<V::Scalar>, places: Places, range: Range) -> Aabb<V> {
+    let edge = |axis: usize, index: u32| grid.edges(axis).get(index as usize).copied().unwrap_or(V::Scalar::INFINITY);
+    let (mut min, mut max) = ([V::Scalar::ZERO; 3], [V::Scalar::ZERO; 3]);
+    for axis in 0..3 {
+        min[axis] = edge(axis, range.lo[axis]);
+        max[axis] = edge(axis, range.hi[axis] - u32::from(places == Places::Faces(axis)));
+    }
+    Aabb { min: V::from_array(min), max: V::from_array(max) }
+}
+
+/// A part of a box: the bits of its number choose the upper halves along the axes that are not flat.
+#[inline(always)]
+fn part_of<V: Vector>(cell: &Aabb<V>, flat: [bool; 3], number: usize) -> Aabb<V> {
+    let (mut min, mut max, middle) = (cell.min.to_array(), cell.max.to_array(), cell.center().to_array());
+    let mut bits = number;
+    for axis in 0..3 {
+        if flat[axis] {
+            continue;
+        }
+        if bits & 1 == 1 {
+            min[axis] = middle[axis];
+        } else {
+            max[axis] = middle[axis];
+        }
+        bits >>= 1;
+    }
+    Aabb { min: V::from_array(min), max: V::from_array(max) }
+}

@@ -1,0 +1,291 @@
+//! The road of convex bodies: subdivision by GJK, layer by layer.
+//!
+//! Bodies known by formula, and those of triangles that are certified to be convex. Their union enters a layer as one
+//! interval a cell and face, beside what the surfaces of other bodies give.
+
+use super::{Method, Options};
+use crate::bodies::form::Form;
+use crate::bodies::{Bodies, Body};
+use glam::DVec3;
+use rustc_hash::FxHashMap as HashMap;
+use voidage_core::aabb::Aabb;
+use voidage_core::classify::{self, Near, Occupancy, Tally};
+use voidage_core::columns::{Bounds, Columns};
+use voidage_core::convex::Plane;
+use voidage_core::grid::Grid;
+use voidage_core::layer::Layer;
+use voidage_core::polytope::{Polytope, facets};
+use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
+use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
+use voidage_core::support::Transformed;
+
+/// A convex body in its place.
+#[derive(Debug, Clone, Copy)]
+pub enum Convex<'a> {
+    /// A ball.
+    Sphere(Sphere<DVec3>),
+    /// An ellipsoid, turned and moved.
+    Ellipsoid(Transformed<Ellipsoid<DVec3>>),
+    /// A box along the axes.
+    Box(Aabb<DVec3>),
+    /// A cylinder with flat ends.
+    Cylinder(Cylinder<DVec3>),
+    /// A segment with a radius.
+    Capsule(Capsule<DVec3>),
+    /// A cone with a flat base.
+    Cone(Cone<DVec3>),
+    /// A hull and its facets.
+    Polytope(Polytope<'a, DVec3>),
+}
+
+/// The same expression for the shape of any kind.
+macro_rules! of_shape {
+    ($body:expr, $shape:ident => $value:expr) => {
+        match $body {
+            Convex::Sphere($shape) => $value,
+            Convex::Ellipsoid($shape) => $value,
+            Convex::Box($shape) => $value,
+            Convex::Cylinder($shape) => $value,
+            Convex::Capsule($shape) => $value,
+            Convex::Cone($shape) => $value,
+            Convex::Polytope($shape) => $value,
+        }
+    };
+}
+
+impl classify::Body for Convex<'_> {
+    type Vector = DVec3;
+    fn bounds(&self) -> Aabb<DVec3> {
+        of_shape!(self, s => classify::Body::bounds(s))
+    }
+    fn facets(&self) -> usize {
+        of_shape!(self, s => classify::Body::facets(s))
+    }
+    fn place(
+        &self,
+        cell: &Aabb<DVec3>,
+        near: &[u32],
+        keep: &mut Near,
+        axis: &mut DVec3,
+        tally: &mut Tally,
+    ) -> Occupancy {
+        of_shape!(self, s => s.place(cell, near, keep, axis, tally))
+    }
+    fn measure(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
+        of_shape!(self, s => columns.measure(s, cell, near))
+    }
+}
+
+/// Vertices and facets of bodies made of triangles.
+#[derive(Debug, Default)]
+struct Faceted {
+    vertices: Vec<DVec3>,
+    facets: Vec<Plane<DVec3>>,
+}
+
+/// Which body takes which road, and the memory of those that take this one.
+#[derive(Debug, Default)]
+pub struct Roads {
+    /// One entry a body: by formula or facets, or by its surface.
+    convex: Vec<Option<Known>>,
+}
+
+#[derive(Debug)]
+enum Known {
+    Form(Form),
+    Faceted(Faceted),
+}
+
+/// Bodies with more triangles than this stay with their surface: the certificate takes time in proportion to the square.
+const MOST_FACETS: usize = 20_000;
+
+impl Roads {
+    /// Choose for every body; `triangles` are those of `bodies`, or a copy with corners moved.
+    #[must_use]
+    pub fn choose(bodies: &Bodies, triangles: &[[DVec3; 3]], options: Options) -> Self {
+        let known = |body: &Body| match (&body.form, options.method) {
+            // Planes are measured by their surface: exact, and cheaper than any subdivision.
+            (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
+            (_, Method::Surface) => None,
+            (Some(form), _) if !matches!(form, Form::Hull(_)) => Some(Known::Form(form.clone())),
+            (_, Method::Auto) => None,
+            _ => faceted(body, &triangles[body.triangles.clone()]).map(Known::Faceted),
+        };
+        use rayon::prelude::*;
+        Roads { convex: bodies.bodies.par_iter().map(known).collect() }
+    }
+
+    /// Does a body go by its surface?
+    #[must_use]
+    pub fn by_surface(&self, body: usize) -> bool {
+        self.convex.get(body).is_none_or(|known| known.is_none())
+    }
+
+    /// How many bodies go by subdivision.
+    #[must_use]
+    pub fn subdivided(&self) -> usize {
+        self.convex.iter().flatten().count()
+    }
+
+    /// The bodies that go by subdivision, of those that are `wanted`.
+    #[must_use]
+    pub fn road(&self, options: Options, wanted: impl Fn(usize) -> bool) -> Road<'_> {
+        let known = self.convex.iter().enumerate().filter(|(body, _)| wanted(*body));
+        let bodies: Vec<_> = known.filter_map(|(_, known)| known.as_ref().map(Known::body)).collect();
+        Road::new(bodies, options)
+    }
+}
+
+impl Known {
+    fn body(&self) -> Convex<'_> {
+        match self {
+            Known::Form(Form::Sphere(s)) => Convex::Sphere(*s),
+            Known::Form(Form::Ellipsoid(s)) => Convex::Ellipsoid(*s),
+            Known::Form(Form::Box(s)) => Convex::Box(*s),
+            Known::Form(Form::Cylinder(s)) => Convex::Cylinder(*s),
+            Known::Form(Form::Capsule(s)) => Convex::Capsule(*s),
+            Known::Form(Form::Cone(s)) => Convex::Cone(*s),
+            Known::Form(Form::Hull(corners)) => Convex::Polytope(Polytope::new(Hull::new(corners), &[])),
+            Known::Faceted(f) => Convex::Polytope(Polytope::new(Hull::new(&f.vertices), &f.facets)),
+        }
+    }
+}
+
+/// The body as a polytope, if it is certified to be one.
+fn faceted(body: &Body, triangles: &[[DVec3; 3]]) -> Option<Faceted> {
+    if body.sheet || body.cavities > 0 || triangles.len() > MOST_FACETS {
+        return None;
+    }
+    let mut seen = HashMap::default();
+    let mut vertices = Vec::new();
+    for &p in triangles.iter().flatten() {
+        seen.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| vertices.push(p));
+    }
+    let none = Plane { normal: DVec3::ZERO, offset: 0.0, exact: false };
+    let mut planes = vec![none; triangles.len()];
+    let count = facets(&vertices, triangles, &mut planes).ok()?;
+    planes.truncate(count);
+    Some(Faceted { vertices, facets: planes })
+}
+
+/// Bodies under one rule.
+#[derive(Debug)]
+pub struct Road<'a> {
+    bodies: Vec<(Aabb<DVec3>, Convex<'a>)>,
+    rule: Rule<f64>,
+    areas: bool,
+}
+
+/// A thread's memory for subdivision.
+#[derive(Debug, Default)]
+pub struct Lists {
+    candidates: Vec<Candidate<DVec3>>,
+    facets: Vec<u32>,
+}
+
+impl Lists {
+    /// Enough for some bodies at once.
+    fn memory(&mut self, bodies: &[Convex]) -> Memory<'_, DVec3> {
+        let facets: usize = bodies.iter().map(classify::Body::facets).sum();
+        let grown = |now: usize, needed: usize| now.max(needed);
+        self.candidates.resize(grown(self.candidates.len(), 8 * bodies.len() + 1024), Candidate::default());
+        self.facets.resize(grown(self.facets.len(), 8 * facets + (1 << 14)), 0);
+        Memory { candidates: &mut self.candidates, facets: &mut self.facets }
+    }
+}
+
+/// The lists were made for the bodies they are used with.
+const FITS: &str = "lists hold all bodies";
+
+impl<'a> Road<'a> {
+    /// Some bodies.
+    #[must_use]
+    pub fn new(bodies: Vec<Convex<'a>>, options: Options) -> Self {
+        let rule = Rule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
+        let bodies = bodies.into_iter().map(|b| (classify::Body::bounds(&b), b)).collect();
+        Road { bodies, rule, areas: options.areas }
+    }
+
+    /// Holds no body.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// Add the bodies to layer `k`: its cells, x and y faces, and the z faces below.
+    pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
+        let [nx, ny, _] = grid.cells();
+        let mut tally = Tally::default();
+        let Layer { lower, sum, .. } = layer;
+        tally = joined(tally, self.places(grid, Places::Cells, k, lists, nx, lower.cell, sum.cell));
+        if self.areas {
+            tally = joined(tally, self.places(grid, Places::Faces(0), k, lists, nx + 1, lower.x, sum.x));
+            tally = joined(tally, self.places(grid, Places::Faces(1), k, lists, nx, lower.y, sum.y));
+            tally = joined(tally, self.places(grid, Places::Faces(2), k, lists, nx, lower.z, sum.z));
+        }
+        debug_assert!(lower.cell.len() == nx * ny);
+        tally
+    }
+
+    /// Add the bodies to the z faces in plane `k`, held in `layer.…z`.
+    pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
+        let nx = grid.cells()[0];
+        self.places(grid, Places::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
+    }
+
+    fn places(
+        &self,
+        grid: &Grid<f64>,
+        places: Places,
+        k: usize,
+        lists: &mut Lists,
+        row: usize,
+        lower: &mut [f64],
+        sum: &mut [f64],
+    ) -> Tally {
+        let only = Range { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
+        let touched = |bounds: &Aabb<DVec3>| Range::touched(grid, places, bounds).common(only);
+        let reaching = self.bodies.iter().map(|(bounds, body)| (touched(bounds), *body));
+        let (ranges, bodies): (Vec<_>, Vec<_>) = reaching.filter(|(range, _)| !range.is_empty()).unzip();
+        let Some(range) = ranges.into_iter().reduce(around) else { return Tally::default() };
+        let mut memory = lists.memory(&bodies);
+        let fill = |range: Range, bounds: Bounds<f64>| {
+            for j in range.lo[1]..range.hi[1] {
+                for at in (range.lo[0]..range.hi[0]).map(|i| j as usize * row + i as usize) {
+                    lower[at] = lower[at].max(bounds.lower);
+                    sum[at] += bounds.upper;
+                }
+            }
+        };
+        subdivide(grid, places, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
+    }
+
+    /// May a body reach a cell or its sides?
+    #[must_use]
+    pub fn reaches(&self, lo: [f64; 3], hi: [f64; 3], lists: &mut Lists) -> bool {
+        let (lo, hi) = (DVec3::from_array(lo), DVec3::from_array(hi));
+        let room = (hi - lo) * ROOM;
+        let cell = Aabb { min: lo - room, max: hi + room };
+        let near = self.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
+        let bodies: Vec<_> = near.map(|(_, body)| *body).collect();
+        let rule = Rule { leaf: voidage_core::subdivide::Leaf::Half, depth: 0, tol: 1.0 };
+        !bodies.is_empty()
+            && share(&cell, &bodies, rule, &mut lists.memory(&bodies), &mut Tally::default()).expect(FITS)
+                != Bounds::OPEN
+    }
+}
+
+/// What is so near a cell counts as reaching its sides, in cells.
+const ROOM: f64 = 1.0 / 1024.0;
+
+/// The smallest range around both.
+fn around(a: Range, b: Range) -> Range {
+    let both = |f: fn(u32, u32) -> u32, p: [u32; 3], q: [u32; 3]| [f(p[0], q[0]), f(p[1], q[1]), f(p[2], q[2])];
+    Range { lo: both(u32::min, a.lo, b.lo), hi: both(u32::max, a.hi, b.hi) }
+}
+
+/// Both counts.
+#[must_use]
+pub fn joined(a: Tally, b: Tally) -> Tally {
+    Tally { queries: a.queries + b.queries, undecided: a.undecided + b.undecided }
+}
