@@ -10,6 +10,7 @@ mod layers;
 mod levels;
 mod planes;
 mod unions;
+mod values;
 
 use crate::bodies::Bodies;
 use bins::Bins;
@@ -21,6 +22,7 @@ use layers::{Summary, Target, Worker};
 pub use levels::levels;
 use rayon::prelude::*;
 use serde::Serialize;
+pub use values::Values;
 use voidage_core::grid::Grid;
 use voidage_core::subdivide;
 
@@ -152,6 +154,15 @@ pub struct Porosity {
     pub gjk: Gjk,
     /// Bodies whose rows did not return to zero, worst first, one entry a body.
     pub leaks: Vec<Leak>,
+}
+
+/// Bytes that the fields of a grid take, with what one thread needs beside them.
+#[must_use]
+pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
+    let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
+    // Of several levels, one joins the others.
+    let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(2);
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
 }
 
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.

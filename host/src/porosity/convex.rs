@@ -206,6 +206,11 @@ impl<'a> Road<'a> {
         Road { bodies, rule, areas: options.areas }
     }
 
+    /// A box around each body.
+    pub fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
+        self.bodies.iter().map(|(bounds, _)| *bounds)
+    }
+
     /// Holds no body.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -63,7 +63,7 @@ fn raise(so_far: f64, weight: f64, open: f64, next: f64) -> f64 {
 }
 
 /// All fields, the bounds included.
-fn fields(porosity: &mut Porosity) -> Vec<&mut Vec<f64>> {
+fn fields(porosity: &mut Porosity) -> Vec<&mut [f64]> {
     let sets = std::iter::once(&mut porosity.beta).chain(porosity.bounds.iter_mut().flatten());
-    sets.flat_map(|FieldSet { v, x, y, z }| [v, x, y, z]).collect()
+    sets.flat_map(|FieldSet { v, x, y, z }| [v, x, y, z].map(|field| &mut field[..])).collect()
 }
