@@ -5,3 +5,4 @@ mod inspect;
 mod kit;
 mod porosity;
 mod scene;
+mod study;

@@ -75,11 +75,17 @@ pub fn all(path: &Path, case: &Case, progress: &mut Progress) -> Result<Vec<Row>
     Ok(rows)
 }
 
-fn bodies(path: &Path, subject: &Subject, progress: &mut Progress) -> Result<Bodies> {
+/// The bodies of a scene of the case file at `path`.
+///
+/// # Errors
+/// As [`run::load`].
+pub fn bodies(path: &Path, subject: &Subject, progress: &mut Progress) -> Result<Bodies> {
     let args = SceneArgs { scene: subject.files.clone(), unit: None };
     let (mut bodies, _) = run::load(&args, progress)?;
     let own = Scene { path: path.to_owned(), solids: subject.solids.clone(), grid: None };
+    let said = bodies.warnings.len();
     load::add(&own, &mut bodies)?;
+    bodies.warnings[said..].iter().for_each(|w| progress.warn(w.as_str()));
     Ok(bodies)
 }
 
