@@ -21,6 +21,8 @@ pub enum Command {
     Porosity(Box<PorosityArgs>),
     /// Say what is in a file: bodies, closure, orientation, overlaps, units, thin parts
     Inspect(InspectArgs),
+    /// Error against run time, for scenes, grids and methods of a case file
+    Study(StudyArgs),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -62,10 +64,10 @@ impl Unit {
 /// The scene, shared by all commands.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
-    /// STL or OBJ files; their bodies form one scene
+    /// STL, OBJ or scene (TOML) files; their bodies form one scene
     #[arg(required = true, value_name = "SCENE")]
     pub scene: Vec<PathBuf>,
-    /// Unit of the files' coordinates (default: m)
+    /// Unit of the coordinates of STL and OBJ files (default: m)
     #[arg(long)]
     pub unit: Option<Unit>,
 }
@@ -152,6 +154,20 @@ pub struct InspectArgs {
     /// Write the JSON to a file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage study`.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// The case file (TOML): scenes, grids, methods, threads
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Write study.csv, study.md and study.png into this directory (default: print the table)
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
     /// What goes to the terminal.
     #[command(flatten)]
     pub talk: TalkArgs,

@@ -1,16 +1,18 @@
 //! `voidage inspect`: what is in a file, before anything is computed.
 
-use crate::bodies::{Bodies, Body, Diagnosis};
+use crate::bodies::{Bodies, Body, Described, Diagnosis};
 use crate::cli::InspectArgs;
 use crate::error::Result;
 use crate::output::report;
 use crate::progress::Progress;
 use crate::run::load;
+use glam::DVec3;
 use serde::Serialize;
 
 #[derive(Serialize)]
 struct Inspection<'a> {
     files: &'a [Diagnosis],
+    solids: &'a [Described],
     overlapping_boxes: usize,
     thin: Vec<Thin>,
     bodies: &'a [Body],
@@ -36,6 +38,7 @@ pub fn inspect(args: &InspectArgs) -> Result<()> {
     let (bodies, _) = load(&args.scene, &mut progress)?;
     let inspection = Inspection {
         files: &bodies.diagnoses,
+        solids: &bodies.solids,
         overlapping_boxes: overlapping_boxes(&bodies.bodies),
         thin: thin(&bodies),
         bodies: &bodies.bodies,
@@ -70,7 +73,7 @@ fn thin(bodies: &Bodies) -> Vec<Thin> {
         .bodies
         .iter()
         .enumerate()
-        .filter(|(_, b)| !b.sheet)
+        .filter(|(_, b)| !b.sheet && !b.triangles.is_empty())
         .filter_map(|(n, b)| {
             let area: f64 =
                 bodies.triangles[b.triangles.clone()].iter().map(|[p, q, r]| (q - p).cross(r - p).length() * 0.5).sum();
@@ -91,13 +94,7 @@ impl Inspection<'_> {
                 ("triangles", d.triangles.to_string()),
                 ("named solids", d.solids.to_string()),
                 ("distinct points", d.points.to_string()),
-                (
-                    "box",
-                    format!(
-                        "({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6})",
-                        d.bounds[0].x, d.bounds[0].y, d.bounds[0].z, d.bounds[1].x, d.bounds[1].y, d.bounds[1].z
-                    ),
-                ),
+                ("box", extent(&d.bounds)),
                 ("size", format!("{:.6} × {:.6} × {:.6} m", size.x, size.y, size.z)),
                 ("shells", d.shells.to_string()),
                 ("bodies", d.bodies.to_string()),
@@ -116,6 +113,12 @@ impl Inspection<'_> {
                 progress.say(format!("  {name:<18}{value}"));
             }
         }
+        if !self.solids.is_empty() {
+            progress.say("solids of scenes");
+            let row = ["name", "shape", "porosity", "copies", "volume [m³]", "box"].map(str::to_owned);
+            progress.say(line(row));
+            self.solids.iter().for_each(|s| progress.say(line(s.row())));
+        }
         progress.say(format!("body boxes that overlap: {} pairs", self.overlapping_boxes));
         if let Some(t) = self.thin.first() {
             progress.say(format!(
@@ -128,4 +131,21 @@ impl Inspection<'_> {
             ));
         }
     }
+}
+
+impl Described {
+    fn row(&self) -> [String; 6] {
+        let (name, shape, porosity) = (self.name.clone(), self.shape.to_owned(), self.porosity.to_string());
+        [name, shape, porosity, self.copies.to_string(), format!("{:.9}", self.volume), extent(&self.bounds)]
+    }
+}
+
+/// A row of the table of solids.
+fn line([name, shape, porosity, copies, volume, extent]: [String; 6]) -> String {
+    format!("  {name:<18}{shape:<10} {porosity:>8} {copies:>7} {volume:>16}  {extent}")
+}
+
+/// A box for people.
+fn extent([lo, hi]: &[DVec3; 2]) -> String {
+    format!("({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6})", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z)
 }

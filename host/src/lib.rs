@@ -15,3 +15,4 @@ pub mod progress;
 pub mod run;
 pub mod scene;
 pub mod solve;
+pub mod study;

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use voidage::cli::{Cli, Command};
 use voidage::error::{Error, Result};
-use voidage::{inspect, run};
+use voidage::{inspect, run, study};
 
 fn main() -> ExitCode {
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
@@ -26,6 +26,7 @@ fn execute(command: Command) -> Result<()> {
     match command {
         Command::Porosity(args) => run::porosity(&args),
         Command::Inspect(args) => inspect::inspect(&args),
+        Command::Study(args) => study::study(&args),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "voidage", &mut script);

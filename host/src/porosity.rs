@@ -7,17 +7,22 @@ mod bins;
 pub mod convex;
 mod fields;
 mod layers;
+mod levels;
 mod planes;
 mod unions;
+mod values;
 
 use crate::bodies::Bodies;
 use bins::Bins;
 use clap::ValueEnum;
 use convex::Roads;
 pub use fields::FieldSet;
+use glam::DVec3;
 use layers::{Summary, Target, Worker};
+pub use levels::levels;
 use rayon::prelude::*;
 use serde::Serialize;
+pub use values::Values;
 use voidage_core::grid::Grid;
 use voidage_core::subdivide;
 
@@ -44,6 +49,14 @@ pub enum Leaf {
     /// Bounded by planes and points: certified, of second order
     #[default]
     Plane,
+}
+
+impl Leaf {
+    /// How deep a subdivision goes unless another depth is asked for: the paper's, or far enough for the default tolerance.
+    #[must_use]
+    pub fn depth(self) -> u32 {
+        if self == Leaf::Plane { 6 } else { 3 }
+    }
 }
 
 impl From<Leaf> for subdivide::Leaf {
@@ -144,13 +157,22 @@ pub struct Porosity {
     pub leaks: Vec<Leak>,
 }
 
+/// Bytes that the fields of a grid take, with what one thread needs beside them.
+#[must_use]
+pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
+    let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
+    // Of several levels, one joins the others.
+    let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(2);
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
+}
+
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.
 #[must_use]
 pub fn porosity(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Porosity {
     porosity_watched(grid, bodies, options, &|| ())
 }
 
-/// As [`porosity`]; `layer_done` is called after each layer of cells, from any thread.
+/// As [`porosity`]; `layer_done` is called after each layer of cells, from any thread, once for each of the [`levels`].
 #[must_use]
 pub fn porosity_watched(
     grid: &Grid<f64>,
@@ -160,9 +182,25 @@ pub fn porosity_watched(
 ) -> Porosity {
     let moved = planes::into_planes(grid, &bodies.triangles);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    let levels = levels(bodies);
     let roads = Roads::choose(bodies, triangles, options);
-    let convex = roads.road(options);
-    let bins = Bins::new(grid, bodies, triangles, |body| roads.by_surface(body));
+    let unions = levels.iter().map(|&level| union(grid, bodies, triangles, &roads, level, options, layer_done));
+    levels::join(&levels, unions)
+}
+
+/// Porosities of the union of all bodies up to a level, as if they were solid.
+fn union(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    triangles: &[[DVec3; 3]],
+    roads: &Roads,
+    level: f64,
+    options: Options,
+    layer_done: &(dyn Fn() + Sync),
+) -> Porosity {
+    let counts = |body: usize| bodies.bodies[body].porosity <= level;
+    let convex = roads.road(options, counts);
+    let bins = Bins::new(grid, bodies, triangles, |body| counts(body) && roads.by_surface(body));
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())

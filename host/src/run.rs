@@ -1,17 +1,17 @@
 //! The stages of a run, in order: scene → bodies → grid → porosity → output.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Described};
 use crate::cli::{PorosityArgs, SceneArgs, Unit};
 use crate::error::{Error, Result};
 use crate::grid::{self, Edges, Source};
 use crate::input;
+use crate::output::ticks::number_to;
 use crate::output::vtr::{CellField, Field, Vtr};
-use crate::output::{npy, png, report};
-use crate::porosity::{self, Leaf, Method, Options, Porosity};
+use crate::output::{check_target, npy, png, report};
+use crate::porosity::{self, Method, Options, Porosity};
 use crate::progress::Progress;
 use crate::scene;
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
@@ -69,7 +69,7 @@ fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
 /// Anything that keeps it from writing all that was asked for.
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
-    keep_inputs(args)?;
+    check_outputs(args)?;
     let threads = args.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
@@ -84,10 +84,11 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         remarks.into_iter().for_each(|r| progress.warn(r));
         let grid = edges.grid(None)?;
         look_for_misfit(&bodies, &edges, &mut progress);
-        let depth = args.depth.unwrap_or(if args.leaf == Leaf::Plane { 6 } else { 3 });
+        let depth = args.depth.unwrap_or(args.leaf.depth());
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
-        let layers = edges.cells()[2];
+        room_for(porosity::memory(&grid, &bodies, options))?;
+        let layers = edges.cells()[2] * porosity::levels(&bodies).len();
         let result = progress.stage("porosity", |p| {
             let bar = p.bar("porosity", layers);
             porosity::porosity_watched(&grid, &bodies, options, &|| bar.inc(1))
@@ -117,12 +118,23 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
     })
 }
 
-/// No output may replace a file of the scene, the grid or another output.
-fn keep_inputs(args: &PorosityArgs) -> Result<()> {
+/// Ask for the memory of the fields before work begins: a failure half way could not be reported.
+fn room_for(bytes: usize) -> Result<()> {
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        Error::new(format!("the fields of this grid need {:.1} GB of memory: take fewer cells", bytes as f64 * 1e-9))
+    })
+}
+
+/// Outputs must have a place, and none may replace a file of the scene, the grid or another output.
+fn check_outputs(args: &PorosityArgs) -> Result<()> {
     let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     let outputs: Vec<&Path> =
         [&args.output, &args.png, &args.report].into_iter().flatten().map(|p| p.as_path()).collect();
+    if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
+        return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
+    }
     for (n, output) in outputs.iter().enumerate() {
+        check_target(output)?;
         let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
         let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
         if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
@@ -136,7 +148,10 @@ fn keep_inputs(args: &PorosityArgs) -> Result<()> {
 }
 
 /// The sums over surfaces measure only what has one.
-fn need_surfaces(bodies: &Bodies) -> Result<()> {
+///
+/// # Errors
+/// The first solid that has none.
+pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
     match bodies.solids.iter().find(|s| bodies.bodies[s.bodies.clone()].iter().any(|b| b.triangles.is_empty())) {
         None => Ok(()),
         Some(solid) => Err(Error::new(format!(
@@ -163,19 +178,20 @@ fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
 /// Geometry outside the grid does not count; say so.
 fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
-    let files = || bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
-    let extent = |p: DVec3, q: DVec3| format!("({}, {}, {}) to ({}, {}, {})", p.x, p.y, p.z, q.x, q.y, q.z);
+    let fine = 1e-6 * (hi - lo).max(max - min).max_element();
+    let point = |p: DVec3| format!("({})", p.to_array().map(|v| number_to(v, fine)).join(", "));
+    let extent = |p, q| format!("{} to {}", point(p), point(q));
     if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
         progress.warn(format!(
             "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
-            files(),
+            bodies.files(),
             extent(min, max),
             extent(lo, hi)
         ));
     } else if min.cmplt(lo).any() || max.cmpgt(hi).any() {
         progress.warn(format!(
             "{}: the geometry, {}, extends beyond the grid, {}; only what is inside counts",
-            files(),
+            bodies.files(),
             extent(min, max),
             extent(lo, hi)
         ));
@@ -192,7 +208,7 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
     let leaks: Vec<_> = result.leaks.iter().filter(|l| l.fraction > LEAK_TO_WARN).collect();
     if let Some(worst) = leaks.first() {
         let body = &bodies.bodies[worst.body];
-        let files = bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+        let files = bodies.files();
         progress.warn(format!(
             "{files}: the surface of {} bodies leaks: in layer {} of body {} \"{}\" a row ends {:.3e} of a face away from zero",
             leaks.len(),
@@ -203,7 +219,7 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
         ));
     }
     if result.winding > WINDING_TO_WARN {
-        let files = bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
+        let files = bodies.files();
         progress.warn(format!(
             "{files}: a surface cuts through itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
             result.winding
@@ -216,7 +232,7 @@ const WINDING_TO_WARN: f64 = 1e-6;
 
 fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, progress: &mut Progress) -> Result<()> {
     if let Some(dir) = &args.npy {
-        progress.stage("npy", |_| write_npy(dir, edges, result))?;
+        progress.stage("npy", |_| npy::write_all(dir, &fields(edges, result)))?;
     }
     if let Some(path) = &args.output {
         progress.stage("vtr", |_| write_vtr(path, args.compress, edges, result, about))?;
@@ -245,13 +261,6 @@ fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &
     }
     all.retain(|(_, _, values)| !values.is_empty());
     all
-}
-
-fn write_npy(dir: &Path, edges: &Edges, result: &Porosity) -> Result<()> {
-    std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
-    fields(edges, result)
-        .into_par_iter()
-        .try_for_each(|(name, shape, values)| npy::write(&dir.join(format!("{name}.npy")), shape, values))
 }
 
 fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {
@@ -287,6 +296,8 @@ struct Report {
     max_gap: f64,
     divided: usize,
     leaks: Vec<porosity::Leak>,
+    /// Of scene files.
+    solids: Vec<Described>,
     warnings: Vec<String>,
     skipped: Vec<&'static str>,
     seconds: std::collections::BTreeMap<&'static str, f64>,
@@ -345,6 +356,7 @@ impl Report {
             max_gap: result.max_gap,
             divided: result.divided,
             leaks: result.leaks.clone(),
+            solids: bodies.solids.clone(),
             warnings: Vec::new(),
             skipped,
             seconds: std::collections::BTreeMap::new(),

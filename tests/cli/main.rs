@@ -4,3 +4,5 @@ mod bad_inputs;
 mod inspect;
 mod kit;
 mod porosity;
+mod scene;
+mod study;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use voidage::bodies::form::Form;
 use voidage::bodies::{Bodies, Body};
 use voidage::input::{Mesh, Solid};
+use voidage::scene::hull::Hull;
 use voidage_core::shape::Sphere;
 
 /// A triangle: three corners, counter-clockwise from outside.
@@ -124,6 +125,37 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
         bodies.add(&mesh, 1.0).expect("a solid with an area");
     }
     bodies
+}
+
+/// A sphere of `count` points spread evenly by the golden angle, radius 1, each digit to a millionth; with its hull.
+///
+/// # Panics
+/// For fewer than four points.
+#[must_use]
+pub fn point_sphere(count: usize) -> Hull {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let points: Vec<DVec3> = (0..count)
+        .map(|n| {
+            let z = 1.0 - (2 * n + 1) as f64 / count as f64;
+            let (sin, cos) = (golden * n as f64).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            (DVec3::new(r * cos, r * sin, z) * 1e6).round() / 1e6
+        })
+        .collect();
+    Hull::new(&points).expect("points of a sphere span a volume")
+}
+
+/// A hull as the text of an OBJ file.
+#[must_use]
+pub fn obj(hull: &Hull) -> String {
+    let mut text = String::new();
+    for p in &hull.corners {
+        text += &format!("v {} {} {}\n", p.x, p.y, p.z);
+    }
+    for [a, b, c] in &hull.triangles {
+        text += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+    }
+    text
 }
 
 /// Sixteen balls where [`sixteen_spheres`] has geodesic ones.

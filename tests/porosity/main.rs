@@ -2,9 +2,11 @@
 
 mod core_alone;
 mod dirty;
+mod hulls;
 mod invariance;
 mod known;
 mod layers;
 mod overlap;
+mod scenes;
 mod subdivide;
 mod truth;

@@ -139,6 +139,15 @@ impl Bodies {
         all.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
     }
 
+    /// The files that they came from, for messages.
+    #[must_use]
+    pub fn files(&self) -> String {
+        let mut files: Vec<&str> = self.diagnoses.iter().map(|d| d.file.as_str()).collect();
+        files.extend(self.solids.iter().map(|s| s.scene.as_str()));
+        files.dedup();
+        files.join(", ")
+    }
+
     /// Add the bodies of a file; its coordinates are multiplied by `scale`.
     ///
     /// # Errors

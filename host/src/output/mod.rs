@@ -4,11 +4,12 @@
 //! either untouched or replaced as a whole. Fields are x fastest: cell `(k*ny + j)*nx + i`.
 //!
 //! In reading order: [`atomic`], `bytes`; [`npy`], [`vtr`], [`report`]; then pictures from the pixel upwards:
-//! `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`].
+//! `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`chart`].
 
 pub mod atomic;
 mod bytes;
 pub mod canvas;
+pub mod chart;
 pub mod colour;
 pub mod figure;
 mod font;
@@ -19,4 +20,4 @@ pub mod report;
 pub mod ticks;
 pub mod vtr;
 
-pub use atomic::{atomically, discard_unfinished};
+pub use atomic::{atomically, check_target, discard_unfinished, together};

@@ -126,10 +126,11 @@ impl Roads {
         self.convex.iter().flatten().count()
     }
 
-    /// The bodies that go by subdivision.
+    /// The bodies that go by subdivision, of those that are `wanted`.
     #[must_use]
-    pub fn road(&self, options: Options) -> Road<'_> {
-        let bodies: Vec<_> = self.convex.iter().flatten().map(Known::body).collect();
+    pub fn road(&self, options: Options, wanted: impl Fn(usize) -> bool) -> Road<'_> {
+        let known = self.convex.iter().enumerate().filter(|(body, _)| wanted(*body));
+        let bodies: Vec<_> = known.filter_map(|(_, known)| known.as_ref().map(Known::body)).collect();
         Road::new(bodies, options)
     }
 }
@@ -208,6 +209,11 @@ impl<'a> Road<'a> {
         let rule = Rule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
         let bodies = bodies.into_iter().map(|b| (classify::Body::bounds(&b), b)).collect();
         Road { bodies, rule, areas: options.areas }
+    }
+
+    /// A box around each body.
+    pub fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
+        self.bodies.iter().map(|(bounds, _)| *bounds)
     }
 
     /// Holds no body.

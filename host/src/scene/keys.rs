@@ -132,6 +132,17 @@ impl<'a> Keys<'a> {
         grid::from_value(self.source.path, self.source.text, value.clone()).map(Some)
     }
 
+    /// The grids of a `[[key]]`; none if it is not there.
+    ///
+    /// # Errors
+    /// If one is none.
+    pub fn grids(&mut self, key: &'static str) -> Result<Vec<Edges>> {
+        self.known.push(key);
+        let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
+        let items = value.get_ref().as_array().ok_or_else(|| self.wrong(key, format!("needs tables [[{key}]]")))?;
+        items.iter().map(|item| grid::from_value(self.source.path, self.source.text, item.clone())).collect()
+    }
+
     /// The line that the table begins in.
     #[must_use]
     pub fn line(&self) -> usize {
@@ -221,16 +232,31 @@ pub fn fraction(value: &DeValue) -> Wanted<f64> {
     if (0.0..=1.0).contains(&x) { Ok(x) } else { Err(format!("must be from 0 to 1, not {x}")) }
 }
 
+/// A whole number of at least zero.
+///
+/// # Errors
+/// What it should be.
+pub fn index(value: &DeValue) -> Wanted<usize> {
+    let DeValue::Integer(i) = value else { return Err(format!("needs a whole number, not {}", kind(value))) };
+    usize::from_str_radix(i.as_str(), i.radix())
+        .map_err(|_| format!("needs a whole number that can be counted, not {i}"))
+}
+
 /// A whole number of at least one.
 ///
 /// # Errors
 /// What it should be.
 pub fn count(value: &DeValue) -> Wanted<usize> {
-    let DeValue::Integer(i) = value else { return Err(format!("needs a whole number, not {}", kind(value))) };
-    match usize::from_str_radix(i.as_str(), i.radix()) {
-        Ok(n) if n > 0 => Ok(n),
-        _ => Err(format!("needs a whole number of at least 1 that can be counted, not {i}")),
-    }
+    let n = index(value)?;
+    if n > 0 { Ok(n) } else { Err("must be at least 1, not 0".to_owned()) }
+}
+
+/// True or false.
+///
+/// # Errors
+/// What it should be.
+pub fn truth(value: &DeValue) -> Wanted<bool> {
+    value.as_bool().ok_or_else(|| format!("needs true or false, not {}", kind(value)))
 }
 
 /// A text.

@@ -87,29 +87,37 @@ pub fn parse(path: &Path, text: &str) -> Result<Scene> {
     let table = DeTable::parse(text).map_err(|e| grid::toml_error(path, text, &e))?;
     let source = Source::new(path, text);
     let mut keys = Keys::new(&source, "", 0, table.get_ref());
-    let solids = keys.tables("solid")?.into_iter().map(solid).collect::<Result<Vec<_>>>()?;
+    let solids = solids(&mut keys)?;
     let grid = keys.grid("grid")?;
     keys.finish()?;
     if solids.is_empty() {
         return Err(Error::file(path, "a scene without solids: it needs at least one [[solid]]"));
     }
-    let mut total = 0;
-    for solid in &solids {
-        total += solid.placement.copies();
-        if total > MOST_COPIES {
-            let reason = format!("solid \"{}\": more than {MOST_COPIES} solids in one scene", solid.name);
-            return Err(Error::at(path, format!("line {}", solid.line), reason));
-        }
-    }
     Ok(Scene { path: path.to_owned(), solids, grid })
 }
 
-fn solid(mut keys: Keys) -> Result<Solid> {
+/// The tables `[[solid]]` of a scene.
+///
+/// # Errors
+/// As [`read`].
+pub fn solids(keys: &mut Keys) -> Result<Vec<Solid>> {
+    let mut total = 0;
+    let tables = keys.tables("solid")?.into_iter();
+    let counted = tables.map(|table| {
+        let (solid, table) = solid(table)?;
+        total += solid.placement.copies();
+        let few = total <= MOST_COPIES;
+        if few { Ok(solid) } else { Err(table.fail(format!("more than {MOST_COPIES} solids in one scene"))) }
+    });
+    counted.collect()
+}
+
+fn solid(mut keys: Keys<'_>) -> Result<(Solid, Keys<'_>)> {
     let name = keys.need("name", keys::text)?;
     keys.subject = format!("solid \"{name}\"");
     let shape = Shape::read(&mut keys)?;
     let porosity = keys.get("porosity", keys::fraction)?.unwrap_or(0.0);
     let placement = Placement::read(&mut keys)?;
     keys.finish()?;
-    Ok(Solid { name, line: keys.line(), shape, porosity, placement })
+    Ok((Solid { name, line: keys.line(), shape, porosity, placement }, keys))
 }

@@ -1,0 +1,245 @@
+//! Scene files on the command line.
+
+use crate::kit::{Scratch, fixture, stderr, stdout, voidage};
+use serde_json::Value;
+use std::fs;
+
+const BOX: &str = "[[solid]]\nname = \"b\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n";
+const GRID: &str = "[grid]\norigin = [-1, -1, -1]\nspacing = [0.5, 0.5, 0.5]\ncells = [8, 6, 6]\n";
+
+fn report(dir: &Scratch, arguments: &[&dyn AsRef<std::ffi::OsStr>]) -> Value {
+    let file = dir.file("report.json");
+    let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"porosity", &"-q", &"--report", &file];
+    all.extend(arguments);
+    let output = voidage(&all);
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_str(&fs::read_to_string(file).expect("a report")).expect("JSON")
+}
+
+#[test]
+fn meshes_and_scenes_are_one_scene() {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    let more = "array = { count = [2, 1, 1], step = [2, 0, 0] }\nporosity = 0.25\n";
+    fs::write(&scene, format!("{BOX}{more}{GRID}")).expect("written");
+    let mesh = dir.file("mesh.stl");
+    fs::copy(fixture("bad_inputs/ref_ok_binary.stl"), &mesh).expect("a copy");
+    let alone = report(&dir, &[&mesh, &"--bounds", &"-1,-1,-1,3,2,2", &"--cells", &"8x6x6"]);
+    let both = report(&dir, &[&scene, &mesh]);
+    // The scene's own grid, as nothing else was asked for.
+    assert_eq!(both["grid"]["cells"], serde_json::json!([8, 6, 6]));
+    assert_eq!(both["solids"][0]["name"], "b");
+    assert_eq!(both["solids"][0]["copies"], 2);
+    assert_eq!(both["bodies"].as_u64(), alone["bodies"].as_u64().map(|n| n + 2));
+    let volume = |r: &Value| r["solid_volume"].as_f64().expect("a volume");
+    // The mesh, 2 × 1 × 1 from (0.3, 0.2, 0.1) in f32, covers 0.504 and 0.216 of the porous boxes.
+    assert!((volume(&alone) - 2.0).abs() < 1e-6, "{alone}");
+    assert!((volume(&both) - (2.0 + 0.75 * (2.0 - 0.72))).abs() < 1e-6, "{both}");
+    let asked = report(&dir, &[&scene, &"--cells", &"3x3x3"]);
+    assert_eq!(asked["grid"]["cells"], serde_json::json!([3, 3, 3]));
+}
+
+#[test]
+fn a_file_in_a_scene_is_the_file_to_the_bit() {
+    let dir = Scratch::new();
+    fs::create_dir(dir.file("meshes")).expect("a directory");
+    fs::copy(fixture("cad_skid.stl"), dir.file("meshes/skid.stl")).expect("a copy");
+    let scene = dir.file("scene.toml");
+    fs::write(&scene, "[[solid]]\nname = \"skid\"\nshape = \"file\"\npath = \"meshes/skid.stl\"\nunit = \"mm\"\n")
+        .expect("written");
+    let fields = |name: &str, arguments: &[&dyn AsRef<std::ffi::OsStr>]| {
+        let out = dir.file(name);
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"--cells", &"20x13x11", &"--npy", &out];
+        all.extend(arguments);
+        let report = report(&dir, &all);
+        let bytes = ["v", "x", "y", "z"].map(|f| fs::read(out.join(format!("beta_{f}.npy"))).expect("an array"));
+        (bytes, report)
+    };
+    let (direct, _) = fields("direct", &[&dir.file("meshes/skid.stl"), &"--unit", &"mm"]);
+    let (through, report) = fields("through", &[&scene]);
+    assert!(direct == through);
+    assert_eq!(report["bodies"], 123);
+    assert_eq!(report["solids"][0]["shape"], "file");
+}
+
+#[test]
+fn inspect_lists_solids() {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    let ball = "[[solid]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [4, 4, 4]\nradius = 1\nporosity = 0.5\n";
+    fs::write(&scene, format!("{BOX}{ball}")).expect("written");
+    let text = stdout(&voidage(&[&"inspect", &scene]));
+    for word in ["ball", "sphere", "4.188790205", "(3.000000, 3.000000, 3.000000) to (5.000000, 5.000000, 5.000000)"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    let output = voidage(&[&"inspect", &scene, &"--json", &"-q"]);
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json["solids"][1]["porosity"], 0.5);
+    assert_eq!(json["bodies"][0]["name"], "b");
+}
+
+#[test]
+fn warnings_name_the_solid() {
+    let dir = Scratch::new();
+    fs::copy(fixture("bad_inputs/geo_open_missing_face.stl"), dir.file("open.stl")).expect("a copy");
+    let scene = dir.file("scene.toml");
+    fs::write(&scene, "[[solid]]\nname = \"lid\"\nshape = \"file\"\npath = \"open.stl\"\n").expect("written");
+    let said = stderr(&voidage(&[&"inspect", &scene]));
+    assert!(said.contains("scene.toml: solid \"lid\": ") && said.contains("holes, closed with caps"), "{said}");
+}
+
+/// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
+const WRONG: [(&str, &[&str]); 39] = [
+    ("solid = 3@", &["needs tables [[solid]]"]),
+    ("", &["without solids"]),
+    ("[[solid]]@\nshape = \"box\"", &["solid 1", "name is missing"]),
+    ("[[solid]]\nname = 7@", &["name needs a string"]),
+    ("[[solid]]@\nname = \"a\"", &["solid \"a\"", "shape is missing"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"torus\"@", &["torus", "known: sphere"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = -1@",
+        &["solid \"a\"", "radius must be positive", "-1"],
+    ),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0@", &["must be positive"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, nan]@\nradius = 1", &["center [2]", "nan"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, -inf]@\nradius = 1", &["inf"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0]@\nradius = 1", &["three values, not 2"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, \"x\"]@\nradius = 1", &["number, not a string"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = 0@\nradius = 1", &["needs a list"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1e99@", &["finite number below"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmin = [0, 0, 0]@",
+        &["key min is not known"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"ellipsoid\"\ncenter = [0, 0, 0]\nsemi_axes = [1, 0, 1]@",
+        &["semi_axes [1]", "positive"],
+    ),
+    ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]@", &["above min"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = []@", &["at least 4 points, not 0"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0.3,0.2,0]]@",
+        &["plane", "all 5"],
+    ),
+    ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = [[0,0,0],[0,0,0],[0,0,0],[0,0,0]]@", &["plane"]),
+    (
+        "[[solid]]@\nname = \"a\"\nshape = \"file\"\npath = \"absent.stl\"",
+        &["solid \"a\"", "absent.stl", "cannot open"],
+    ),
+    ("[[solid]]@\nname = \"a\"\nshape = \"file\"\npath = \".\"", &["directory"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \"scene.toml\"@", &["scenes do not hold scenes"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \"cube.stl\"\nunit = \"furlong\"@",
+        &["furlong", "m, mm, cm, in, ft"],
+    ),
+    ("[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \"cube.stl\"\nscale = 0@", &["positive"]),
+    (
+        "# a box\n[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\narray = { count = [1000000, 1000000, 1000000], step = [1, 1, 1] }@",
+        &["array", "copies; the most are 1000000"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\narray = { count = [9223372036854775807, 3, 3], step = [1, 1, 1] }@",
+        &["copies"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\narray = { count = [0, 1, 1], step = [1, 1, 1] }@",
+        &["at least 1"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\narray = { count = [1, 1, 1.5], step = [1, 1, 1] }@",
+        &["whole number"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\narray = { count = [1, 1, 1] }@",
+        &["step is missing"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = [0, 0, 0], angle = 3 }@",
+        &["no direction"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"w\", angle = 3 }@",
+        &["\"w\""],
+    ),
+    ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = 30@", &["needs a table"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nporosity = 1.5@", &["from 0 to 1"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[gird]@\n", &["gird", "not known"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[grid]@\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\nw = 3",
+        &["key w"],
+    ),
+    ("[[solid]]\nname = \"a\nshape@", &["line"]),
+];
+
+#[test]
+fn what_is_wrong_is_said_with_its_place() {
+    let dir = Scratch::new();
+    fs::copy(fixture("bad_inputs/ref_ok_binary.stl"), dir.file("cube.stl")).expect("a copy");
+    let scene = dir.file("scene.toml");
+    for (text, words) in WRONG {
+        let line = text.split('@').next().map_or(0, |before| before.matches('\n').count() + 1);
+        fs::write(&scene, text.replace('@', "")).expect("written");
+        let output = voidage(&[&"porosity", &scene, &"--cells", &"2x2x2"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}\n{said}");
+        assert!(said.contains("scene.toml: "), "{text}\n{said}");
+        assert!(
+            !text.contains('@') || text.contains("name = \"a\nshape") || said.contains(&format!("line {line}: ")),
+            "line {line}: {text}\n{said}"
+        );
+        words.iter().for_each(|w| assert!(said.contains(w), "{w}: {text}\n{said}"));
+    }
+}
+
+/// Each copy of a large file costs memory: too many are refused before they are made.
+#[test]
+fn copies_that_fill_memory_are_refused() {
+    let dir = Scratch::new();
+    fs::copy(fixture("cad_skid.stl"), dir.file("skid.stl")).expect("a copy");
+    let scene = dir.file("scene.toml");
+    let array = "array = { count = [100, 100, 1], step = [5, 5, 5] }";
+    let solid = format!("\n[[solid]]\nname = \"yard\"\nshape = \"file\"\npath = \"skid.stl\"\n{array}\n");
+    fs::write(&scene, solid).expect("written");
+    let output = voidage(&[&"inspect", &scene]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("line 2: solid \"yard\": 10000 copies of 78736 triangles"), "{said}");
+}
+
+/// Whatever bytes a scene file holds, the program ends with 0 or 1 and says why.
+#[test]
+fn broken_scene_files_never_panic() {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    let whole = format!("{BOX}rotate = {{ axis = [0, 0, 1], angle = 30 }}\n{GRID}");
+    let mut rng = 12345_u64;
+    for n in 0..150 {
+        rng = rng.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let mut bytes = whole.clone().into_bytes();
+        let at = (rng >> 33) as usize % bytes.len();
+        match n % 3 {
+            0 => bytes.truncate(at),
+            1 => bytes[at] = (rng >> 20) as u8,
+            _ => drop(bytes.drain(at..(at + 1 + (rng >> 60) as usize).min(whole.len()))),
+        }
+        fs::write(&scene, &bytes).expect("written");
+        let output = voidage(&[&"inspect", &scene, &"-q"]);
+        let code = output.status.code();
+        assert!(code == Some(0) || (code == Some(1) && !output.stderr.is_empty()), "{code:?} {}", stderr(&output));
+    }
+    fs::write(&scene, "a = ".to_owned() + &"[".repeat(200_000)).expect("written");
+    assert_eq!(voidage(&[&"inspect", &scene]).status.code(), Some(1));
+}
+
+#[test]
+fn two_grids_are_one_too_many() {
+    let dir = Scratch::new();
+    let (one, two) = (dir.file("one.toml"), dir.file("two.toml"));
+    fs::write(&one, format!("{BOX}{GRID}")).expect("written");
+    fs::write(&two, format!("{BOX}{GRID}")).expect("written");
+    let output = voidage(&[&"porosity", &one, &two]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("two.toml: a second scene with a [grid]"), "{}", stderr(&output));
+}

@@ -1,0 +1,219 @@
+//! Scene files: placed solids against meshes, copies against repeats, porous solids against counting.
+
+use glam::{DMat3, DVec3};
+use std::fmt::Write;
+use std::path::Path;
+use voidage::bodies::Bodies;
+use voidage::grid::Edges;
+use voidage::porosity::{FieldSet, Options, Porosity, porosity};
+use voidage::scene;
+use voidage_tests::fields::assert_close;
+use voidage_tests::random::Random;
+use voidage_tests::solids;
+
+fn bodies(text: &str) -> Bodies {
+    let scene = scene::parse(Path::new("scene.toml"), text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let mut bodies = Bodies::default();
+    scene::load::add(&scene, &mut bodies).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    bodies
+}
+
+fn edges(cells: [usize; 3], size: f64) -> Edges {
+    Edges(cells.map(|n| (0..=n).map(|i| size * i as f64 / n as f64).collect()))
+}
+
+fn run(edges: &Edges, bodies: &Bodies) -> Porosity {
+    let options = Options { bounds: true, ..Options::default() };
+    porosity(&edges.grid(None).expect("a grid"), bodies, options)
+}
+
+fn solid(shape: &str, more: &str) -> String {
+    format!("[[solid]]\nname = \"s\"\nshape = \"{shape}\"\n{more}\n")
+}
+
+/// Every digit.
+fn list(p: DVec3) -> String {
+    format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
+}
+
+#[test]
+fn a_box_is_its_mesh_to_the_bit() {
+    let edges = edges([7, 9, 11], 1.0);
+    let (min, max) = (DVec3::new(0.11, 0.2, 0.33), DVec3::new(0.75, 5.0 / 9.0, 0.9));
+    let text = solid("box", &format!("min = {}\nmax = {}", list(min), list(max)));
+    let mesh = solids::scene(&[solids::cuboid(min, max)]);
+    assert!(run(&edges, &bodies(&text)) == run(&edges, &mesh));
+}
+
+#[test]
+fn a_turned_box_is_its_turned_mesh() {
+    let edges = edges([7, 9, 11], 1.0);
+    let mut rng = Random::new(11);
+    for _ in 0..50 {
+        let center = rng.point(DVec3::splat(0.35), DVec3::splat(0.65));
+        let half = rng.point(DVec3::splat(0.02), DVec3::splat(0.3));
+        let axis = rng.vector::<DVec3>(3.0);
+        let degrees = rng.between(-720.0, 720.0);
+        let turn = DMat3::from_axis_angle(axis.normalize(), degrees.to_radians());
+        let (min, max) = (center - half, center + half);
+        let place = format!("rotate = {{ axis = {}, angle = {degrees:?} }}", list(axis));
+        let text = solid("box", &format!("min = {}\nmax = {}\n{place}", list(min), list(max)));
+        let (found, mesh) = (bodies(&text), solids::scene(&[solids::turned_box(center, half, turn)]));
+        assert_close(&run(&edges, &found).beta, &run(&edges, &mesh).beta, 1e-11, &text);
+        let corners: Vec<String> = solids::cuboid(min, max).iter().flatten().map(|&p| list(p)).collect();
+        let hull = bodies(&solid("hull", &format!("points = [{}]\n{place}", corners.join(", "))));
+        assert_close(&run(&edges, &hull).beta, &run(&edges, &found).beta, 1e-11, &text);
+    }
+}
+
+/// A brick turned by quarters about each axis stays a brick with walls in the planes of the grid.
+#[test]
+fn quarter_turns_are_exact() {
+    let edges = edges([8, 8, 8], 8.0);
+    for (axis, size) in [("x", [2.0, 6.0, 4.0]), ("y", [6.0, 4.0, 2.0]), ("z", [4.0, 2.0, 6.0])] {
+        for angle in ["90", "-90", "270", "-630"] {
+            let place = format!("rotate = {{ axis = \"{axis}\", angle = {angle} }}");
+            let turned = solid("box", &format!("min = [3, 2, 1]\nmax = [5, 6, 7]\n{place}"));
+            let half = DVec3::from_array(size) * 0.5;
+            let (min, max) = (DVec3::splat(4.0) - half, DVec3::splat(4.0) + half);
+            let plain = solid("box", &format!("min = {}\nmax = {}", list(min), list(max)));
+            assert!(run(&edges, &bodies(&turned)).beta == run(&edges, &bodies(&plain)).beta, "{axis} {angle}");
+        }
+    }
+}
+
+#[test]
+fn an_array_is_its_copies_to_the_bit() {
+    let edges = edges([13, 12, 11], 4.0);
+    let (translate, step) = (DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.7, 1.1, 1.3));
+    let shapes = [
+        ("box", "min = [0, 0, 0]\nmax = [0.9, 0.6, 0.5]"),
+        ("hull", "points = [[0, 0, 0], [0.9, 0, 0], [0, 0.9, 0.1], [0.2, 0, 0.8], [0.5, 0.5, 0.9]]"),
+    ];
+    for (shape, keys) in shapes {
+        let turned = format!("{keys}\nporosity = 0.125\nrotate = {{ axis = [1, 2, 3], angle = 33 }}");
+        let array = format!("array = {{ count = [3, 2, 2], step = {} }}", list(step));
+        let array = solid(shape, &format!("{turned}\n{array}\ntranslate = {}", list(translate)));
+        let mut copies = String::new();
+        for n in 0..12 {
+            let at = DVec3::new((n % 3) as f64, (n / 3 % 2) as f64, (n / 6) as f64);
+            copies += &solid(shape, &format!("{turned}\ntranslate = {}", list(translate + at * step)));
+        }
+        let (array, copies) = (bodies(&array), bodies(&copies));
+        assert_eq!(array.triangles, copies.triangles);
+        assert!(run(&edges, &array) == run(&edges, &copies));
+        assert_eq!(array.bodies[7].name, "s[1,0,1]");
+    }
+}
+
+#[test]
+fn moved_by_whole_numbers_with_the_grid_changes_nothing() {
+    let shift = DVec3::new(16.0, -32.0, 64.0);
+    let here = edges([6, 5, 4], 4.0);
+    let there = Edges([0, 1, 2].map(|a| here.0[a].iter().map(|c| c + shift[a]).collect()));
+    let keys = "min = [0.25, 0.5, 1]\nmax = [3.25, 2.5, 2.125]";
+    let moved = solid("box", &format!("{keys}\ntranslate = {}", list(shift)));
+    assert_close(&run(&there, &bodies(&moved)).beta, &run(&here, &bodies(&solid("box", keys))).beta, 1e-14, "moved");
+}
+
+/// A box on whole numbers.
+struct Brick {
+    min: [usize; 3],
+    max: [usize; 3],
+    porosity: f64,
+}
+
+impl Brick {
+    fn random(rng: &mut Random, size: usize, porosities: &[f64]) -> Self {
+        let mut brick = Brick { min: [0; 3], max: [0; 3], porosity: porosities[rng.below(porosities.len())] };
+        for axis in 0..3 {
+            brick.min[axis] = rng.below(size);
+            brick.max[axis] = brick.min[axis] + 1 + rng.below(size - brick.min[axis]);
+        }
+        brick
+    }
+
+    fn holds(&self, cube: [usize; 3]) -> bool {
+        (0..3).all(|a| self.min[a] <= cube[a] && cube[a] < self.max[a])
+    }
+}
+
+/// Open fraction of unit cube `cube`; 1 outside of the bricks.
+fn open(bricks: &[Brick], cube: [usize; 3]) -> f64 {
+    bricks.iter().filter(|b| b.holds(cube)).fold(1.0, |least, b| least.min(b.porosity))
+}
+
+/// Fields on cells of `coarse` unit cubes along each axis, by counting.
+fn counted(bricks: &[Brick], cells: usize, coarse: usize) -> FieldSet {
+    let inside = |n: usize| 0..n;
+    let grid = edges([cells; 3], (cells * coarse) as f64);
+    let mut set = FieldSet::new(&grid.grid(None).expect("a grid"), true);
+    let volume = (coarse * coarse * coarse) as f64;
+    let at = |cell: [usize; 3], part: [usize; 3]| [0, 1, 2].map(|a| cell[a] * coarse + part[a]);
+    let parts: Vec<[usize; 3]> =
+        (0..coarse.pow(3)).map(|n| [n % coarse, n / coarse % coarse, n / (coarse * coarse)]).collect();
+    for n in inside(cells.pow(3)) {
+        let cell = [n % cells, n / cells % cells, n / (cells * cells)];
+        set.v[n] = parts.iter().map(|&p| open(bricks, at(cell, p))).sum::<f64>() / volume;
+    }
+    for (axis, field) in [&mut set.x, &mut set.y, &mut set.z].into_iter().enumerate() {
+        let shape = [0, 1, 2].map(|a| cells + usize::from(a == axis));
+        for n in inside(shape.iter().product()) {
+            let face = [n % shape[0], n / shape[0] % shape[1], n / (shape[0] * shape[1])];
+            let facets = parts.iter().filter(|p| p[axis] == 0);
+            let both = |p: &[usize; 3]| {
+                let above = at(face, *p);
+                let below = (above[axis] > 0).then(|| [0, 1, 2].map(|a| above[a] - usize::from(a == axis)));
+                open(bricks, above).min(below.map_or(1.0, |b| open(bricks, b)))
+            };
+            field[n] = facets.map(both).sum::<f64>() / (coarse * coarse) as f64;
+        }
+    }
+    set
+}
+
+/// Porous and solid bricks that overlap at random, in cells that cut them or not: every value is the mean of the least porosities.
+#[test]
+fn porous_solids_are_counted_by_their_least_porosity() {
+    let mut rng = Random::new(5);
+    let mut shared = 0;
+    for round in 0..120 {
+        let porosities: &[f64] = [&[0.0, 0.6][..], &[0.0, 0.25, 0.6, 1.0], &[0.3, 0.7], &[0.5]][round % 4];
+        let bricks: Vec<Brick> = (0..1 + rng.below(6)).map(|_| Brick::random(&mut rng, 6, porosities)).collect();
+        let text = bricks.iter().fold(String::new(), |mut text, b| {
+            let keys = format!("min = {:?}\nmax = {:?}\nporosity = {:?}", b.min, b.max, b.porosity);
+            let _ = write!(text, "{}", solid("box", &keys));
+            text
+        });
+        let bodies = bodies(&text);
+        for (cells, coarse) in [(6, 1), (3, 2), (2, 3)] {
+            let found = run(&edges([cells; 3], 6.0), &bodies);
+            let expected = counted(&bricks, cells, coarse);
+            assert_close(&found.beta, &expected, 1e-13, &text);
+            let [lower, upper] = found.bounds.as_ref().expect("bounds");
+            assert!(lower.v.iter().zip(&expected.v).all(|(l, v)| *l <= v + 1e-13), "{text}");
+            assert!(upper.v.iter().zip(&expected.v).all(|(u, v)| *u >= v - 1e-13), "{text}");
+            let blocked: f64 = expected.v.iter().map(|open| 1.0 - open).sum::<f64>() * (coarse as f64).powi(3);
+            assert!((found.solid_volume - blocked).abs() < 1e-11, "{text}");
+            let closed = expected.v.iter().filter(|&&open| open == 0.0).count();
+            let all_open = expected.v.iter().filter(|&&open| open == 1.0).count();
+            assert_eq!((found.cells.closed, found.cells.open), (closed, all_open), "{text}");
+            assert_eq!(found.cells.cut, cells.pow(3) - closed - all_open);
+            shared += found.cells.ambiguous;
+        }
+    }
+    assert!(shared > 400, "{shared}");
+}
+
+/// Where nothing else is, a porous solid has its porosity to the bit, and a solid one blocks all.
+#[test]
+fn whole_cells_carry_the_porosity_itself() {
+    let grid = edges([3, 1, 1], 3.0);
+    for porosity in [0.1, 0.3, 0.6, 0.7] {
+        let grating = format!("min = [0, -1, -1]\nmax = [2, 4, 4]\nporosity = {porosity}");
+        let text = solid("box", &grating) + &solid("box", "min = [0, -1, -1]\nmax = [1, 4, 4]");
+        let found = run(&grid, &bodies(&text)).beta;
+        assert_eq!(found.v[..], [0.0, porosity, 1.0]);
+        assert_eq!(found.x[..], [0.0, 0.0, porosity, 1.0]);
+    }
+}
