@@ -8,7 +8,7 @@ use crate::input;
 use crate::output::ticks::number_to;
 use crate::output::vtr::{CellField, Field, Vtr};
 use crate::output::{check_target, npy, png, report};
-use crate::porosity::{self, Method, Options, Porosity};
+use crate::porosity::{self, Leaf, Method, Options, Porosity};
 use crate::progress::Progress;
 use crate::scene;
 use glam::DVec3;
