@@ -257,6 +257,12 @@ enum Narrowed {
     Closed,
 }
 
+/// Bounds of a box, good enough or not.
+enum Known<R> {
+    Enough(Bounds<R>),
+    Divide(Bounds<R>),
+}
+
 type Scalar<B> = <<B as Body>::Vector as Vector>::Scalar;
 
 impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
@@ -349,9 +355,10 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         let size = cell.size().to_array();
         let flat = size.map(|s| s == R::<B>::ZERO);
         let parts = if flat.contains(&true) { 4 } else { 8 };
-        if let Some(bounds) = self.leaf(cell, list, 0, parts) {
-            return bounds;
-        }
+        let whole = match self.leaf(cell, list, 0, parts) {
+            Known::Enough(bounds) => return bounds,
+            Known::Divide(bounds) => bounds,
+        };
         let root = Parent { cell: *cell, list, next: 0 };
         let mut parents = [root; MAX_BOXES];
         // Shares of parts, each a power of two: their sums are exact but for the measured ones.
@@ -372,17 +379,17 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
             let inner = match self.narrow(&part, from) {
                 Narrowed::Open => continue,
                 Narrowed::Closed => Some(Bounds::CLOSED),
-                Narrowed::Cut(list) => {
-                    let known = self.leaf(&part, list, level as u32 + 1, parts);
-                    if known.is_none() {
+                Narrowed::Cut(list) => match self.leaf(&part, list, level as u32 + 1, parts) {
+                    Known::Enough(bounds) => Some(bounds),
+                    Known::Divide(_) => {
                         level += 1;
                         debug_assert!(level < MAX_BOXES);
                         if let Some(place) = parents.get_mut(level) {
                             *place = Parent { cell: part, list, next: 0 };
                         }
+                        None
                     }
-                    known
-                }
+                },
             };
             if let Some(inner) = inner {
                 let weight = weights[(level + 1).min(MAX_BOXES)];
@@ -390,11 +397,12 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
                 sum.upper += inner.upper * weight;
             }
         }
-        self.widened(sum, cell)
+        let sum = self.widened(sum, cell);
+        Bounds { lower: sum.lower.max(whole.lower), upper: sum.upper.min(whole.upper) }
     }
 
-    /// What is known of a box at a level without dividing it; none if it is to be divided.
-    fn leaf(&mut self, cell: &Aabb<B::Vector>, list: List, level: u32, parts: usize) -> Option<Bounds<Scalar<B>>> {
+    /// What is known of a box at a level without dividing it.
+    fn leaf(&mut self, cell: &Aabb<B::Vector>, list: List, level: u32, parts: usize) -> Known<Scalar<B>> {
         type R<B> = Scalar<B>;
         let Rule { leaf, depth, tol } = self.rule;
         let last = level >= depth;
@@ -405,10 +413,14 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
                 let near = self.memory.facets.get(candidate.first as usize..candidate.end as usize)?;
                 self.bodies.get(candidate.body as usize)?.beside_plane(cell, near)
             });
-            return if last { Some(Bounds::UNKNOWN) } else { plane.map(|plane| below_plane(&plane, depth - level)) };
+            return match plane {
+                Some(plane) => Known::Enough(below_plane(&plane, depth - level)),
+                None if last => Known::Enough(Bounds::UNKNOWN),
+                None => Known::Divide(Bounds::UNKNOWN),
+            };
         }
         if !(alone || last) {
-            return None;
+            return Known::Divide(Bounds::UNKNOWN);
         }
         // Of the parts a side has, as many are cut by a surface as there are on it.
         let rows = 1_usize << level;
@@ -426,7 +438,7 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
             upper += own.upper;
         }
         let bounds = Bounds { lower, upper: upper.min(R::<B>::ONE) };
-        (last || bounds.gap() <= enough).then_some(bounds)
+        if last || bounds.gap() <= enough { Known::Enough(bounds) } else { Known::Divide(bounds) }
     }
 
     /// Room for the rounding of the planes between parts, and of sums.

@@ -62,7 +62,7 @@ fn volume_inside(lo: DVec3, hi: DVec3, planes: &[HalfSpace]) -> f64 {
         (DVec3::Z, hi.z),
         (DVec3::NEG_Z, -lo.z),
     ];
-    let all: Vec<HalfSpace> = sides.into_iter().chain(distinct(planes)).collect();
+    let all = distinct(&sides.into_iter().chain(planes.iter().copied()).collect::<Vec<_>>());
     let (middle, size) = ((lo + hi) * 0.5, (hi - lo).length());
     let facet = |n: usize| {
         let (normal, offset) = all[n];
