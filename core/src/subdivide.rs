@@ -71,9 +71,9 @@ impl Range {
         (axis, length(axis))
     }
 
-    /// The halves along an axis, the lower one not longer.
+    /// The halves along an axis, the lower one not shorter.
     fn halves(&self, axis: usize) -> [Self; 2] {
-        let middle = self.lo[axis] + (self.hi[axis] - self.lo[axis]) / 2;
+        let middle = self.hi[axis] - (self.hi[axis] - self.lo[axis]) / 2;
         let (mut low, mut high) = (*self, *self);
         (low.hi[axis], high.lo[axis]) = (middle, middle);
         [low, high]
@@ -168,7 +168,7 @@ impl<T: Copy> Waiting<T> {
     }
 
     /// The next range.
-    pub fn next(&mut self) -> Option<(Range, T)> {
+    pub fn take(&mut self) -> Option<(Range, T)> {
         self.count = self.count.checked_sub(1)?;
         self.items.get(self.count).copied()
     }
@@ -335,7 +335,7 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         mut fill: impl FnMut(Range, Bounds<Scalar<B>>),
     ) {
         let mut waiting = Waiting::new(range, list);
-        while let Some((range, list)) = waiting.next() {
+        while let Some((range, list)) = waiting.take() {
             let cell = box_of(grid, places, range);
             match self.narrow(&cell, list) {
                 Narrowed::Open => {}
@@ -367,8 +367,7 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
             weights[level + 1] = weights[level] / R::<B>::from_usize(parts);
         }
         let (mut level, mut sum) = (0, Bounds::OPEN);
-        loop {
-            let Some(parent) = parents.get_mut(level) else { break };
+        while let Some(parent) = parents.get_mut(level) {
             if parent.next == parts {
                 let Some(above) = level.checked_sub(1) else { break };
                 level = above;
