@@ -460,6 +460,9 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
     }
 }
 
+/// How far the box of several planes of faces reaches beyond them, as a share of its thickness.
+const OVERHANG: f64 = 1.0 / 1024.0;
+
 /// What the parts of a box say, halved so many times, that only a plane cuts. Nests no deeper than [`MAX_DEPTH`].
 fn below_plane<R: Real>(plane: &BesidePlane<R>, levels: u32) -> Bounds<R> {
     let (mut lower, mut upper) = (R::ZERO, R::ZERO);
@@ -477,13 +480,19 @@ fn below_plane<R: Real>(plane: &BesidePlane<R>, levels: u32) -> Bounds<R> {
     Bounds { lower: lower * eighth, upper: upper * eighth }
 }
 
-/// The box around a range of cells or faces.
+/// The box around a range of cells or faces. Around faces of several planes it is a little thicker: a body that only touches the outermost
+/// plane shares no volume with the box, and yet may block faces there.
 fn box_of<V: Vector>(grid: &Grid<V::Scalar>, places: Places, range: Range) -> Aabb<V> {
     let edge = |axis: usize, index: u32| grid.edges(axis).get(index as usize).copied().unwrap_or(V::Scalar::INFINITY);
     let (mut min, mut max) = ([V::Scalar::ZERO; 3], [V::Scalar::ZERO; 3]);
     for axis in 0..3 {
         min[axis] = edge(axis, range.lo[axis]);
         max[axis] = edge(axis, range.hi[axis] - u32::from(places == Places::Faces(axis)));
+        if places == Places::Faces(axis) && max[axis] > min[axis] {
+            let thickness = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG);
+            let room = thickness + (max[axis].abs() + min[axis].abs()) * V::Scalar::EPSILON;
+            (min[axis], max[axis]) = (min[axis] - room, max[axis] + room);
+        }
     }
     Aabb { min: V::from_array(min), max: V::from_array(max) }
 }

@@ -198,6 +198,13 @@ fn a_cylinder_that_stands_on_a_plane_closes_it() {
 }
 
 #[test]
+fn a_wall_in_the_outermost_plane_of_several_counts() {
+    // Planes are asked in ranges; the second box only touches the last plane of one.
+    let part = |center, half| Part { kind: 0, center: [center, 0, 0], half: [half, 0, 0], seed: 0 };
+    bounds_hold_the_union(&[part(0, 3), part(10, 4)], 0);
+}
+
+#[test]
 fn bits_do_not_depend_on_threads() {
     let solids: Vec<_> = (0..5).map(|n| sphere(DVec3::new(0.3 + 0.1 * f64::from(n), 0.5, 0.45), 0.2, 2)).collect();
     for leaf in [Leaf::Half, Leaf::Plane] {
