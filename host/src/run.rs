@@ -139,7 +139,9 @@ fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     let files = || bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
     let fine = 1e-6 * (hi - lo).max(max - min).max_element();
-    let point = |p: DVec3| format!("({})", p.to_array().map(|v| number_to(v, fine)).join(", "));
+    let point = |p: DVec3| {
+        format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
+    };
     let extent = |p, q| format!("{} to {}", point(p), point(q));
     if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
         progress.warn(format!(
