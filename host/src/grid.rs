@@ -155,7 +155,7 @@ pub struct Spec {
     spacing: Option<Vec<f64>>,
     cells: Option<Vec<usize>>,
     /// In place of the grid itself: the file that holds it.
-    pub file: Option<PathBuf>,
+    file: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -173,6 +173,13 @@ enum AxisSpec {
 const UNIT_CELL: [f64; 2] = [0.0, 1.0];
 
 impl Spec {
+    /// The file that holds the grid, if nothing but its name is given.
+    #[must_use]
+    pub fn elsewhere(&self) -> Option<&Path> {
+        let only = Spec { file: self.file.clone(), ..Spec::default() };
+        self.file.as_deref().filter(|_| *self == only)
+    }
+
     /// The edges. With `fewer_axes`, later axes may be left out and hold one cell of unit width; `place` goes before
     /// the key in errors.
     ///

@@ -76,6 +76,13 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
     })
 }
 
+/// The command as typed.
+#[must_use]
+pub fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned());
+    std::iter::once("voidage".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
 /// As many threads as asked for, or as there are cores.
 ///
 /// # Errors
@@ -297,10 +304,7 @@ impl Report {
         }
         Report {
             version: env!("CARGO_PKG_VERSION"),
-            command: std::iter::once("voidage".to_owned())
-                .chain(std::env::args().skip(1))
-                .collect::<Vec<_>>()
-                .join(" "),
+            command: command_line(),
             grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
             solid_volume: result.solid_volume,
             bodies: bodies.bodies.len(),

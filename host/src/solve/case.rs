@@ -365,14 +365,9 @@ impl CaseFile {
     /// # Errors
     /// No grid.
     pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
-        match &self.case.grid {
-            Spec { file: Some(file), .. } => {
-                if self.case.grid != (Spec { file: Some(file.clone()), ..Spec::default() }) {
-                    return Err(self.wrong("grid.file", "a grid is either here or in another file"));
-                }
-                grid::read(&self.resolve(file), warnings)
-            }
-            spec => spec.clone().edges(&self.path, "grid.", true),
+        match self.case.grid.elsewhere() {
+            Some(file) => grid::read(&self.resolve(file), warnings),
+            None => self.case.grid.clone().edges(&self.path, "grid.", true),
         }
     }
 }

@@ -327,12 +327,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// As [`Flow::rate`].
     pub fn clock(&mut self) -> Result<Clock<R, D>, Error> {
         let rate = self.rate()?;
-        Ok(Clock {
-            time: self.time,
-            steps: self.steps,
-            repeated: self.repeated,
-            total: Report { rate, ..self.total },
-        })
+        Ok(Clock { time: self.time, steps: self.steps, repeated: self.repeated, total: Report { rate, ..self.total } })
     }
 
     /// Puts the flow where another with the same problem stood.

@@ -102,7 +102,13 @@ impl Pictures {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn draw<const D: usize>(&self, setup: &Setup<D>, shot: &Snapshot, time: f64, paths: [PathBuf; 2]) -> Result<()> {
+    pub fn draw<const D: usize>(
+        &self,
+        setup: &Setup<D>,
+        shot: &Snapshot,
+        time: f64,
+        paths: [PathBuf; 2],
+    ) -> Result<()> {
         let fields = [("speed [m/s]", shot.speed(), true), ("pressure [Pa]", shot.pressure.clone(), false)];
         for ((name, mut values, from_zero), path) in fields.into_iter().zip(paths) {
             if let Some(beta) = setup.flow.beta_v() {
@@ -153,7 +159,8 @@ pub fn create(dir: &Path) -> Result<()> {
 /// # Errors
 /// The file cannot be written.
 pub fn series(path: &Path, times: &[f64]) -> Result<()> {
-    let mut text = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n");
+    let mut text =
+        String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n");
     for (n, time) in times.iter().enumerate() {
         let file = frame_name(n, "vtr");
         let _ = writeln!(text, "    <DataSet timestep=\"{time}\" part=\"0\" file=\"frames/{file}\"/>"); // a String takes anything

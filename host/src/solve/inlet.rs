@@ -48,7 +48,12 @@ impl<const D: usize> Inlet<D> {
         }
         let axis = &edges.0[states.live[at.0]];
         let crossing = (axis[axis.len() - 1] - axis[0]) / states.gas.sound_speed(&state);
-        states.file.demand(&format!("{key}.relax"), keys.relax, |t| t > 0.0 && t.is_finite(), "needs a positive time")?;
+        states.file.demand(
+            &format!("{key}.relax"),
+            keys.relax,
+            |t| t > 0.0 && t.is_finite(),
+            "needs a positive time",
+        )?;
         let relax = keys.relax.unwrap_or(crossing);
         Ok((Inlet { at, relax, sign, shares: Vec::new() }, state))
     }

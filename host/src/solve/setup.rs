@@ -71,10 +71,8 @@ pub fn setup<const D: usize>(
 ) -> Result<Setup<D>> {
     let case = &file.case;
     let gas = gas(file, &case.gas)?;
-    let mut skipped: Vec<String> = (0..3)
-        .filter(|a| !live.contains(a))
-        .map(|a| format!("axis {}: it has one cell", AXES[a]))
-        .collect();
+    let mut skipped: Vec<String> =
+        (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
     let cells = progress.stage("initial", |_| states.initial(edges))?;
 

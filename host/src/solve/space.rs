@@ -81,11 +81,7 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
     if keys.depth.is_some_and(|d| d > 10) {
         return Err(file.wrong("porosity.depth", "is at most 10"));
     }
-    let of_scene = [
-        ("unit", keys.unit.is_some()),
-        ("tol", keys.tol.is_some()),
-        ("depth", keys.depth.is_some()),
-    ];
+    let of_scene = [("unit", keys.unit.is_some()), ("tol", keys.tol.is_some()), ("depth", keys.depth.is_some())];
     match of_scene.iter().find(|(_, given)| *given && keys.scene.is_none()) {
         Some((key, _)) => Err(file.wrong(&format!("porosity.{key}"), "goes with porosity.scene")),
         None => Ok(()),

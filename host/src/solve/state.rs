@@ -58,7 +58,9 @@ impl<const D: usize> States<'_, D> {
         let Some(temperature) = keys.temperature else { return Ok(keys.rho) };
         match self.gas_constant {
             _ if keys.rho.is_some() => Err(self.file.wrong(key, "takes rho or T, not both")),
-            _ if !self.gas.has_energy() => Err(self.file.wrong(key, "a barotropic gas has no T of its own; give rho or p")),
+            _ if !self.gas.has_energy() => {
+                Err(self.file.wrong(key, "a barotropic gas has no T of its own; give rho or p"))
+            }
             None => Err(self.file.wrong(key, "T needs gas.gas_constant")),
             Some(r) => Ok(Some(pressure / (r * temperature))),
         }
@@ -70,7 +72,10 @@ impl<const D: usize> States<'_, D> {
             let name = VELOCITIES[axis];
             self.file.demand(&format!("{key}.{name}"), u, f64::is_finite, "needs a finite number")?;
             if !self.live.contains(&axis) && u.is_some_and(|u| u != 0.0) {
-                return Err(self.file.wrong(&format!("{key}.{name}"), format!("axis {} has one cell: nothing flows along it", AXES[axis])));
+                return Err(self.file.wrong(
+                    &format!("{key}.{name}"),
+                    format!("axis {} has one cell: nothing flows along it", AXES[axis]),
+                ));
             }
         }
         Ok(std::array::from_fn(|d| given[self.live[d]].unwrap_or(base.map_or(0.0, |b| b[d]))))
@@ -105,7 +110,9 @@ impl<const D: usize> States<'_, D> {
             None => Ok(cells.into_iter().flatten().collect()),
             Some(cell) => {
                 let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
-                Err(self.file.wrong("initial", format!("cell {at:?} at {x:?} is in no region, and there is no uniform state")))
+                Err(self
+                    .file
+                    .wrong("initial", format!("cell {at:?} at {x:?} is in no region, and there is no uniform state")))
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use std::fs::{File, OpenOptions};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Bytes of lines kept before they are written.
@@ -32,10 +32,14 @@ impl Table {
     /// The first `bytes` of a table, to be continued.
     ///
     /// # Errors
-    /// The file cannot be opened or is shorter.
-    pub fn resume(path: &Path, bytes: u64) -> Result<Self> {
+    /// The file cannot be opened, is shorter, or has other columns.
+    pub fn resume(path: &Path, head: &str, bytes: u64) -> Result<Self> {
         let failed = |e: std::io::Error| Error::io(path, "go on with", &e);
-        let mut file = OpenOptions::new().write(true).open(path).map_err(failed)?;
+        let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
+        let mut start = vec![0; head.len() + 1];
+        if file.read_exact(&mut start).is_err() || start != [head.as_bytes(), b"\n"].concat() {
+            return Err(Error::file(path, "has other columns than the case asks for now"));
+        }
         let length = file.metadata().map_err(failed)?.len();
         if length < bytes {
             return Err(Error::file(path, format!("has {length} bytes; the checkpoint needs its first {bytes}")));
