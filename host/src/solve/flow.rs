@@ -614,7 +614,7 @@ fn step<R: Real, const D: usize>(
 ) -> Result<Report<R, D>, Error> {
     let layers = problem.mesh.cells()[D - 1];
     // A slab of few layers spends its time on the layers beside it.
-    const LEAST_LAYERS: usize = 8;
+    const LEAST_LAYERS: usize = 6;
     let threads = rayon::current_num_threads().min(layers / LEAST_LAYERS).max(1);
     let threads = if D == 1 { 1 } else { threads };
     while scratch.len() < threads {

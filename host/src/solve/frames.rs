@@ -109,6 +109,7 @@ impl Pictures {
         time: f64,
         paths: [PathBuf; 2],
     ) -> Result<()> {
+        let solid = setup.space.is_some_and(|s| s.closed_cells > 0);
         let fields = [("speed [m/s]", shot.speed(), true), ("pressure [Pa]", shot.pressure.clone(), false)];
         for ((name, mut values, from_zero), path) in fields.into_iter().zip(paths) {
             if let Some(beta) = setup.flow.beta_v() {
@@ -121,7 +122,7 @@ impl Pictures {
                 .fold([least, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
             let edges = setup.edges.0.each_ref().map(|e| &e[..]);
             let title = format!("{} · t = {} s", self.title, number(time));
-            let note = png::grid_note(edges, "m");
+            let note = png::grid_note(edges, "m") + if solid { " · solid in mauve" } else { "" };
             let map = &ColourMap::sequential();
             let (unit, ends) = ("m", ["", ""]);
             Figure { title: &title, note: &note, edges, unit, values: &values, at: self.at, name, range, ends, map }

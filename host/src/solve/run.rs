@@ -70,7 +70,7 @@ fn run<const D: usize>(
         progress.stage("steps", |p| run.steps(&p.line()))
     };
     stepped?;
-    progress.stage("output", |_| run.setup_snapshot().arrays(&run.dir.join("final"), &run.setup.edges))?;
+    progress.stage("output", |_| run.snapshot().arrays(&run.dir.join("final"), &run.setup.edges))?;
     let summary = Report::new(file, &run.setup, &run.journal, run.done, &progress);
     summary.say(&progress);
     report::json(&run.dir.join("report.json"), &summary)
@@ -235,10 +235,12 @@ impl<'a, const D: usize> Run<'a, D> {
                 return Err(Error::new(format!("interrupted at step {step}, t = {time}; go on with --resume")));
             }
         }
+        // A last state between two frames is shown, but no frame of a run that goes on.
+        self.checkpoint()?;
         if self.journal.frames.last() != Some(&self.setup.flow.time) {
             self.frame()?;
         }
-        self.checkpoint()
+        Ok(())
     }
 
     /// One step that does not pass `stop`; refuses a state that no gas has.
@@ -289,7 +291,7 @@ impl<'a, const D: usize> Run<'a, D> {
         Ok(())
     }
 
-    fn setup_snapshot(&self) -> Snapshot {
+    fn snapshot(&self) -> Snapshot {
         Snapshot::of(&self.setup.flow, self.setup.live)
     }
 
@@ -300,7 +302,7 @@ impl<'a, const D: usize> Run<'a, D> {
         if formats(self.output).is_empty() {
             return Ok(());
         }
-        let shot = self.setup_snapshot();
+        let shot = self.snapshot();
         for format in formats(self.output) {
             match format {
                 Format::Vtr => {
@@ -388,11 +390,11 @@ fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::pdr
     let w = flow.get(cell);
     let at = super::arrays::index(cell, setup.edges.cells());
     let x = super::state::centre(&setup.edges, cell);
-    let mut text = format!("cell {at:?} at {x:?}: rho = {}, ", w.density);
+    let mut text = format!("cell {at:?} at {x:?}: rho = {:?}, ", w.density);
     for (axis, u) in setup.live.iter().zip(w.velocity) {
-        let _ = write!(text, "{} = {u}, ", VELOCITIES[*axis]); // a String takes anything
+        let _ = write!(text, "{} = {u:?}, ", VELOCITIES[*axis]); // a String takes anything
     }
-    format!("{text}p = {}: {what}", w.pressure)
+    format!("{text}p = {:?}: {what}", w.pressure)
 }
 
 /// The cells of the probes.
