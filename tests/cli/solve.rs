@@ -100,7 +100,7 @@ fn a_blob_is_carried_once_around_a_periodic_square() {
     let at = Scratch::new();
     let blob = |i: usize, j: usize, _| {
         let [x, y] = [i, j].map(|n| (n as f32 + 0.5) / 32.0 - 0.5);
-        1.0 + (-40.0 * (x * x + y * y)).exp()
+        1.0 + (-20.0 * (x * x + y * y)).exp()
     };
     write_state(&at.file("start"), [32, 32, 1], &[("u", 1.0), ("v", 0.5)], blob);
     let case = r#"
@@ -315,7 +315,7 @@ fn a_cube_in_a_channel() {
                 format!("points = [0, {size}], cells = [{}]", cells[axis]),
             )
         };
-        let mut case = text.replace("end = 2", "end = 0.4");
+        let mut case = text.replace("end = 1.5", "end = 0.3");
         for (from, to) in [grid(0, "10", 60), grid(1, "3", 18)] {
             assert!(case.contains(&from), "{from}");
             case = case.replace(&from, &to);

@@ -94,7 +94,7 @@ fn states_and_sides() {
     fails(
         "uniform = { rho = 1, u = 0.5, p = 1 }",
         "regions = [{ max = [0.6], rho = 1, p = 1 }]",
-        &["key initial: cell [3, 0, 0] at [0.875, 0.25, 0.5] is in no region"],
+        &["key initial: cell [2, 0, 0] at [0.625, 0.25, 0.5] is in no region"],
     );
     fails("x_max = { type = \"outlet\", p = 1 }", "", &["key boundary.x_max: is missing"]);
     fails("outlet\", p = 1", "outlet\"", &["key boundary.x_max: an outlet needs p"]);

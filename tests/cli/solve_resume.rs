@@ -162,7 +162,7 @@ fn checkpoints_that_do_not_fit_are_refused() {
         ("cr = [0.1, 0, 0.2]", "cr = [0.2, 0, 0.1]", "its drag differs"),
         ("-9.81", "-9.8", "its gravity differs"),
         ("[time]", "[scheme]\ncfl = 0.5\n[time]", "its scheme differs"),
-        ("scene = '", "jump = 0.2\nscene = '", "its porosity differs"),
+        ("scene = '", "jump = 0.2\nscene = '", "its treatment of the porosity differs"),
     ] {
         assert!(case.contains(from), "{from}");
         refused(&case.replacen(from, to, 1), part);

@@ -72,6 +72,7 @@ impl Fingerprint {
         let parts = [
             ("grid", of_arrays(&mut edges.0.iter().map(|e| &e[..]))),
             ("porosity", of_arrays(&mut flow.beta_v().into_iter().chain(flow.faces()))),
+            ("treatment of the porosity", of_text(format!("{:?}", setup.treatment))),
             ("gas", of_text(format!("{:?}", flow.gas()))),
             ("initial state", of_arrays(&mut columns(&flow.state))),
             ("boundary", of_text(format!("{:?} {:?}", flow.boundaries, inlets))),

@@ -31,6 +31,8 @@ pub struct Setup<const D: usize> {
     pub cfl: f64,
     /// Inlets whose pressure follows the flow.
     pub inlets: Vec<Inlet<D>>,
+    /// How the porosity enters.
+    pub treatment: Treatment<f64>,
     /// What the porosity came to, if there is any.
     pub space: Option<SpaceReport>,
     /// What was left out because nothing needs it.
@@ -82,14 +84,12 @@ pub fn setup<const D: usize>(
     (flow.scheme, flow.careful_steps) = scheme(file)?;
     flow.gravity = gravity(file, live)?;
 
+    let (keys, usual) = (&case.porosity, Treatment::default());
+    let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
     let mut report = None;
     match space::load(file, edges, live, progress)? {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
-            let usual = Treatment::default();
-            let keys = &case.porosity;
-            let treatment =
-                Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
             report = Some(SpaceReport {
                 closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
@@ -116,7 +116,8 @@ pub fn setup<const D: usize>(
         let velocity = if closed { [0.0; D] } else { w.velocity };
         flow.set(cell, &Primitive { velocity, ..*w });
     }
-    let mut setup = Setup { flow, live, edges: edges.clone(), cfl: cfl(file)?, inlets, space: report, skipped };
+    let (edges, cfl) = (edges.clone(), cfl(file)?);
+    let mut setup = Setup { flow, live, edges, cfl, inlets, treatment, space: report, skipped };
     setup.inlets.iter_mut().for_each(|inlet| inlet.look_at(&setup.flow));
     Ok(setup)
 }
