@@ -1,6 +1,6 @@
 //! Checkpoints: all that a run needs to go on to the bit, in one file that appears whole or not at all.
 //!
-//! Layout: [`MAGIC`], the length of a JSON header (u64), the header, the conserved fields as f64 (density, momentum along
+//! Layout: eight bytes of magic and version, the length of a JSON header (u64), the header, the conserved fields as f64 (density, momentum along
 //! each axis of the flow, energy if there is any), CRC-32 of all before; everything little endian. The header names the
 //! case by checksums of its parts, so that a checkpoint of another case is refused with the part that differs.
 

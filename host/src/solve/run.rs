@@ -103,10 +103,8 @@ impl Limits {
         if output.log_every == Some(0) {
             return Err(file.wrong("output.log_every", "is at least 1"));
         }
-        if let (Some(end), Some(every)) = (time.end, output.every) {
-            if end / every > MOST_FRAMES {
-                return Err(file.wrong("output.every", format!("makes more than {MOST_FRAMES} frames")));
-            }
+        if matches!((time.end, output.every), (Some(end), Some(every)) if end / every > MOST_FRAMES) {
+            return Err(file.wrong("output.every", format!("makes more than {MOST_FRAMES} frames")));
         }
         Ok(Limits {
             end: time.end.unwrap_or(f64::INFINITY),
