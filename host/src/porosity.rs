@@ -8,10 +8,12 @@ mod fields;
 mod layers;
 mod planes;
 mod unions;
+mod values;
 
 use crate::bodies::Bodies;
 use bins::Bins;
 pub use fields::FieldSet;
+pub use values::Values;
 use layers::{Summary, Target, Worker};
 use rayon::prelude::*;
 use serde::Serialize;

@@ -2,7 +2,7 @@
 
 use super::bins::{Bins, Group};
 use super::fields::FieldSet;
-use super::layers::{Worker, widest};
+use super::layers::Worker;
 use super::{Options, targets};
 use glam::DVec3;
 use voidage_core::grid::Grid;
@@ -125,19 +125,19 @@ impl Unions {
         let [nx, ny, _] = grid.cells();
         let areas = self.options.areas;
         let (mut ambiguous, mut divided) = (0, 0);
-        for j in 0..ny {
-            if !row_is_open(layer, nx, j) {
-                continue;
-            }
+        let groups = bins.groups(k);
+        for j in shared(grid.edges(1), groups.iter(), |g| [g.min.y, g.max.y]) {
+            let [lo, hi] = [grid.edges(1)[j], grid.edges(1)[j + 1]];
+            let here = groups.iter().filter(|g| g.min.y <= hi && g.max.y >= lo);
             let mut row = None;
-            for i in 0..nx {
+            for i in shared(grid.edges(0), here, |g| [g.min.x, g.max.x]) {
                 let c = j * nx + i;
                 ambiguous += usize::from(gap(layer.lower.cell[c], layer.sum.cell[c]) > 0.0);
                 let open = open_gap(layer, nx, ny, i, j);
                 if !(open > KNOWN) {
                     continue;
                 }
-                let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
+                let row = row.get_or_insert_with(|| Row::new(bins, k, lo, hi));
                 let (lo, hi) = grid.cell_box([i, j, k]);
                 let union = self.union(lo, hi, bins, k, row).map(Refined::from);
                 let believed = union.and_then(|u| if agrees(layer, nx, i, j, &u, areas) { Ok(u) } else { Err(Full) });
@@ -344,13 +344,26 @@ const OUTSIDE: f64 = 1.0 / 1024.0;
 /// Bounds this close are one value: what remains is rounding.
 const KNOWN: f64 = 1e-13;
 
-/// Is there a gap anywhere in a row, its upper y faces included?
-fn row_is_open(layer: &Layer<f64>, nx: usize, j: usize) -> bool {
-    let any = |lower: &[f64], sum: &[f64], run: std::ops::Range<usize>| widest(&lower[run.clone()], &sum[run]) > KNOWN;
-    any(layer.lower.cell, layer.sum.cell, j * nx..(j + 1) * nx)
-        || any(layer.lower.x, layer.sum.x, j * (nx + 1)..(j + 1) * (nx + 1))
-        || any(layer.lower.y, layer.sum.y, j * nx..(j + 2) * nx)
-        || any(layer.lower.z, layer.sum.z, j * nx..(j + 1) * nx)
+/// The cells along one axis that two bodies or more reach or touch.
+fn shared<'g>(edges: &[f64], groups: impl Iterator<Item = &'g Group>, extent: impl Fn(&Group) -> [f64; 2]) -> Vec<usize> {
+    let cells = edges.len() - 1;
+    // What the number of bodies changes by at each cell.
+    let mut steps = vec![0_i32; cells + 1];
+    for group in groups {
+        let [lo, hi] = extent(group);
+        let first = edges.partition_point(|&e| e < lo).saturating_sub(1);
+        let end = edges.partition_point(|&e| e <= hi).min(cells);
+        if first < end {
+            steps[first] += 1;
+            steps[end] -= 1;
+        }
+    }
+    let mut bodies = 0;
+    let shared = steps[..cells].iter().enumerate().filter(|(_, step)| {
+        bodies += **step;
+        bodies > 1
+    });
+    shared.map(|(cell, _)| cell).collect()
 }
 
 /// The largest gap of a cell and of the faces that it decides.

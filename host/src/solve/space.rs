@@ -71,8 +71,8 @@ fn from_scene<const D: usize>(
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
     let FieldSet { v, x, y, z } = run::measure(&bodies, edges, options, progress)?.beta;
-    let mut faces = [x, y, z];
-    Ok(Space { volume: v, faces: live.map(|d| std::mem::take(&mut faces[d])) })
+    let faces = [x, y, z];
+    Ok(Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()) })
 }
 
 fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
