@@ -13,10 +13,10 @@ mod values;
 use crate::bodies::Bodies;
 use bins::Bins;
 pub use fields::FieldSet;
-pub use values::Values;
 use layers::{Summary, Target, Worker};
 use rayon::prelude::*;
 use serde::Serialize;
+pub use values::Values;
 use voidage_core::grid::Grid;
 
 /// What to compute and how far to refine.

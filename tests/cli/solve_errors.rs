@@ -73,6 +73,11 @@ fn numbers() {
     fails("[time]", "[drag]\ncr = [-1, 0, 0]\n[time]", &["key drag.cr: needs numbers not below 0, not -1"]);
     fails("y = [0, 0.5, 1]", "y = [0, 0.5, 0.5]", &["y[2]: edge 0.5 does not lie above"]);
     fails("y = [0, 0.5, 1]", "y = [0, nan, 1]", &["y[1]: edge NaN is not finite"]);
+    fails(
+        "x = { points = [0, 1], cells = [4] }\ny = [0, 0.5, 1]",
+        "origin = [0, 0]\nspacing = [1, 1]\ncells = [60000, 60000]",
+        &["key grid: 3600000000 cells do not fit into memory"],
+    );
     fails("cells = [4]", "cells = [0]", &["key grid.x: a segment needs at least one cell"]);
     fails("end = 0.1", "end = 0.1\n[output]\nevery = 1e-20", &["key output.every: makes more than"]);
     fails(
@@ -84,6 +89,7 @@ fn numbers() {
 
 #[test]
 fn states_and_sides() {
+    fails("x = {", "file = \"grid.toml\"\nx = {", &["key grid.file: a grid is either here or in another file"]);
     let uniform = "rho = 1, u = 0.5, p = 1 }\n[boundary]";
     fails(uniform, "rho = -1, p = 1 }\n[boundary]", &["key initial.uniform: rho = -1 is not a positive number"]);
     fails(uniform, "rho = 1, p = nan }\n[boundary]", &["key initial.uniform: p = NaN"]);

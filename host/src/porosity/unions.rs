@@ -345,7 +345,11 @@ const OUTSIDE: f64 = 1.0 / 1024.0;
 const KNOWN: f64 = 1e-13;
 
 /// The cells along one axis that two bodies or more reach or touch.
-fn shared<'g>(edges: &[f64], groups: impl Iterator<Item = &'g Group>, extent: impl Fn(&Group) -> [f64; 2]) -> Vec<usize> {
+fn shared<'g>(
+    edges: &[f64],
+    groups: impl Iterator<Item = &'g Group>,
+    extent: impl Fn(&Group) -> [f64; 2],
+) -> Vec<usize> {
     let cells = edges.len() - 1;
     // What the number of bodies changes by at each cell.
     let mut steps = vec![0_i32; cells + 1];

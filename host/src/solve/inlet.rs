@@ -2,7 +2,7 @@
 //!
 //! Fixing velocity, density and pressure would reflect every wave. Instead the pressure outside rises while the gas just
 //! inside is too slow and falls while it is too fast, within a relaxation time; waves leave, and the velocity is met
-//! in the end. In a barotropic gas the density follows the pressure.
+//! in the end. In a barotropic gas, or where the temperature is given, the density follows the pressure.
 
 use super::case::StateKeys;
 use super::flow::Flow;
@@ -20,6 +20,8 @@ pub struct Inlet<const D: usize> {
     pub relax: f64,
     /// +1 if the gas enters along the axis, −1 if against it.
     sign: f64,
+    /// Density over pressure where the temperature is given.
+    per_pressure: Option<f64>,
     /// Open area beside each cell of the side, as a share of all.
     shares: Vec<(usize, f64)>,
 }
@@ -39,7 +41,7 @@ impl<const D: usize> Inlet<D> {
     ) -> Result<(Self, Primitive<f64, D>)> {
         let first = keys.p.or((states.gas.has_energy() || keys.rho.is_none()).then_some(pressure));
         let mut state = states.state(key, &StateKeys { p: first, ..keys.clone() }, None)?;
-        follow(states.gas, &mut state);
+        let per_pressure = keys.temperature.zip(states.gas_constant).map(|(t, r)| 1.0 / (r * t));
         let sign = [1.0, -1.0][at.1];
         if !(sign * state.velocity[at.0] > 0.0) {
             let name = super::setup::VELOCITIES[states.live[at.0]];
@@ -55,7 +57,9 @@ impl<const D: usize> Inlet<D> {
             "needs a positive time",
         )?;
         let relax = keys.relax.unwrap_or(crossing);
-        Ok((Inlet { at, relax, sign, shares: Vec::new() }, state))
+        let inlet = Inlet { at, relax, sign, per_pressure, shares: Vec::new() };
+        inlet.follow(states.gas, &mut state);
+        Ok((inlet, state))
     }
 
     /// Learns the open areas of its side.
@@ -75,7 +79,7 @@ impl<const D: usize> Inlet<D> {
         let share = (dt / self.relax).min(1.0);
         let mut next = flow.boundaries[d][side].relaxed(d, self.sign * mean, gas.sound_speed(&state), share);
         if let Boundary::Inlet(w) = &mut next {
-            follow(gas, w);
+            self.follow(gas, w);
         }
         flow.boundaries[d][side] = next;
     }
@@ -94,14 +98,14 @@ impl<const D: usize> Inlet<D> {
         let gas = flow.gas();
         if let Boundary::Inlet(w) = &mut flow.boundaries[self.at.0][self.at.1] {
             w.pressure = pressure;
-            follow(gas, w);
+            self.follow(gas, w);
         }
     }
-}
 
-/// A barotropic gas has the density of its pressure.
-fn follow<const D: usize>(gas: Gas<f64>, w: &mut Primitive<f64, D>) {
-    if let Some(density) = gas.density(w.pressure) {
-        w.density = density;
+    /// The density that goes with the pressure.
+    fn follow(&self, gas: Gas<f64>, w: &mut Primitive<f64, D>) {
+        if let Some(density) = gas.density(w.pressure).or(self.per_pressure.map(|k| k * w.pressure)) {
+            w.density = density;
+        }
     }
 }

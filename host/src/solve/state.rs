@@ -24,6 +24,9 @@ pub struct States<'a, const D: usize> {
 /// A barotropic state may be given by density and pressure if both say the same, to this relative error.
 const AGREEMENT: f64 = 1e-9;
 
+/// Numbers that a run keeps for each cell, at least: a grid too large for any memory is refused before it is filled.
+const VALUES_A_CELL: usize = 16;
+
 impl<const D: usize> States<'_, D> {
     /// The state of a table at `key`; what it does not say is taken from `base`.
     ///
@@ -88,6 +91,9 @@ impl<const D: usize> States<'_, D> {
     pub fn initial(&self, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
+        if Vec::<f64>::new().try_reserve_exact(count.saturating_mul(VALUES_A_CELL)).is_err() {
+            return Err(self.file.wrong("grid", format!("{count} cells do not fit into memory")));
+        }
         let mut cells = match (&keys.uniform, &keys.from) {
             (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
             (Some(state), None) => {
