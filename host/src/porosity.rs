@@ -83,6 +83,14 @@ pub struct Porosity {
     pub leaks: Vec<Leak>,
 }
 
+/// Bytes that the fields of a grid take, with what one thread needs beside them.
+#[must_use]
+pub fn memory(grid: &Grid<f64>, options: Options) -> usize {
+    let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
+    let sets = if options.bounds { 3 } else { 1 };
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
+}
+
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.
 #[must_use]
 pub fn porosity(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Porosity {

@@ -69,6 +69,11 @@ pub struct Worker {
 }
 
 impl Worker {
+    /// Numbers that a worker holds.
+    pub fn needed(grid: &Grid<f64>) -> usize {
+        Scratch::needed(grid) + 2 * Fields::<f64>::needed(grid)
+    }
+
     /// For layers of grids with as many cells along x and y.
     #[must_use]
     pub fn new(grid: &Grid<f64>, options: Options) -> Self {
@@ -80,6 +85,11 @@ impl Worker {
             spare: vec![0.0; Fields::<f64>::needed(grid)],
             unions: Unions::new(options),
         }
+    }
+
+    /// Allow that many divisions of cells, counted by axis.
+    pub fn may_halve(&mut self, halvings: u32) {
+        self.unions.may_halve(halvings);
     }
 
     /// Compute layer `k`: bounds body by body, unions where they differ. `target` holds zeros before.

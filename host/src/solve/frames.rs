@@ -1,7 +1,7 @@
 //! The state of a moment as files: NumPy arrays, ParaView frames with their times, pictures.
 
 use super::flow::Flow;
-use super::setup::{Setup, VELOCITIES};
+use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::grid::Edges;
 use crate::output::colour::ColourMap;
@@ -39,16 +39,14 @@ impl Snapshot {
         Snapshot { density, velocity, pressure }
     }
 
-    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`.
+    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`, all or none.
     ///
     /// # Errors
-    /// A file cannot be written.
+    /// The files cannot be written.
     pub fn arrays(&self, dir: &Path, edges: &Edges) -> Result<()> {
-        create(dir)?;
-        let write = |name: &str, values: &[f64]| npy::write(&dir.join(format!("{name}.npy")), edges.cells(), values);
-        write("rho", &self.density)?;
-        write("p", &self.pressure)?;
-        (0..3).try_for_each(|a| write(VELOCITIES[a], &self.velocity[a]))
+        let [u, v, w] = &self.velocity;
+        let named = [("rho", &self.density), ("u", u), ("v", v), ("w", w), ("p", &self.pressure)];
+        npy::write_all(dir, &named.map(|(name, values)| (name.to_owned(), edges.cells(), &values[..])))
     }
 
     /// Writes a frame for ParaView.

@@ -5,6 +5,7 @@ use super::case::{CaseFile, StateKeys};
 use super::setup::{AXES, VELOCITIES};
 use crate::error::Result;
 use crate::grid::Edges;
+use crate::run;
 use std::path::Path;
 use voidage_core::pdr::{Gas, Primitive};
 
@@ -24,8 +25,8 @@ pub struct States<'a, const D: usize> {
 /// A barotropic state may be given by density and pressure if both say the same, to this relative error.
 const AGREEMENT: f64 = 1e-9;
 
-/// Numbers that a run keeps for each cell, at least: a grid too large for any memory is refused before it is filled.
-const VALUES_A_CELL: usize = 16;
+/// What a run keeps for each cell, at least: a grid too large for any memory is refused before it is filled.
+const BYTES_A_CELL: usize = 128;
 
 impl<const D: usize> States<'_, D> {
     /// The state of a table at `key`; what it does not say is taken from `base`.
@@ -91,9 +92,7 @@ impl<const D: usize> States<'_, D> {
     pub fn initial(&self, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
-        if Vec::<f64>::new().try_reserve_exact(count.saturating_mul(VALUES_A_CELL)).is_err() {
-            return Err(self.file.wrong("grid", format!("{count} cells do not fit into memory")));
-        }
+        run::room_for(count.saturating_mul(BYTES_A_CELL))?;
         let mut cells = match (&keys.uniform, &keys.from) {
             (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
             (Some(state), None) => {
