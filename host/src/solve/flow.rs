@@ -500,7 +500,7 @@ fn step<R: Real, const D: usize>(
         return Ok(report);
     }
     marks.fill(0);
-    for _ in 0..voidage_core::pdr::step::FALLBACKS {
+    for _ in 0..voidage_core::pdr::repair::FALLBACKS {
         if problem.mark_troubled(&new.view(), marks) == 0 {
             break;
         }

@@ -13,7 +13,7 @@ use voidage_core::pdr::limiter::Limiter;
 use voidage_core::pdr::{Boundary, Error, Gas, Primitive};
 
 /// CFL number of all one-dimensional runs.
-const CFL: f64 = 0.8;
+const CFL: f64 = 0.75;
 
 /// One case on disk.
 pub struct Case {
