@@ -24,7 +24,8 @@
 //! 8. [`merge`] — small cells
 //! 9. [`step`] — the problem, one slab of one step
 //! 10. [`report`] — what a step did; [`repair`] — the whole step, and what happens to unphysical states
-//! 11. `sweep` — a slab row by row: `reconstruct` (slopes, half step), `faces` (fluxes), `finish` (new states), on the buffers
+//! 11. `line` — a long line of cells in pieces
+//! 12. `sweep` — a slab row by row: `reconstruct` (slopes, half step), `faces` (fluxes), `finish` (new states), on the buffers
 //!     of `work` with the loops of `row`
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
@@ -38,6 +39,7 @@ mod faces;
 mod finish;
 pub mod flux;
 pub mod limiter;
+mod line;
 pub mod medium;
 pub mod merge;
 mod reconstruct;

@@ -6,7 +6,7 @@ use super::report::Report;
 use super::row::{self, Openings, var};
 use super::step::PressureForm;
 use super::sweep::{Row, Sweep};
-use super::throat::jump_flux;
+use super::throat::{JumpFace, jump_fluxes};
 use super::work::Work;
 use crate::real::Real;
 
@@ -66,14 +66,9 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         if let Some(medium) = &self.medium {
             let marks = &medium.porosity.marks[row.start..][..n];
             if marks.iter().fold(0, |a, b| a | b) & (jump_low(0) | jump_high(0)) != 0 {
-                for i in 0..=n {
-                    let jump = if i < n { marks[i] & jump_low(0) != 0 } else { marks[n - 1] & jump_high(0) != 0 };
-                    if jump {
-                        let mut at = row.at;
-                        at[0] = i;
-                        self.jump(medium, 0, at, (work.left, work.right), work.flux, m, i);
-                    }
-                }
+                let jump =
+                    |i: usize| if i < n { marks[i] & jump_low(0) != 0 } else { marks[n - 1] & jump_high(0) != 0 };
+                self.jumps(medium, 0, row.at, jump, (work.left, work.right), work.flux, m);
             }
         }
         let flux = &*work.flux;
@@ -108,35 +103,54 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         Some(spare)
     }
 
-    /// Replaces the flux at one flagged face.
-    fn jump(
+    /// Replaces the fluxes at the flagged faces of a row. `jump` tells which of the `m` faces are flagged; `at` names the first.
+    fn jumps(
         &self,
         medium: &Medium<'_, R, D>,
         d: usize,
         at: [usize; D],
+        jump: impl Fn(usize) -> bool,
         (left, right): (&[R], &[R]),
         flux: &mut [R],
         m: usize,
-        i: usize,
     ) {
-        let (l, r) = (row::face_state::<R, D>(left, m, i), row::face_state::<R, D>(right, m, i));
-        let face = medium.porosity.faces[d][medium.mesh.face(d, at)];
-        let (area_l, area_r) = medium.ducts(d, at, self.periodic[d]);
-        let f = jump_flux(
-            self.problem.scheme.riemann,
-            (&l, &r),
-            (area_l, face, area_r),
-            (left[(D + 2) * m + i], right[(D + 2) * m + i]),
-            &self.face_gas,
-            &self.throat,
-        );
-        flux[i] = f.through.mass;
-        flux[m + i] = f.left;
-        for c in 1..D {
-            flux[(1 + c) * m + i] = f.through.momentum[c];
+        /// Faces done side by side.
+        const LANES: usize = 8;
+        let face_at = |i: usize| {
+            let mut face = at;
+            face[0] = i;
+            let (area_l, area_r) = medium.ducts(d, face, self.periodic[d]);
+            JumpFace::<R, D> {
+                states: [row::face_state(left, m, i), row::face_state(right, m, i)],
+                ducts: [area_l, area_r],
+                face: medium.porosity.faces[d][medium.mesh.face(d, face)],
+                references: [left[(D + 2) * m + i], right[(D + 2) * m + i]],
+            }
+        };
+        let mut flagged = (0..m).filter(|&i| jump(i));
+        while let Some(first) = flagged.next() {
+            // A last group of fewer faces repeats its first one.
+            let mut group = [first; LANES];
+            let mut count = 1;
+            for (place, i) in group[1..].iter_mut().zip(&mut flagged) {
+                *place = i;
+                count += 1;
+            }
+            let mut faces = [face_at(first); LANES];
+            for (face, &i) in faces.iter_mut().zip(&group[..count]) {
+                *face = face_at(i);
+            }
+            let fluxes = jump_fluxes(self.problem.scheme.riemann, &faces, &self.face_gas, &self.throat);
+            for (f, &i) in fluxes.iter().zip(&group[..count]) {
+                flux[i] = f.through.mass;
+                flux[m + i] = f.left;
+                for c in 1..D {
+                    flux[(1 + c) * m + i] = f.through.momentum[c];
+                }
+                flux[(D + 1) * m + i] = f.through.energy;
+                flux[(D + 2) * m + i] = f.right;
+            }
         }
-        flux[(D + 1) * m + i] = f.through.energy;
-        flux[(D + 2) * m + i] = f.right;
     }
 
     /// Fluxes of a row of faces across axis `d` > 0 between `left` and `work.right`, into `work.flux`. `at` names the row of
@@ -189,13 +203,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let (start, bit) = if k < cells { (row_of(k), jump_low(d)) } else { (row_of(cells - 1), jump_high(d)) };
             let marks = &medium.porosity.marks[start..][..n];
             if marks.iter().fold(0, |a, b| a | b) & bit != 0 {
-                for i in 0..n {
-                    if marks[i] & bit != 0 {
-                        let mut face = at;
-                        face[0] = i;
-                        self.jump(medium, d, face, (left, right), flux, n, i);
-                    }
-                }
+                self.jumps(medium, d, at, |i| marks[i] & bit != 0, (left, right), flux, n);
             }
         }
     }

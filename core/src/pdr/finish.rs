@@ -115,9 +115,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 }
             }
         }
-        report.rate = greater(row::largest(signal), report.rate);
+        let counted = self.counted.clone();
+        report.rate = greater(row::largest(&signal[counted.clone()]), report.rate);
         if bad {
-            for i in 0..n {
+            for i in counted {
                 let merged = small.is_some_and(|m| m[i] & SMALL != 0);
                 report.unphysical += usize::from(!merged && !self.problem.is_physical(&view.get(to + i)));
             }

@@ -133,7 +133,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let asked = asked.is_some_and(|f| f[i] != 0);
             let small = small.is_some_and(|m| m[i] & (SMALL | SEALED) != 0);
             if leaves || asked || small {
-                *fallen += usize::from(leaves || asked);
+                *fallen += usize::from((leaves || asked) && self.counted.contains(&i));
                 for v in 0..Self::V {
                     half[v * n + i] = here[v * padded + 1 + i];
                     for d in 0..D {

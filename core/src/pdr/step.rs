@@ -3,6 +3,7 @@ use super::boundary::Boundary;
 use super::drag::Drag;
 use super::flux::{FaceGas, Hllc, Hlle, Riemann, Rusanov};
 use super::limiter::Limiter;
+use super::line;
 use super::medium::{Medium, Mesh, Porosity, SMALL, SMALL_SHARE, jump_high, jump_low};
 use super::merge::{self, Clusters, least_volume};
 use super::report::Report;
@@ -113,7 +114,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
 
     /// Scalars of scratch that one call of [`Problem::advance_slab`] needs, whatever the slab.
     pub fn scratch_len(&self) -> usize {
-        Sizes::new(&self.mesh).total::<D>()
+        let total = Sizes::new(&self.mesh).total::<D>();
+        if line::in_pieces::<D>(self.mesh.len()) { total + (D + 2) * line::PIECE } else { total }
     }
 
     /// The axis has periodic ends.
@@ -164,6 +166,23 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         if scratch.len() < needed {
             return Err(Error::ShapeMismatch { expected: needed, found: scratch.len() });
         }
+        if line::in_pieces::<D>(self.mesh.len()) {
+            return Ok(self.advance_line(old, new, dt, first_order, scratch));
+        }
+        Ok(self.sweep(old, new, slab, dt, first_order, 0..cells[0], scratch))
+    }
+
+    /// The sweep of a slab whose slices and scratch fit. Of a line only the cells `counted` enter the report.
+    pub(super) fn sweep(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        slab: Range<usize>,
+        dt: R,
+        first_order: Option<&[u8]>,
+        counted: Range<usize>,
+        scratch: &mut [R],
+    ) -> Report<R, D> {
         let sweep = Sweep {
             problem: self,
             medium: self.porosity.map(|porosity| Medium { mesh: self.mesh, porosity }),
@@ -176,6 +195,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             old,
             dt,
             slab,
+            counted,
         };
         let run = match (self.gas.has_energy(), self.scheme.riemann) {
             (true, Riemann::Hllc) => Sweep::run::<Hllc, true>,
@@ -185,7 +205,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             (false, Riemann::Hlle) => Sweep::run::<Hlle, false>,
             (false, Riemann::Rusanov) => Sweep::run::<Rusanov, false>,
         };
-        Ok(run(&sweep, new, scratch))
+        run(&sweep, new, scratch)
     }
 
     /// Signal rate of one cell, jumps and merging included.

@@ -37,6 +37,8 @@ pub(super) struct Sweep<'p, R, const D: usize> {
     pub old: &'p Fields<'p, R, D>,
     pub dt: R,
     pub slab: Range<usize>,
+    /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
+    pub counted: Range<usize>,
 }
 
 impl<R: Real, const D: usize> Sweep<'_, R, D> {

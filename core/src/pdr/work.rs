@@ -1,6 +1,7 @@
 //! The scratch of a sweep, cut from one slice: a window of layers, the buffers of one row, and what rows leave behind for the
 //! faces above them.
 
+use super::line;
 use super::medium::Mesh;
 use crate::real::Real;
 
@@ -36,7 +37,7 @@ pub(super) struct Sizes {
 impl Sizes {
     pub fn new<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> Self {
         let cells = mesh.cells();
-        let n = cells[0];
+        let n = if line::in_pieces::<D>(cells[0]) { line::PIECE } else { cells[0] };
         let rows = if D == 3 { cells[1] } else { 1 };
         Sizes {
             n,

@@ -213,7 +213,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
                         }
                     }
                 }
-                if held < R::HALF * wanted {
+                if held < R::from_f64(medium::SMALL_SHARE) * wanted {
                     outside.append(&mut edge);
                 }
             };
