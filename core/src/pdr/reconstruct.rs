@@ -82,7 +82,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 row::slopes::<R, S, D>(three, &Even, compliance, out, n);
             } else {
                 let place = if d == 0 { None } else { Some(row.at[d]) };
-                let axis = Uneven { widths, place, half_gravity: R::HALF * gravity };
+                let axis = Uneven { widths, place, half_gravity: R::HALF * gravity, periodic: self.periodic[d] };
                 row::slopes::<R, S, D>(three, &axis, compliance, out, n);
             }
         }
@@ -270,12 +270,14 @@ impl<R: Real> Differences<R> for Even {
     }
 }
 
-/// An axis with unequal cells or gravity. Beyond a boundary stands a cell of the same width.
+/// An axis with unequal cells or gravity. Beyond a boundary stands a cell of the same width, beyond a
+/// periodic end the cell of the other end.
 struct Uneven<'w, R> {
     widths: &'w [R],
     /// Index of the row along the axis; `None` if the axis is that of the row.
     place: Option<usize>,
     half_gravity: R,
+    periodic: bool,
 }
 
 impl<R: Real> Uneven<'_, R> {
@@ -284,8 +286,10 @@ impl<R: Real> Uneven<'_, R> {
     fn spacing(&self, i: usize) -> (R, R, R) {
         let i = self.place.unwrap_or(i);
         let own = self.widths[i];
-        let low = if i > 0 { self.widths[i - 1] } else { own };
-        let high = if i + 1 < self.widths.len() { self.widths[i + 1] } else { own };
+        let last = self.widths.len() - 1;
+        let beyond = |across: usize| if self.periodic { self.widths[across] } else { own };
+        let low = if i > 0 { self.widths[i - 1] } else { beyond(last) };
+        let high = if i < last { self.widths[i + 1] } else { beyond(0) };
         (own, R::HALF * (low + own), R::HALF * (own + high))
     }
 }
