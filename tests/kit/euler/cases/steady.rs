@@ -54,7 +54,8 @@ pub(super) fn slab(case: &Case) -> Outcome {
         for i in 0..line.n {
             flow.set(i, &up.primitive());
         }
-        flow.run(CFL, t_end)?;
+        // Never longer than that many lengths over sqrt(p/rho): in other units the flow has long settled.
+        flow.run(CFL, t_end.min(t_end * (domain[1] - domain[0]) / (up.p / up.rho).sqrt()))?;
         let stagnation = |w: Primitive<f64, 1>| {
             let m_sq = w.density * w.velocity[0].powi(2) / (gamma * w.pressure);
             w.pressure * (1.0 + 0.5 * (gamma - 1.0) * m_sq).powf(gamma / (gamma - 1.0))
@@ -230,7 +231,8 @@ pub(super) fn fanno(case: &Case) -> Outcome {
         for i in 0..n {
             flow.set(i, &exact[i].primitive());
         }
-        let t = 100.0 * (domain[1] - domain[0]);
+        // 100 lengths over the speed sqrt(p/rho), which is 1 in the units of the yardstick.
+        let t = 100.0 * (domain[1] - domain[0]) / (first.p / rho1).sqrt();
         let ends = [0, 1, n - 2, n - 1];
         while flow.time < t {
             flow.advance(0.6, t)?;
