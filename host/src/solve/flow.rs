@@ -236,7 +236,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
                         }
                     }
                 }
-                if held < R::HALF * wanted {
+                if held < R::from_f64(medium::SMALL_SHARE) * wanted {
                     outside.append(&mut edge);
                 }
             };
@@ -653,7 +653,7 @@ fn step<R: Real, const D: usize>(
         return Ok(report);
     }
     marks.fill(0);
-    for _ in 0..voidage_core::pdr::step::FALLBACKS {
+    for _ in 0..voidage_core::pdr::repair::FALLBACKS {
         if problem.mark_troubled(&new.view(), marks) == 0 {
             break;
         }
