@@ -1,0 +1,159 @@
+//! Two bodies of a query, and the power of two that brings them to a size one can compute with.
+//!
+//! Points stay as the bodies give them, so that a proof names points of the bodies to the last bit; only their differences are scaled.
+
+use super::{Reason, SUPPORT_ROUNDINGS};
+use crate::real::{Real, Vector};
+use crate::support::{Support, SupportPoint, lengthened};
+
+/// The power of two to multiply two bodies with, so that their extents add to something near one.
+pub(super) enum Scale<R> {
+    Keep,
+    Multiply(R),
+    Refuse(Reason),
+}
+
+pub(super) fn scale<R: Real>(extent: R) -> Scale<R> {
+    if extent >= R::SCALE_MIN && extent <= R::SCALE_MAX {
+        return Scale::Keep;
+    }
+    if !extent.is_finite() {
+        return Scale::Refuse(Reason::NotFinite);
+    }
+    let unit = extent.binade();
+    // 1/unit must be finite, and ε times the extent, as slacks are made of, well above the subnormal step.
+    if !(unit >= R::MIN_POSITIVE * R::from_f64(4_194_304.0)) {
+        return Scale::Refuse(Reason::TooSmall);
+    }
+    Scale::Multiply(R::ONE / unit)
+}
+
+/// Two bodies. Lengths and differences come in units of `1 / factor`, which is 1 unless `SCALED`.
+pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
+    a: &'a A,
+    b: &'a B,
+    factor: R,
+    /// No component of a difference exceeds this.
+    pub extent: R,
+    /// How far a difference may be off in each component, besides one rounding.
+    pub slack: R,
+}
+
+/// A point of each body, and their difference.
+#[derive(Clone, Copy)]
+pub(super) struct Supports<V> {
+    pub a: SupportPoint<V>,
+    pub b: SupportPoint<V>,
+    pub w: V,
+}
+
+impl<'a, A, B, V, const SCALED: bool> Pair<'a, A, B, V::Scalar, SCALED>
+where
+    V: Vector,
+    A: Support<Vector = V>,
+    B: Support<Vector = V>,
+{
+    #[inline(always)]
+    pub fn new(a: &'a A, b: &'a B, extent: V::Scalar, factor: V::Scalar) -> Self {
+        let factor = if SCALED { factor } else { V::Scalar::ONE };
+        let slack = a.slack() + b.slack();
+        if SCALED {
+            Pair { a, b, factor, extent: extent * factor, slack: slack * factor }
+        } else {
+            Pair { a, b, factor, extent, slack }
+        }
+    }
+
+    /// Rounding of a least value `d·(b - a)`, for each unit of |d|₁.
+    #[inline(always)]
+    pub fn margin(&self) -> V::Scalar {
+        V::Scalar::from_f64(SUPPORT_ROUNDINGS) * V::Scalar::EPSILON * self.extent + self.slack + V::Scalar::UNDERFLOW
+    }
+
+    /// Sum of the radii.
+    #[inline(always)]
+    pub fn radii(&self) -> V::Scalar {
+        self.scaled(self.a.radius() + self.b.radius())
+    }
+
+    #[inline(always)]
+    fn scaled(&self, length: V::Scalar) -> V::Scalar {
+        if SCALED { length * self.factor } else { length }
+    }
+
+    /// A scaled length as it is.
+    #[inline(always)]
+    pub fn unscaled(&self, length: V::Scalar) -> V::Scalar {
+        if SCALED { length * (V::Scalar::ONE / self.factor) } else { length }
+    }
+
+    #[inline(always)]
+    fn difference(&self, a: V, b: V) -> V {
+        if SCALED { b * self.factor - a * self.factor } else { b - a }
+    }
+
+    /// As long as the points are small, and the reverse, so that products with them neither overflow nor underflow.
+    #[inline(always)]
+    fn fitted(&self, direction: V) -> V {
+        if !SCALED {
+            return direction;
+        }
+        let longest = V::Scalar::EPSILON / V::Scalar::MIN_POSITIVE;
+        lengthened(direction) * self.factor.min(longest).max(V::Scalar::ONE / longest)
+    }
+
+    /// The points farthest along `axis` in the first body and against it in the second.
+    #[inline(always)]
+    pub fn supports(&self, axis: V, starts: (u32, u32)) -> Supports<V> {
+        let along = self.fitted(axis);
+        let (a, b) = (self.a.support(along, starts.0), self.b.support(-along, starts.1));
+        Supports { a, b, w: self.difference(a.point, b.point) }
+    }
+
+    /// Points made sure of, for a proof.
+    #[inline(always)]
+    pub fn farther(&self, axis: V, found: Supports<V>) -> Supports<V> {
+        let along = self.fitted(axis);
+        let a = self.a.farther(along, found.a.index).unwrap_or(found.a);
+        let b = self.b.farther(-along, found.b.index).unwrap_or(found.b);
+        Supports { a, b, w: self.difference(a.point, b.point) }
+    }
+
+    /// A first direction from `a` to `b`: never zero, always finite.
+    #[inline(always)]
+    pub fn seed(&self, hint: Option<V>) -> V {
+        let direction = match hint {
+            Some(hint) => hint,
+            None => self.difference(self.a.center(), self.b.center()),
+        };
+        let size = direction.norm_1();
+        let usual = size > V::Scalar::SCALE_MIN && size < V::Scalar::SCALE_MAX;
+        if usual { direction } else { unusual_seed(direction) }
+    }
+
+    /// The bodies.
+    pub fn bodies(&self) -> (&'a A, &'a B) {
+        (self.a, self.b)
+    }
+
+    /// A lower bound of the distance, by the support planes across `axis`.
+    pub fn gap(&self, axis: V) -> Option<V::Scalar> {
+        let axis = lengthened(axis);
+        let size = axis.norm_1();
+        if !(size >= V::Scalar::ONE) || !size.is_finite() {
+            return None;
+        }
+        let w = self.farther(axis, self.supports(axis, (0, 0))).w;
+        let along = w.dot(axis) - self.margin() * size;
+        let relative = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+        let less = along - along.abs() * relative;
+        Some(less / axis.dot(axis).sqrt() - self.radii() * (V::Scalar::ONE + relative))
+    }
+}
+
+#[cold]
+fn unusual_seed<V: Vector>(direction: V) -> V {
+    let direction = lengthened(direction);
+    let fine = direction.is_finite() && direction.norm_1() > V::Scalar::SCALE_MIN;
+    if fine { direction } else { V::new(V::Scalar::ONE, V::Scalar::ZERO, V::Scalar::ZERO) }
+}
