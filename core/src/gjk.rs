@@ -218,15 +218,16 @@ where
                 break;
             }
         }
-        let mut found = pair.supports(axis, starts);
-        if found.w.dot(axis) > margin * size {
-            found = pair.farther(axis, found);
-            if found.w.dot(axis) > margin * size {
+        let (mut from_a, mut from_b) = pair.supports(axis, starts);
+        let mut new = pair.difference(from_a.point, from_b.point);
+        if new.dot(axis) > margin * size {
+            (from_a, from_b) = pair.farther(axis, from_a, from_b);
+            new = pair.difference(from_a.point, from_b.point);
+            if new.dot(axis) > margin * size {
                 return Intersection::Apart { axis };
             }
         }
-        starts = (found.a.index, found.b.index);
-        let new = found.w;
+        starts = (from_a.index, from_b.index);
 
         // A point again can only come where there is no progress to speak of.
         let stalled = count > 0 && new.dot(axis) + margin * size >= w[0].dot(axis);
@@ -240,7 +241,7 @@ where
         }
         // The newest goes first; its points into the free slot.
         let free = slot[count & 3];
-        pairs[free & 3] = (found.a.point, found.b.point);
+        pairs[free & 3] = (from_a.point, from_b.point);
         w = [new, w[0], w[1], w[2]];
         slot = match count {
             0 => [free, slot[1], slot[2], slot[3]],

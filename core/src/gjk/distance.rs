@@ -213,15 +213,16 @@ where
     let mut pairs = [(origin, origin); 4];
     let mut count = 0;
     let mut stalled = 0;
-    let (a, b) = pair.bodies();
+    // The nearest point so far: weights, and the points they belong to.
+    let mut witnesses = [(zero, (origin, origin)); 3];
     let mut best = Walk {
         inside: None,
         lower: zero,
         upper: S::<A>::INFINITY,
         v: axis,
         axis,
-        a: a.center(),
-        b: b.center(),
+        a: origin,
+        b: origin,
         reason: Reason::Iterations,
     };
 
@@ -235,34 +236,36 @@ where
                 break;
             }
         }
-        let mut found = pair.supports(direction, starts);
+        let (mut from_a, mut from_b) = pair.supports(direction, starts);
+        let mut new = pair.difference(from_a.point, from_b.point);
         let inv_length = one / direction.dot(direction).sqrt();
         let bound = |w: A::Vector| {
             let along = w.dot(direction) - margin * size;
             (along - along.abs() * relative) * inv_length
         };
-        if bound(found.w) > best.lower {
-            found = pair.farther(direction, found);
-            let lower = bound(found.w);
+        if bound(new) > best.lower {
+            (from_a, from_b) = pair.farther(direction, from_a, from_b);
+            new = pair.difference(from_a.point, from_b.point);
+            let lower = bound(new);
             if lower > best.lower {
                 (best.lower, best.axis) = (lower, direction);
             }
         }
-        starts = (found.a.index, found.b.index);
+        starts = (from_a.index, from_b.index);
         match goal {
-            Goal::Compare(limit) if best.lower > limit * (one + relative) => return best,
-            Goal::Compare(limit) if best.upper < limit * (one - relative) => return best,
+            Goal::Compare(limit) if best.lower > limit * (one + relative) => break,
+            Goal::Compare(limit) if best.upper < limit * (one - relative) => break,
             _ => {}
         }
         let gap = best.upper - best.lower;
-        let repeated = w.iter().take(count).any(|&p| p == found.w);
+        let repeated = w.iter().take(count).any(|&p| p == new);
         if repeated || (count > 0 && gap <= real(GAP_ROUNDINGS) * S::<A>::EPSILON * best.upper) {
             best.reason = Reason::Rounding;
             break;
         }
         let free = slot[3];
-        pairs[free & 3] = (found.a.point, found.b.point);
-        w = [found.w, w[0], w[1], w[2]];
+        pairs[free & 3] = (from_a.point, from_b.point);
+        w = [new, w[0], w[1], w[2]];
         slot = [free, slot[0], slot[1], slot[2]];
         count = (count + 1).min(4);
         if count == 4 && side(w, pair.slack) == Side::Inside {
@@ -273,20 +276,17 @@ where
         w = order.map(|i| w[i & 3]);
         slot = order.map(|i| slot[i & 3]);
         count = kept;
-        let (mut combined, mut from_a, mut from_b, mut reach) = (origin, origin, origin, zero);
-        for i in 0..count.min(3) {
-            let (p, q) = pairs[slot[i] & 3];
-            combined += w[i] * weights[i];
-            from_a += p * weights[i];
-            from_b += q * weights[i];
-            reach = reach.larger(w[i].norm_max());
-        }
+        // Beyond the count weights are zero, and points repeat the first.
+        let [p, q, r] = [w[0], if count > 1 { w[1] } else { w[0] }, if count > 2 { w[2] } else { w[0] }];
+        let combined = p * weights[0] + q * weights[1] + r * weights[2];
+        let reach = p.abs().max(q.abs()).max(r.abs()).norm_max();
         let error = real(COMBINATION_ROUNDINGS) * S::<A>::EPSILON * reach + real(1.75) * pair.slack + S::<A>::UNDERFLOW;
         let upper = norm(combined) * (one + relative) + error;
         let progress = v.dot(v) < best.v.dot(best.v) || !(best.upper < S::<A>::INFINITY);
         if upper < best.upper || (progress && norm(v) < best.upper) {
             best.upper = best.upper.min(upper);
-            (best.v, best.a, best.b) = (v, from_a, from_b);
+            best.v = v;
+            witnesses = [0, 1, 2].map(|i| (weights[i], pairs[slot[i] & 3]));
         }
         // Along a needle the first steps gain less than one rounding, and yet lead to the nearest point.
         if !progress {
@@ -302,6 +302,10 @@ where
         } else if v == origin && count == 2 {
             axis = across(w[1] - w[0]);
         }
+    }
+    for (weight, (p, q)) in witnesses {
+        best.a += p * weight;
+        best.b += q * weight;
     }
     best
 }

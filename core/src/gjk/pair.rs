@@ -39,14 +39,6 @@ pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
     pub slack: R,
 }
 
-/// A point of each body, and their difference.
-#[derive(Clone, Copy)]
-pub(super) struct Supports<V> {
-    pub a: SupportPoint<V>,
-    pub b: SupportPoint<V>,
-    pub w: V,
-}
-
 impl<'a, A, B, V, const SCALED: bool> Pair<'a, A, B, V::Scalar, SCALED>
 where
     V: Vector,
@@ -87,8 +79,9 @@ where
         if SCALED { length * (V::Scalar::ONE / self.factor) } else { length }
     }
 
+    /// From a point of the first body to one of the second.
     #[inline(always)]
-    fn difference(&self, a: V, b: V) -> V {
+    pub fn difference(&self, a: V, b: V) -> V {
         if SCALED { b * self.factor - a * self.factor } else { b - a }
     }
 
@@ -102,21 +95,18 @@ where
         lengthened(direction) * self.factor.min(longest).max(V::Scalar::ONE / longest)
     }
 
-    /// The points farthest along `axis` in the first body and against it in the second.
+    /// The point of the first body farthest along `axis`, and that of the second farthest against it.
     #[inline(always)]
-    pub fn supports(&self, axis: V, starts: (u32, u32)) -> Supports<V> {
+    pub fn supports(&self, axis: V, starts: (u32, u32)) -> (SupportPoint<V>, SupportPoint<V>) {
         let along = self.fitted(axis);
-        let (a, b) = (self.a.support(along, starts.0), self.b.support(-along, starts.1));
-        Supports { a, b, w: self.difference(a.point, b.point) }
+        (self.a.support(along, starts.0), self.b.support(-along, starts.1))
     }
 
-    /// Points made sure of, for a proof.
+    /// The same points made sure of, for a proof.
     #[inline(always)]
-    pub fn farther(&self, axis: V, found: Supports<V>) -> Supports<V> {
+    pub fn farther(&self, axis: V, a: SupportPoint<V>, b: SupportPoint<V>) -> (SupportPoint<V>, SupportPoint<V>) {
         let along = self.fitted(axis);
-        let a = self.a.farther(along, found.a.index).unwrap_or(found.a);
-        let b = self.b.farther(-along, found.b.index).unwrap_or(found.b);
-        Supports { a, b, w: self.difference(a.point, b.point) }
+        (self.a.farther(along, a.index).unwrap_or(a), self.b.farther(-along, b.index).unwrap_or(b))
     }
 
     /// A first direction from `a` to `b`: never zero, always finite.
@@ -143,8 +133,9 @@ where
         if !(size >= V::Scalar::ONE) || !size.is_finite() {
             return None;
         }
-        let w = self.farther(axis, self.supports(axis, (0, 0))).w;
-        let along = w.dot(axis) - self.margin() * size;
+        let (a, b) = self.supports(axis, (0, 0));
+        let (a, b) = self.farther(axis, a, b);
+        let along = self.difference(a.point, b.point).dot(axis) - self.margin() * size;
         let relative = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
         let less = along - along.abs() * relative;
         Some(less / axis.dot(axis).sqrt() - self.radii() * (V::Scalar::ONE + relative))
