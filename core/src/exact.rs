@@ -200,7 +200,7 @@ where
 /// An exact distance, rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// The distance, to a relative error of 16 ε; 0 if a point is shared.
+    /// The distance, to a relative error of 16 ε or a step of the subnormal numbers; 0 exactly if a point is shared.
     pub distance: f64,
     /// The nearest point of the first body, to rounding.
     pub a: [f64; 3],
@@ -242,7 +242,9 @@ where
         times_power(m, e - top)
     });
     let total: f64 = weights.iter().sum();
-    let mut nearest = Nearest { distance: sq.root(pair.lattice.unit), a: [0.0; 3], b: [0.0; 3] };
+    // No gap is so small that it may pass for a shared point.
+    let least = if is_zero(&search.direction) { 0.0 } else { f64::from_bits(1) };
+    let mut nearest = Nearest { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
     for (p, weight) in points.iter().zip(weights) {
         let (i, j) = p.pair;
         let (u, v) = (a.vertex(i as usize).to_array(), b.vertex(j as usize).to_array());

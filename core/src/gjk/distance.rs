@@ -90,6 +90,15 @@ where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
+    // Overlap is quickly seen, and else the axis that shows the gap leads the walk.
+    let mut hint = hint;
+    if !(A::ROUNDED || B::ROUNDED) {
+        match search(pair, hint, false) {
+            Intersection::Overlapping { proof } => return Distance::Overlapping { proof },
+            Intersection::Apart { axis } => hint = Some(axis),
+            Intersection::Undecided { .. } => {}
+        }
+    }
     let mut found = walk(pair, hint, Goal::Distance);
     if found.inside.is_none() && !(found.lower > Real::ZERO) {
         // Near the origin a symmetry may keep it on the simplex's rim: the boolean knows a way round that.
