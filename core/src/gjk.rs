@@ -143,12 +143,35 @@ const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, 
 const LEANINGS: [[f64; 3]; 5] =
     [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
 
-/// A direction near another; a different one each round.
+/// A direction near another; a different one each round, and after the first five ever nearer, so that shallow overlaps are not passed over.
 fn leaning<V: Vector>(axis: V, round: u32) -> V {
     let [x, y, z] = LEANINGS[(round % 5) as usize];
-    let by = axis.norm_max() * V::Scalar::from_f64(1.0 / 16.0);
     let real = V::Scalar::from_f64;
+    let by = axis.norm_max() * real(0.5 / f64::from(1u32 << round.clamp(3, 31)));
     axis + V::new(real(x), real(y), real(z)) * by
+}
+
+/// Points along an axis and all around it, if they surround the origin: for shallow overlaps of bodies placed symmetrically about the axis.
+fn surround<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    axis: A::Vector,
+) -> Option<Simplex<A::Vector>>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let axis = lengthened(axis);
+    let u = lengthened(across(axis));
+    let v = lengthened(axis.cross(u));
+    let half = u * ScalarOf::<A>::HALF;
+    let mut simplex = Simplex { a: [A::Vector::ZERO; 4], b: [A::Vector::ZERO; 4] };
+    let mut w = [A::Vector::ZERO; 4];
+    for (i, direction) in [axis, u, v - half, -v - half].into_iter().enumerate() {
+        let (a, b) = pair.supports(direction, (0, 0));
+        (simplex.a[i], simplex.b[i]) = (a.point, b.point);
+        w[i] = pair.difference(a.point, b.point);
+    }
+    (side(w, pair.slack) == Side::Inside).then_some(simplex)
 }
 
 /// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
@@ -164,6 +187,11 @@ where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
+    for axis in [pair.seed(None), axis] {
+        if let Some(simplex) = surround(pair, axis) {
+            return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
+        }
+    }
     let found = search(pair, None, true);
     if !matches!(found, Intersection::Undecided { .. }) {
         return found;
