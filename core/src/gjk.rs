@@ -259,7 +259,7 @@ where
 
         // A point again can only come where there is no progress to speak of.
         let stalled = count > 0 && new.dot(axis) + margin * size >= w[0].dot(axis);
-        if stalled && (0..4).any(|i| i < count && w[i & 3] == new) {
+        if stalled && (w[0] == new || count > 1 && w[1] == new || count > 2 && w[2] == new) {
             if surrounding {
                 continue;
             }

@@ -21,8 +21,8 @@ pub(super) fn scale<R: Real>(extent: R) -> Scale<R> {
         return Scale::Refuse(Reason::NotFinite);
     }
     let unit = extent.binade();
-    // 1/unit must be finite, and ε times the extent, as slacks are made of, well above the subnormal step.
-    if !(unit >= R::MIN_POSITIVE * R::from_f64(4_194_304.0)) {
+    // 1/unit must be finite, and ε times the extent, as slacks are made of, a thousand times the subnormal step.
+    if !(unit >= R::MIN_POSITIVE * R::from_f64(1024.0)) {
         return Scale::Refuse(Reason::TooSmall);
     }
     Scale::Multiply(R::ONE / unit)
