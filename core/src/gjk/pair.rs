@@ -79,20 +79,24 @@ where
         if SCALED { length * (V::Scalar::ONE / self.factor) } else { length }
     }
 
-    /// From a point of the first body to one of the second.
+    /// From a point of the first body to one of the second. By components: a vector of `f32` chosen as a whole would be kept as integers.
     #[inline(always)]
     pub fn difference(&self, a: V, b: V) -> V {
-        if SCALED { b * self.factor - a * self.factor } else { b - a }
+        let part = |a, b| self.scaled(b) - self.scaled(a);
+        V::new(part(a.x(), b.x()), part(a.y(), b.y()), part(a.z(), b.z()))
     }
 
     /// As long as the points are small, and the reverse, so that products with them neither overflow nor underflow.
     #[inline(always)]
     fn fitted(&self, direction: V) -> V {
-        if !SCALED {
-            return direction;
-        }
-        let longest = V::Scalar::EPSILON / V::Scalar::MIN_POSITIVE;
-        lengthened(direction) * self.factor.min(longest).max(V::Scalar::ONE / longest)
+        let one = V::Scalar::ONE;
+        let (to_one, stretch) = if SCALED {
+            let longest = V::Scalar::EPSILON / V::Scalar::MIN_POSITIVE;
+            (one / direction.norm_max().binade(), self.factor.min(longest).max(one / longest))
+        } else {
+            (one, one)
+        };
+        direction * to_one * stretch
     }
 
     /// The point of the first body farthest along `axis`, and that of the second farthest against it.
