@@ -69,7 +69,7 @@ fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
             let (before, here) = (edges[axis][index - 1], edges[axis][index]);
             (format!("{}[{index}]", name(axis)), format!("edge {here} does not lie above the one before it, {before}"))
         }
-        GridError::OutOfRange => ("grid".into(), "cells are too small, too large or too many to be counted".into()),
+        GridError::OutOfRange => ("all axes".into(), "cells are too small, too large or too many to be counted".into()),
     }
 }
 
@@ -105,7 +105,14 @@ pub fn edges(source: &Source, scene: Option<[DVec3; 2]>, warnings: &mut Vec<Stri
             let count = ((hi - lo) / *d - 1e-9).ceil().max(DVec3::ONE);
             check_count(count)?;
             let cells = count.to_array().map(|n| n as usize);
-            uniform(lo, lo + count * *d, cells)
+            let end = lo + count * *d;
+            if bounds.is_some() && (end - hi).cmpgt(DVec3::splat(*d * 1e-6)).any() {
+                warnings.push(format!(
+                    "grid: the box is not a whole number of cells of {d} m; it now ends at ({:.6}, {:.6}, {:.6})",
+                    end.x, end.y, end.z
+                ));
+            }
+            uniform(lo, end, cells)
         }
     };
     Ok(edges)

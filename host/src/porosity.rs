@@ -8,6 +8,7 @@ mod fields;
 mod layers;
 mod planes;
 mod unions;
+mod values;
 
 use crate::bodies::Bodies;
 use bins::Bins;
@@ -15,6 +16,7 @@ pub use fields::FieldSet;
 use layers::{Summary, Target, Worker};
 use rayon::prelude::*;
 use serde::Serialize;
+pub use values::Values;
 use voidage_core::grid::Grid;
 
 /// What to compute and how far to refine.
@@ -79,6 +81,14 @@ pub struct Porosity {
     pub winding: f64,
     /// Bodies whose rows did not return to zero, worst first, one entry a body.
     pub leaks: Vec<Leak>,
+}
+
+/// Bytes that the fields of a grid take, with what one thread needs beside them.
+#[must_use]
+pub fn memory(grid: &Grid<f64>, options: Options) -> usize {
+    let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
+    let sets = if options.bounds { 3 } else { 1 };
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
 }
 
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.

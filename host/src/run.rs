@@ -5,12 +5,12 @@ use crate::cli::{PorosityArgs, SceneArgs, Unit};
 use crate::error::{Error, Result};
 use crate::grid::{self, Edges, Source};
 use crate::input;
+use crate::output::ticks::number_to;
 use crate::output::vtr::{CellField, Field, Vtr};
-use crate::output::{npy, png, report};
+use crate::output::{check_target, npy, png, report};
 use crate::porosity::{self, Options, Porosity};
 use crate::progress::Progress;
 use glam::DVec3;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
@@ -56,7 +56,7 @@ fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
 /// Anything that keeps it from writing all that was asked for.
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
-    keep_inputs(args)?;
+    check_outputs(args)?;
     let threads = args.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
@@ -69,6 +69,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let grid = edges.grid(None)?;
         look_for_misfit(&bodies, &edges, &mut progress);
         let options = Options { tol: args.tol, depth: args.depth, bounds: args.bounds_fields, areas: !args.no_areas };
+        room_for(porosity::memory(&grid, options))?;
         let layers = edges.cells()[2];
         let result = progress.stage("porosity", |p| {
             let bar = p.bar("porosity", layers);
@@ -92,12 +93,23 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
     })
 }
 
-/// No output may replace a file of the scene, the grid or another output.
-fn keep_inputs(args: &PorosityArgs) -> Result<()> {
+/// Ask for the memory of the fields before work begins: a failure half way could not be reported.
+fn room_for(bytes: usize) -> Result<()> {
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        Error::new(format!("the fields of this grid need {:.1} GB of memory: take fewer cells", bytes as f64 * 1e-9))
+    })
+}
+
+/// Outputs must have a place, and none may replace a file of the scene, the grid or another output.
+fn check_outputs(args: &PorosityArgs) -> Result<()> {
     let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     let outputs: Vec<&Path> =
         [&args.output, &args.png, &args.report].into_iter().flatten().map(|p| p.as_path()).collect();
+    if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
+        return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
+    }
     for (n, output) in outputs.iter().enumerate() {
+        check_target(output)?;
         let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
         let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
         if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
@@ -126,7 +138,9 @@ fn source(args: &PorosityArgs, bodies: &Bodies) -> Source {
 fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     let files = || bodies.diagnoses.iter().map(|d| d.file.as_str()).collect::<Vec<_>>().join(", ");
-    let extent = |p: DVec3, q: DVec3| format!("({}, {}, {}) to ({}, {}, {})", p.x, p.y, p.z, q.x, q.y, q.z);
+    let fine = 1e-6 * (hi - lo).max(max - min).max_element();
+    let point = |p: DVec3| format!("({})", p.to_array().map(|v| number_to(v, fine)).join(", "));
+    let extent = |p, q| format!("{} to {}", point(p), point(q));
     if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
         progress.warn(format!(
             "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
@@ -178,7 +192,7 @@ const WINDING_TO_WARN: f64 = 1e-6;
 
 fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, progress: &mut Progress) -> Result<()> {
     if let Some(dir) = &args.npy {
-        progress.stage("npy", |_| write_npy(dir, edges, result))?;
+        progress.stage("npy", |_| npy::write_all(dir, &fields(edges, result)))?;
     }
     if let Some(path) = &args.output {
         progress.stage("vtr", |_| write_vtr(path, args.compress, edges, result, about))?;
@@ -207,13 +221,6 @@ fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &
     }
     all.retain(|(_, _, values)| !values.is_empty());
     all
-}
-
-fn write_npy(dir: &Path, edges: &Edges, result: &Porosity) -> Result<()> {
-    std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
-    fields(edges, result)
-        .into_par_iter()
-        .try_for_each(|(name, shape, values)| npy::write(&dir.join(format!("{name}.npy")), shape, values))
 }
 
 fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {

@@ -10,23 +10,23 @@ use voidage_tests::solids::{Triangle, scene, sphere, turned_box};
 
 fn oracle(lattice: &Lattice, edges: &[Vec<usize>; 3]) -> FieldSet {
     let [nx, ny, nz] = [0, 1, 2].map(|a: usize| edges[a].len() - 1);
-    let mut f = FieldSet::default();
+    let [mut v, mut x, mut y, mut z] = [const { Vec::new() }; 4];
     let corner = |[i, j, k]: [usize; 3]| [edges[0][i], edges[1][j], edges[2][k]];
     for k in 0..nz {
         for j in 0..ny {
-            f.v.extend((0..nx).map(|i| 1.0 - lattice.cell(corner([i, j, k]), corner([i + 1, j + 1, k + 1]))));
-            f.x.extend((0..=nx).map(|i| 1.0 - lattice.face(0, corner([i, j, k]), corner([i, j + 1, k + 1]))));
+            v.extend((0..nx).map(|i| 1.0 - lattice.cell(corner([i, j, k]), corner([i + 1, j + 1, k + 1]))));
+            x.extend((0..=nx).map(|i| 1.0 - lattice.face(0, corner([i, j, k]), corner([i, j + 1, k + 1]))));
         }
         for j in 0..=ny {
-            f.y.extend((0..nx).map(|i| 1.0 - lattice.face(1, corner([i, j, k]), corner([i + 1, j, k + 1]))));
+            y.extend((0..nx).map(|i| 1.0 - lattice.face(1, corner([i, j, k]), corner([i + 1, j, k + 1]))));
         }
     }
     for k in 0..=nz {
         for j in 0..ny {
-            f.z.extend((0..nx).map(|i| 1.0 - lattice.face(2, corner([i, j, k]), corner([i + 1, j + 1, k]))));
+            z.extend((0..nx).map(|i| 1.0 - lattice.face(2, corner([i, j, k]), corner([i + 1, j + 1, k]))));
         }
     }
-    f
+    FieldSet { v: v.into(), x: x.into(), y: y.into(), z: z.into() }
 }
 
 /// Overlapping, touching and coincident boxes on grids whose planes hold their faces: every cell and face, walls included.
@@ -101,7 +101,7 @@ fn parts_sum_to_the_whole() {
 
 /// Merge 2×2×2 cells of a cubic grid; `n` is the number of coarse cells along an axis.
 fn merge(fine: &FieldSet, n: usize) -> FieldSet {
-    let mut f = FieldSet::default();
+    let [mut v, mut x, mut y, mut z] = [const { Vec::new() }; 4];
     let mean = |field: &[f64], shape: [usize; 2], at: [usize; 3], thick: [usize; 3]| {
         let mut sum = 0.0;
         for c in 0..thick[2] {
@@ -119,21 +119,21 @@ fn merge(fine: &FieldSet, n: usize) -> FieldSet {
                 let at = [i, j, k];
                 let m = 2 * n;
                 if i < n && j < n && k < n {
-                    f.v.push(mean(&fine.v, [m, m], at, [2, 2, 2]));
+                    v.push(mean(&fine.v, [m, m], at, [2, 2, 2]));
                 }
                 if j < n && k < n {
-                    f.x.push(mean(&fine.x, [m + 1, m], at, [1, 2, 2]));
+                    x.push(mean(&fine.x, [m + 1, m], at, [1, 2, 2]));
                 }
                 if i < n && k < n {
-                    f.y.push(mean(&fine.y, [m, m + 1], at, [2, 1, 2]));
+                    y.push(mean(&fine.y, [m, m + 1], at, [2, 1, 2]));
                 }
                 if i < n && j < n {
-                    f.z.push(mean(&fine.z, [m, m], at, [2, 2, 1]));
+                    z.push(mean(&fine.z, [m, m], at, [2, 2, 1]));
                 }
             }
         }
     }
-    f
+    FieldSet { v: v.into(), x: x.into(), y: y.into(), z: z.into() }
 }
 
 /// Parts of one file that share corners are bodies of their own: a slab flush inside a box, in named solids.

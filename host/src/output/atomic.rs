@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use crate::error::{Error, Result};
+use rayon::prelude::*;
 
 /// Bytes of the write buffer. Array writers hand over blocks of this size, which then bypass it.
 pub(super) const BUFFER: usize = 64 * 1024;
@@ -30,31 +31,74 @@ pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
 
 /// [`atomically`] for writers that also seek.
 pub(super) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
-    let failed = |doing| move |cause: io::Error| Error::io(path, doing, &cause);
-    let old = fs::metadata(path).ok();
-    if let Some(old) = &old {
+    beside(path, write)?.map_or(Ok(()), Finished::replace)
+}
+
+/// Several files that belong together: all are written before the first is put in its place. `write` gets the position of its path.
+///
+/// # Errors
+/// As [`atomically`], for the first file that fails; unless renaming itself fails half way, none has been replaced then.
+pub fn together(paths: &[PathBuf], write: impl Fn(usize, &mut dyn Write) -> io::Result<()> + Sync) -> Result<()> {
+    let each = paths.par_iter().enumerate();
+    let finished: Result<Vec<_>> = each.map(|(n, path)| beside(path, |out| write(n, out))).collect();
+    finished?.into_iter().flatten().try_for_each(Finished::replace)
+}
+
+/// Can a file be put at `path`? Asked before long work, so that the answer does not come after it.
+///
+/// # Errors
+/// The target is a directory or read-only, or there is no directory to hold it.
+pub fn check_target(path: &Path) -> Result<()> {
+    if let Ok(old) = fs::metadata(path) {
         if old.is_dir() {
             return Err(Error::file(path, "cannot write: it is a directory"));
         }
         if old.permissions().readonly() {
             return Err(Error::file(path, "cannot write: the existing file is read-only"));
         }
-        if !old.is_file() {
-            let file = OpenOptions::new().write(true).open(path).map_err(failed("open"))?;
-            return fill(file, write).map_err(failed("write"));
-        }
+    }
+    let directory = directory(path);
+    if directory.is_dir() {
+        return Ok(());
+    }
+    Err(Error::file(path, format!("cannot create: there is no directory {}", directory.display())))
+}
+
+fn directory(path: &Path) -> &Path {
+    path.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Write a temporary beside the target; nothing is left to do if the target is no regular file.
+fn beside(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<Option<Finished>> {
+    check_target(path)?;
+    let failed = |doing| move |cause: io::Error| Error::io(path, doing, &cause);
+    let old = fs::metadata(path).ok();
+    if old.as_ref().is_some_and(|old| !old.is_file()) {
+        let file = OpenOptions::new().write(true).open(path).map_err(failed("open"))?;
+        return fill(file, write).map(|()| None).map_err(failed("write"));
     }
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let directory = target.parent().filter(|d| !d.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !directory.exists() {
-        return Err(Error::file(path, format!("cannot create: there is no directory {}", directory.display())));
-    }
-    let (temporary, file) = Temporary::create(directory).map_err(failed("create"))?;
+    let (temporary, file) = Temporary::create(directory(&target)).map_err(failed("create"))?;
     fill(file, write).map_err(failed("write"))?;
     if let Some(old) = old {
         fs::set_permissions(&temporary.path, old.permissions()).map_err(failed("keep its permissions"))?;
     }
-    fs::rename(&temporary.path, &target).map_err(failed("replace"))
+    Ok(Some(Finished { temporary, path: path.to_owned(), target }))
+}
+
+/// A whole file that waits beside its target.
+struct Finished {
+    temporary: Temporary,
+    /// As the user wrote it.
+    path: PathBuf,
+    /// Links followed.
+    target: PathBuf,
+}
+
+impl Finished {
+    fn replace(self) -> Result<()> {
+        fs::rename(&self.temporary.path, &self.target).map_err(|cause| Error::io(&self.path, "replace", &cause))
+    }
 }
 
 fn fill(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {

@@ -19,4 +19,4 @@ pub mod report;
 pub mod ticks;
 pub mod vtr;
 
-pub use atomic::{atomically, discard_unfinished};
+pub use atomic::{atomically, check_target, discard_unfinished, together};

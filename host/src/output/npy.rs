@@ -6,11 +6,12 @@
 
 mod read;
 
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::atomically;
 use super::bytes::write_f64;
+use super::{atomically, together};
 use crate::error::{Error, Result};
 
 pub use read::read;
@@ -22,11 +23,26 @@ pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// # Errors
 /// `data` is not as long as `shape` says, or as [`atomically`].
 pub fn write(path: &Path, shape: [usize; 3], data: &[f64]) -> Result<()> {
-    let [nx, ny, nz] = shape;
-    if nx.checked_mul(ny).and_then(|n| n.checked_mul(nz)) != Some(data.len()) {
-        return Err(Error::file(path, format!("{} values do not fill {nx} x {ny} x {nz}", data.len())));
-    }
+    check(path, shape, data)?;
     atomically(path, |out| write_to(out, shape, data))
+}
+
+/// Writes arrays that belong together, given as name, shape and values, into a directory: `NAME.npy` for each, all or none.
+///
+/// # Errors
+/// The directory cannot be made, or as [`write()`].
+pub fn write_all(directory: &Path, arrays: &[(String, [usize; 3], &[f64])]) -> Result<()> {
+    fs::create_dir_all(directory).map_err(|e| Error::io(directory, "create the directory", &e))?;
+    let paths: Vec<_> = arrays.iter().map(|(name, ..)| directory.join(format!("{name}.npy"))).collect();
+    paths.iter().zip(arrays).try_for_each(|(path, &(_, shape, data))| check(path, shape, data))?;
+    together(&paths, |n, out| write_to(out, arrays[n].1, arrays[n].2))
+}
+
+fn check(path: &Path, [nx, ny, nz]: [usize; 3], data: &[f64]) -> Result<()> {
+    if nx.checked_mul(ny).and_then(|n| n.checked_mul(nz)) == Some(data.len()) {
+        return Ok(());
+    }
+    Err(Error::file(path, format!("{} values do not fill {nx} x {ny} x {nz}", data.len())))
 }
 
 /// The bytes of [`write()`], to any writer; `data` is written whatever its length.

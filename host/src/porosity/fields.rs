@@ -1,18 +1,19 @@
 //! A value for every cell and face, whole and by layers.
 
+use super::values::Values;
 use voidage_core::grid::Grid;
 
 /// A value for every cell and face of a grid, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FieldSet {
     /// Cells, `nx*ny*nz`.
-    pub v: Vec<f64>,
+    pub v: Values,
     /// x faces, `(nx+1)*ny*nz`.
-    pub x: Vec<f64>,
+    pub x: Values,
     /// y faces, `nx*(ny+1)*nz`.
-    pub y: Vec<f64>,
+    pub y: Values,
     /// z faces, `nx*ny*(nz+1)`.
-    pub z: Vec<f64>,
+    pub z: Values,
 }
 
 /// One layer's share of a field set.
@@ -34,8 +35,8 @@ impl FieldSet {
     /// All zero; without `areas` the face fields are empty.
     #[must_use]
     pub fn new(grid: &Grid<f64>, areas: bool) -> Self {
-        let faces = |axis| if areas { vec![0.0; grid.face_shape(axis).iter().product()] } else { Vec::new() };
-        FieldSet { v: vec![0.0; grid.cell_count()], x: faces(0), y: faces(1), z: faces(2) }
+        let faces = |axis| Values::zeros(if areas { grid.face_shape(axis).iter().product() } else { 0 });
+        FieldSet { v: Values::zeros(grid.cell_count()), x: faces(0), y: faces(1), z: faces(2) }
     }
 
     /// Cut into layers; empty fields give empty slices.

@@ -69,6 +69,11 @@ pub struct Worker {
 }
 
 impl Worker {
+    /// Numbers that a worker holds.
+    pub fn needed(grid: &Grid<f64>) -> usize {
+        Scratch::needed(grid) + 2 * Fields::<f64>::needed(grid)
+    }
+
     /// For layers of grids with as many cells along x and y.
     #[must_use]
     pub fn new(grid: &Grid<f64>, options: Options) -> Self {
@@ -82,21 +87,29 @@ impl Worker {
         }
     }
 
-    /// Compute layer `k`: bounds body by body, unions where they differ.
+    /// Allow that many divisions of cells, counted by axis.
+    pub fn may_halve(&mut self, halvings: u32) {
+        self.unions.may_halve(halvings);
+    }
+
+    /// Compute layer `k`: bounds body by body, unions where they differ. `target` holds zeros before.
     pub fn layer(&mut self, grid: &Grid<f64>, bins: &Bins, k: usize, target: Target) -> Summary {
         let mut out = Summary::default();
         let Target { beta: Slices { v, x, y, z, top }, mut bounds } = target;
-        let lower = if self.options.areas {
-            Fields::new(grid, v, x, y, z)
-        } else {
-            Fields::within(grid, &mut self.spare).map(|f| Fields { cell: v, ..f })
-        };
         let mut layer = Layer {
-            lower: lower.expect(FITS),
+            lower: Fields::within(grid, &mut self.spare).expect(FITS),
             sum: Fields::within(grid, &mut self.sum).expect(FITS),
             marks: Fields::within(grid, &mut self.marks).expect(FITS),
         };
-        layer.clear();
+        layer.marks.fill(0);
+        if self.options.areas {
+            layer.lower = Fields::new(grid, v, x, y, z).expect(FITS);
+        } else {
+            for faces in [&mut layer.lower, &mut layer.sum] {
+                [&mut faces.x, &mut faces.y, &mut faces.z].into_iter().for_each(|f| f.fill(0.0));
+            }
+            layer.lower.cell = v;
+        }
         let mut scratch = Scratch::new(grid, &mut self.scratch).expect(FITS);
         for (body, ids) in bins.layer(k) {
             let mut defects = add_body(grid, k, bins.triangles(), ids, &mut scratch, &mut layer);
@@ -145,7 +158,8 @@ impl Worker {
             sum: Fields::within(grid, &mut self.sum).expect(FITS),
             marks: Fields::within(grid, &mut self.marks).expect(FITS),
         };
-        layer.clear();
+        layer.lower.z.fill(0.0);
+        layer.marks.z.fill(0);
         let mut scratch = Scratch::new(grid, &mut self.scratch).expect(FITS);
         for (_, ids) in bins.layer(k) {
             add_section(grid, k + 1, Side::Below, bins.triangles(), ids, &mut scratch, &mut layer);
@@ -192,30 +206,31 @@ fn tally(grid: &Grid<f64>, k: usize, layer: &Layer<f64>, out: &mut Summary) {
     }
 }
 
-/// Turn solid bounds into open fractions: the middle goes to `lower`, the bounds to `low` and `high` if wanted.
-fn settle(lower: &mut [f64], sum: &[f64], low: Option<&mut [f64]>, high: Option<&mut [f64]>, out: &mut Summary) {
+/// Turn solid bounds into open fractions: the middle goes to `lower`, the bounds to `low` and `high` if wanted. Leaves zeros
+/// in `sum` for the next layer.
+fn settle(lower: &mut [f64], sum: &mut [f64], low: Option<&mut [f64]>, high: Option<&mut [f64]>, out: &mut Summary) {
     if let Some(low) = low {
-        low.iter_mut().zip(sum).for_each(|(low, sum)| *low = 1.0 - sum.min(1.0));
+        low.iter_mut().zip(&*sum).for_each(|(low, sum)| *low = 1.0 - sum.min(1.0));
     }
     if let Some(high) = high {
         high.iter_mut().zip(&*lower).for_each(|(high, lower)| *high = 1.0 - lower);
     }
-    out.max_gap = out.max_gap.max(widest(lower, sum));
-    let open = |l: &mut f64, s: f64| *l = 1.0 - (*l + if s < 1.0 { s } else { 1.0 }) * 0.5;
-    lower.iter_mut().zip(sum).for_each(|(l, s)| open(l, *s));
-}
-
-/// The largest gap between bounds. Eight running maxima need no order, so the loop is done by vectors.
-pub fn widest(lower: &[f64], sum: &[f64]) -> f64 {
-    let gap = |l: f64, s: f64| if s < 1.0 { s - l } else { 1.0 - l };
-    let ((lower, lower_rest), (sum, sum_rest)) = (lower.as_chunks::<8>(), sum.as_chunks::<8>());
+    let settle = |l: &mut f64, s: &mut f64, widest: &mut f64| {
+        let upper = if *s < 1.0 { *s } else { 1.0 };
+        let gap = upper - *l;
+        *widest = if gap > *widest { gap } else { *widest };
+        (*l, *s) = (1.0 - (*l + upper) * 0.5, 0.0);
+    };
+    // Eight running maxima need no order, so the loop is done by vectors.
     let mut widest = [0.0_f64; 8];
-    for (l, s) in lower.iter().zip(sum) {
+    let ((lower, lower_rest), (sum, sum_rest)) = (lower.as_chunks_mut::<8>(), sum.as_chunks_mut::<8>());
+    for (l, s) in lower.iter_mut().zip(sum) {
         for n in 0..8 {
-            let g = gap(l[n], s[n]);
-            widest[n] = if g > widest[n] { g } else { widest[n] };
+            settle(&mut l[n], &mut s[n], &mut widest[n]);
         }
     }
-    let rest = lower_rest.iter().zip(sum_rest).map(|(l, s)| gap(*l, *s));
-    rest.chain(widest).fold(0.0, f64::max)
+    for (l, s) in lower_rest.iter_mut().zip(sum_rest) {
+        settle(l, s, &mut widest[0]);
+    }
+    out.max_gap = widest.into_iter().fold(out.max_gap, f64::max);
 }

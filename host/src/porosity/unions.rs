@@ -2,7 +2,7 @@
 
 use super::bins::{Bins, Group};
 use super::fields::FieldSet;
-use super::layers::{Worker, widest};
+use super::layers::Worker;
 use super::{Options, targets};
 use glam::DVec3;
 use voidage_core::grid::Grid;
@@ -15,6 +15,8 @@ const MAX_PIECES: usize = 512;
 /// A thread's memory for unions, made when first needed.
 pub struct Unions {
     options: Options,
+    /// How often cells may still be halved along some axis.
+    halvings: u32,
     memory: Option<Memory>,
     /// For the parts of a divided cell.
     inner: Option<Box<Worker>>,
@@ -116,7 +118,12 @@ fn fits(lower: f64, sum: f64, (low, high): Bounds) -> bool {
 
 impl Unions {
     pub fn new(options: Options) -> Self {
-        Unions { options, memory: None, inner: None }
+        Unions { options, halvings: 3 * options.depth, memory: None, inner: None }
+    }
+
+    /// Allow that many divisions of cells, counted by axis.
+    pub fn may_halve(&mut self, halvings: u32) {
+        self.halvings = halvings;
     }
 
     /// Refine layer `k`: its cells, x and y faces, and the z faces below. Returns the numbers of ambiguous cells and of
@@ -125,19 +132,19 @@ impl Unions {
         let [nx, ny, _] = grid.cells();
         let areas = self.options.areas;
         let (mut ambiguous, mut divided) = (0, 0);
-        for j in 0..ny {
-            if !row_is_open(layer, nx, j) {
-                continue;
-            }
+        let groups = bins.groups(k);
+        for j in shared(grid.edges(1), groups.iter(), |g| [g.min.y, g.max.y]) {
+            let [lo, hi] = [grid.edges(1)[j], grid.edges(1)[j + 1]];
+            let here = groups.iter().filter(|g| g.min.y <= hi && g.max.y >= lo);
             let mut row = None;
-            for i in 0..nx {
+            for i in shared(grid.edges(0), here, |g| [g.min.x, g.max.x]) {
                 let c = j * nx + i;
                 ambiguous += usize::from(gap(layer.lower.cell[c], layer.sum.cell[c]) > 0.0);
                 let open = open_gap(layer, nx, ny, i, j);
                 if !(open > KNOWN) {
                     continue;
                 }
-                let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
+                let row = row.get_or_insert_with(|| Row::new(bins, k, lo, hi));
                 let (lo, hi) = grid.cell_box([i, j, k]);
                 let union = self.union(lo, hi, bins, k, row).map(Refined::from);
                 let believed = union.and_then(|u| if agrees(layer, nx, i, j, &u, areas) { Ok(u) } else { Err(Full) });
@@ -200,10 +207,15 @@ impl Unions {
         overlap.cell()
     }
 
-    /// Bounds of a cell of layer `k` from its eight parts; none if the depth is spent.
+    /// Bounds of a cell of layer `k` from its parts, halves along the axes in which it is longest; none if the depth is spent.
     fn divide(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, k: usize) -> Option<Refined> {
-        let options = Options { depth: self.options.depth.checked_sub(1)?, bounds: true, areas: true, ..self.options };
-        let edges = [0, 1, 2].map(|a| [lo[a], lo[a] + (hi[a] - lo[a]) * 0.5, hi[a]]);
+        let longest = [0, 1, 2].iter().fold(0.0, |l: f64, &a| l.max(hi[a] - lo[a]));
+        let halved = [0, 1, 2].map(|a| hi[a] - lo[a] > longest * 0.5);
+        let halvings = self.halvings.checked_sub(halved.iter().map(|&h| u32::from(h)).sum())?;
+        let edges = [0, 1, 2].map(|a| {
+            let middle = halved[a].then(|| lo[a] + (hi[a] - lo[a]) * 0.5);
+            [Some(lo[a]), middle, Some(hi[a])].into_iter().flatten().collect::<Vec<f64>>()
+        });
         let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
         let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
         let meets = |g: &&Group| !g.sheet && g.min.cmple(max).all() && g.max.cmpge(min).all();
@@ -219,13 +231,17 @@ impl Unions {
             .flat_map(|g| bins.ids(g).iter().filter(before).map(|&t| (g.body, t)))
             .collect();
         let parts = Bins::of(&grid, bins.triangles(), members.into_iter());
-        let worker = self.inner.get_or_insert_with(|| Box::new(Worker::new(&grid, options)));
+        let options = Options { bounds: true, areas: true, ..self.options };
+        let halves = [0.0, 0.5, 1.0];
+        let largest = Grid::new(&halves, &halves, &halves).ok()?;
+        let worker = self.inner.get_or_insert_with(|| Box::new(Worker::new(&largest, options)));
+        worker.may_halve(halvings);
         let mut beta = FieldSet::new(&grid, true);
         let mut bounds = [FieldSet::new(&grid, true), FieldSet::new(&grid, true)];
         for (k, target) in targets(&grid, &mut beta, Some(&mut bounds)).into_iter().enumerate() {
             worker.layer(&grid, &parts, k, target);
         }
-        Some(Refined::from_parts(&bounds))
+        Some(Refined::from_parts(&grid, &bounds))
     }
 
     /// Faces of layer `k` in whose plane surface lies: open where both sides are.
@@ -344,13 +360,30 @@ const OUTSIDE: f64 = 1.0 / 1024.0;
 /// Bounds this close are one value: what remains is rounding.
 const KNOWN: f64 = 1e-13;
 
-/// Is there a gap anywhere in a row, its upper y faces included?
-fn row_is_open(layer: &Layer<f64>, nx: usize, j: usize) -> bool {
-    let any = |lower: &[f64], sum: &[f64], run: std::ops::Range<usize>| widest(&lower[run.clone()], &sum[run]) > KNOWN;
-    any(layer.lower.cell, layer.sum.cell, j * nx..(j + 1) * nx)
-        || any(layer.lower.x, layer.sum.x, j * (nx + 1)..(j + 1) * (nx + 1))
-        || any(layer.lower.y, layer.sum.y, j * nx..(j + 2) * nx)
-        || any(layer.lower.z, layer.sum.z, j * nx..(j + 1) * nx)
+/// The cells along one axis that two bodies or more reach or touch.
+fn shared<'g>(
+    edges: &[f64],
+    groups: impl Iterator<Item = &'g Group>,
+    extent: impl Fn(&Group) -> [f64; 2],
+) -> Vec<usize> {
+    let cells = edges.len() - 1;
+    // What the number of bodies changes by at each cell.
+    let mut steps = vec![0_i32; cells + 1];
+    for group in groups {
+        let [lo, hi] = extent(group);
+        let first = edges.partition_point(|&e| e < lo).saturating_sub(1);
+        let end = edges.partition_point(|&e| e <= hi).min(cells);
+        if first < end {
+            steps[first] += 1;
+            steps[end] -= 1;
+        }
+    }
+    let mut bodies = 0;
+    let shared = steps[..cells].iter().enumerate().filter(|(_, step)| {
+        bodies += **step;
+        bodies > 1
+    });
+    shared.map(|(cell, _)| cell).collect()
 }
 
 /// The largest gap of a cell and of the faces that it decides.
@@ -406,15 +439,30 @@ fn store(layer: &mut Layer<f64>, nx: usize, ny: usize, i: usize, j: usize, refin
 }
 
 impl Refined {
-    /// From the bounds of the open fractions of a cell's eight parts, halves along each axis.
-    fn from_parts([lower, upper]: &[FieldSet; 2]) -> Self {
-        let mean = |f: fn(&FieldSet) -> &[f64], at: &[usize]| {
-            let part = |set: &FieldSet| at.iter().map(|&n| f(set)[n]).sum::<f64>() / at.len() as f64;
-            (1.0 - part(upper), 1.0 - part(lower))
+    /// From the bounds of the open fractions of a cell's parts, equal in size.
+    fn from_parts(grid: &Grid<f64>, [lower, upper]: &[FieldSet; 2]) -> Self {
+        let solid = |f: fn(&FieldSet) -> &[f64], parts: &[usize]| {
+            let mean = |set: &FieldSet| parts.iter().map(|&n| f(set)[n]).sum::<f64>() / parts.len() as f64;
+            (1.0 - mean(upper), 1.0 - mean(lower))
         };
-        let x = |i: usize| mean(|s| &s.x, &[0, 1, 2, 3].map(|r| 3 * r + i));
-        let y = |j: usize| mean(|s| &s.y, &[2 * j, 2 * j + 1, 6 + 2 * j, 7 + 2 * j]);
-        let z = |k: usize| mean(|s| &s.z, &[0, 1, 2, 3].map(|c| 4 * k + c));
-        Refined { cell: mean(|s| &s.v, &[0, 1, 2, 3, 4, 5, 6, 7]), low: [x(0), y(0), z(0)], high: [x(2), y(2), z(2)] }
+        let field: [fn(&FieldSet) -> &[f64]; 3] = [|s| &s.x, |s| &s.y, |s| &s.z];
+        let [nx, ny, nz] = grid.cells();
+        let all = || (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+        let side = |axis: usize, plane: usize| {
+            let first = all().filter(|part| part[axis] == 0);
+            let parts: Vec<usize> = first
+                .map(|mut part| {
+                    part[axis] = plane;
+                    grid.face_index(axis, part)
+                })
+                .collect();
+            solid(field[axis], &parts)
+        };
+        let cells: Vec<usize> = all().map(|part| grid.cell_index(part)).collect();
+        Refined {
+            cell: solid(|s| &s.v, &cells),
+            low: [0, 1, 2].map(|axis| side(axis, 0)),
+            high: [0, 1, 2].map(|axis| side(axis, grid.cells()[axis])),
+        }
     }
 }
