@@ -7,7 +7,7 @@
 //! `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`].
 
 pub mod atomic;
-mod bytes;
+pub(crate) mod bytes;
 pub mod canvas;
 pub mod colour;
 pub mod figure;
