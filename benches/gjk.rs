@@ -15,6 +15,7 @@ use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, SupportMap};
 use voidage_benches::compare;
 use voidage_core::aabb::Aabb;
 use voidage_core::gjk::{Distance, Intersection, distance, intersect};
+use voidage_core::sat::{BoxTriangle, box_triangle};
 use voidage_core::shape::{Hull, OrientedBox, Triangle};
 use voidage_core::support::{Support, SupportPoint};
 use voidage_tests::pairs::{Geodesic, Nearness, Pose, approach, boxes, triangles};
@@ -159,6 +160,10 @@ fn main() {
 
         let corners: Vec<_> = poses.iter().map(|(a, b)| (a.body().corners(), b.body().corners())).collect();
         let ours: Vec<_> = corners.iter().map(|(a, b)| (Hull::new(a), Hull::new(b))).collect();
+        let hull =
+            |corners: &[DVec3; 8]| ConvexPolyhedron::from_convex_hull(&corners.map(peer)).expect("eight corners");
+        // Corners are where the box is: parry needs no pose.
+        let theirs: Vec<_> = corners.iter().map(|(a, b)| (ParryPose::IDENTITY, hull(a), hull(b))).collect();
         row(&format!("{name} hulls"), &ours, &theirs, None);
     }
 
@@ -173,6 +178,7 @@ fn main() {
         })
         .collect();
     row("cell-triangle", &ours, &theirs, Some(parry::intersection_test_cuboid_triangle));
+    thirteen_directions(&ours, &theirs);
 
     for (n, count) in [(2, 42), (4, 162), (6, 362)] {
         let sphere = Geodesic::new(n);
@@ -203,6 +209,38 @@ fn main() {
 
     octree();
     single_precision();
+}
+
+/// The fast path for a cell and a triangle against parry's own test for that pair.
+fn thirteen_directions(
+    ours: &[(Aabb<DVec3>, Triangle<DVec3>)],
+    theirs: &[(ParryPose, Cuboid, parry3d_f64::shape::Triangle)],
+) {
+    if !wanted("box_triangle") {
+        return;
+    }
+    let (cell, mut undecided) = (ours[0].0, 0);
+    let mut fast = || {
+        let meet = |t| matches!(box_triangle(black_box(&cell), black_box(t)), BoxTriangle::Overlapping);
+        ours.iter().map(|(_, t)| usize::from(meet(t))).sum()
+    };
+    let mut special = || {
+        theirs.iter().map(|(p, a, b)| usize::from(parry::intersection_test_cuboid_triangle(black_box(p), a, b))).sum()
+    };
+    let times = compare(ours.len(), rounds(), &mut [&mut fast, &mut special]);
+    for (_, triangle) in ours {
+        undecided += usize::from(box_triangle(&cell, triangle) == BoxTriangle::Undecided);
+    }
+    println!(
+        "{:22} {:7.1} {:7.1} {:5.2}x   {} of {} meet, parry {}, undecided {undecided}",
+        "box_triangle",
+        times[0],
+        times[1],
+        times[1] / times[0],
+        fast(),
+        ours.len(),
+        special()
+    );
 }
 
 /// Cells of 32³ in Morton order against a ball of 362 vertices that fills most of them, with and without the last axis as a hint.

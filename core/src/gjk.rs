@@ -9,10 +9,12 @@
 
 use crate::real::{Real, Vector};
 use crate::simplex::{Side, Simplex, side};
-use crate::support::{ScalarOf, Scaled, Support, SupportPoint, lengthened};
+use crate::support::{ScalarOf, Support, lengthened};
 
 mod distance;
+mod pair;
 pub use distance::{Distance, distance};
+use pair::{Pair, Scale, scale};
 
 /// What [`intersect`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,28 +73,6 @@ pub const MAX_ITERATIONS: u32 = 32;
 /// each side (3), the difference and its product (2); rounded up for second-order terms and the bound's own rounding.
 const SUPPORT_ROUNDINGS: f64 = 8.0;
 
-/// The power of two to multiply two bodies with, so that their extents add to something near one.
-pub(crate) enum Scale<R> {
-    Keep,
-    Multiply(R),
-    Refuse(Reason),
-}
-
-pub(crate) fn scale<R: Real>(extent: R) -> Scale<R> {
-    if extent >= R::SCALE_MIN && extent <= R::SCALE_MAX {
-        return Scale::Keep;
-    }
-    if !extent.is_finite() {
-        return Scale::Refuse(Reason::NotFinite);
-    }
-    let unit = extent.binade();
-    // 1/unit must be finite, and ε times the extent, as slacks are made of, well above the subnormal step.
-    if !(unit >= R::MIN_POSITIVE * R::from_f64(4_194_304.0)) {
-        return Scale::Refuse(Reason::TooSmall);
-    }
-    Scale::Multiply(R::ONE / unit)
-}
-
 /// Do the interiors of two bodies share a point?
 ///
 /// `hint` is a direction from `a` towards `b`, of any length: the axis of a similar query, say. Without one the search starts along the
@@ -114,60 +94,32 @@ where
 {
     let extent = a.extent() + b.extent();
     match scale(extent) {
-        Scale::Keep if A::ROUNDED || B::ROUNDED => distance::intersect_rounded(a, b, hint),
-        Scale::Keep => search(a, b, extent, hint, false),
-        Scale::Multiply(factor) => intersect_scaled(a, b, factor, hint),
+        Scale::Keep => decide(&Pair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE), hint),
+        Scale::Multiply(factor) => intersect_scaled(&Pair::new(a, b, extent, factor), hint),
         Scale::Refuse(reason) => Intersection::Undecided { reason, axis: A::Vector::ZERO },
     }
 }
 
 #[cold]
 #[inline(never)]
-fn intersect_scaled<A, B>(a: &A, b: &B, factor: ScalarOf<A>, hint: Option<A::Vector>) -> Intersection<A::Vector>
+fn intersect_scaled<A, B>(pair: &Pair<A, B, ScalarOf<A>, true>, hint: Option<A::Vector>) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    let (sa, sb) = (Scaled { shape: a, factor }, Scaled { shape: b, factor });
-    let found = if A::ROUNDED || B::ROUNDED {
-        distance::intersect_rounded(&sa, &sb, hint)
-    } else {
-        search(&sa, &sb, sa.extent() + sb.extent(), hint, false)
-    };
-    let back = ScalarOf::<A>::ONE / factor;
-    match found {
-        Intersection::Overlapping { proof: Overlap::Inside(simplex) } => {
-            let simplex = Simplex { a: simplex.a.map(|p| p * back), b: simplex.b.map(|p| p * back) };
-            Intersection::Overlapping { proof: Overlap::Inside(simplex) }
-        }
-        Intersection::Overlapping { proof: Overlap::Within { a, b } } => {
-            Intersection::Overlapping { proof: Overlap::Within { a: a * back, b: b * back } }
-        }
-        other => other,
-    }
+    decide(pair, hint)
 }
 
-/// A first direction from `a` to `b`: never zero, always finite.
 #[inline(always)]
-pub(crate) fn seed<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> A::Vector
+fn decide<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    let direction = match hint {
-        Some(hint) => hint,
-        None => b.center() - a.center(),
-    };
-    let size = direction.norm_1();
-    let usual = size > ScalarOf::<A>::SCALE_MIN && size < ScalarOf::<A>::SCALE_MAX;
-    if usual { direction } else { unusual_seed(direction) }
-}
-
-#[cold]
-fn unusual_seed<V: Vector>(direction: V) -> V {
-    let direction = lengthened(direction);
-    let fine = direction.is_finite() && direction.norm_1() > V::Scalar::SCALE_MIN;
-    if fine { direction } else { V::new(V::Scalar::ONE, V::Scalar::ZERO, V::Scalar::ZERO) }
+    if A::ROUNDED || B::ROUNDED { distance::intersect_rounded(pair, hint) } else { search(pair, hint, false) }
 }
 
 /// Some vector across another: its product with the coordinate axis least along it.
@@ -191,45 +143,80 @@ const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, 
 const LEANINGS: [[f64; 3]; 5] =
     [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
 
-/// A direction near another; a different one each round.
+/// A direction near another; a different one each round, and after the first five ever nearer, so that shallow overlaps are not passed over.
 fn leaning<V: Vector>(axis: V, round: u32) -> V {
     let [x, y, z] = LEANINGS[(round % 5) as usize];
-    let by = axis.norm_max() * V::Scalar::from_f64(1.0 / 16.0);
     let real = V::Scalar::from_f64;
+    let by = axis.norm_max() * real(0.5 / f64::from(1u32 << round.clamp(3, 31)));
     axis + V::new(real(x), real(y), real(z)) * by
+}
+
+/// Points along an axis and all around it, if they surround the origin: for shallow overlaps of bodies placed symmetrically about the axis.
+fn surround<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    axis: A::Vector,
+) -> Option<Simplex<A::Vector>>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let axis = lengthened(axis);
+    let u = lengthened(across(axis));
+    let v = lengthened(axis.cross(u));
+    let half = u * ScalarOf::<A>::HALF;
+    let mut simplex = Simplex { a: [A::Vector::ZERO; 4], b: [A::Vector::ZERO; 4] };
+    let mut w = [A::Vector::ZERO; 4];
+    for (i, direction) in [axis, u, v - half, -v - half].into_iter().enumerate() {
+        let (a, b) = pair.supports(direction, (0, 0));
+        (simplex.a[i], simplex.b[i]) = (a.point, b.point);
+        w[i] = pair.difference(a.point, b.point);
+    }
+    (side(w, pair.slack) == Side::Inside).then_some(simplex)
 }
 
 /// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
 /// the distance, which has more patience.
 #[cold]
 #[inline(never)]
-fn search_harder<A, B>(a: &A, b: &B, extent: ScalarOf<A>, axis: A::Vector, reason: Reason) -> Intersection<A::Vector>
+fn search_harder<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    axis: A::Vector,
+    reason: Reason,
+) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    let found = search(a, b, extent, None, true);
+    for axis in [pair.seed(None), axis] {
+        if let Some(simplex) = surround(pair, axis) {
+            return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
+        }
+    }
+    let found = search(pair, None, true);
     if !matches!(found, Intersection::Undecided { .. }) {
         return found;
     }
-    let harder = distance::intersect_rounded(a, b, Some(axis));
+    let harder = distance::intersect_rounded(pair, Some(axis));
     if matches!(harder, Intersection::Undecided { .. }) { Intersection::Undecided { reason, axis } } else { harder }
 }
 
-/// The boolean search. `extent` bounds the components of all differences; `lean` is for the second try.
+/// The boolean search; `lean` is for the second try.
 #[inline(always)]
-fn search<A, B>(a: &A, b: &B, extent: ScalarOf<A>, hint: Option<A::Vector>, lean: bool) -> Intersection<A::Vector>
+fn search<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+    lean: bool,
+) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
     type S<A> = ScalarOf<A>;
     let zero = S::<A>::ZERO;
-    let slack = a.slack() + b.slack();
     // Apart if d·w exceeds this times |d|₁.
-    let margin = S::<A>::from_f64(SUPPORT_ROUNDINGS) * S::<A>::EPSILON * extent + slack + S::<A>::UNDERFLOW;
-    let mut axis = seed(a, b, hint);
-    let (mut start_a, mut start_b) = (0, 0);
+    let margin = pair.margin();
+    let mut axis = pair.seed(hint);
+    let mut starts = (0, 0);
 
     // Differences, newest first, and where their points are kept.
     let origin = A::Vector::ZERO;
@@ -259,22 +246,20 @@ where
                 break;
             }
         }
-        let mut from_a = a.support(axis, start_a);
-        let mut from_b = b.support(-axis, start_b);
-        let mut new = from_b.point - from_a.point;
+        let (mut from_a, mut from_b) = pair.supports(axis, starts);
+        let mut new = pair.difference(from_a.point, from_b.point);
         if new.dot(axis) > margin * size {
-            from_a = a.farther(axis, from_a.index).unwrap_or(from_a);
-            from_b = b.farther(-axis, from_b.index).unwrap_or(from_b);
-            new = from_b.point - from_a.point;
+            (from_a, from_b) = pair.farther(axis, from_a, from_b);
+            new = pair.difference(from_a.point, from_b.point);
             if new.dot(axis) > margin * size {
                 return Intersection::Apart { axis };
             }
         }
-        (start_a, start_b) = (from_a.index, from_b.index);
+        starts = (from_a.index, from_b.index);
 
         // A point again can only come where there is no progress to speak of.
         let stalled = count > 0 && new.dot(axis) + margin * size >= w[0].dot(axis);
-        if stalled && (0..4).any(|i| i < count && w[i & 3] == new) {
+        if stalled && (w[0] == new || count > 1 && w[1] == new || count > 2 && w[2] == new) {
             if surrounding {
                 continue;
             }
@@ -299,10 +284,9 @@ where
         }
         let mut outward = None;
         if count == 4 {
-            match side(w, slack) {
+            match side(w, pair.slack) {
                 Side::Inside => {
-                    let pair = slot.map(|s| pairs[s & 3]);
-                    let simplex = Simplex { a: pair.map(|p| p.0), b: pair.map(|p| p.1) };
+                    let simplex = Simplex { a: slot.map(|s| pairs[s & 3].0), b: slot.map(|s| pairs[s & 3].1) };
                     return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
                 }
                 Side::Beyond(dropped) => {
@@ -348,8 +332,8 @@ where
             }
         }
     }
-    if !lean && (deep || reason == Reason::Iterations || slack > zero) {
-        return search_harder(a, b, extent, axis, reason);
+    if !lean && (deep || reason == Reason::Iterations || pair.slack > zero) {
+        return search_harder(pair, axis, reason);
     }
     Intersection::Undecided { reason, axis }
 }
@@ -370,40 +354,12 @@ where
     B: Support<Vector = A::Vector>,
 {
     let extent = a.extent() + b.extent();
-    match scale(extent) {
-        Scale::Keep => gap(a, b, axis).is_some_and(|gap| gap > ScalarOf::<A>::ZERO),
-        Scale::Multiply(factor) => {
-            let (a, b) = (Scaled { shape: a, factor }, Scaled { shape: b, factor });
-            gap(&a, &b, axis).is_some_and(|gap| gap > ScalarOf::<A>::ZERO)
-        }
-        Scale::Refuse(_) => false,
-    }
-}
-
-/// A lower bound of the distance, by the support planes across `axis`.
-fn gap<A, B>(a: &A, b: &B, axis: A::Vector) -> Option<ScalarOf<A>>
-where
-    A: Support,
-    B: Support<Vector = A::Vector>,
-{
-    type S<A> = ScalarOf<A>;
-    let axis = lengthened(axis);
-    let size = axis.norm_1();
-    if !(size >= S::<A>::ONE) || !size.is_finite() {
-        return None;
-    }
-    let SupportPoint { point: pa, .. } = a.farthest(axis);
-    let SupportPoint { point: pb, .. } = b.farthest(-axis);
-    let margin = S::<A>::from_f64(SUPPORT_ROUNDINGS) * S::<A>::EPSILON * (a.extent() + b.extent())
-        + a.slack()
-        + b.slack()
-        + S::<A>::UNDERFLOW;
-    let along = (pb - pa).dot(axis) - margin * size;
-    let length = axis.dot(axis).sqrt();
-    let relative = S::<A>::from_f64(4.0) * S::<A>::EPSILON;
-    let less = along - along.abs() * relative;
-    let radii = (a.radius() + b.radius()) * (S::<A>::ONE + relative);
-    Some(less / length - radii)
+    let gap = match scale(extent) {
+        Scale::Keep => Pair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE).gap(axis),
+        Scale::Multiply(factor) => Pair::<A, B, ScalarOf<A>, true>::new(a, b, extent, factor).gap(axis),
+        Scale::Refuse(_) => None,
+    };
+    gap.is_some_and(|gap| gap > Real::ZERO)
 }
 
 /// Proves that a point of one core and a point of another, each off by at most `slack` in each component, are closer than the radii.

@@ -28,6 +28,9 @@ const DOUBT: f64 = 4.0;
 /// Fragments smaller than this, in faces of the cell, cannot do harm.
 const SLIVER: f64 = 1e-9;
 
+/// The diagonal of a side of the cell, in its frame: no section of a piece is longer.
+const LONGEST_EDGE: f64 = 1.5;
+
 /// Solid fractions of the union in one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellUnion<R> {
@@ -37,7 +40,7 @@ pub struct CellUnion<R> {
     pub low: [R; 3],
     /// Of the high x, y and z face, seen from inside the cell.
     pub high: [R; 3],
-    /// How far the volumes along the three axes are apart.
+    /// How far the volumes along the three axes are apart, and what a blur may have changed.
     pub error: R,
 }
 
@@ -114,39 +117,60 @@ pub struct Workspace<'a, R: Real> {
     pub tasks: &'a mut [Task],
 }
 
-/// The workspace is too small for this cell; divide the cell.
+/// Why there is no union: divide the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Full;
+pub enum NoProof {
+    /// The workspace is too small for what the cell holds.
+    Full,
+    /// Planes too close to tell apart, or the three volumes disagree; a blur may help.
+    Doubt,
+}
+
+use NoProof::{Doubt, Full};
 
 /// The union of some bodies in one cell, or on one face between two cells.
 #[derive(Debug)]
-pub struct Overlap<'w, 'a, R: Real> {
-    space: &'w mut Workspace<'a, R>,
+pub struct Overlap<'a, R: Real> {
+    space: Workspace<'a, R>,
     origin: [R; 3],
     scale: [R; 3],
+    /// Planes closer than this are one.
     thickness: R,
+    /// That is more than rounding asks for.
+    blurred: bool,
     part_count: usize,
     piece_count: usize,
     node_count: usize,
 }
 
-impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
-    /// Begin with the cell `lo..hi`; it sets the frame.
-    pub fn new(space: &'w mut Workspace<'a, R>, lo: [R; 3], hi: [R; 3]) -> Self {
+impl<'a, R: Real> Overlap<'a, R> {
+    /// Begin with the cell `lo..hi`; it sets the frame. Planes closer than `blur`, in cells, are taken for one plane: faces that
+    /// were meant to coincide and miss by so much then do, and [`CellUnion::error`] says what that may cost.
+    pub fn new(space: Workspace<'a, R>, lo: [R; 3], hi: [R; 3], blur: R) -> Self {
         let size = sub(hi, lo);
         let mut reach = R::ONE;
         for axis in 0..3 {
             reach = reach.max(lo[axis].abs().max(hi[axis].abs()) / size[axis]);
         }
-        let thickness = R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach;
-        Overlap { space, origin: lo, scale: size, thickness, part_count: 0, piece_count: 0, node_count: 0 }
+        let rounding = R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach;
+        let thickness = rounding.max(blur);
+        Overlap {
+            space,
+            origin: lo,
+            scale: size,
+            blurred: blur > rounding,
+            thickness,
+            part_count: 0,
+            piece_count: 0,
+            node_count: 0,
+        }
     }
 
     /// Add what a body has of surface inside the cell `lo..hi`; nothing happens if it has none. With `below` the cell is the
     /// lower one beside the face that [`Overlap::face`] will ask for.
     ///
     /// # Errors
-    /// [`Full`] if the workspace cannot hold it.
+    /// [`NoProof::Full`] if the workspace cannot hold it.
     pub fn add<V: Vector<Scalar = R>>(
         &mut self,
         lo: [R; 3],
@@ -154,7 +178,7 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         below: bool,
         triangles: &[[V; 3]],
         ids: &[u32],
-    ) -> Result<(), Full> {
+    ) -> Result<(), NoProof> {
         let first = self.piece_count;
         let mut filling = R::ZERO;
         for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
@@ -236,9 +260,9 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
     }
 
     /// Build the tree of a body: the largest piece divides, the others go to its sides.
-    fn grow(&mut self, part: Part) -> Result<Branch, Full> {
+    fn grow(&mut self, part: Part) -> Result<Branch, NoProof> {
         let count = part.end - part.first;
-        let Workspace { pieces, growing, nodes, tasks, .. } = &mut *self.space;
+        let Workspace { pieces, growing, nodes, tasks, .. } = &mut self.space;
         growing.get_mut(..count).ok_or(Full)?.copy_from_slice(&pieces[part.first..part.end]);
         *tasks.first_mut().ok_or(Full)? = Task { first: 0, end: count, parent: None };
         let (mut open_tasks, root) = (1, self.node_count as u32);
@@ -273,8 +297,8 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
     /// The union in the cell, if a proof is found.
     ///
     /// # Errors
-    /// [`Full`] if the workspace is too small or the three volumes disagree: divide the cell.
-    pub fn cell(&mut self) -> Result<CellUnion<R>, Full> {
+    /// [`NoProof`]: divide the cell.
+    pub fn cell(&mut self) -> Result<CellUnion<R>, NoProof> {
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         for own in 0..self.part_count {
             for p in self.space.parts[own].first..self.space.parts[own].end {
@@ -294,18 +318,30 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         for share in high {
             error = error.max(-share).max(share - R::ONE);
         }
-        if !(error <= R::from_f64(MAX_SPREAD).max(self.thickness)) {
-            return Err(Full);
+        let shift = self.largest_shift();
+        if !(error <= R::from_f64(MAX_SPREAD).max(self.thickness).max(shift)) {
+            return Err(Doubt);
         }
+        let error = error + shift;
         let within = |v: R| v.max(R::ZERO).min(R::ONE);
         Ok(CellUnion { cell: within((max + min) * R::HALF), low, high: high.map(within), error })
+    }
+
+    /// By how much a blur may change volumes and areas: every piece moves by no more than the thickness.
+    fn largest_shift(&self) -> R {
+        if !self.blurred {
+            return R::ZERO;
+        }
+        let pieces = self.space.pieces[..self.piece_count].iter();
+        let reach = pieces.fold(R::ONE, |sum, piece| sum + piece.area.max(R::from_f64(LONGEST_EDGE)));
+        reach * self.thickness
     }
 
     /// Solid fraction on the side of the cell normal to `axis` at coordinate `at` of the frame (0 or 1).
     ///
     /// # Errors
-    /// [`Full`] if the workspace is too small.
-    pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, Full> {
+    /// [`NoProof`], of the workspace or of planes.
+    pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
         let mut square = Polygon::default();
         for (u, v) in [(R::ZERO, R::ZERO), (R::ONE, R::ZERO), (R::ONE, R::ONE), (R::ZERO, R::ONE)] {
             let mut corner = [at; 3];
@@ -328,8 +364,8 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
         own: Option<usize>,
         both_sides: bool,
         mut keep: impl FnMut(&Polygon<R>),
-    ) -> Result<(), Full> {
-        let Workspace { nodes, parts, fragments, .. } = &mut *self.space;
+    ) -> Result<(), NoProof> {
+        let Workspace { nodes, parts, fragments, .. } = &mut self.space;
         let parts = &parts[..self.part_count];
         let enter = |f: Fragment<R>, part: usize| {
             let part = if Some(part) == own { part + 1 } else { part };
@@ -365,7 +401,7 @@ impl<'w, 'a, R: Real> Overlap<'w, 'a, R> {
                     && f.polygon.doubled_area().iter().any(|a| a.abs() > R::from_f64(SLIVER))
                 {
                     // Not quite one plane, not clearly two: another piece of the same faces may be judged otherwise.
-                    return Err(Full);
+                    return Err(Doubt);
                 }
                 f.branch = match place {
                     Place::Positive => node.positive,
@@ -483,14 +519,14 @@ fn divide<R: Real>(
     first: usize,
     end: usize,
     thickness: R,
-) -> Result<(usize, usize), Full> {
+) -> Result<(usize, usize), NoProof> {
     // Pieces before the plane gather above `end` and are moved down at last.
     let (mut behind, mut before) = (first, end);
     for p in first + 1..end {
         let piece = growing[p];
         match side(&piece.polygon, divider.normal, divider.offset, thickness) {
             // Solid thinner than rounding: which side of the plane holds it cannot be told.
-            Place::On if backs(&piece, divider, thickness) => return Err(Full),
+            Place::On if backs(&piece, divider, thickness) => return Err(Doubt),
             Place::On => {}
             Place::Negative => {
                 growing[behind] = piece;

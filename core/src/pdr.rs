@@ -22,8 +22,11 @@
 //! 6. [`boundary`] — the sides of the domain
 //! 7. [`medium`] — porosity as slices, and marks
 //! 8. [`merge`] — small cells
-//! 9. `row` — the loops
-//! 10. [`step`] — a slab, a step
+//! 9. [`step`] — the problem, one slab of one step
+//! 10. [`report`] — what a step did; [`repair`] — the whole step, and what happens to unphysical states
+//! 11. `line` — a long line of cells in pieces
+//! 12. `sweep` — a slab row by row: `reconstruct` (slopes, half step), `faces` (fluxes), `finish` (new states), on the buffers
+//!     of `work` with the loops of `row`
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.
@@ -32,14 +35,22 @@
 
 pub mod boundary;
 pub mod drag;
+mod faces;
+mod finish;
 pub mod flux;
 pub mod limiter;
+mod line;
 pub mod medium;
 pub mod merge;
+mod reconstruct;
+pub mod repair;
+pub mod report;
 mod row;
 pub mod state;
 pub mod step;
+mod sweep;
 pub mod throat;
+mod work;
 
 pub use boundary::Boundary;
 pub use drag::Drag;
@@ -47,5 +58,6 @@ pub use flux::Riemann;
 pub use limiter::Limiter;
 pub use medium::{Mesh, Porosity, mark};
 pub use merge::Clusters;
+pub use report::Report;
 pub use state::{Conserved, Fields, FieldsMut, Gas, Primitive};
-pub use step::{Error, PressureForm, Problem, Report, Scheme};
+pub use step::{Error, PressureForm, Problem, Scheme};

@@ -87,6 +87,16 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger of two values; the other one if one is NaN.
     fn max(self, other: Self) -> Self;
+    /// The larger of two numbers, by a selection, which is faster than [`Real::max`]; the second if one is NaN.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    /// The smaller of two numbers, by a selection; the second if one is NaN.
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// The largest power of two not above the absolute value of a normal number; 0 for subnormal numbers.
@@ -152,10 +162,10 @@ pub trait Vector:
     fn norm_1(self) -> Self::Scalar {
         self.x().abs() + self.y().abs() + self.z().abs()
     }
-    /// Largest absolute component; NaN components are passed over.
+    /// Largest absolute component; a NaN among them may be passed over.
     #[inline(always)]
     fn norm_max(self) -> Self::Scalar {
-        self.x().abs().max(self.y().abs()).max(self.z().abs())
+        self.x().abs().larger(self.y().abs()).larger(self.z().abs())
     }
     /// Length, free of overflow and underflow.
     fn length(self) -> Self::Scalar {

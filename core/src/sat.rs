@@ -42,8 +42,8 @@ enum Order {
 fn order<V: Vector>(axis: V, size: V, low: V::Scalar, high: V::Scalar, reach: V::Scalar) -> Order {
     let zero = V::Scalar::ZERO;
     let [x, y, z] = [axis.x() * size.x(), axis.y() * size.y(), axis.z() * size.z()];
-    let top = x.max(zero) + y.max(zero) + z.max(zero);
-    let bottom = x.min(zero) + y.min(zero) + z.min(zero);
+    let top = x.larger(zero) + y.larger(zero) + z.larger(zero);
+    let bottom = x.smaller(zero) + y.smaller(zero) + z.smaller(zero);
     let error = V::Scalar::from_f64(PROJECTION_ROUNDINGS) * V::Scalar::EPSILON * reach + V::Scalar::UNDERFLOW;
     if low >= top + error {
         Order::Apart
@@ -118,8 +118,8 @@ pub fn box_triangle<V: Vector>(cell: &Aabb<V>, triangle: &Triangle<V>) -> BoxTri
                 continue;
             }
             let along = p.map(|p| axis.dot(p));
-            let low = along[0].min(along[1]).min(along[2]);
-            let high = along[0].max(along[1]).max(along[2]);
+            let low = along[0].smaller(along[1]).smaller(along[2]);
+            let high = along[0].larger(along[1]).larger(along[2]);
             match order(axis, size, low, high, reach) {
                 Order::Apart => return BoxTriangle::Apart { axis },
                 Order::Beyond => return BoxTriangle::Apart { axis: -axis },

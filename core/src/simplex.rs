@@ -44,9 +44,9 @@ pub(crate) fn side<V: Vector>(w: [V; 4], slack: V::Scalar) -> Side {
     let weight = [-b.dot(cd), a.dot(cd), a.dot(db), a.dot(bc)];
     let volume = weight[0] + weight[1] + weight[2] + weight[3];
     let weight = if volume < zero { weight.map(|x| -x) } else { weight };
-    let least = weight[1].min(weight[2]).min(weight[3]);
+    let least = weight[1].smaller(weight[2]).smaller(weight[3]);
     if least > zero && weight[0] > zero {
-        let least = least.min(weight[0]);
+        let least = least.smaller(weight[0]);
         let rounding = real(DETERMINANT_ROUNDINGS) * V::Scalar::EPSILON;
         // At most six products of three components; a displacement of the points enters each of the three factors.
         let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs()).norm_max() + slack;

@@ -23,6 +23,8 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Error against run time, for scenes, grids and methods of a case file
     Study(StudyArgs),
+    /// Flow a gas through a porous space, as a case file says
+    Solve(SolveArgs),
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -33,7 +35,8 @@ pub enum Command {
 }
 
 /// What the coordinates of a file are in; results are in metres.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Unit {
     /// Metres
     M,
@@ -137,6 +140,26 @@ pub struct PorosityArgs {
     /// Write a report
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage solve`.
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// Case file (TOML): grid, porosity, gas, initial, boundary, drag, gravity, scheme, time, output
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Directory for results and checkpoints (default: the case's name without .toml, here)
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Number of threads (default: all cores)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint in the output directory
+    #[arg(long)]
+    pub resume: bool,
     /// What goes to the terminal.
     #[command(flatten)]
     pub talk: TalkArgs,

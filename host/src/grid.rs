@@ -148,27 +148,107 @@ fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Edges {
 
 #[derive(Deserialize)]
 struct Document {
-    x: Option<AxisSpec>,
-    y: Option<AxisSpec>,
-    z: Option<AxisSpec>,
-    origin: Option<[f64; 3]>,
-    spacing: Option<[f64; 3]>,
-    cells: Option<[usize; 3]>,
+    #[serde(flatten)]
+    spec: Spec,
     #[serde(flatten)]
     other: std::collections::BTreeMap<String, serde::de::IgnoredAny>,
 }
 
-#[derive(Deserialize)]
-#[serde(untagged)]
+/// A grid as written in a file, in one of the forms above.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spec {
+    x: Option<AxisSpec>,
+    y: Option<AxisSpec>,
+    z: Option<AxisSpec>,
+    origin: Option<Vec<f64>>,
+    spacing: Option<Vec<f64>>,
+    cells: Option<Vec<usize>>,
+    /// In place of the grid itself: the file that holds it.
+    file: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "an axis is a list of edges, or { points = […], cells = […], ratios = […] }"
+)]
 enum AxisSpec {
     Edges(Vec<f64>),
     Segments { points: Vec<f64>, cells: Vec<usize>, ratios: Option<Vec<f64>> },
 }
 
+/// Edges of an axis that is left out: a flow that does not vary along it has one cell there, of unit width.
+const UNIT_CELL: [f64; 2] = [0.0, 1.0];
+
+impl Spec {
+    /// The file that holds the grid, if nothing but its name is given.
+    #[must_use]
+    pub fn elsewhere(&self) -> Option<&Path> {
+        let only = Spec { file: self.file.clone(), ..Spec::default() };
+        self.file.as_deref().filter(|_| *self == only)
+    }
+
+    /// The edges. With `fewer_axes`, later axes may be left out and hold one cell of unit width; `place` goes before
+    /// the key in errors.
+    ///
+    /// # Errors
+    /// Keys missing or at odds, or edges that make no grid; they name `path`.
+    pub fn edges(self, path: &Path, place: &str, fewer_axes: bool) -> Result<Edges> {
+        let wrong = |key: &str, reason: String| Error::at(path, format!("key {place}{key}"), reason);
+        if self.file.is_some() {
+            return Err(wrong("file", "a grid is either here or in another file".into()));
+        }
+        let least = if fewer_axes { 1 } else { 3 };
+        let edges = match (self.x, self.y, self.z) {
+            (None, None, None) => {
+                let (Some(origin), Some(spacing), Some(cells)) = (self.origin, self.spacing, self.cells) else {
+                    return Err(Error::file(path, "a grid needs x, y, z or origin, spacing, cells"));
+                };
+                let axes = cells.len();
+                for (key, n) in [("cells", axes), ("origin", origin.len()), ("spacing", spacing.len())] {
+                    if n != axes || !(least..=3).contains(&n) {
+                        return Err(wrong(key, format!("needs one number for each axis, not {n}")));
+                    }
+                }
+                check_count(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))?;
+                Edges([0, 1, 2].map(|a| match cells.get(a) {
+                    Some(&n) => (0..=n).map(|i| origin[a] + spacing[a] * i as f64).collect(),
+                    None => UNIT_CELL.to_vec(),
+                }))
+            }
+            (x, y, z) => {
+                let given = [x.is_some(), y.is_some(), z.is_some()];
+                if !fewer_axes && given != [true; 3] {
+                    return Err(Error::file(path, "a grid needs all of x, y, z"));
+                }
+                if let Some((key, _)) = [("origin", self.origin.is_some()), ("spacing", self.spacing.is_some())]
+                    .into_iter()
+                    .chain([("cells", self.cells.is_some())])
+                    .find(|(_, given)| *given && fewer_axes)
+                {
+                    return Err(wrong(key, "does not go with edges".into()));
+                }
+                let read = |name, spec: Option<AxisSpec>| {
+                    spec.map_or_else(|| Ok(UNIT_CELL.to_vec()), |s| axis(path, &format!("{place}{name}"), s))
+                };
+                Edges([read("x", x)?, read("y", y)?, read("z", z)?])
+            }
+        };
+        edges.grid(Some(path))?;
+        Ok(edges)
+    }
+}
+
 /// Keys that other programs write beside the edges and that say nothing new.
 const HARMLESS: [&str; 6] = ["nx", "ny", "nz", "uniform", "name", "comment"];
 
-fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
+/// Read a grid file.
+///
+/// # Errors
+/// A file that cannot be read or understood, or a grid without cells.
+pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return Err(Error::file(path, "not a regular file"));
     }
@@ -183,7 +263,7 @@ fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     for key in document.other.keys().filter(|k| !HARMLESS.contains(&k.as_str())) {
         warnings.push(format!("{}: key {key}: not known, ignored", path.display()));
     }
-    from_document(path, document)
+    document.spec.edges(path, "", false)
 }
 
 /// The grid that a value of another TOML file describes. Unlike a grid file it holds nothing else.
@@ -197,24 +277,7 @@ pub fn from_value(path: &Path, text: &str, value: toml::Spanned<toml::de::DeValu
     if let Some(key) = document.other.keys().next() {
         return Err(Error::at(path, format!("line {line}"), format!("grid: key {key} is not known here")));
     }
-    from_document(path, document)
-}
-
-fn from_document(path: &Path, document: Document) -> Result<Edges> {
-    let edges = match (document.x, document.y, document.z) {
-        (Some(x), Some(y), Some(z)) => Edges([axis(path, "x", x)?, axis(path, "y", y)?, axis(path, "z", z)?]),
-        (None, None, None) => match (document.origin, document.spacing, document.cells) {
-            (Some(origin), Some(spacing), Some(cells)) => {
-                check_count(DVec3::from_array(cells.map(|n| n as f64)))?;
-                let axis = |a: usize| (0..=cells[a]).map(|i| origin[a] + spacing[a] * i as f64).collect();
-                Edges([axis(0), axis(1), axis(2)])
-            }
-            _ => return Err(Error::file(path, "a grid needs x, y, z or origin, spacing, cells")),
-        },
-        _ => return Err(Error::file(path, "a grid needs all of x, y, z")),
-    };
-    edges.grid(Some(path))?;
-    Ok(edges)
+    document.spec.edges(path, "", false)
 }
 
 /// A TOML error with its line.

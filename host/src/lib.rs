@@ -9,6 +9,7 @@ pub mod error;
 pub mod grid;
 pub mod input;
 pub mod inspect;
+pub mod interrupt;
 pub mod output;
 pub mod porosity;
 pub mod progress;

@@ -5,11 +5,14 @@ use std::io::Write;
 use std::process::ExitCode;
 use voidage::cli::{Cli, Command};
 use voidage::error::{Error, Result};
-use voidage::{inspect, run, study};
+use voidage::{inspect, interrupt, run, solve, study};
 
 fn main() -> ExitCode {
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
     let _ = ctrlc::set_handler(|| {
+        if interrupt::interrupt() {
+            return;
+        }
         voidage::output::discard_unfinished();
         std::process::exit(130);
     });
@@ -17,7 +20,11 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
-            ExitCode::from(if error.usage { 2 } else { 1 })
+            ExitCode::from(match error.usage {
+                _ if interrupt::asked() => 130,
+                true => 2,
+                false => 1,
+            })
         }
     }
 }
@@ -27,6 +34,7 @@ fn execute(command: Command) -> Result<()> {
         Command::Porosity(args) => run::porosity(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Study(args) => study::study(&args),
+        Command::Solve(args) => solve::run::solve(&args),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "voidage", &mut script);

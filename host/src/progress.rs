@@ -65,6 +65,17 @@ impl Progress {
         bar.with_prefix(name).with_finish(indicatif::ProgressFinish::AndClear)
     }
 
+    /// A line that tells how far something has come, on a terminal only.
+    #[must_use]
+    pub fn line(&self) -> ProgressBar {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+        line.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        line.with_finish(indicatif::ProgressFinish::AndClear)
+    }
+
     /// Run a stage and keep its time.
     pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let begin = Instant::now();

@@ -70,10 +70,7 @@ fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
     check_outputs(args)?;
-    let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
-    pool.install(|| {
+    threads(args.threads)?.install(|| {
         let (bodies, own_grid) = load(&args.scene, &mut progress)?;
         if args.method == Method::Surface {
             need_surfaces(&bodies)?;
@@ -82,31 +79,10 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let mut remarks = Vec::new();
         let edges = grid::edges(&source, bodies.bounds(), &mut remarks)?;
         remarks.into_iter().for_each(|r| progress.warn(r));
-        let grid = edges.grid(None)?;
-        look_for_misfit(&bodies, &edges, &mut progress);
         let depth = args.depth.unwrap_or(args.leaf.depth());
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
-        room_for(porosity::memory(&grid, &bodies, options))?;
-        let layers = edges.cells()[2] * porosity::levels(&bodies).len();
-        let result = progress.stage("porosity", |p| {
-            let bar = p.bar("porosity", layers);
-            porosity::porosity_watched(&grid, &bodies, options, &|| bar.inc(1))
-        });
-        report_leaks(&bodies, &result, &mut progress);
-        if args.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
-            progress.warn(format!(
-                "{} of {} bodies are not convex, or not surely so: measured by their surface",
-                bodies.bodies.len() - result.subdivided,
-                bodies.bodies.len()
-            ));
-        }
-        if args.leaf == Leaf::Plane && result.max_gap > args.tol.max(ROUNDING) {
-            progress.warn(format!(
-                "the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
-                result.max_gap, args.tol
-            ));
-        }
+        let result = measure(&bodies, &edges, options, &mut progress)?;
         let report = Report::new(args, &edges, &bodies, &result);
         write(args, &edges, &result, &report, &mut progress)?;
         report.summary(&progress);
@@ -118,8 +94,58 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
     })
 }
 
+/// The command as typed.
+#[must_use]
+pub fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned());
+    std::iter::once("voidage".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// As many threads as asked for, or as there are cores.
+///
+/// # Errors
+/// The system refuses them.
+pub fn threads(count: Option<u16>) -> Result<rayon::ThreadPool> {
+    let count = count.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    pool.map_err(|e| Error::new(format!("cannot start {count} threads: {e}")))
+}
+
+/// Porosity of bodies on a grid, with a warning for whatever makes it less certain.
+///
+/// # Errors
+/// The edges are no grid, or one beyond memory.
+pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut Progress) -> Result<Porosity> {
+    let grid = edges.grid(None)?;
+    look_for_misfit(bodies, edges, progress);
+    room_for(porosity::memory(&grid, bodies, options))?;
+    let layers = edges.cells()[2] * porosity::levels(bodies).len();
+    let result = progress.stage("porosity", |p| {
+        let bar = p.bar("porosity", layers);
+        porosity::porosity_watched(&grid, bodies, options, &|| bar.inc(1))
+    });
+    report_leaks(bodies, &result, progress);
+    if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
+        progress.warn(format!(
+            "{} of {} bodies are not convex, or not surely so: measured by their surface",
+            bodies.bodies.len() - result.subdivided,
+            bodies.bodies.len()
+        ));
+    }
+    if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
+        progress.warn(format!(
+            "the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
+            result.max_gap, options.tol
+        ));
+    }
+    Ok(result)
+}
+
 /// Ask for the memory of the fields before work begins: a failure half way could not be reported.
-fn room_for(bytes: usize) -> Result<()> {
+///
+/// # Errors
+/// There is none.
+pub fn room_for(bytes: usize) -> Result<()> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
         Error::new(format!("the fields of this grid need {:.1} GB of memory: take fewer cells", bytes as f64 * 1e-9))
     })
@@ -179,7 +205,9 @@ fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
 fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     let fine = 1e-6 * (hi - lo).max(max - min).max_element();
-    let point = |p: DVec3| format!("({})", p.to_array().map(|v| number_to(v, fine)).join(", "));
+    let point = |p: DVec3| {
+        format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
+    };
     let extent = |p, q| format!("{} to {}", point(p), point(q));
     if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
         progress.warn(format!(
@@ -339,10 +367,7 @@ impl Report {
         }
         Report {
             version: env!("CARGO_PKG_VERSION"),
-            command: std::iter::once("voidage".to_owned())
-                .chain(std::env::args().skip(1))
-                .collect::<Vec<_>>()
-                .join(" "),
+            command: command_line(),
             grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
             solid_volume: result.solid_volume,
             bodies: bodies.bodies.len(),

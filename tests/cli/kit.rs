@@ -53,6 +53,31 @@ pub fn voidage(arguments: &[&dyn AsRef<std::ffi::OsStr>]) -> Output {
     command.output().expect("the program runs")
 }
 
+/// `voidage solve CASE -o DIR` with more arguments, in a scratch directory that holds the case.
+pub fn solve(at: &Scratch, case: &str, dir: &str, more: &[&str]) -> Output {
+    let path = at.file("case.toml");
+    std::fs::write(&path, case).expect("a case file");
+    let mut command = Command::new(program());
+    command.arg("solve").arg(path).arg("-o").arg(at.file(dir)).args(more);
+    command.output().expect("the program runs")
+}
+
+/// The same, which must succeed.
+pub fn solved(at: &Scratch, case: &str, dir: &str, more: &[&str]) -> Output {
+    let output = solve(at, case, dir, more);
+    assert!(output.status.success(), "{}", stderr(&output));
+    output
+}
+
+/// Values of an array.
+pub fn array(path: &Path) -> Vec<f64> {
+    voidage::output::npy::read(path).expect("an array").1
+}
+
+pub fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON")
+}
+
 pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }

@@ -5,4 +5,7 @@ mod inspect;
 mod kit;
 mod porosity;
 mod scene;
+mod solve;
+mod solve_errors;
+mod solve_resume;
 mod study;

@@ -1,13 +1,8 @@
 //! `voidage porosity`.
 
-use crate::kit::{Scratch, fixture, stderr, stdout, voidage};
-use serde_json::Value;
+use crate::kit::{Scratch, fixture, json, stderr, stdout, voidage};
 use std::fs;
 use voidage::output::npy;
-
-fn json(path: &std::path::Path) -> Value {
-    serde_json::from_slice(&fs::read(path).expect("a file")).expect("JSON")
-}
 
 #[test]
 fn a_run_with_everything() {

@@ -548,3 +548,44 @@ fn distances_to_needles_do_not_stop_early() {
     let Distance::Separated { distance, .. } = distance(&Hull::new(&a), &Hull::new(&b), None) else { panic!("apart") };
     assert!((distance - 2.0000000009313235).abs() < 1e-14, "{distance}");
 }
+
+/// Found by sweeping gaps: with both on one axis every simplex kept the origin on an edge, and shallow overlaps were left undecided.
+#[test]
+fn ellipsoids_on_one_axis_are_decided() {
+    let mut random = Random::new(29);
+    for i in 0..400 {
+        let mut axes = || DVec3::from_array(std::array::from_fn(|_| random.between(0.3, 2.0)));
+        let (p, q) = (axes(), axes());
+        let gap = 2f64.powi(-(i % 40)) * if i % 2 == 0 { 0.5 } else { -0.5 };
+        let a = Ellipsoid { center: DVec3::ZERO, semi_axes: p };
+        let b = Ellipsoid { center: DVec3::Y * (p.y + q.y) * (1.0 + gap), semi_axes: q };
+        match intersect(&a, &b, None) {
+            Intersection::Apart { .. } => assert!(gap > 0.0),
+            Intersection::Overlapping { .. } => assert!(gap < 0.0),
+            Intersection::Undecided { reason, .. } => panic!("undecided at {gap:e}: {reason:?}"),
+        }
+    }
+}
+
+/// Candidates of a sector are those of the vertices they were made for; too many of them are climbed or scanned.
+#[test]
+fn adjacency_of_any_hull_changes_no_answer() {
+    let mut random = Random::new(31);
+    for (count, stretch) in [(5, DVec3::ONE), (70, DVec3::ONE), (900, DVec3::ONE), (200, DVec3::new(1.0, 1.0, 1e-9))] {
+        let mut points =
+            || -> Vec<DVec3> { (0..count).map(|_| DVec3::from_array(random.on_sphere()) * stretch).collect() };
+        let (mut own, other) = (points(), points());
+        own.extend_from_within(..count / 2);
+        let edges = Adjacency::new(&own, &[], &[]);
+        let (scan, quick) = (Hull::new(&own), Hull::new(&own).with_adjacency(&edges));
+        let (plain, foreign) = (Hull::new(&other), Hull::new(&other).with_adjacency(&edges));
+        for i in 0..600 {
+            let mut d = DVec3::from_array(random.on_sphere());
+            if i % 3 == 0 {
+                d = (d * 2.0).round() * 0.5 + DVec3::new(0.0, 0.0, 1e-300);
+            }
+            assert_eq!(quick.farthest(d).point.dot(d), scan.farthest(d).point.dot(d), "{d:?}");
+            assert_eq!(foreign.farthest(d).point.dot(d), plain.farthest(d).point.dot(d), "{d:?}");
+        }
+    }
+}

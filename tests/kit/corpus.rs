@@ -186,8 +186,9 @@ fn distances_hold<V: Vector>(case: &Case, a: &Hull<V>, b: &Hull<V>, factor: f64,
         lower <= truth + room && (upper.is_infinite() || truth - room <= upper)
     };
     let mut near = |distance: f64| {
-        // Nothing is nearer than half a step of the subnormal numbers.
-        let error = if distance == truth { 0.0 } else { ((distance - truth).abs() - step).max(0.0) / truth };
+        // Nothing is nearer than a step of the subnormal numbers.
+        let off = (distance - truth).abs();
+        let error = if off <= step { 0.0 } else { (off - step) / truth };
         *largest_error = largest_error.max(error);
         error <= distance_tolerance::<V>()
     };

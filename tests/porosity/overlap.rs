@@ -189,3 +189,55 @@ fn walls_that_miss_a_plane_by_rounding_lie_in_it() {
     };
     assert_close(&run(8), &merge(&run(16), 8), 1e-9, "8 and 16 cells");
 }
+
+/// A prism of `sides` sides around an axis along x, closed at both ends by fans.
+fn rod(from: DVec3, length: f64, radius: f64, sides: usize) -> Vec<Triangle> {
+    let rim = |n: usize, x: f64| {
+        let angle = (n % sides) as f64 * std::f64::consts::TAU / sides as f64;
+        from + DVec3::new(x, radius * angle.cos(), radius * angle.sin())
+    };
+    let side = |n: usize| {
+        let [a, b, c, d] = [rim(n, 0.0), rim(n + 1, 0.0), rim(n + 1, length), rim(n, length)];
+        let [low, high] = [from, from + DVec3::X * length];
+        [[a, b, c], [a, c, d], [low, b, a], [high, d, c]].map(|t| [t[0], t[2], t[1]])
+    };
+    (0..sides).flat_map(side).collect()
+}
+
+/// A wall with too much surface for one tree is divided; a body that holds a part of it without surface there still counts.
+#[test]
+fn divided_walls_keep_the_bodies_around_them() {
+    let sides = 700;
+    let center = DVec3::new(1.0, 0.75, 0.75);
+    let solids = [
+        rod(center, 0.5, 0.125, sides),
+        voidage_tests::solids::cuboid(DVec3::new(0.5, -0.1, -0.1), DVec3::new(1.5, 0.6, 0.6)),
+    ];
+    let edges = Edges([vec![0.0, 1.0, 2.0], vec![0.0, 1.0], vec![0.0, 1.0]]);
+    let p = porosity(&edges.grid(None).expect("a grid"), &scene(&solids), Options::default());
+    let end = 0.5 * 0.125 * 0.125 * sides as f64 * (std::f64::consts::TAU / sides as f64).sin();
+    let [gap, open] = [p.max_gap, p.beta.x[1]];
+    assert!(gap <= 1e-4, "{gap}");
+    assert!((open - (1.0 - 0.36 - end)).abs() <= 0.5 * gap + 1e-12, "{open}, exactly {}", 1.0 - 0.36 - end);
+}
+
+/// Copies of a box that miss each other by 1e-5 to 1e-15 of its size are one box but for as much.
+#[test]
+fn copies_that_nearly_coincide_have_narrow_bounds() {
+    for seed in 0..24 {
+        let mut rng = Random::new(9000 + seed);
+        let (center, turn) = (rng.point(DVec3::splat(0.4), DVec3::splat(0.6)), rng.turn());
+        let miss = 10.0_f64.powi(-6 - (seed % 10) as i32);
+        let half = DVec3::new(0.31, 0.17, 0.23);
+        let copies: Vec<_> =
+            (0..3).map(|_| turned_box(center + rng.point(DVec3::ZERO, DVec3::splat(miss)), half, turn)).collect();
+        let edges = [0, 1, 2].map(|_| vec![0.0, 0.5, 1.0]);
+        let run = |solids: &[Vec<Triangle>]| {
+            let options = Options { bounds: true, ..Options::default() };
+            porosity(&Edges(edges.clone()).grid(None).expect("a grid"), &scene(solids), options)
+        };
+        let (one, all) = (run(&copies[..1]), run(&copies));
+        assert!(all.max_gap <= 1e-4, "seed {seed}, apart by {miss:e}: gap {}", all.max_gap);
+        assert_close(&all.beta, &one.beta, all.max_gap + 20.0 * miss, &format!("seed {seed}"));
+    }
+}

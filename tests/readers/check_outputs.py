@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Reads what `voidage porosity` wrote with NumPy and VTK, which share no code with it, and compares.
+"""Reads what `voidage porosity` and `voidage solve` wrote with NumPy, VTK and PyVista, which share no code with it.
 
-usage: check_outputs.py DIR      DIR holds any of *.vtr, beta_*.npy, *.png, *.json
-needs: pip install numpy vtk
+usage: check_outputs.py DIR      DIR holds any of *.vtr, beta_*.npy, *.png, *.json, or the results of a flow
+needs: pip install numpy vtk pyvista
 
 Checks that every .vtr agrees with the arrays to the bit (cell values, low-side face vectors, staggered faces, shapes),
-that 0 <= lower <= value <= upper <= 1, that pictures and reports load. Exit code 1 and a line for each fault.
+that 0 <= lower <= value <= upper <= 1, that pictures and reports load. Of a flow: that the series opens with the times
+of the report, that its last frame agrees with the arrays of final/ to the bit, that the log is a table. Exit code 1 and a line for each fault.
 """
 
 import json
@@ -102,6 +103,33 @@ def compare(path, arrays):
     return f"{path.name} {cells} {sorted(expected)}"
 
 
+def check_flow(directory):
+    """The results of `voidage solve`."""
+    import pyvista
+
+    final = {path.stem: np.load(path, allow_pickle=False) for path in sorted((directory / "final").glob("*.npy"))}
+    check(set(final) == set("rho u v w p".split()), f"final holds {sorted(final)}")
+    report = json.loads((directory / "report.json").read_text(encoding="utf-8"))
+    for name, array in final.items():
+        check(list(array.shape) == report["cells"] and array.flags.f_contiguous, f"final/{name}.npy: shape {array.shape}")
+        check(np.all(np.isfinite(array)), f"final/{name}.npy: not finite")
+    series = pyvista.get_reader(str(directory / "flow.pvd"))
+    check(list(series.time_values) == report["frames"], f"flow.pvd: times {series.time_values}")
+    for n, time in enumerate(series.time_values):
+        series.set_active_time_value(time)
+        grid = series.read()[0]
+        check(grid.field_data["TimeValue"][0] == time, f"frame {n}: time {grid.field_data['TimeValue']}")
+        check(grid.n_cells == np.prod(report["cells"]), f"frame {n}: {grid.n_cells} cells")
+    shaped = {name: grid.cell_data[name].reshape(report["cells"], order="F") for name in ("rho", "p")}
+    shaped |= {name: grid.cell_data["velocity"][:, axis].reshape(report["cells"], order="F") for axis, name in enumerate("uvw")}
+    for name, array in final.items():
+        check(same_bits(np.asfortranarray(shaped[name]), array), f"the last frame and final/{name}.npy differ")
+    log = np.genfromtxt(directory / "log.csv", delimiter=",", names=True)
+    check(log["step"][-1] == report["steps"] and log["time"][-1] == report["time"], "log.csv: its last line is not the end")
+    check(np.all(np.isfinite(log["mass"])), "log.csv: the mass is not finite")
+    return f"flow: {len(series.time_values)} frames to t = {report['time']}"
+
+
 def check_picture(path):
     """Chunks, checksums, pixels. By hand: libpng inside VTK crashes on a cut file."""
     rest = path.read_bytes()
@@ -130,7 +158,10 @@ def main():
     arrays = read_arrays(directory)
     done = [f"{name}.npy {array.shape}" for name, array in arrays.items()]
     done += [compare(path, arrays) for path in sorted(directory.glob("*.vtr"))]
-    done += [check_picture(path) for path in sorted(directory.glob("*.png"))]
+    pictures = sorted(directory.glob("*.png")) + sorted(directory.glob("frames/*.png"))
+    done += [check_picture(path) for path in pictures]
+    if (directory / "final").is_dir():
+        done.append(check_flow(directory))
     for path in sorted(directory.glob("*.json")):
         json.loads(path.read_text(encoding="utf-8"))
         done.append(path.name)

@@ -5,3 +5,4 @@ mod convergence;
 mod extremes;
 mod invariance;
 mod reference;
+mod stress;

@@ -3,10 +3,11 @@
 //! Each round yields two bounds. The support plane across `v` is a lower bound, the simplex point `v` itself an upper one; rounding widens
 //! both. Their difference is the duality gap: how far the stated distance can be from the truth.
 
-use super::{Intersection, Overlap, Reason, SUPPORT_ROUNDINGS, Scale, across, scale, search, seed, within_radii};
+use super::pair::{Pair, Scale, scale};
+use super::{Intersection, Overlap, Reason, across, search, within_radii};
 use crate::real::{Real, Vector};
 use crate::simplex::{Nearest, Side, Simplex, nearest, side};
-use crate::support::{ScalarOf, Scaled, Support, lengthened};
+use crate::support::{ScalarOf, Support, lengthened};
 
 /// What [`distance`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,58 +74,75 @@ where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    match scale(a.extent() + b.extent()) {
-        Scale::Keep => measure(a, b, hint, Real::ONE),
-        Scale::Multiply(factor) => {
-            let (a, b) = (Scaled { shape: a, factor }, Scaled { shape: b, factor });
-            measure(&a, &b, hint, ScalarOf::<A>::ONE / factor)
-        }
+    let extent = a.extent() + b.extent();
+    match scale(extent) {
+        Scale::Keep => measure(&Pair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE), hint),
+        Scale::Multiply(factor) => measure(&Pair::<A, B, ScalarOf<A>, true>::new(a, b, extent, factor), hint),
         Scale::Refuse(reason) => Distance::Undecided { lower: Real::ZERO, upper: Real::INFINITY, reason },
     }
 }
 
-fn measure<A, B>(a: &A, b: &B, hint: Option<A::Vector>, back: ScalarOf<A>) -> Distance<A::Vector>
+fn measure<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+) -> Distance<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    let radii = a.radius() + b.radius();
-    let mut found = walk(a, b, hint, Goal::Distance);
+    // Overlap is quickly seen, and else the axis that shows the gap leads the walk.
+    let mut hint = hint;
+    if !(A::ROUNDED || B::ROUNDED) {
+        match search(pair, hint, false) {
+            Intersection::Overlapping { proof } => return Distance::Overlapping { proof },
+            Intersection::Apart { axis } => hint = Some(axis),
+            Intersection::Undecided { .. } => {}
+        }
+    }
+    let mut found = walk(pair, hint, Goal::Distance);
     if found.inside.is_none() && !(found.lower > Real::ZERO) {
         // Near the origin a symmetry may keep it on the simplex's rim: the boolean knows a way round that.
-        let again = search(a, b, a.extent() + b.extent(), None, true);
-        if let Intersection::Overlapping { proof: Overlap::Inside(simplex) } = again {
+        if let Intersection::Overlapping { proof: Overlap::Inside(simplex) } = search(pair, None, true) {
             found.inside = Some(simplex);
         }
     }
-    stated(found, radii, back)
+    stated(pair, &found)
 }
 
 /// A walk's result in the words of the caller: radii taken off, scale undone.
-fn stated<V: Vector>(found: Walk<V>, radii: V::Scalar, back: V::Scalar) -> Distance<V> {
-    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    let relative = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+fn stated<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    found: &Walk<A::Vector>,
+) -> Distance<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    type S<A> = ScalarOf<A>;
+    let (zero, one) = (S::<A>::ZERO, S::<A>::ONE);
+    let relative = S::<A>::from_f64(4.0) * S::<A>::EPSILON;
+    let radii = pair.radii();
     if let Some(simplex) = found.inside {
-        let simplex = Simplex { a: simplex.a.map(|p| p * back), b: simplex.b.map(|p| p * back) };
         return Distance::Overlapping { proof: Overlap::Inside(simplex) };
     }
     if radii > zero && found.upper < radii * (one - relative) {
-        return Distance::Overlapping { proof: Overlap::Within { a: found.a * back, b: found.b * back } };
+        return Distance::Overlapping { proof: Overlap::Within { a: found.a, b: found.b } };
     }
     // Bounds move outwards with each rounding, also that of a result below the normal numbers.
-    let below = |x: V::Scalar| (x - x.abs() * relative) * back;
-    let above = |x: V::Scalar| (x + x.abs() * relative) * back + V::Scalar::MIN_POSITIVE * V::Scalar::EPSILON;
+    let below = |x: S<A>| pair.unscaled(x - x.abs() * relative);
+    let above = |x: S<A>| pair.unscaled(x + x.abs() * relative) + S::<A>::MIN_POSITIVE * S::<A>::EPSILON;
     let lower = below(found.lower - radii * (one + relative));
     let upper = above((found.upper - radii * (one - relative)).max(zero));
     if !(lower > zero) {
         return Distance::Undecided { lower: zero, upper, reason: found.reason };
     }
     let length = found.v.length();
-    let axis = if length > zero { found.v * (one / length) } else { V::ZERO };
+    let axis = if length > zero { found.v * (one / length) } else { A::Vector::ZERO };
+    let (a, b) = pair.bodies();
     Distance::Separated {
-        distance: ((length - radii) * back).max(lower).min(upper),
-        a: (found.a + axis * found.radius_a) * back,
-        b: (found.b - axis * found.radius_b) * back,
+        distance: pair.unscaled(length - radii).max(lower).min(upper),
+        a: found.a + axis * a.radius(),
+        b: found.b - axis * b.radius(),
         axis,
         lower,
         upper,
@@ -132,22 +150,25 @@ fn stated<V: Vector>(found: Walk<V>, radii: V::Scalar, back: V::Scalar) -> Dista
 }
 
 /// The boolean for rounded bodies: the cores' distance against the sum of the radii, stopping as soon as that is decided.
-pub(super) fn intersect_rounded<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Intersection<A::Vector>
+pub(super) fn intersect_rounded<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    let radii = a.radius() + b.radius();
-    let found = walk(a, b, hint, Goal::Compare(radii));
-    let one = ScalarOf::<A>::ONE;
+    let found = walk(pair, hint, Goal::Compare(pair.radii()));
     let relative = ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON;
     if let Some(simplex) = found.inside {
         return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
     }
-    if found.lower > radii * (one + relative) {
+    if found.lower > pair.radii() * (ScalarOf::<A>::ONE + relative) {
         return Intersection::Apart { axis: found.axis };
     }
-    if within_radii(found.a, found.b, radii, a.slack().max(b.slack()) + found.error) {
+    let (a, b) = pair.bodies();
+    let error = ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON * (a.extent() + b.extent());
+    if within_radii(found.a, found.b, a.radius() + b.radius(), a.slack().max(b.slack()) + error) {
         return Intersection::Overlapping { proof: Overlap::Within { a: found.a, b: found.b } };
     }
     Intersection::Undecided { reason: found.reason, axis: found.axis }
@@ -162,7 +183,7 @@ enum Goal<R> {
     Compare(R),
 }
 
-/// Where a walk ended. Lengths are those of the cores.
+/// Where a walk ended. Lengths are those of the cores, scaled; points are not.
 struct Walk<V: Vector> {
     /// The core's overlap, if proved.
     inside: Option<Simplex<V>>,
@@ -174,14 +195,14 @@ struct Walk<V: Vector> {
     axis: V,
     a: V,
     b: V,
-    radius_a: V::Scalar,
-    radius_b: V::Scalar,
-    /// How far `a` and `b` may be from the cores, in each component, besides the bodies' slacks.
-    error: V::Scalar,
     reason: Reason,
 }
 
-fn walk<A, B>(a: &A, b: &B, hint: Option<A::Vector>, goal: Goal<ScalarOf<A>>) -> Walk<A::Vector>
+fn walk<A, B, const SCALED: bool>(
+    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+    goal: Goal<ScalarOf<A>>,
+) -> Walk<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
@@ -189,28 +210,28 @@ where
     type S<A> = ScalarOf<A>;
     let (zero, one) = (S::<A>::ZERO, S::<A>::ONE);
     let real = S::<A>::from_f64;
-    let extent = a.extent() + b.extent();
-    let slack = a.slack() + b.slack();
-    let margin = real(SUPPORT_ROUNDINGS) * S::<A>::EPSILON * extent + slack + S::<A>::UNDERFLOW;
+    let margin = pair.margin();
     let relative = real(8.0) * S::<A>::EPSILON;
     let origin = A::Vector::ZERO;
 
-    let mut axis = seed(a, b, hint);
-    let (mut start_a, mut start_b) = (0, 0);
-    let mut points = [(origin, origin, origin); 4];
+    let mut axis = pair.seed(hint);
+    let mut starts = (0, 0);
+    // Differences, newest first, and where their points are kept.
+    let mut w = [origin; 4];
+    let mut slot = [0usize, 1, 2, 3];
+    let mut pairs = [(origin, origin); 4];
     let mut count = 0;
     let mut stalled = 0;
+    // The nearest point so far: weights, and the points they belong to.
+    let mut witnesses = [(zero, (origin, origin)); 3];
     let mut best = Walk {
         inside: None,
         lower: zero,
         upper: S::<A>::INFINITY,
         v: axis,
         axis,
-        a: a.center(),
-        b: b.center(),
-        radius_a: a.radius(),
-        radius_b: b.radius(),
-        error: real(4.0) * S::<A>::EPSILON * extent,
+        a: origin,
+        b: origin,
         reason: Reason::Iterations,
     };
 
@@ -224,61 +245,57 @@ where
                 break;
             }
         }
-        let mut from_a = a.support(direction, start_a);
-        let mut from_b = b.support(-direction, start_b);
+        let (mut from_a, mut from_b) = pair.supports(direction, starts);
+        let mut new = pair.difference(from_a.point, from_b.point);
         let inv_length = one / direction.dot(direction).sqrt();
         let bound = |w: A::Vector| {
             let along = w.dot(direction) - margin * size;
             (along - along.abs() * relative) * inv_length
         };
-        let mut new = from_b.point - from_a.point;
         if bound(new) > best.lower {
-            from_a = a.farther(direction, from_a.index).unwrap_or(from_a);
-            from_b = b.farther(-direction, from_b.index).unwrap_or(from_b);
-            new = from_b.point - from_a.point;
+            (from_a, from_b) = pair.farther(direction, from_a, from_b);
+            new = pair.difference(from_a.point, from_b.point);
             let lower = bound(new);
             if lower > best.lower {
                 (best.lower, best.axis) = (lower, direction);
             }
         }
-        (start_a, start_b) = (from_a.index, from_b.index);
+        starts = (from_a.index, from_b.index);
         match goal {
-            Goal::Compare(limit) if best.lower > limit * (one + relative) => return best,
-            Goal::Compare(limit) if best.upper < limit * (one - relative) => return best,
+            Goal::Compare(limit) if best.lower > limit * (one + relative) => break,
+            Goal::Compare(limit) if best.upper < limit * (one - relative) => break,
             _ => {}
         }
         let gap = best.upper - best.lower;
-        let repeated = points.iter().take(count).any(|p| p.0 == new);
+        let repeated = w.iter().take(count).any(|&p| p == new);
         if repeated || (count > 0 && gap <= real(GAP_ROUNDINGS) * S::<A>::EPSILON * best.upper) {
             best.reason = Reason::Rounding;
             break;
         }
-        points = [(new, from_a.point, from_b.point), points[0], points[1], points[2]];
+        let free = slot[3];
+        pairs[free & 3] = (from_a.point, from_b.point);
+        w = [new, w[0], w[1], w[2]];
+        slot = [free, slot[0], slot[1], slot[2]];
         count = (count + 1).min(4);
-        let w = points.map(|p| p.0);
-        if count == 4 && side(w, slack) == Side::Inside {
-            best.inside = Some(Simplex { a: points.map(|p| p.1), b: points.map(|p| p.2) });
+        if count == 4 && side(w, pair.slack) == Side::Inside {
+            best.inside = Some(Simplex { a: slot.map(|s| pairs[s & 3].0), b: slot.map(|s| pairs[s & 3].1) });
             return best;
         }
         let Nearest { point: v, weights, count: kept, order } = nearest(w, count);
-        points = order.map(|i| points[i & 3]);
+        w = order.map(|i| w[i & 3]);
+        slot = order.map(|i| slot[i & 3]);
         count = kept;
-        let mut combined = [origin; 3];
-        let mut reach = zero;
-        for (p, weight) in points.iter().zip(weights).take(count) {
-            combined[0] += p.0 * weight;
-            combined[1] += p.1 * weight;
-            combined[2] += p.2 * weight;
-            reach = reach.max(p.0.norm_max());
-        }
-        let error = real(COMBINATION_ROUNDINGS) * S::<A>::EPSILON * reach + real(1.75) * slack + S::<A>::UNDERFLOW;
-        let upper = norm(combined[0]) * (one + relative) + error;
+        // Beyond the count weights are zero, and points repeat the first.
+        let [p, q, r] = [w[0], if count > 1 { w[1] } else { w[0] }, if count > 2 { w[2] } else { w[0] }];
+        let combined = p * weights[0] + q * weights[1] + r * weights[2];
+        let reach = p.abs().max(q.abs()).max(r.abs()).norm_max();
+        let error = real(COMBINATION_ROUNDINGS) * S::<A>::EPSILON * reach + real(1.75) * pair.slack + S::<A>::UNDERFLOW;
+        let upper = norm(combined) * (one + relative) + error;
         let progress = v.dot(v) < best.v.dot(best.v) || !(best.upper < S::<A>::INFINITY);
         if upper < best.upper || (progress && norm(v) < best.upper) {
             best.upper = best.upper.min(upper);
             best.v = v;
-            best.a = combined[1];
-            best.b = combined[2];
+            witnesses = [0, 1, 2].map(|i| (weights[i], pairs[slot[i] & 3]));
         }
         // Along a needle the first steps gain less than one rounding, and yet lead to the nearest point.
         if !progress {
@@ -290,10 +307,14 @@ where
         }
         axis = v;
         if v == origin && count == 3 {
-            axis = (w_of(&points, 1) - w_of(&points, 0)).cross(w_of(&points, 2) - w_of(&points, 0));
+            axis = (w[1] - w[0]).cross(w[2] - w[0]);
         } else if v == origin && count == 2 {
-            axis = across(w_of(&points, 1) - w_of(&points, 0));
+            axis = across(w[1] - w[0]);
         }
+    }
+    for (weight, (p, q)) in witnesses {
+        best.a += p * weight;
+        best.b += q * weight;
     }
     best
 }
@@ -303,8 +324,4 @@ where
 fn norm<V: Vector>(v: V) -> V::Scalar {
     let sq = v.dot(v);
     if sq > V::Scalar::UNDERFLOW { sq.sqrt() } else { v.length() }
-}
-
-fn w_of<V: Vector>(points: &[(V, V, V); 4], i: usize) -> V {
-    points[i & 3].0
 }

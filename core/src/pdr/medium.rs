@@ -91,7 +91,7 @@ pub struct Porosity<'a, R, const D: usize> {
     pub marks: &'a [u8],
 }
 
-/// Mark of a cell whose own reconstruction stays first order: less open volume than half its largest face could empty.
+/// Mark of a cell whose own reconstruction stays first order: less open volume than [`SMALL_SHARE`] of its largest face.
 pub const SMALL: u8 = 1 << 6;
 /// Mark of a cell with no open face: nothing happens there.
 pub const SEALED: u8 = 1 << 7;
@@ -109,8 +109,9 @@ pub const fn jump_high(d: usize) -> u8 {
 }
 
 /// A cell counts as small below this share of its largest open face: the share that merging restores, and so the factor
-/// (its inverse) by which the stable time step may shrink.
-pub(crate) const SMALL_SHARE: f64 = 0.5;
+/// (its inverse) by which the stable time step may shrink. A little less than the share 1/3 of the first cell of a ball (a duct
+/// whose area goes with r²), which needs no neighbour.
+pub const SMALL_SHARE: f64 = 0.33;
 
 /// Porosity as the kernel asks for it at single cells and faces.
 #[derive(Clone, Copy, Debug)]

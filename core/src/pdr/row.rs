@@ -84,41 +84,96 @@ pub(crate) fn primitives<R: Real, const D: usize>(
     }
 }
 
-/// Limited slopes of one variable from its values in the cell below, here, and above.
-pub(crate) fn slopes<R: Real, S: Slope>(low: &[R], here: &[R], high: &[R], out: &mut [R]) {
-    let n = out.len();
-    let (low, here, high) = (&low[..n], &here[..n], &high[..n]);
+/// Values of one variable in the cells below, here and above along an axis.
+pub(crate) type Three<'a, R> = (&'a [R], &'a [R], &'a [R]);
+
+/// How differences along an axis become slopes.
+pub(crate) trait Differences<R> {
+    /// Own width over the distance of the centres, below and above.
+    fn scale(&self, i: usize) -> (R, R);
+    /// Half the weight of a column of unit density between the centres, below and above; `None` without gravity along the axis.
+    fn half_weight(&self, i: usize) -> Option<(R, R)>;
+}
+
+/// Differences of a variable to the cell below and to the cell above, scaled to the width of the cell.
+#[inline(always)]
+fn differences_of<R: Real>((low, here, high): Three<'_, R>, i: usize, axis: &impl Differences<R>) -> (R, R) {
+    let (a, b) = axis.scale(i);
+    (a * (here[i] - low[i]), b * (high[i] - here[i]))
+}
+
+/// The same of the pressure, less what hydrostatic balance asks for.
+#[inline(always)]
+fn pressure_differences<R: Real>(
+    (low, here, high): Three<'_, R>,
+    rho: Three<'_, R>,
+    i: usize,
+    axis: &impl Differences<R>,
+) -> (R, R) {
+    let Some(weight) = axis.half_weight(i) else { return differences_of((low, here, high), i, axis) };
+    let (a, b) = axis.scale(i);
+    let below = (here[i] - low[i]) - (rho.0[i] + rho.1[i]) * weight.0;
+    let above = (high[i] - here[i]) - (rho.1[i] + rho.2[i]) * weight.1;
+    (a * below, b * above)
+}
+
+/// Slopes of all variables of a row along one axis. `values` gives a variable of the state block.
+///
+/// With the `compliance` 1/c² of each cell, the density's slope is that of a sound wave, dp/c², and a slope of the rest, which is
+/// the entropy wave; without it each variable is limited by itself.
+pub(crate) fn slopes<'a, R: Real, S: Slope, const D: usize>(
+    values: impl Fn(usize) -> Three<'a, R>,
+    axis: &impl Differences<R>,
+    compliance: Option<&[R]>,
+    out: &mut [R],
+    n: usize,
+) {
+    for v in 1..=D {
+        one_slope::<R, S>(values(v), axis, &mut out[v * n..][..n]);
+    }
+    let (p, rho) = (fit(values(D + 1), n), fit(values(0), n));
+    let (out_rho, rest) = out.split_at_mut(n);
+    let out_p = &mut rest[D * n..][..n];
+    let Some(compliance) = compliance else {
+        for i in 0..n {
+            let (a, b) = pressure_differences(p, rho, i, axis);
+            out_p[i] = S::slope(a, b);
+        }
+        return one_slope::<R, S>(rho, axis, out_rho);
+    };
+    let compliance = &compliance[..n];
     for i in 0..n {
-        out[i] = S::slope(here[i] - low[i], high[i] - here[i]);
+        let (rho_a, rho_b) = differences_of(rho, i, axis);
+        let (p_a, p_b) = pressure_differences(p, rho, i, axis);
+        let pressure = S::slope(p_a, p_b);
+        let entropy = S::entropy_slope(rho_a - p_a * compliance[i], rho_b - p_b * compliance[i]);
+        out_p[i] = pressure;
+        out_rho[i] = pressure * compliance[i] + entropy;
     }
 }
 
-/// Slopes where the widths of the cells differ: both differences are first scaled to the width of this cell. `low` and `high`
-/// are the scales: width / distance of the centres, one each for the row, or one per cell along the row.
-pub(crate) fn slopes_stretched<R: Real, S: Slope>(
-    values: (&[R], &[R], &[R]),
-    scale: impl Fn(usize) -> (R, R),
-    out: &mut [R],
-) {
-    let (low, here, high) = values;
-    for i in 0..out.len() {
-        let (a, b) = scale(i);
-        out[i] = S::slope(a * (here[i] - low[i]), b * (high[i] - here[i]));
-    }
-}
-
-/// Slopes of the pressure's deviation from hydrostatic balance, `half_weight` = ½ g dx.
-pub(crate) fn slopes_hydrostatic<R: Real, S: Slope>(
-    pressure: (&[R], &[R], &[R]),
-    density: (&[R], &[R], &[R]),
-    half_weight: impl Fn(usize) -> (R, R),
-    out: &mut [R],
-) {
-    for i in 0..out.len() {
-        let (low, high) = half_weight(i);
-        let a = (pressure.1[i] - pressure.0[i]) - (density.0[i] + density.1[i]) * low;
-        let b = (pressure.2[i] - pressure.1[i]) - (density.1[i] + density.2[i]) * high;
+/// Slopes of one variable.
+fn one_slope<R: Real, S: Slope>(values: Three<'_, R>, axis: &impl Differences<R>, out: &mut [R]) {
+    let n = out.len();
+    let values = fit(values, n);
+    for i in 0..n {
+        let (a, b) = differences_of(values, i, axis);
         out[i] = S::slope(a, b);
+    }
+}
+
+/// One length for all, so that the loops need no checks.
+#[inline(always)]
+fn fit<R>((a, b, c): Three<'_, R>, n: usize) -> Three<'_, R> {
+    (&a[..n], &b[..n], &c[..n])
+}
+
+/// 1/c² of each cell of a row.
+pub(crate) fn compliances<R: Real>(rho: &[R], p: &[R], gamma: R, out: &mut [R]) {
+    let n = out.len();
+    let (rho, p) = (&rho[..n], &p[..n]);
+    for i in 0..n {
+        out[i] = rho[i] / (gamma * p[i]);
     }
 }
 
@@ -209,23 +264,24 @@ pub(crate) fn leaves_physical_set<R: Real, const D: usize>(half: &[R], slope: &[
     let s_p: [&[R]; D] = core::array::from_fn(|d| var(slope[d], D + 1, n));
     let mut bad = 0u64;
     for i in 0..n {
-        let steepest = |s: &[&[R]; D]| (0..D).fold(R::ZERO, |m, d| greater(s[d][i].abs(), m));
-        let least_rho = rho[i] - R::HALF * steepest(&s_rho);
-        let least_p = p[i] - R::HALF * steepest(&s_p);
-        bad |= u64::from(!((least_rho > R::ZERO) & (least_p > R::ZERO)));
+        for d in 0..D {
+            let least_rho = rho[i] - R::HALF * s_rho[d][i].abs();
+            let least_p = p[i] - R::HALF * s_p[d][i].abs();
+            bad |= u64::from(!((least_rho > R::ZERO) & (least_p > R::ZERO)));
+        }
     }
     bad != 0
 }
 
 /// States on the high (`SIDE` = 1) or low (−1) face of each cell, and the pressure on the walls inside the cell there.
-/// `half_weight` = ½ g dx tilts both along the hydrostatic gradient. The velocity is turned into the frame of axis `d`.
+/// `weight` = g dx tilts both along the hydrostatic gradient. The velocity is turned into the frame of axis `d`.
 pub(crate) fn face_states<R: Real, const D: usize>(
     high: bool,
     d: usize,
     half: &[R],
     slope: &[R],
     n: usize,
-    half_weight: Option<&[R]>,
+    weight: Option<&[R]>,
     out: &mut [R],
     stride: usize,
     offset: usize,
@@ -240,12 +296,12 @@ pub(crate) fn face_states<R: Real, const D: usize>(
         }
     }
     out[(D + 2) * stride + offset..][..n].copy_from_slice(var(half, D + 1, n));
-    if let Some(weight) = half_weight {
+    if let Some(weight) = weight {
         let rho = var(half, 0, n);
         for v in [D + 1, D + 2] {
             let o = &mut out[v * stride + offset..][..n];
             for i in 0..n {
-                let tilt = rho[i] * weight[i];
+                let tilt = R::HALF * weight[i] * rho[i];
                 o[i] = if high { o[i] + tilt } else { o[i] - tilt };
             }
         }

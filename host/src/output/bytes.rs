@@ -6,7 +6,7 @@ use std::io::{self, Write};
 const BLOCK: usize = super::atomic::BUFFER / 8;
 
 /// Writes all values, a block at a time.
-pub(super) fn write_f64(out: &mut dyn Write, data: &[f64]) -> io::Result<()> {
+pub(crate) fn write_f64(out: &mut dyn Write, data: &[f64]) -> io::Result<()> {
     let mut bytes = vec![0; 8 * BLOCK.min(data.len())];
     for values in data.chunks(BLOCK) {
         let bytes = &mut bytes[..8 * values.len()];

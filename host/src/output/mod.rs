@@ -7,7 +7,7 @@
 //! `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`chart`].
 
 pub mod atomic;
-mod bytes;
+pub(crate) mod bytes;
 pub mod canvas;
 pub mod chart;
 pub mod colour;

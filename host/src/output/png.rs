@@ -25,15 +25,21 @@ pub fn slices(path: &Path, title: &str, x: &[f64], y: &[f64], z: &[f64], unit: &
 
 /// Cells, their sizes, the domain, how much is open.
 fn note(edges: [&[f64]; 3], unit: &str, open: f64) -> String {
+    // Under 1e-12 it is rounding of the sum.
+    let blocked = number(((1.0 - open) * 1e12).round() / 1e10);
+    format!("{} · {blocked} % of the volume blocked", grid_note(edges, unit))
+}
+
+/// Cells, their sizes, the domain.
+#[must_use]
+pub fn grid_note(edges: [&[f64]; 3], unit: &str) -> String {
     let by = |texts: [String; 3]| texts.join(" × ");
     let cells = by(edges.map(|e| (e.len() - 1).to_string()));
     let sizes = edges.map(size);
     let sizes = if sizes[0] == sizes[1] && sizes[1] == sizes[2] { sizes[0].clone() } else { by(sizes) };
     let domain = by(edges.map(|e| number(e[e.len() - 1] - e[0])));
-    // Under 1e-12 it is rounding of the sum.
-    let blocked = number(((1.0 - open) * 1e12).round() / 1e10);
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    format!("{cells} cells of {sizes}{unit} · domain {domain}{unit} · {blocked} % of the volume blocked")
+    format!("{cells} cells of {sizes}{unit} · domain {domain}{unit}")
 }
 
 /// Cell size along an axis, or its range.
@@ -42,6 +48,12 @@ fn size(edges: &[f64]) -> String {
     let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
     // Edges given in decimals differ in the last bits.
     if most - least <= 1e-6 * most { number(most) } else { format!("{}–{}", number(least), number(most)) }
+}
+
+/// The index of the slice along each axis where a cell field shows most; none if the lengths do not fit.
+#[must_use]
+pub fn most_telling(edges: [&[f64]; 3], values: &[f64]) -> Option<[usize; 3]> {
+    survey(edges, values).map(|(at, _)| at)
 }
 
 /// The index of the slice with the largest variance along each axis, the one nearest to the middle among equals; and
@@ -61,7 +73,7 @@ fn survey(edges: [&[f64]; 3], beta: &[f64]) -> Option<([usize; 3], f64)> {
         sums_add(&mut by_x, in_x, *d);
         sums_add(&mut by_y, in_y, *d);
     }
-    Some(([by_x, by_y, by_z].map(|s| most_telling(&s)), total.value / total.weight))
+    Some(([by_x, by_y, by_z].map(|s| strongest(&s)), total.value / total.weight))
 }
 
 /// Of one plane across z: the lines along y at each x, and along x at each y.
@@ -103,7 +115,7 @@ fn sums_add(all: &mut [Sums], others: &[Sums], weight: f64) {
     all.iter_mut().zip(others).for_each(|(sum, other)| sum.add(*other, weight));
 }
 
-fn most_telling(slices: &[Sums]) -> usize {
+fn strongest(slices: &[Sums]) -> usize {
     let most = slices.iter().map(Sums::variance).fold(0.0, f64::max);
     // Rounding must not decide among slices that are alike.
     let enough = |i: &usize| slices[*i].variance() >= 0.999 * most - 1e-12;

@@ -39,6 +39,12 @@ impl FieldSet {
         FieldSet { v: Values::zeros(grid.cell_count()), x: faces(0), y: faces(1), z: faces(2) }
     }
 
+    /// The faces normal to an axis.
+    #[must_use]
+    pub fn faces(&self, axis: usize) -> &[f64] {
+        [&self.x, &self.y, &self.z][axis]
+    }
+
     /// Cut into layers; empty fields give empty slices.
     pub fn layers(&mut self, grid: &Grid<f64>) -> Vec<Slices<'_>> {
         let [nx, ny, nz] = grid.cells();

@@ -6,10 +6,11 @@ use super::fields::FieldSet;
 use super::layers::Worker;
 use super::{Options, targets};
 use glam::DVec3;
+use std::ops::Range;
 use voidage_core::aabb::Aabb;
 use voidage_core::grid::Grid;
 use voidage_core::layer::{Layer, gap};
-use voidage_core::overlap::{CellUnion, Fragment, Full, Limit, Node, Overlap, Part, Piece, Task, Workspace};
+use voidage_core::overlap::{CellUnion, Fragment, Limit, NoProof, Node, Overlap, Part, Piece, Task, Workspace};
 
 /// Pieces of surface that one cell may hold before it is divided: beyond, trees cost more than smaller cells.
 const MAX_PIECES: usize = 512;
@@ -79,7 +80,7 @@ impl From<CellUnion<f64>> for Refined {
 #[derive(Default)]
 struct Row {
     ids: Vec<u32>,
-    groups: Vec<(usize, std::ops::Range<usize>)>,
+    groups: Vec<(usize, Range<usize>)>,
 }
 
 impl Row {
@@ -99,6 +100,10 @@ impl Row {
         row
     }
 }
+
+/// Planes of different bodies may miss each other by so much, in cells, and be taken for one where that gives a proof:
+/// parts that were meant to touch, in coordinates that were rounded.
+const BLURS: [f64; 5] = [0.0, 1e-12, 1e-10, 1e-8, 1e-6];
 
 /// By how much a union may leave the bounds given by the bodies' own shares and still be rounding.
 const ROUNDING: f64 = 1e-9;
@@ -159,15 +164,13 @@ impl Unions {
                 }
                 let row = row.get_or_insert_with(|| Row::new(bins, k, lo, hi));
                 let (lo, hi) = grid.cell_box([i, j, k]);
-                let union = self.union(lo, hi, bins, convex, k, row).map(Refined::from);
-                let believed = union.and_then(|u| if agrees(layer, nx, i, j, &u, areas) { Ok(u) } else { Err(Full) });
-                let refined = match believed {
+                let refined = match self.union(lo, hi, bins, convex, k, row, |u| agrees(layer, nx, i, j, u, areas)) {
                     Ok(refined) => Some(refined),
-                    Err(Full) if open > self.options.tol => {
+                    Err(_) if open > self.options.tol => {
                         divided += 1;
                         self.divide(lo, hi, bins, convex, k)
                     }
-                    Err(Full) => None,
+                    Err(_) => None,
                 };
                 if let Some(refined) = refined {
                     store(layer, nx, ny, i, j, &refined);
@@ -194,10 +197,10 @@ impl Unions {
                 } else {
                     let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                     let (lo, hi) = grid.cell_box([i, j, k]);
-                    match self.union(lo, hi, bins, convex, k, row) {
-                        Ok(union) => Some(Refined::from(union).high[2]),
-                        Err(Full) if open > self.options.tol => self.divide(lo, hi, bins, convex, k).map(|r| r.high[2]),
-                        Err(Full) => None,
+                    match self.union(lo, hi, bins, convex, k, row, |_| true) {
+                        Ok(union) => Some(union.high[2]),
+                        Err(_) if open > self.options.tol => self.divide(lo, hi, bins, convex, k).map(|r| r.high[2]),
+                        Err(_) => None,
                     }
                 };
                 if let Some(bounds) = bounds {
@@ -207,7 +210,7 @@ impl Unions {
         }
     }
 
-    /// The exact union in a cell of layer `k`; of triangles only.
+    /// The union in a cell of layer `k`: exact, or with the least blur that gives a proof; of triangles only.
     fn union(
         &mut self,
         lo: [f64; 3],
@@ -216,12 +219,38 @@ impl Unions {
         convex: &Road,
         k: usize,
         row: &Row,
-    ) -> Result<CellUnion<f64>, Full> {
+        believed: impl Fn(&Refined) -> bool,
+    ) -> Result<Refined, NoProof> {
         if convex.reaches(lo, hi, &mut self.lists) {
-            return Err(Full);
+            return Err(NoProof::Full);
         }
-        let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
-        let mut overlap = Overlap::new(&mut space, lo, hi);
+        let tol = self.options.tol;
+        for blur in BLURS.into_iter().filter(|&blur| blur == 0.0 || blur < tol) {
+            match self.blurred_union(lo, hi, bins, k, row, blur) {
+                Err(NoProof::Full) => break,
+                Err(NoProof::Doubt) => {}
+                Ok(union) => {
+                    let refined = Refined::from(union);
+                    if (blur == 0.0 || 2.0 * union.error <= tol) && believed(&refined) {
+                        return Ok(refined);
+                    }
+                }
+            }
+        }
+        Err(NoProof::Doubt)
+    }
+
+    fn blurred_union(
+        &mut self,
+        lo: [f64; 3],
+        hi: [f64; 3],
+        bins: &Bins,
+        k: usize,
+        row: &Row,
+        blur: f64,
+    ) -> Result<CellUnion<f64>, NoProof> {
+        let space = self.memory.get_or_insert_with(Memory::new).workspace();
+        let mut overlap = Overlap::new(space, lo, hi, blur);
         for (g, run) in &row.groups {
             let group = &bins.groups(k)[*g];
             if group.max.x > lo[0] && group.min.x < hi[0] {
@@ -235,37 +264,55 @@ impl Unions {
     fn divide(&mut self, lo: [f64; 3], hi: [f64; 3], bins: &Bins, convex: &Road, k: usize) -> Option<Refined> {
         let longest = [0, 1, 2].iter().fold(0.0, |l: f64, &a| l.max(hi[a] - lo[a]));
         let halved = [0, 1, 2].map(|a| hi[a] - lo[a] > longest * 0.5);
-        let halvings = self.halvings.checked_sub(halved.iter().map(|&h| u32::from(h)).sum())?;
         let edges = [0, 1, 2].map(|a| {
             let middle = halved[a].then(|| lo[a] + (hi[a] - lo[a]) * 0.5);
             [Some(lo[a]), middle, Some(hi[a])].into_iter().flatten().collect::<Vec<f64>>()
         });
         let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
-        let (min, max) = (DVec3::from_array(lo), DVec3::from_array(hi));
+        let halvings = halved.iter().map(|&h| u32::from(h)).sum();
+        let bounds = self.parts(&grid, bins, convex, k..k + 1, halvings)?;
+        Some(Refined::from_parts(&grid, &bounds))
+    }
+
+    /// Bounds of the open fractions of a small grid within some layers, with less depth by `halvings`; none if that is spent.
+    fn parts(
+        &mut self,
+        grid: &Grid<f64>,
+        bins: &Bins,
+        convex: &Road,
+        layers: Range<usize>,
+        halvings: u32,
+    ) -> Option<[FieldSet; 2]> {
+        let halvings = self.halvings.checked_sub(halvings)?;
+        let [x, y, z] = [0, 1, 2].map(|a| grid.edges(a));
+        let ends = |pick: fn(&&[f64]) -> Option<f64>| Some(DVec3::new(pick(&x)?, pick(&y)?, pick(&z)?));
+        let (min, max) = (ends(|e| e.first().copied())?, ends(|e| e.last().copied())?);
         let meets = |g: &&Group| !g.sheet && g.min.cmple(max).all() && g.max.cmpge(min).all();
         // Rows and columns begin outside: what lies towards lower x or y counts too.
         let before = |t: &&u32| {
             let corners = bins.triangles()[**t as usize];
             corners.iter().any(|p| p.x <= max.x) && corners.iter().any(|p| p.y <= max.y)
         };
-        let members: Vec<(u32, u32)> = bins
-            .groups(k)
-            .iter()
-            .filter(meets)
-            .flat_map(|g| bins.ids(g).iter().filter(before).map(|&t| (g.body, t)))
-            .collect();
-        let parts = Bins::of(&grid, bins.triangles(), members.into_iter());
+        let of_layer = |k| {
+            bins.groups(k).iter().filter(meets).flat_map(|g| bins.ids(g).iter().filter(before).map(|&t| (g.body, t)))
+        };
+        let mut members: Vec<(u32, u32)> = layers.clone().flat_map(of_layer).collect();
+        if layers.len() > 1 {
+            members.sort_unstable();
+            members.dedup();
+        }
+        let inner = Bins::of(grid, bins.triangles(), members.into_iter());
         let options = Options { bounds: true, areas: true, ..self.options };
         let halves = [0.0, 0.5, 1.0];
         let largest = Grid::new(&halves, &halves, &halves).ok()?;
         let worker = self.inner.get_or_insert_with(|| Box::new(Worker::new(&largest, options)));
         worker.may_halve(halvings);
-        let mut beta = FieldSet::new(&grid, true);
-        let mut bounds = [FieldSet::new(&grid, true), FieldSet::new(&grid, true)];
-        for (k, target) in targets(&grid, &mut beta, Some(&mut bounds)).into_iter().enumerate() {
-            worker.layer(&grid, &parts, convex, k, target);
+        let mut beta = FieldSet::new(grid, true);
+        let mut bounds = [FieldSet::new(grid, true), FieldSet::new(grid, true)];
+        for (k, target) in targets(grid, &mut beta, Some(&mut bounds)).into_iter().enumerate() {
+            worker.layer(grid, &inner, convex, k, target);
         }
-        Some(Refined::from_parts(&grid, &bounds))
+        Some(bounds)
     }
 
     /// Faces of layer `k` in whose plane surface lies: open where both sides are.
@@ -300,37 +347,79 @@ impl Unions {
             WallSide { lo, hi, k: k.clamp(0, layers - 1) as usize, below }
         });
         // What a sheet blocks beyond the solids is not known here.
-        let sheet = sides.iter().any(|side| bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g)));
+        if sides.iter().any(|side| bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g))) {
+            return (0.0, 1.0);
+        }
         let other = sides.iter().any(|side| convex.reaches(side.lo, side.hi, &mut self.lists));
-        if sheet || other { (0.0, 1.0) } else { self.wall_between(bins, axis, sides, self.options.depth) }
+        let whole = if other { None } else { self.whole_wall(bins, axis, &sides) };
+        whole.or_else(|| self.divided_wall(bins, convex, axis, &sides)).unwrap_or((0.0, 1.0))
     }
 
-    /// As [`Unions::wall`], by quarters where there is too much surface.
-    fn wall_between(&mut self, bins: &Bins, axis: usize, sides: [WallSide; 2], depth: u32) -> Bounds {
-        match self.wall_union(bins, axis, &sides) {
-            Ok(closed) => (closed, closed),
-            Err(Full) if depth == 0 => (0.0, 1.0),
-            Err(Full) => {
-                let quarters = [0, 1, 2, 3].map(|quarter| {
-                    let parts = sides.map(|side| side.quarter(axis, quarter));
-                    self.wall_between(bins, axis, parts, depth - 1)
-                });
-                let (lower, upper) = quarters.iter().fold((0.0, 0.0), |(l, u), q| (l + q.0, u + q.1));
-                (lower * 0.25, upper * 0.25)
+    /// The union on a face with walls: exact, or with the least blur that gives a proof.
+    fn whole_wall(&mut self, bins: &Bins, axis: usize, sides: &[WallSide; 2]) -> Option<Bounds> {
+        let tol = self.options.tol;
+        for blur in BLURS.into_iter().filter(|&blur| blur == 0.0 || blur < tol) {
+            match self.wall_union(bins, axis, sides, blur) {
+                Ok((closed, error)) if blur == 0.0 || 2.0 * error <= tol => {
+                    return Some(((closed - error).max(0.0), (closed + error).min(1.0)));
+                }
+                Ok(_) | Err(NoProof::Doubt) => {}
+                Err(NoProof::Full) => break,
             }
         }
+        None
     }
 
-    fn wall_union(&mut self, bins: &Bins, axis: usize, sides: &[WallSide; 2]) -> Result<f64, Full> {
-        let mut space = self.memory.get_or_insert_with(Memory::new).workspace();
-        let mut overlap = Overlap::new(&mut space, sides[0].lo, sides[0].hi);
+    /// Bounds of a face with walls from its quarters, each between halves of the cells on both sides; none if the depth is spent.
+    fn divided_wall(
+        &mut self,
+        bins: &Bins,
+        convex: &Road,
+        axis: usize,
+        [below, above]: &[WallSide; 2],
+    ) -> Option<Bounds> {
+        let middle = |side: &WallSide, a: usize| side.lo[a] + (side.hi[a] - side.lo[a]) * 0.5;
+        let edges = [0, 1, 2].map(|a| match a == axis {
+            true => [middle(below, a), above.lo[a], middle(above, a)],
+            false => [above.lo[a], middle(above, a), above.hi[a]],
+        });
+        let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
+        let [lower, upper] = self.parts(&grid, bins, convex, below.k..above.k + 1, 3)?;
+        let sum = |set: &FieldSet| -> f64 { faces_of(&grid, axis, 1).map(|f| set.faces(axis)[f]).sum() };
+        Some((1.0 - sum(&upper) * 0.25, 1.0 - sum(&lower) * 0.25))
+    }
+
+    /// The closed fraction of a face with walls and its error. Each side alone must have a proof, and what both close together lies
+    /// between the larger of their shares and the sum.
+    fn wall_union(
+        &mut self,
+        bins: &Bins,
+        axis: usize,
+        sides: &[WallSide; 2],
+        blur: f64,
+    ) -> Result<(f64, f64), NoProof> {
+        let (mut least, mut most, mut error) = (0.0_f64, 0.0, 0.0_f64);
+        for side in sides {
+            let union = self.gather(bins, &[*side], blur)?.cell()?;
+            let closed = if side.below { union.high[axis] } else { union.low[axis] };
+            (least, most, error) = (least.max(closed), most + closed, error.max(union.error));
+        }
+        let closed = self.gather(bins, sides, blur)?.face(axis, 1.0, Limit::Both)?;
+        let slack = error + ROUNDING;
+        if closed >= least - slack && closed <= most + slack { Ok((closed, error)) } else { Err(NoProof::Doubt) }
+    }
+
+    /// All surface of some boxes beside a face, in the frame of the first.
+    fn gather(&mut self, bins: &Bins, sides: &[WallSide], blur: f64) -> Result<Overlap<'_, f64>, NoProof> {
+        let space = self.memory.get_or_insert_with(Memory::new).workspace();
+        let mut overlap = Overlap::new(space, sides[0].lo, sides[0].hi, blur);
         for side in sides {
             let &WallSide { lo, hi, k, below } = side;
             for group in bins.groups(k).iter().filter(|g| side.touches(g)) {
                 overlap.add(lo, hi, below, bins.triangles(), bins.ids(group))?;
             }
         }
-        overlap.face(axis, 1.0, Limit::Both)
+        Ok(overlap)
     }
 }
 
@@ -346,16 +435,6 @@ struct WallSide {
 impl WallSide {
     fn touches(&self, group: &Group) -> bool {
         group.min.cmple(DVec3::from_array(self.hi)).all() && group.max.cmpge(DVec3::from_array(self.lo)).all()
-    }
-
-    /// The box halved along each axis, the half that touches the face; `quarter` (0..4) picks the halves across it.
-    fn quarter(mut self, axis: usize, quarter: usize) -> Self {
-        let upper_half = [(axis, self.below), ((axis + 1) % 3, quarter & 1 == 1), ((axis + 2) % 3, quarter & 2 == 2)];
-        for (a, upper) in upper_half {
-            let middle = self.lo[a] + (self.hi[a] - self.lo[a]) * 0.5;
-            *(if upper { &mut self.lo[a] } else { &mut self.hi[a] }) = middle;
-        }
-        self
     }
 }
 
@@ -464,28 +543,27 @@ fn store(layer: &mut Layer<f64>, nx: usize, ny: usize, i: usize, j: usize, refin
 impl Refined {
     /// From the bounds of the open fractions of a cell's parts, equal in size.
     fn from_parts(grid: &Grid<f64>, [lower, upper]: &[FieldSet; 2]) -> Self {
-        let solid = |f: fn(&FieldSet) -> &[f64], parts: &[usize]| {
-            let mean = |set: &FieldSet| parts.iter().map(|&n| f(set)[n]).sum::<f64>() / parts.len() as f64;
-            (1.0 - mean(upper), 1.0 - mean(lower))
-        };
-        let field: [fn(&FieldSet) -> &[f64]; 3] = [|s| &s.x, |s| &s.y, |s| &s.z];
-        let [nx, ny, nz] = grid.cells();
-        let all = || (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+        let mean = |set: &[f64], at: &[usize]| at.iter().map(|&n| set[n]).sum::<f64>() / at.len() as f64;
         let side = |axis: usize, plane: usize| {
-            let first = all().filter(|part| part[axis] == 0);
-            let parts: Vec<usize> = first
-                .map(|mut part| {
-                    part[axis] = plane;
-                    grid.face_index(axis, part)
-                })
-                .collect();
-            solid(field[axis], &parts)
+            let faces: Vec<usize> = faces_of(grid, axis, plane).collect();
+            (1.0 - mean(upper.faces(axis), &faces), 1.0 - mean(lower.faces(axis), &faces))
         };
-        let cells: Vec<usize> = all().map(|part| grid.cell_index(part)).collect();
+        let cells: Vec<usize> = (0..grid.cell_count()).collect();
         Refined {
-            cell: solid(|s| &s.v, &cells),
+            cell: (1.0 - mean(&upper.v, &cells), 1.0 - mean(&lower.v, &cells)),
             low: [0, 1, 2].map(|axis| side(axis, 0)),
             high: [0, 1, 2].map(|axis| side(axis, grid.cells()[axis])),
         }
     }
+}
+
+/// Positions of all faces in one plane of a grid.
+fn faces_of(grid: &Grid<f64>, axis: usize, plane: usize) -> impl Iterator<Item = usize> {
+    let mut count = grid.cells();
+    count[axis] = 1;
+    (0..count[0] * count[1] * count[2]).map(move |n| {
+        let mut face = [n % count[0], n / count[0] % count[1], n / count[0] / count[1]];
+        face[axis] = plane;
+        grid.face_index(axis, face)
+    })
 }

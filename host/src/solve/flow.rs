@@ -84,6 +84,30 @@ impl<R: Real> Default for Treatment<R> {
     }
 }
 
+/// What [`Flow::set_porosity`] changed in the fractions given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Tidied {
+    /// Cells whose fraction was within a few rounding errors of 0 and became 0.
+    pub dust_cells: usize,
+    /// Faces likewise.
+    pub dust_faces: usize,
+    /// Open faces on the sides of the domain that were closed: too little volume behind them for any step.
+    pub closed_faces: usize,
+}
+
+/// How far a flow has come: with the state and the boundaries, all that it needs to go on to the bit.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock<R, const D: usize> {
+    /// Time reached.
+    pub time: R,
+    /// Steps done.
+    pub steps: usize,
+    /// Steps repeated with a smaller dt.
+    pub repeated: usize,
+    /// Sums over all steps; the rate is the present one.
+    pub total: Report<R, D>,
+}
+
 /// A flow in progress.
 #[derive(Clone, Debug)]
 pub struct Flow<R, const D: usize> {
@@ -152,19 +176,18 @@ impl<R: Real, const D: usize> Flow<R, D> {
     }
 
     /// Gives the space its open fractions. Fractions within a few rounding errors of 0 (negative ones too) count as 0:
-    /// geometry leaves such dust where a cell is closed.
+    /// geometry leaves such dust where a cell is closed. Returns what was changed.
     pub fn set_porosity(
         &mut self,
         mut volume: Vec<R>,
         mut faces: [Vec<R>; D],
         treatment: Treatment<R>,
-    ) -> Result<(), Error> {
-        let dust = R::from_f64(16.0) * R::EPSILON;
-        for x in volume.iter_mut().chain(faces.iter_mut().flatten()) {
-            if !(*x > dust) {
-                *x = R::ZERO;
-            }
-        }
+    ) -> Result<Tidied, Error> {
+        let mut tidied = Tidied {
+            dust_cells: without_dust(&mut volume),
+            dust_faces: faces.iter_mut().map(|f| without_dust(f)).sum(),
+            closed_faces: 0,
+        };
         let mesh = Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) };
         let n = mesh.len();
         let fits = |expected: usize, found: usize| {
@@ -213,7 +236,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
                         }
                     }
                 }
-                if held < R::HALF * wanted {
+                if held < R::from_f64(medium::SMALL_SHARE) * wanted {
                     outside.append(&mut edge);
                 }
             };
@@ -231,13 +254,14 @@ impl<R: Real, const D: usize> Flow<R, D> {
                 }
                 break (marks, clusters);
             }
+            tidied.closed_faces += outside.len();
             for (d, face) in outside {
                 faces[d][face] = R::ZERO;
             }
         };
         self.space = Some(Space { volume, faces, marks, clusters });
         self.rate = None;
-        Ok(())
+        Ok(tidied)
     }
 
     /// Gives the cells their drag, CR in 1/length and the linear coefficient in 1/time; empty vectors stand for zero.
@@ -268,6 +292,60 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// Cells merged into clusters.
     pub fn merged_cells(&self) -> usize {
         self.space.as_ref().map_or(0, |s| s.clusters.len())
+    }
+
+    /// Faces where the porosity jumps and the throat map acts.
+    pub fn jump_faces(&self) -> usize {
+        let (mesh, cells) = (self.mesh(), self.cells());
+        let Some(space) = &self.space else { return 0 };
+        let of_cell = |(cell, marks): (usize, &u8)| {
+            let at = mesh.coordinates(cell);
+            let low = (0..D).filter(|&d| marks & medium::jump_low(d) != 0).count();
+            low + (0..D).filter(|&d| at[d] + 1 == cells[d] && marks & medium::jump_high(d) != 0).count()
+        };
+        space.marks.iter().enumerate().map(of_cell).sum()
+    }
+
+    /// Open fractions of the cells, if the space has any.
+    pub fn beta_v(&self) -> Option<&[R]> {
+        self.space.as_ref().map(|s| &s.volume[..])
+    }
+
+    /// Open fractions of the faces, axis by axis, if the space has any.
+    pub fn faces(&self) -> impl Iterator<Item = &[R]> {
+        self.space.iter().flat_map(|s| s.faces.iter().map(|f| &f[..]))
+    }
+
+    /// Drag coefficients, the quadratic ones of each axis first, if there are any.
+    pub fn drag(&self) -> impl Iterator<Item = &[R]> {
+        self.resistance.iter().flat_map(|r| r.quadratic.iter().chain(&r.linear).map(|c| &c[..]))
+    }
+
+    /// How far the flow has come.
+    ///
+    /// # Errors
+    /// As [`Flow::rate`].
+    pub fn clock(&mut self) -> Result<Clock<R, D>, Error> {
+        let rate = self.rate()?;
+        Ok(Clock { time: self.time, steps: self.steps, repeated: self.repeated, total: Report { rate, ..self.total } })
+    }
+
+    /// Puts the flow where another with the same problem stood.
+    ///
+    /// # Errors
+    /// The field does not fit.
+    pub fn resume(&mut self, state: Field<R, D>, clock: Clock<R, D>) -> Result<(), Error> {
+        let fits = |a: &Vec<R>, b: &Vec<R>| match (a.len(), b.len()) {
+            (expected, found) if expected != found => Err(Error::ShapeMismatch { expected, found }),
+            _ => Ok(()),
+        };
+        fits(&self.state.density, &state.density)?;
+        fits(&self.state.energy, &state.energy)?;
+        (0..D).try_for_each(|d| fits(&self.state.momentum[d], &state.momentum[d]))?;
+        let Clock { time, steps, repeated, total } = clock;
+        (self.state, self.rate) = (state, Some(total.rate));
+        (self.time, self.steps, self.repeated, self.total) = (time, steps, repeated, total);
+        Ok(())
     }
 
     /// Memory of the state and the solver's own, without porosity and drag, in units of one conserved field.
@@ -342,32 +420,66 @@ impl<R: Real, const D: usize> Flow<R, D> {
         self.gas.primitive(&self.state.view().get(cell))
     }
 
+    fn mesh(&self) -> Mesh<'_, R, D> {
+        Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) }
+    }
+
     /// Open volume of a cell.
     pub fn open_volume(&self, cell: usize) -> R {
-        let mesh = Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) };
+        let mesh = self.mesh();
         let volume = mesh.volume(mesh.coordinates(cell));
         self.space.as_ref().map_or(volume, |s| volume * s.volume[cell])
     }
 
-    /// Contents of the domain, summed with the cells' open volumes.
-    pub fn content(&self) -> Conserved<R, D> {
-        let mut sum = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
-        let mut lost = sum;
-        // Compensated: the balance is wanted to rounding whatever the number of cells.
-        let add = |sum: &mut R, lost: &mut R, x: R| {
-            let y = x - *lost;
-            let t = *sum + y;
-            *lost = (t - *sum) - y;
-            *sum = t;
-        };
+    /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there.
+    pub fn side(&self, d: usize, side: usize) -> Vec<(usize, R)> {
+        let (mesh, last) = (self.mesh(), self.widths[d].len().saturating_sub(1));
+        let cells = (0..self.len()).filter(|&c| mesh.coordinates(c)[d] == side * last);
+        cells
+            .map(|cell| {
+                let at = mesh.coordinates(cell);
+                let face = mesh.face(d, at) + side * mesh.face_stride(d);
+                let open = self.space.as_ref().map_or(R::ONE, |s| s.faces[d][face]);
+                (cell, open * mesh.volume(at) / self.widths[d][at[d]])
+            })
+            .collect()
+    }
+
+    /// The largest Mach number of any cell.
+    pub fn max_mach(&self) -> R {
+        let rows = self.len() / self.widths[0].len().max(1);
+        let larger = |a: R, b: R| if b > a { b } else { a };
         let view = self.state.view();
-        for cell in 0..self.len() {
-            let (v, u) = (self.open_volume(cell), view.get(cell));
-            add(&mut sum.density, &mut lost.density, v * u.density);
-            add(&mut sum.energy, &mut lost.energy, v * u.energy);
-            for c in 0..D {
-                add(&mut sum.momentum[c], &mut lost.momentum[c], v * u.momentum[c]);
-            }
+        let of_row = |row: usize| {
+            let cells = row * self.widths[0].len()..(row + 1) * self.widths[0].len();
+            cells.fold(R::ZERO, |most, cell| {
+                let w = self.gas.primitive(&view.get(cell));
+                let speed_sq = w.velocity.iter().fold(R::ZERO, |s, &u| s + u * u);
+                larger(most, speed_sq * w.density / (self.gas.gamma() * w.pressure))
+            })
+        };
+        (0..rows).into_par_iter().map(of_row).reduce(|| R::ZERO, larger).sqrt()
+    }
+
+    /// Contents of the domain, summed with the cells' open volumes; the same bits for any number of threads.
+    pub fn content(&self) -> Conserved<R, D> {
+        let n = self.widths[0].len().max(1);
+        let rows: Vec<Compensated<R, D>> =
+            (0..self.len() / n).into_par_iter().map(|row| self.row_content(row * n, n)).collect();
+        let mut sum = Compensated::default();
+        rows.iter().for_each(|row| sum.add(&row.sum));
+        sum.sum
+    }
+
+    fn row_content(&self, start: usize, n: usize) -> Compensated<R, D> {
+        let (mesh, view) = (self.mesh(), self.state.view());
+        let mut at = mesh.coordinates(start);
+        let mut sum = Compensated::default();
+        for i in 0..n {
+            at[0] = i;
+            let open = self.space.as_ref().map_or(R::ONE, |s| s.volume[start + i]);
+            let (v, u) = (mesh.volume(at) * open, view.get(start + i));
+            sum.add(&Conserved { density: v * u.density, momentum: u.momentum.map(|m| v * m), energy: v * u.energy });
         }
         sum
     }
@@ -450,6 +562,47 @@ impl<R: Real, const D: usize> Flow<R, D> {
     }
 }
 
+/// A sum that carries what its rounding lost: the balance is wanted to rounding whatever the number of cells.
+struct Compensated<R, const D: usize> {
+    sum: Conserved<R, D>,
+    lost: Conserved<R, D>,
+}
+
+impl<R: Real, const D: usize> Default for Compensated<R, D> {
+    fn default() -> Self {
+        let zero = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
+        Compensated { sum: zero, lost: zero }
+    }
+}
+
+impl<R: Real, const D: usize> Compensated<R, D> {
+    fn add(&mut self, x: &Conserved<R, D>) {
+        let add = |sum: &mut R, lost: &mut R, x: R| {
+            let y = x - *lost;
+            let t = *sum + y;
+            *lost = (t - *sum) - y;
+            *sum = t;
+        };
+        let (sum, lost) = (&mut self.sum, &mut self.lost);
+        add(&mut sum.density, &mut lost.density, x.density);
+        add(&mut sum.energy, &mut lost.energy, x.energy);
+        for c in 0..D {
+            add(&mut sum.momentum[c], &mut lost.momentum[c], x.momentum[c]);
+        }
+    }
+}
+
+/// Sets what is within a few rounding errors of 0, or below, to 0; returns how many were not 0 before.
+fn without_dust<R: Real>(fractions: &mut [R]) -> usize {
+    let dust = R::from_f64(16.0) * R::EPSILON;
+    let mut count = 0;
+    for x in fractions.iter_mut().filter(|x| !(**x > dust)) {
+        count += usize::from(*x != R::ZERO);
+        *x = R::ZERO;
+    }
+    count
+}
+
 /// One step on rayon's threads: slabs side by side, merging, fallback, floors, as [`Problem::step`].
 fn step<R: Real, const D: usize>(
     problem: &Problem<'_, R, D>,
@@ -461,7 +614,7 @@ fn step<R: Real, const D: usize>(
 ) -> Result<Report<R, D>, Error> {
     let layers = problem.mesh.cells()[D - 1];
     // A slab of few layers spends its time on the layers beside it.
-    const LEAST_LAYERS: usize = 8;
+    const LEAST_LAYERS: usize = 6;
     let threads = rayon::current_num_threads().min(layers / LEAST_LAYERS).max(1);
     let threads = if D == 1 { 1 } else { threads };
     while scratch.len() < threads {
@@ -500,7 +653,7 @@ fn step<R: Real, const D: usize>(
         return Ok(report);
     }
     marks.fill(0);
-    for _ in 0..voidage_core::pdr::step::FALLBACKS {
+    for _ in 0..voidage_core::pdr::repair::FALLBACKS {
         if problem.mark_troubled(&new.view(), marks) == 0 {
             break;
         }

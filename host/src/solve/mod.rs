@@ -1,3 +1,17 @@
-//! Gas flow through porosity fields.
+//! Gas flow through porosity fields: `voidage solve`.
+//!
+//! In reading order: [`flow`], the stepper; [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and
+//! [`setup`], from the case to a flow; [`frames`], [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
 
+mod arrays;
+pub mod case;
+pub mod checkpoint;
 pub mod flow;
+pub mod frames;
+pub mod inlet;
+pub mod report;
+pub mod run;
+pub mod setup;
+pub mod space;
+pub mod state;
+pub mod table;

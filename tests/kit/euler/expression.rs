@@ -145,6 +145,14 @@ pub fn number_after(text: &str, phrase: &str) -> Option<f64> {
     rest[..end].trim_end_matches(['.', 'e']).parse().ok()
 }
 
+/// The whole number that stands before a phrase: 40 of `40x40` before `x`.
+pub fn number_before(text: &str, phrase: &str) -> Option<f64> {
+    text.match_indices(phrase).find_map(|(at, _)| {
+        let digits = text[..at].rsplit(|c: char| !c.is_ascii_digit()).next()?;
+        digits.parse().ok()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,6 +165,7 @@ mod tests {
         assert_eq!(evaluate("S((0.52-0.5)/0.04+.5)", &[]), Some(1.0));
         assert_eq!(evaluate("nonsense(", &[]), None);
         assert_eq!(number_after("at least (<=1e-13); else", "<="), Some(1e-13));
+        assert_eq!(number_before("max exact 40x40, t=1", "x"), Some(40.0));
         assert_eq!(number_after("p0=1.0, rho0=2.5 (x)", "rho0"), Some(2.5));
     }
 }

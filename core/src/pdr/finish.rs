@@ -1,0 +1,127 @@
+//! The new states of a row: fluxes summed, drag applied, the next stable rate found.
+
+use super::medium::{SEALED, SMALL, jump_high, jump_low};
+use super::merge::least_volume;
+use super::report::Report;
+use super::row;
+use super::state::{FieldsMut, greater};
+use super::sweep::{Row, Sweep};
+use super::work::Work;
+use crate::real::Real;
+
+impl<R: Real, const D: usize> Sweep<'_, R, D> {
+    /// New states of row `j` of the layer below `l`.
+    pub(super) fn finish_below<const ENERGY: bool>(
+        &self,
+        l: isize,
+        j: usize,
+        work: &mut Work<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        report: &mut Report<R, D>,
+    ) {
+        let mut at = [0; D];
+        if D == 3 {
+            at[1] = j;
+        }
+        at[D - 1] = l as usize - 1;
+        let row = Row { start: self.problem.mesh.index(at), at };
+        let to = row.start - self.slab.start * self.problem.mesh.layer();
+        self.finish::<ENERGY>(row, j, work, new, to, report);
+    }
+
+    /// New states of a row, drag included; their signal rate and whether they are physical.
+    pub(super) fn finish<const ENERGY: bool>(
+        &self,
+        row: Row<D>,
+        j: usize,
+        work: &mut Work<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        to: usize,
+        report: &mut Report<R, D>,
+    ) {
+        let n = self.size.n;
+        let mesh = &self.problem.mesh;
+        let metric = &mut work.metric;
+        let change = core::array::from_fn(|d| &work.change[d][j * Self::V * n..][..Self::V * n]);
+        let scale = if let Some(medium) = &self.medium {
+            let volume = &medium.porosity.volume[row.start..][..n];
+            let (inv, scale) = (&mut metric.spare[..n], &mut metric.scale[..n]);
+            for i in 0..n {
+                inv[i] = R::ONE / greater(volume[i], least_volume());
+                scale[i] = self.dt * inv[i];
+            }
+            for d in 0..D {
+                let (low, high) = self.face_rows(medium, d, row);
+                let open = &mut metric.open[d][..n];
+                for i in 0..n {
+                    open[i] = greater(low[i], high[i]) * inv[i];
+                }
+            }
+            let marks = &medium.porosity.marks[row.start..][..n];
+            if marks.iter().any(|&b| b & !SEALED != 0) {
+                for i in 0..n {
+                    if marks[i] & !SEALED != 0 {
+                        let mut at = row.at;
+                        at[0] = i;
+                        for d in 0..D {
+                            let jump = marks[i] & (jump_low(d) | jump_high(d)) != 0;
+                            if jump || marks[i] & SMALL != 0 {
+                                metric.open[d][i] = self.problem.openness(medium, row.start + i, at, d);
+                            }
+                        }
+                    }
+                }
+            }
+            Some(&metric.scale[..n])
+        } else {
+            None
+        };
+        row::update::<R, D, ENERGY>(self.old, row.start, &change, scale, self.dt, new, to, n);
+        if let Some(drag) = &self.problem.drag {
+            for i in 0..n {
+                let coefficients = drag.at(row.start + i);
+                if !coefficients.is_free() {
+                    let (before, mut after) = (self.old.get(row.start + i), new.get(to + i));
+                    let u = before.momentum.map(|m| m / before.density);
+                    let pushed = after.momentum.map(|m| m / after.density);
+                    let v = coefficients.step(u, pushed, self.dt);
+                    after.momentum = v.map(|v| after.density * v);
+                    new.set(to + i, &after);
+                }
+            }
+        }
+        let inv_width = &*metric.inv_width;
+        let across: [R; D] = core::array::from_fn(|d| R::ONE / mesh.widths[d][row.at[d]]);
+        let inverse = |d: usize, i: usize| if d == 0 { inv_width[i] } else { across[d] };
+        let open = metric.open.each_ref().map(|o| &**o);
+        let signal = &mut metric.signal[..n];
+        let view = new.as_fields();
+        let bad = if self.medium.is_some() {
+            row::signal_rates::<R, D, true>(self.problem.gas, &view, to, inverse, &open, signal)
+        } else {
+            row::signal_rates::<R, D, false>(self.problem.gas, &view, to, inverse, &open, signal)
+        };
+        // Cells of clusters are judged after merging.
+        let small = match &self.medium {
+            Some(medium) if !self.problem.clusters.0.is_empty() => {
+                Some(&medium.porosity.marks[row.start..][..n]).filter(|m| m.iter().any(|&b| b & SMALL != 0))
+            }
+            _ => None,
+        };
+        if let Some(marks) = small {
+            for i in 0..n {
+                if marks[i] & SMALL != 0 {
+                    signal[i] = R::ZERO;
+                }
+            }
+        }
+        let counted = self.counted.clone();
+        report.rate = greater(row::largest(&signal[counted.clone()]), report.rate);
+        if bad {
+            for i in counted {
+                let merged = small.is_some_and(|m| m[i] & SMALL != 0);
+                report.unphysical += usize::from(!merged && !self.problem.is_physical(&view.get(to + i)));
+            }
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
+
+use super::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
+use super::medium::{Medium, SEALED, SMALL, jump_high, jump_low};
+use super::merge::least_volume;
+use super::row::{self, Differences, Rate, var};
+use super::state::{Gas, greater, sum};
+use super::sweep::{Row, Sweep};
+use super::work::{Metric, Work};
+use crate::real::Real;
+
+impl<R: Real, const D: usize> Sweep<'_, R, D> {
+    /// Slopes and half-step states of a row of real cells; `l` and `j` say where it stands in the window.
+    pub(super) fn reconstruct(&self, row: Row<D>, l: isize, j: usize, work: &mut Work<'_, R, D>, fallen: &mut usize) {
+        match self.problem.scheme.limiter {
+            Limiter::Steep => self.reconstruct_with::<Steep>(row, l, j, work, fallen, true),
+            Limiter::MonotonizedCentral => self.reconstruct_with::<MonotonizedCentral>(row, l, j, work, fallen, true),
+            Limiter::VanLeer => self.reconstruct_with::<VanLeer>(row, l, j, work, fallen, true),
+            Limiter::Minmod => self.reconstruct_with::<Minmod>(row, l, j, work, fallen, true),
+            Limiter::Unlimited => self.reconstruct_with::<Unlimited>(row, l, j, work, fallen, true),
+            Limiter::FirstOrder => self.reconstruct_with::<Minmod>(row, l, j, work, fallen, false),
+        }
+    }
+
+    fn reconstruct_with<S: Slope>(
+        &self,
+        row: Row<D>,
+        l: isize,
+        j: usize,
+        work: &mut Work<'_, R, D>,
+        fallen: &mut usize,
+        sloped: bool,
+    ) {
+        let n = self.size.n;
+        self.metric(row, &mut work.metric);
+        if sloped {
+            self.slopes::<S>(row, l, j, work);
+        } else {
+            work.slope.iter_mut().for_each(|s| s.fill(R::ZERO));
+        }
+        let marks = self.medium.as_ref().map(|m| &m.porosity.marks[row.start..][..n]);
+        if let Some(marks) = marks {
+            self.flatten_at_jumps(marks, &mut work.slope);
+        }
+        let here = &work.window[self.block(l, j + usize::from(D == 3))];
+        self.half_step(row, here, &work.slope, &work.metric, work.half);
+        if self.problem.drag.is_some() {
+            self.drag_half(row, here, work.half);
+        }
+        self.fall_back(row, here, &mut work.slope, work.half, marks, fallen);
+    }
+
+    /// Slopes of a row along all axes.
+    fn slopes<S: Slope>(&self, row: Row<D>, l: isize, j: usize, work: &mut Work<'_, R, D>) {
+        let (n, padded) = (self.size.n, self.size.padded);
+        let j = j + usize::from(D == 3);
+        let here = &work.window[self.block(l, j)];
+        let split = S::SPLIT && self.problem.gas.has_energy();
+        if split {
+            let inner = |v: usize| &var(here, v, padded)[1..][..n];
+            let gamma = self.problem.gas.gamma();
+            row::compliances(inner(0), inner(D + 1), gamma, &mut work.metric.compliance[..n]);
+        }
+        let compliance = if split { Some(&*work.metric.compliance) } else { None };
+        for d in 0..D {
+            // The three values along axis d: shifted in the row, the rows beside it, or the layers beside it.
+            let (below, above, shift) = if d == 0 {
+                (here, here, 1)
+            } else if d == D - 1 {
+                (&work.window[self.block(l - 1, j)], &work.window[self.block(l + 1, j)], 0)
+            } else {
+                (&work.window[self.block(l, j - 1)], &work.window[self.block(l, j + 1)], 0)
+            };
+            let three = |v: usize| {
+                let (low, high) = (var(below, v, padded), var(above, v, padded));
+                (&low[1 - shift..][..n], &var(here, v, padded)[1..][..n], &high[1 + shift..][..n])
+            };
+            let widths = self.problem.mesh.widths[d];
+            let gravity = self.problem.gravity[d];
+            let out = &mut *work.slope[d];
+            if gravity == R::ZERO && widths.iter().all(|w| *w == widths[0]) {
+                row::slopes::<R, S, D>(three, &Even, compliance, out, n);
+            } else {
+                let place = if d == 0 { None } else { Some(row.at[d]) };
+                let axis = Uneven { widths, place, half_gravity: R::HALF * gravity, periodic: self.periodic[d] };
+                row::slopes::<R, S, D>(three, &axis, compliance, out, n);
+            }
+        }
+    }
+
+    /// The states at the half step from the cells `here` and their slopes.
+    fn half_step(&self, row: Row<D>, here: &[R], slope: &[&mut [R]; D], metric: &Metric<'_, R, D>, half: &mut [R]) {
+        let slope = slope.each_ref().map(|b| &**b);
+        let rate = core::array::from_fn(|d| {
+            if d == 0 || self.medium.is_some() {
+                Rate::Row(&*metric.rate[d])
+            } else {
+                Rate::One(R::HALF * self.dt / self.problem.mesh.widths[d][row.at[d]])
+            }
+        });
+        let widening = metric.widening.each_ref().map(|b| &**b);
+        let weights = metric.weight.each_ref().map(|b| &**b);
+        let weight = if self.weighted { Some(&weights) } else { None };
+        let gamma = self.problem.gas.gamma();
+        let padded = self.size.padded;
+        if self.medium.is_some() {
+            row::half_step::<R, D, true>(here, padded, &slope, &rate, &widening, weight, gamma, half);
+        } else {
+            row::half_step::<R, D, false>(here, padded, &slope, &rate, &widening, weight, gamma, half);
+        }
+    }
+
+    /// First order where the face states would leave the physical set, where the caller asks, and in small cells.
+    fn fall_back(
+        &self,
+        row: Row<D>,
+        here: &[R],
+        slope: &mut [&mut [R]; D],
+        half: &mut [R],
+        marks: Option<&[u8]>,
+        fallen: &mut usize,
+    ) {
+        let (n, padded) = (self.size.n, self.size.padded);
+        let any_leaves = row::leaves_physical_set::<R, D>(half, &slope.each_ref().map(|b| &**b), n);
+        let asked = self.first_order.map(|f| &f[row.start..][..n]).filter(|f| f.iter().any(|&b| b != 0));
+        let small = marks.filter(|m| m.iter().any(|&b| b & (SMALL | SEALED) != 0));
+        if !any_leaves && asked.is_none() && small.is_none() {
+            return;
+        }
+        for i in 0..n {
+            let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
+            let leaves = !(stays(0) && stays(D + 1));
+            let asked = asked.is_some_and(|f| f[i] != 0);
+            let small = small.is_some_and(|m| m[i] & (SMALL | SEALED) != 0);
+            if leaves || asked || small {
+                *fallen += usize::from((leaves || asked) && self.counted.contains(&i));
+                for v in 0..Self::V {
+                    half[v * n + i] = here[v * padded + 1 + i];
+                    for d in 0..D {
+                        slope[d][v * n + i] = R::ZERO;
+                    }
+                }
+            }
+        }
+    }
+
+    /// No slope across a porosity jump: both cells beside it are flat along that axis.
+    fn flatten_at_jumps(&self, marks: &[u8], slope: &mut [&mut [R]; D]) {
+        let n = self.size.n;
+        if marks.iter().fold(0, |m, b| m | b) & !(SMALL | SEALED) == 0 {
+            return;
+        }
+        for (i, &mark) in marks.iter().enumerate() {
+            for d in 0..D {
+                if mark & (jump_low(d) | jump_high(d)) != 0 {
+                    for v in 0..Self::V {
+                        slope[d][v * n + i] = R::ZERO;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Per-cell scales of the half step for one row.
+    fn metric(&self, row: Row<D>, metric: &mut Metric<'_, R, D>) {
+        let n = self.size.n;
+        let mesh = &self.problem.mesh;
+        let half_dt = R::HALF * self.dt;
+        if self.weighted {
+            for d in 0..D {
+                for i in 0..n {
+                    let k = if d == 0 { i } else { row.at[d] };
+                    metric.weight[d][i] = self.problem.gravity[d] * mesh.widths[d][k];
+                }
+            }
+        }
+        let Some(medium) = &self.medium else {
+            for i in 0..n {
+                metric.rate[0][i] = half_dt / mesh.widths[0][i];
+            }
+            return;
+        };
+        let volume = &medium.porosity.volume[row.start..][..n];
+        let inv = &mut metric.spare[..n];
+        for i in 0..n {
+            inv[i] = R::ONE / greater(volume[i], least_volume());
+        }
+        for d in 0..D {
+            let (low, high) = self.face_rows(medium, d, row);
+            let (rate, widening) = (&mut metric.rate[d][..n], &mut metric.widening[d][..n]);
+            let across = if d == 0 { R::ZERO } else { half_dt / mesh.widths[d][row.at[d]] };
+            let widths = &mesh.widths[0][..n];
+            if d == 0 {
+                for i in 0..n {
+                    let scale = half_dt / widths[i];
+                    rate[i] = R::HALF * (low[i] + high[i]) * inv[i] * scale;
+                    widening[i] = (high[i] - low[i]) * inv[i] * scale;
+                }
+            } else {
+                for i in 0..n {
+                    rate[i] = R::HALF * (low[i] + high[i]) * inv[i] * across;
+                    widening[i] = (high[i] - low[i]) * inv[i] * across;
+                }
+            }
+        }
+        let marks = &medium.porosity.marks[row.start..][..n];
+        if marks.iter().fold(0, |m, b| m | b) & !(SMALL | SEALED) == 0 {
+            return;
+        }
+        for i in 0..n {
+            for d in 0..D {
+                let (low, high) = (marks[i] & jump_low(d) != 0, marks[i] & jump_high(d) != 0);
+                if low || high {
+                    // A jump is the throat's business: the duct goes on behind it.
+                    let mut at = row.at;
+                    at[0] += i;
+                    let (a, b) = medium.openings(d, at);
+                    let duct = greater(a, b);
+                    let (a, b) = (if low { duct } else { a }, if high { duct } else { b });
+                    let scale = half_dt / mesh.widths[d][at[d]];
+                    metric.widening[d][i] = (b - a) * metric.spare[i] * scale;
+                }
+            }
+        }
+    }
+
+    /// The rows of open fractions on the low and high faces of axis `d`.
+    pub(super) fn face_rows<'m>(&self, medium: &Medium<'m, R, D>, d: usize, row: Row<D>) -> (&'m [R], &'m [R]) {
+        let start = medium.mesh.face(d, row.at);
+        let b = medium.porosity.faces[d];
+        let n = self.size.n;
+        (&b[start..][..n], &b[start + medium.mesh.face_stride(d)..][..n])
+    }
+
+    /// Drag over the half step: slows the half state and heats it.
+    fn drag_half(&self, row: Row<D>, here: &[R], half: &mut [R]) {
+        let (n, padded) = (self.size.n, self.size.padded);
+        let Some(drag) = &self.problem.drag else { return };
+        for i in 0..n {
+            let coefficients = drag.at(row.start + i);
+            if coefficients.is_free() {
+                continue;
+            }
+            let u: [R; D] = core::array::from_fn(|c| here[(1 + c) * padded + 1 + i]);
+            let pushed: [R; D] = core::array::from_fn(|c| half[(1 + c) * n + i]);
+            let v = coefficients.step(u, pushed, R::HALF * self.dt);
+            let lost = sum::<R, D>(core::array::from_fn(|c| pushed[c] * pushed[c] - v[c] * v[c]));
+            for c in 0..D {
+                half[(1 + c) * n + i] = v[c];
+            }
+            if let Gas::Ideal { gamma } = self.problem.gas {
+                half[(D + 1) * n + i] += (gamma - R::ONE) * R::HALF * half[i] * lost;
+            }
+        }
+    }
+}
+
+/// An axis of equal cells without gravity.
+struct Even;
+
+impl<R: Real> Differences<R> for Even {
+    #[inline(always)]
+    fn scale(&self, _: usize) -> (R, R) {
+        (R::ONE, R::ONE)
+    }
+
+    #[inline(always)]
+    fn half_weight(&self, _: usize) -> Option<(R, R)> {
+        None
+    }
+}
+
+/// An axis with unequal cells or gravity. Beyond a boundary stands a cell of the same width, beyond a
+/// periodic end the cell of the other end.
+struct Uneven<'w, R> {
+    widths: &'w [R],
+    /// Index of the row along the axis; `None` if the axis is that of the row.
+    place: Option<usize>,
+    half_gravity: R,
+    periodic: bool,
+}
+
+impl<R: Real> Uneven<'_, R> {
+    /// Width of cell `i`, and the distances of its centre to those below and above.
+    #[inline(always)]
+    fn spacing(&self, i: usize) -> (R, R, R) {
+        let i = self.place.unwrap_or(i);
+        let own = self.widths[i];
+        let last = self.widths.len() - 1;
+        let beyond = |across: usize| if self.periodic { self.widths[across] } else { own };
+        let low = if i > 0 { self.widths[i - 1] } else { beyond(last) };
+        let high = if i < last { self.widths[i + 1] } else { beyond(0) };
+        (own, R::HALF * (low + own), R::HALF * (own + high))
+    }
+}
+
+impl<R: Real> Differences<R> for Uneven<'_, R> {
+    #[inline(always)]
+    fn scale(&self, i: usize) -> (R, R) {
+        let (own, below, above) = self.spacing(i);
+        (own / below, own / above)
+    }
+
+    #[inline(always)]
+    fn half_weight(&self, i: usize) -> Option<(R, R)> {
+        let (_, below, above) = self.spacing(i);
+        Some((self.half_gravity * below, self.half_gravity * above))
+    }
+}

@@ -1,0 +1,192 @@
+//! The sweep of a slab of layers.
+//!
+//! Rows come in storage order. A window of three layers of primitive variables moves along the last axis; the fluxes across
+//! the other axes are differenced when the row above arrives. A cell's new state depends on the old field alone, by the same
+//! operations wherever the slab is cut, so slabs advanced by any number of threads give the same bits.
+
+use super::flux::{FaceGas, Solver};
+use super::medium::Medium;
+use super::report::Report;
+use super::row;
+use super::state::{Fields, FieldsMut};
+use super::step::Problem;
+use super::throat::ThroatGas;
+use super::work::{Sizes, Work};
+use crate::real::Real;
+use core::ops::Range;
+
+/// A row of cells: its index along axis 1 (3D) and along the last axis, inside the domain.
+#[derive(Clone, Copy)]
+pub(super) struct Row<const D: usize> {
+    /// Flat index of its first cell.
+    pub start: usize,
+    /// Indices of its first cell.
+    pub at: [usize; D],
+}
+
+/// One slab of one step, and what it reads.
+pub(super) struct Sweep<'p, R, const D: usize> {
+    pub problem: &'p Problem<'p, R, D>,
+    pub medium: Option<Medium<'p, R, D>>,
+    pub size: Sizes,
+    pub periodic: [bool; D],
+    pub weighted: bool,
+    pub first_order: Option<&'p [u8]>,
+    pub face_gas: FaceGas<R>,
+    pub throat: ThroatGas<R>,
+    pub old: &'p Fields<'p, R, D>,
+    pub dt: R,
+    pub slab: Range<usize>,
+    /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
+    pub counted: Range<usize>,
+}
+
+impl<R: Real, const D: usize> Sweep<'_, R, D> {
+    /// Variables of a state block, and of a face state or flux block.
+    pub(super) const V: usize = D + 2;
+    pub(super) const F: usize = D + 3;
+
+    /// Advances the slab into `new`.
+    pub(super) fn run<S: Solver, const ENERGY: bool>(
+        &self,
+        new: &mut FieldsMut<'_, R, D>,
+        scratch: &mut [R],
+    ) -> Report<R, D> {
+        let s = self.size;
+        let mut work = Work::new(s, scratch);
+        for i in 0..s.n {
+            work.metric.inv_width[i] = R::ONE / self.problem.mesh.widths[0][i];
+        }
+        let mut report = Report::new();
+        if D == 1 {
+            self.load_layer(0, &mut work);
+            let row = Row { start: 0, at: [0; D] };
+            self.reconstruct(row, 0, 0, &mut work, &mut report.first_order);
+            self.cross_row::<S, ENERGY>(row, 0, &mut work, &mut report);
+            self.finish::<ENERGY>(row, 0, &mut work, new, 0, &mut report);
+            return report;
+        }
+        let n_last = self.problem.mesh.cells()[D - 1] as isize;
+        let (lo, hi) = (self.slab.start as isize, self.slab.end as isize);
+        let rows = s.rows as isize;
+        for l in lo - 1..=hi {
+            let outside = l < 0 || l >= n_last;
+            let inside = l >= lo && l < hi;
+            if outside && !self.periodic[D - 1] {
+                // The ghost of a boundary: no cells, only the face beside the domain.
+                if l == hi {
+                    for j in 0..s.rows {
+                        self.cross_last::<S, ENERGY>(l, j, false, &mut work, &mut report);
+                        self.finish_below::<ENERGY>(l, j, &mut work, new, &mut report);
+                    }
+                }
+                continue;
+            }
+            if l == lo - 1 || (l == lo && !self.periodic[D - 1] && lo == 0) {
+                self.load_layer(l - 1, &mut work);
+                self.load_layer(l, &mut work);
+            }
+            self.load_layer(l + 1, &mut work);
+            let wrapped = l.rem_euclid(n_last) as usize;
+            let ghost_rows = isize::from(D == 3 && inside);
+            for j in -ghost_rows..rows + ghost_rows {
+                let ghost = j < 0 || j >= rows;
+                if ghost && !self.periodic[1 % D] {
+                    if j == rows {
+                        self.cross_middle::<S, ENERGY>(wrapped, j, false, &mut work, &mut report);
+                    }
+                    continue;
+                }
+                let jw = j.rem_euclid(rows) as usize;
+                let mut at = [0; D];
+                at[D - 1] = wrapped;
+                if D == 3 {
+                    at[1] = jw;
+                }
+                let row = Row { start: self.problem.mesh.index(at), at };
+                let counted = inside && !ghost;
+                let mut ignored = 0;
+                self.reconstruct(row, l, jw, &mut work, if counted { &mut report.first_order } else { &mut ignored });
+                if !ghost {
+                    if l == lo - 1 {
+                        self.keep_last(jw, &mut work);
+                    } else {
+                        self.cross_last::<S, ENERGY>(l, jw, true, &mut work, &mut report);
+                        if l > lo {
+                            self.finish_below::<ENERGY>(l, jw, &mut work, new, &mut report);
+                        }
+                        if inside {
+                            self.keep_last(jw, &mut work);
+                        }
+                    }
+                }
+                if D == 3 && inside {
+                    if j >= 0 {
+                        self.cross_middle::<S, ENERGY>(wrapped, j, true, &mut work, &mut report);
+                    }
+                    self.keep_middle(&mut work);
+                }
+                if inside && !ghost {
+                    self.cross_row::<S, ENERGY>(row, jw, &mut work, &mut report);
+                }
+            }
+        }
+        report
+    }
+
+    /// Where a row of layer `l` stands in the window.
+    pub(super) fn block(&self, l: isize, row: usize) -> Range<usize> {
+        let s = self.size;
+        let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
+        let len = Self::V * s.padded;
+        let start = (slot * s.rows_padded + row) * len;
+        start..start + len
+    }
+
+    /// Primitive variables of a layer with its ghosts. A layer beyond a boundary is made from the layer inside it.
+    fn load_layer(&self, l: isize, work: &mut Work<'_, R, D>) {
+        let s = self.size;
+        let cells = self.problem.mesh.cells();
+        let n_last = if D == 1 { 1 } else { cells[D - 1] as isize };
+        let ghost = D > 1 && !self.periodic[D - 1] && (l < 0 || l >= n_last);
+        let source = if ghost { l.clamp(0, n_last - 1) } else { l.rem_euclid(n_last) } as usize;
+        let pad = usize::from(D == 3);
+        for j in 0..s.rows {
+            let start = (source * s.rows + j) * s.n;
+            let block = &mut work.window[self.block(l, j + pad)];
+            row::primitives(self.problem.gas, self.old, start, block, s.padded);
+            let state = |block: &[R], i: usize| row::face_state::<R, D>(block, s.padded, i);
+            let gas = self.problem.gas;
+            let [low, high] = &self.problem.boundaries[0];
+            let (a, b) = if self.periodic[0] {
+                (state(block, s.n), state(block, 1))
+            } else {
+                (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
+            };
+            row::put_state(block, s.padded, 0, &a);
+            row::put_state(block, s.padded, s.padded - 1, &b);
+            if ghost {
+                self.mirror(block, D - 1, l < 0);
+            }
+        }
+        if D == 3 {
+            for (ghost_row, low) in [(0, true), (s.rows + 1, false)] {
+                let inner = if low != self.periodic[1] { 1 } else { s.rows };
+                work.window.copy_within(self.block(l, inner), self.block(l, ghost_row).start);
+                if !self.periodic[1] {
+                    self.mirror(&mut work.window[self.block(l, ghost_row)], 1, low);
+                }
+            }
+        }
+    }
+
+    /// Turns a row of inner states into the ghosts beyond a boundary of axis `d`.
+    fn mirror(&self, block: &mut [R], d: usize, low: bool) {
+        let padded = self.size.padded;
+        let boundary = &self.problem.boundaries[d][usize::from(!low)];
+        for i in 0..padded {
+            let w = row::face_state::<R, D>(block, padded, i);
+            row::put_state(block, padded, i, &boundary.ghost_cell(&w, d, low, self.problem.gas));
+        }
+    }
+}

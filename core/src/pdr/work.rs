@@ -1,0 +1,146 @@
+//! The scratch of a sweep, cut from one slice: a window of layers, the buffers of one row, and what rows leave behind for the
+//! faces above them.
+
+use super::line;
+use super::medium::Mesh;
+use crate::real::Real;
+
+/// Hands out pieces of one slice.
+struct Arena<'s, R>(&'s mut [R]);
+
+impl<'s, R: Real> Arena<'s, R> {
+    fn take(&mut self, n: usize) -> &'s mut [R] {
+        let (piece, rest) = core::mem::take(&mut self.0).split_at_mut(n);
+        self.0 = rest;
+        piece
+    }
+
+    fn axes<const D: usize>(&mut self, n: usize) -> [&'s mut [R]; D] {
+        core::array::from_fn(|_| self.take(n))
+    }
+}
+
+/// Sizes of the pieces of scratch.
+#[derive(Clone, Copy)]
+pub(super) struct Sizes {
+    /// Cells along a row, with ghosts, and faces.
+    pub n: usize,
+    pub padded: usize,
+    pub m: usize,
+    /// Rows of a layer, and with ghost rows.
+    pub rows: usize,
+    pub rows_padded: usize,
+    /// Layers of the window.
+    pub layers: usize,
+}
+
+impl Sizes {
+    pub fn new<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> Self {
+        let cells = mesh.cells();
+        let n = if line::in_pieces::<D>(cells[0]) { line::PIECE } else { cells[0] };
+        let rows = if D == 3 { cells[1] } else { 1 };
+        Sizes {
+            n,
+            padded: n + 2,
+            m: n + 1,
+            rows,
+            rows_padded: if D == 3 { rows + 2 } else { 1 },
+            layers: if D == 1 { 1 } else { 3 },
+        }
+    }
+
+    pub fn total<const D: usize>(&self) -> usize {
+        let v = D + 2;
+        let f = D + 3;
+        let window = self.layers * self.rows_padded * v * self.padded;
+        let row = (D + 1) * v * self.n + 3 * f * self.m;
+        let (middle, last) = self.lagged::<D>();
+        let lagged = 2 * f * self.n * (middle + last);
+        let changes = self.rows * D * v * self.n;
+        let metric = (4 * D + 5) * self.n + 2 * self.m;
+        window + row + lagged + changes + metric
+    }
+
+    /// Rows of face states and fluxes to be kept for the faces above them: along axis 1 of a 3D mesh, and along the last axis.
+    fn lagged<const D: usize>(&self) -> (usize, usize) {
+        match D {
+            1 => (0, 0),
+            2 => (0, 1),
+            _ => (1, self.rows),
+        }
+    }
+}
+
+/// Buffers of a sweep.
+pub(super) struct Work<'s, R, const D: usize> {
+    pub window: &'s mut [R],
+    pub slope: [&'s mut [R]; D],
+    pub half: &'s mut [R],
+    pub left: &'s mut [R],
+    pub right: &'s mut [R],
+    pub flux: &'s mut [R],
+    /// What the row below left for the faces along axis 1 of a 3D mesh.
+    pub middle: Lag<'s, R>,
+    /// What the rows of the layer below left for the faces along the last axis.
+    pub last: Lag<'s, R>,
+    pub change: [&'s mut [R]; D],
+    pub metric: Metric<'s, R, D>,
+}
+
+/// High face states of rows below, and the fluxes through the faces under them.
+#[derive(Default)]
+pub(super) struct Lag<'s, R> {
+    pub state: &'s mut [R],
+    pub flux: &'s mut [R],
+}
+
+/// Row buffers of cell metrics.
+pub(super) struct Metric<'s, R, const D: usize> {
+    pub inv_width: &'s mut [R],
+    pub rate: [&'s mut [R]; D],
+    pub widening: [&'s mut [R]; D],
+    pub weight: [&'s mut [R]; D],
+    pub open: [&'s mut [R]; D],
+    /// 1/c².
+    pub compliance: &'s mut [R],
+    pub scale: &'s mut [R],
+    pub signal: &'s mut [R],
+    pub spare: &'s mut [R],
+    pub vol_left: &'s mut [R],
+    pub vol_right: &'s mut [R],
+}
+
+impl<'s, R: Real, const D: usize> Work<'s, R, D> {
+    /// Cuts the scratch, which holds [`Sizes::total`] scalars.
+    pub fn new(s: Sizes, scratch: &'s mut [R]) -> Self {
+        let (v, f) = (D + 2, D + 3);
+        let mut arena = Arena(scratch);
+        let (middle, last) = s.lagged::<D>();
+        let mut lag = |rows: usize| Lag { state: arena.take(rows * f * s.n), flux: arena.take(rows * f * s.n) };
+        let (middle, last) = (lag(middle), lag(last));
+        Work {
+            middle,
+            last,
+            window: arena.take(s.layers * s.rows_padded * v * s.padded),
+            slope: arena.axes(v * s.n),
+            half: arena.take(v * s.n),
+            left: arena.take(f * s.m),
+            right: arena.take(f * s.m),
+            flux: arena.take(f * s.m),
+            change: arena.axes(s.rows * v * s.n),
+            metric: Metric {
+                inv_width: arena.take(s.n),
+                rate: arena.axes(s.n),
+                widening: arena.axes(s.n),
+                weight: arena.axes(s.n),
+                open: arena.axes(s.n),
+                compliance: arena.take(s.n),
+                scale: arena.take(s.n),
+                signal: arena.take(s.n),
+                spare: arena.take(s.n),
+                vol_left: arena.take(s.m),
+                vol_right: arena.take(s.m),
+            },
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! `voidage solve` with cases that are wrong: the error names the file, the key or cell, and the reason; nothing is left.
+
+use crate::kit::{Scratch, array, solve, solved, stderr};
+use std::fs;
+use voidage::output::npy;
+
+const CASE: &str = r#"
+[grid]
+x = { points = [0, 1], cells = [4] }
+y = [0, 0.5, 1]
+[gas]
+model = "ideal"
+gamma = 1.4
+[initial]
+uniform = { rho = 1, u = 0.5, p = 1 }
+[boundary]
+x_min = { type = "inlet", rho = 1, u = 0.5 }
+x_max = { type = "outlet", p = 1 }
+y_min = { type = "wall" }
+y_max = { type = "wall" }
+[time]
+end = 0.1
+"#;
+
+/// The case with one text replaced fails with exit code 1 and a message that holds all `words`.
+fn fails(from: &str, to: &str, words: &[&str]) {
+    let at = Scratch::new();
+    assert!(CASE.contains(from), "'{from}' is not in the case");
+    let output = solve(&at, &CASE.replacen(from, to, 1), "out", &[]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "'{to}' is accepted: {said}");
+    for word in [&["case.toml: "], words].concat() {
+        assert!(said.contains(word), "'{word}' expected of '{to}': {said}");
+    }
+    assert_eq!(at.names(), ["case.toml"], "'{to}' leaves something");
+}
+
+#[test]
+fn the_case_itself_is_right() {
+    let at = Scratch::new();
+    solved(&at, CASE, "out", &["-q"]);
+}
+
+#[test]
+fn keys() {
+    fails("[time]", "[tine]", &["line 15", "unknown field `tine`"]);
+    fails("gamma", "gama", &["line 7", "unknown field `gama`"]);
+    fails("end = 0.1", "end = 0.1\nstop = 2", &["line 17", "unknown field `stop`"]);
+    fails("rho = 1, u = 0.5, p = 1", "density = 1, p = 1", &["line 9", "unknown field `density`"]);
+    fails("cells = [4]", "cells = [4], ratio = [1]", &["an axis is a list of edges, or { points"]);
+    fails("gamma = 1.4", "gamma = \"1.4\"", &["line 7", "invalid type: string"]);
+    fails("gamma = 1.4", "gamma 1.4", &["line 7"]);
+    fails("model = \"ideal\"", "model = \"real\"", &["line 6", "unknown variant `real`", "isothermal"]);
+    fails("type = \"outlet\"", "type = \"exit\"", &["unknown variant `exit`", "far-field"]);
+    fails("end = 0.1", "", &["key time: needs end or max_steps"]);
+    fails("gamma = 1.4", "", &["key gas.gamma: is missing"]);
+    fails("gamma = 1.4", "gamma = 1.4\nsound_speed = 1", &["key gas.sound_speed: is not a number of this model"]);
+}
+
+#[test]
+fn numbers() {
+    fails("gamma = 1.4", "gamma = 1", &["key gas.gamma: needs a number above 1, not 1"]);
+    fails("end = 0.1", "end = -1", &["key time.end: needs a positive time, not -1"]);
+    fails("end = 0.1", "end = nan", &["key time.end", "not NaN"]);
+    fails(
+        "[time]",
+        "[scheme]\ncfl = -0.5\n[time]",
+        &["key scheme.cfl: needs a number above 0 and at most 1, not -0.5"],
+    );
+    fails("[time]", "[scheme]\ncfl = 2\n[time]", &["key scheme.cfl"]);
+    fails("[time]", "[scheme]\norder = 3\n[time]", &["key scheme.order: is 1 or 2, not 3"]);
+    fails("[time]", "[gravity]\ng = [0, 0, -9.81]\n[time]", &["key gravity.g: acts along z, which has one cell"]);
+    fails("[time]", "[drag]\ncr = [-1, 0, 0]\n[time]", &["key drag.cr: needs numbers not below 0, not -1"]);
+    fails("y = [0, 0.5, 1]", "y = [0, 0.5, 0.5]", &["y[2]: edge 0.5 does not lie above"]);
+    fails("y = [0, 0.5, 1]", "y = [0, nan, 1]", &["y[1]: edge NaN is not finite"]);
+    fails("cells = [4]", "cells = [0]", &["key grid.x: a segment needs at least one cell"]);
+    fails("end = 0.1", "end = 0.1\n[output]\nevery = 1e-20", &["key output.every: makes more than"]);
+    fails(
+        "end = 0.1",
+        "end = 0.1\n[output]\nprobes = [{ name = \"A\", at = [2, 0, 0] }]",
+        &["probes[0].at", "outside the grid"],
+    );
+}
+
+#[test]
+fn states_and_sides() {
+    fails("x = {", "file = \"grid.toml\"\nx = {", &["key grid.file: a grid is either here or in another file"]);
+    let uniform = "rho = 1, u = 0.5, p = 1 }\n[boundary]";
+    fails(uniform, "rho = -1, p = 1 }\n[boundary]", &["key initial.uniform: rho = -1 is not a positive number"]);
+    fails(uniform, "rho = 1, p = nan }\n[boundary]", &["key initial.uniform: p = NaN"]);
+    fails(uniform, "rho = 1 }\n[boundary]", &["key initial.uniform: p is missing"]);
+    fails(uniform, "rho = 1, p = 1, w = 3 }\n[boundary]", &["key initial.uniform.w: axis z has one cell"]);
+    fails(uniform, "T = 300, p = 1 }\n[boundary]", &["T needs gas.gas_constant"]);
+    fails(uniform, "rho = 1, p = 1, min = [0] }\n[boundary]", &["key initial.uniform.min: is not a key of this table"]);
+    fails(
+        "uniform = { rho = 1, u = 0.5, p = 1 }",
+        "regions = [{ max = [0.6], rho = 1, p = 1 }]",
+        &["key initial: cell [2, 0, 0] at [0.625, 0.25, 0.5] is in no region"],
+    );
+    fails("x_max = { type = \"outlet\", p = 1 }", "", &["key boundary.x_max: is missing"]);
+    fails("outlet\", p = 1", "outlet\"", &["key boundary.x_max: an outlet needs p"]);
+    fails("outlet\", p = 1", "outlet\", p = 1, u = 2", &["key boundary.x_max.u: is not a key of this type (Outlet)"]);
+    fails(
+        "inlet\", rho = 1, u = 0.5",
+        "inlet\", rho = 1, u = -2",
+        &["key boundary.x_min.u: must point into the domain"],
+    );
+    fails("inlet\", rho = 1, u = 0.5", "inlet\", u = 2", &["key boundary.x_min: rho is missing"]);
+    fails(
+        "y_min = { type = \"wall\" }",
+        "y_min = { type = \"periodic\" }",
+        &["key boundary.y_min: an axis is periodic on both"],
+    );
+    fails("y_min", "z_min = { type = \"outlet\", p = 1 }\ny_min", &["key boundary.z_min: the axis has one cell"]);
+    fails("y_min = { type", "y_min = { kind", &["unknown field `kind`"]);
+}
+
+#[test]
+fn files() {
+    let at = Scratch::new();
+    let said = |case: &str| {
+        let output = solve(&at, case, "out", &[]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(!at.file("out").exists());
+        stderr(&output)
+    };
+    let scene = CASE.replace("[gas]", "[porosity]\nscene = \"no.stl\"\n[gas]");
+    assert!(said(&scene).contains("no.stl: cannot"), "{}", said(&scene));
+    let both = CASE.replace("[gas]", "[porosity]\nscene = \"no.stl\"\nfrom = \"beta\"\n[gas]");
+    assert!(said(&both).contains("key porosity: takes scene or from, not both"), "{}", said(&both));
+
+    let from = CASE.replace("uniform = { rho = 1, u = 0.5, p = 1 }", "from = \"start\"");
+    assert!(said(&from).contains("start/rho.npy: cannot open"), "{}", said(&from));
+    fs::create_dir(at.file("start")).expect("a directory");
+    let put = |name: &str, shape: [usize; 3], values: &[f64]| {
+        npy::write(&at.file(&format!("start/{name}.npy")), shape, values).expect("an array");
+    };
+    for name in ["rho", "u", "v", "p"] {
+        put(name, [4, 2, 1], &[1.0; 8]);
+    }
+    put("u", [2, 4, 1], &[1.0; 8]);
+    assert!(said(&from).contains("start/u.npy: shape: [2, 4, 1] does not fit the grid, which needs [4, 2, 1]"));
+    put("u", [4, 2, 1], &[1.0, 1.0, 1.0, 1.0, 1.0, f64::NAN, 1.0, 1.0]);
+    assert!(said(&from).contains("start/u.npy: [1, 1, 0]: NaN is not finite"), "{}", said(&from));
+    put("u", [4, 2, 1], &[1.0; 8]);
+    put("p", [4, 2, 1], &[1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    assert!(said(&from).contains("start/p.npy: [2, 0, 0]: 0 is not positive"), "{}", said(&from));
+    put("p", [4, 2, 1], &[1.0; 8]);
+    put("w", [4, 2, 1], &[0.1; 8]);
+    assert!(said(&from).contains("start/w.npy: [0, 0, 0]: 0.1 flows along an axis of one cell"));
+    fs::write(at.file("start/w.npy"), "no array").expect("a file");
+    assert!(said(&from).contains("start/w.npy: header: this is not a NumPy"), "{}", said(&from));
+
+    fs::create_dir(at.file("beta")).expect("a directory");
+    npy::write(&at.file("beta/beta_v.npy"), [4, 2, 1], &[1.5; 8]).expect("an array");
+    npy::write(&at.file("beta/beta_x.npy"), [5, 2, 1], &[1.0; 10]).expect("an array");
+    npy::write(&at.file("beta/beta_y.npy"), [4, 2, 1], &[1.0; 8]).expect("an array");
+    let beta = CASE.replace("[gas]", "[porosity]\nfrom = \"beta\"\n[gas]");
+    assert!(said(&beta).contains("beta/beta_y.npy: shape: [4, 2, 1] does not fit the grid, which needs [4, 3, 1]"));
+    npy::write(&at.file("beta/beta_y.npy"), [4, 3, 1], &[1.0; 12]).expect("an array");
+    assert!(said(&beta).contains("beta/beta_v.npy: [0, 0, 0]: 1.5 is not within 0..1"), "{}", said(&beta));
+}
+
+#[test]
+fn the_last_state_does_not_replace_the_first() {
+    let at = Scratch::new();
+    solved(&at, CASE, "out", &["-q"]);
+    let before = array(&at.file("out/final/rho.npy"));
+    let again = CASE.replace("uniform = { rho = 1, u = 0.5, p = 1 }", "from = \"out/final\"");
+    let output = solve(&at, &again, "out", &[]);
+    assert!(stderr(&output).contains("key initial.from: would be replaced"), "{}", stderr(&output));
+    assert!(array(&at.file("out/final/rho.npy")) == before);
+    solved(&at, &again, "further", &["-q"]);
+}
+
+/// A push that no number can hold: the step, the cell and its values are named, and the checkpoint before remains.
+#[test]
+fn a_flow_that_blows_up() {
+    let at = Scratch::new();
+    let case = CASE.replace("[time]", "[gravity]\ng = [1e150, 0, 0]\n[time]");
+    let output = solve(&at, &case, "out", &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    for word in ["error: step ", "cell [", "rho = ", "u = ", "p = ", "the last good state is in", "checkpoint.bin"] {
+        assert!(said.contains(word), "'{word}' expected: {said}");
+    }
+    assert!(at.file("out/checkpoint.bin").exists() && !at.file("out/final").exists());
+}
+
+#[test]
+fn a_grid_beyond_memory() {
+    let at = Scratch::new();
+    let large = "origin = [0, 0]\nspacing = [1, 1]\ncells = [60000, 60000]";
+    let case = CASE.replace("x = { points = [0, 1], cells = [4] }\ny = [0, 0.5, 1]", large);
+    let output = solve(&at, &case, "out", &[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("need 460.8 GB of memory"), "{}", stderr(&output));
+}
+
+#[test]
+fn the_command_line() {
+    let at = Scratch::new();
+    let missing = crate::kit::voidage(&[&"solve", &at.file("no.toml")]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(stderr(&missing).contains("no.toml: cannot read"), "{}", stderr(&missing));
+    assert_eq!(crate::kit::voidage(&[&"solve"]).status.code(), Some(2));
+    assert_eq!(crate::kit::voidage(&[&"solve", &"a.toml", &"--threads", &"0"]).status.code(), Some(2));
+}

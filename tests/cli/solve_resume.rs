@@ -1,0 +1,185 @@
+//! Runs that stop and go on: at a number of steps, by Ctrl-C, by a kill. They end with the same bits as a run that never stopped.
+
+use crate::kit::{Scratch, fixture, program, solve, solved, stderr};
+use std::fs;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Everything at once: inlet, porosity with jumps and small cells, drag, gravity, frames, probes.
+fn wind(time: &str, output: &str) -> String {
+    format!(
+        r#"
+[grid]
+x = {{ points = [-2, 10], cells = [24] }}
+y = {{ points = [-1, 5], cells = [12] }}
+z = {{ points = [-1, 5], cells = [18] }}
+[porosity]
+scene = '{}'
+[gas]
+model = "ideal"
+gamma = 1.4
+[initial]
+uniform = {{ rho = 1.2, u = 20, p = 1e5 }}
+[boundary]
+x_min = {{ type = "inlet", rho = 1.2, u = 20 }}
+x_max = {{ type = "outlet", p = 1e5 }}
+y_min = {{ type = "wall" }}
+y_max = {{ type = "far-field", rho = 1.2, u = 20, p = 1e5 }}
+z_min = {{ type = "wall" }}
+z_max = {{ type = "zero-gradient" }}
+[drag]
+cr = [0.1, 0, 0.2]
+linear = [0, 1, 0]
+[gravity]
+g = [0, 0, -9.81]
+[time]
+{time}
+[output]
+every = 0.004
+probes = [{{ name = "P", at = [5, 2, 4.5] }}]
+{output}
+"#,
+        fixture("cad_skid.stl").display()
+    )
+}
+
+/// All that a run leaves, apart from what names the time it took.
+fn results(at: &Scratch, dir: &str) -> Vec<(String, Vec<u8>)> {
+    let mut all = Vec::new();
+    let final_fields = ["rho", "u", "v", "w", "p"].map(|f| format!("final/{f}.npy"));
+    let tables = ["log.csv", "probes.csv", "flow.pvd"].map(str::to_owned);
+    let frames = (0..4).map(|n| format!("frames/flow_{n:04}.vtr"));
+    for name in final_fields.into_iter().chain(tables).chain(frames) {
+        all.push((name.clone(), fs::read(at.file(dir).join(&name)).expect("a file")));
+    }
+    all
+}
+
+fn assert_same(at: &Scratch, a: &str, b: &str) {
+    for ((name, one), (_, other)) in results(at, a).iter().zip(&results(at, b)) {
+        assert!(one == other, "{name} of {a} and {b} differ");
+    }
+}
+
+#[test]
+fn two_halves_are_a_whole_with_any_number_of_threads() {
+    let at = Scratch::new();
+    let whole = wind("end = 0.012", "");
+    solved(&at, &whole, "one", &["-q", "--threads", "1"]);
+    solved(&at, &whole, "three", &["-q", "--threads", "3"]);
+    assert_same(&at, "one", "three");
+    solved(&at, &wind("end = 0.012\nmax_steps = 13", ""), "parts", &["-q", "--threads", "2"]);
+    solved(&at, &wind("end = 0.012\nmax_steps = 20", ""), "parts", &["-q", "--threads", "1", "--resume"]);
+    solved(&at, &whole, "parts", &["-q", "--threads", "3", "--resume"]);
+    assert_same(&at, "one", "parts");
+    // A run that has ended is read again, and ends alike.
+    solved(&at, &whole, "parts", &["-q", "--resume"]);
+    assert_same(&at, "one", "parts");
+}
+
+/// A run in the background that writes a checkpoint after every step.
+fn background(at: &Scratch, dir: &str, more: &[&str]) -> Child {
+    let mut command = Command::new(program());
+    command
+        .arg("solve")
+        .arg(at.file("case.toml"))
+        .arg("-o")
+        .arg(at.file(dir))
+        .args(["-q", "--threads", "2"])
+        .args(more);
+    command.stderr(Stdio::piped()).spawn().expect("the program runs")
+}
+
+/// Waits until the log shows that steps were done.
+fn wait_for_steps(at: &Scratch, dir: &str, lines: usize) {
+    let begin = Instant::now();
+    let count = || fs::read_to_string(at.file(dir).join("log.csv")).map_or(0, |t| t.lines().count());
+    while count() < lines {
+        assert!(begin.elapsed() < Duration::from_secs(100), "no step was done");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_leaves_a_checkpoint() {
+    let at = Scratch::new();
+    let whole = wind("end = 0.012", "checkpoint_every = 0");
+    solved(&at, &whole, "whole", &["-q"]);
+    // Far away, so that the run cannot end before it is asked to.
+    fs::write(at.file("case.toml"), wind("end = 1000", "checkpoint_every = 0")).expect("a case");
+    let child = background(&at, "stopped", &[]);
+    wait_for_steps(&at, "stopped", 6);
+    let killed = Command::new("kill").arg("-INT").arg(child.id().to_string()).status().expect("kill runs");
+    assert!(killed.success());
+    let output = child.wait_with_output().expect("the program ends");
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stderr(&output).contains("error: interrupted at step"), "{}", stderr(&output));
+    assert!(!at.file("stopped/final").exists() && at.file("stopped/checkpoint.bin").exists());
+    let log = fs::read_to_string(at.file("stopped/log.csv")).expect("a log");
+    let reached: f64 =
+        log.lines().last().and_then(|l| l.split(',').nth(1)).and_then(|t| t.parse().ok()).expect("a time");
+    assert!(reached > 0.0);
+    if reached < 0.012 {
+        solved(&at, &whole, "stopped", &["-q", "--resume"]);
+        assert_same(&at, "whole", "stopped");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_kill_leaves_the_last_checkpoint() {
+    let at = Scratch::new();
+    let whole = wind("end = 0.012", "checkpoint_every = 0");
+    solved(&at, &whole, "whole", &["-q"]);
+    let mut child = background(&at, "killed", &[]);
+    for lines in [3, 8, 14] {
+        wait_for_steps(&at, "killed", lines);
+        child.kill().expect("killed"); // SIGKILL
+        child.wait().expect("gone");
+        child = background(&at, "killed", &["--resume"]);
+    }
+    assert!(child.wait_with_output().expect("the program ends").status.success());
+    assert_same(&at, "whole", "killed");
+}
+
+#[test]
+fn checkpoints_that_do_not_fit_are_refused() {
+    let at = Scratch::new();
+    let case = wind("max_steps = 2", "");
+    let refused = |case: &str, words: &str| {
+        let output = solve(&at, case, "out", &["--resume"]);
+        assert_eq!(output.status.code(), Some(1), "{words}");
+        assert!(stderr(&output).contains(words), "'{words}' expected: {}", stderr(&output));
+    };
+    refused(&case, "there is no checkpoint to resume from");
+    solved(&at, &case, "out", &["-q"]);
+    for (from, to, part) in [
+        ("cells = [18]", "cells = [17]", "its grid differs"),
+        ("gamma = 1.4", "gamma = 1.3", "its gas differs"),
+        ("u = 20, p = 1e5 }\n[boundary]", "u = 21, p = 1e5 }\n[boundary]", "its initial state differs"),
+        ("outlet\", p = 1e5", "outlet\", p = 2e5", "its boundary differs"),
+        ("cr = [0.1, 0, 0.2]", "cr = [0.2, 0, 0.1]", "its drag differs"),
+        ("-9.81", "-9.8", "its gravity differs"),
+        ("[time]", "[scheme]\ncfl = 0.5\n[time]", "its scheme differs"),
+        ("scene = '", "jump = 0.2\nscene = '", "its treatment of the porosity differs"),
+    ] {
+        assert!(case.contains(from), "{from}");
+        refused(&case.replacen(from, to, 1), part);
+    }
+    let path = at.file("out/checkpoint.bin");
+    let whole = fs::read(&path).expect("a checkpoint");
+    for (length, flip, words) in
+        [(whole.len(), 5000, "its checksum is wrong"), (whole.len() - 9, 0, "damaged"), (4, 0, "no checkpoint")]
+    {
+        let mut bytes = whole[..length].to_vec();
+        if flip > 0 {
+            bytes[flip] ^= 1;
+        }
+        fs::write(&path, bytes).expect("a checkpoint");
+        refused(&case, words);
+    }
+    fs::write(&path, &whole).expect("a checkpoint");
+    refused(&case.replace("name = \"P\"", "name = \"Q\""), "probes.csv: has other columns");
+    solved(&at, &case, "out", &["--resume", "-q"]);
+}
