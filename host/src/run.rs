@@ -160,7 +160,11 @@ fn check_outputs(args: &PorosityArgs) -> Result<()> {
         return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
     }
     for (n, output) in outputs.iter().enumerate() {
-        check_target(output)?;
+        // The directory of the arrays is made before.
+        let made = args.npy.as_deref().zip(output.parent()).is_some_and(|(made, parent)| made.starts_with(parent));
+        if !made || output.exists() {
+            check_target(output)?;
+        }
         let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
         let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
         if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {

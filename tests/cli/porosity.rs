@@ -217,3 +217,20 @@ fn completions_and_manual() {
     let output = voidage(&[&"man"]);
     assert!(stdout(&output).contains(".TH voidage"), "{}", stdout(&output));
 }
+
+/// The directory that --npy makes may hold the other outputs; any other missing directory is told before the work.
+#[test]
+fn outputs_in_the_directory_of_the_arrays() {
+    let out = Scratch::new();
+    let dir = out.file("new");
+    let skid = fixture("analytic_boxes_aligned.stl");
+    let run = |vtr: &std::path::Path| {
+        voidage(&[&"porosity", &skid, &"--cells", &"4x4x4", &"--npy", &dir, &"-o", &vtr, &"-q"])
+    };
+    let refused = run(&out.file("other/out.vtr"));
+    assert_eq!(refused.status.code(), Some(1), "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("there is no directory") && !dir.exists(), "{}", stderr(&refused));
+    let done = run(&dir.join("out.vtr"));
+    assert!(done.status.success(), "{}", stderr(&done));
+    assert!(dir.join("out.vtr").is_file() && dir.join("beta_z.npy").is_file());
+}

@@ -244,6 +244,8 @@ pub enum Pressure {
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LimiterName {
+    /// Monotonised central, with contacts kept steep.
+    Steep,
     /// Monotonised central.
     Mc,
     /// Van Leer.

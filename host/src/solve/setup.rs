@@ -161,6 +161,7 @@ fn scheme(file: &CaseFile) -> Result<(Scheme, usize)> {
         (Some(1), None) => Limiter::FirstOrder,
         (Some(1), Some(_)) => return Err(file.wrong("scheme.limiter", "order 1 has no slopes to limit")),
         (None | Some(2), name) => match name.unwrap_or(LimiterName::Mc) {
+            LimiterName::Steep => Limiter::Steep,
             LimiterName::Mc => Limiter::MonotonizedCentral,
             LimiterName::VanLeer => Limiter::VanLeer,
             LimiterName::Minmod => Limiter::Minmod,
