@@ -64,39 +64,68 @@ impl<'a> Near<'a> {
     }
 }
 
-/// A box against a single plane.
+/// Most planes that [`Planes`] holds.
+pub const MAX_PLANES: usize = 8;
+
+/// A polytope as its planes near a box, each seen from the middle of it. Where a part of the box lies is then a few additions.
 #[derive(Clone, Copy, Debug)]
-pub struct BesidePlane<R> {
-    /// Height of the box's middle above the plane.
-    pub middle: R,
-    /// How far the box reaches up and down from there, by axis.
-    pub reach: [R; 3],
-    /// Rounding of all these.
-    pub margin: R,
+pub struct Planes<R> {
+    /// How far the box reaches along each plane's normal, by axis and with the normal's signs.
+    reach: [[R; 3]; MAX_PLANES],
+    /// The sum of these without signs.
+    whole: [R; MAX_PLANES],
+    /// Rounding of heights.
+    margin: R,
 }
 
-impl<R: Real> BesidePlane<R> {
-    /// Where the box lies.
+/// Heights of a box's middle above planes, and a bit for each plane that cuts the box.
+#[derive(Clone, Copy, Debug)]
+pub struct Heights<R> {
+    middle: [R; MAX_PLANES],
+    cut: u8,
+}
+
+impl<R: Real> Planes<R> {
+    /// Where a part of the box lies, `scale` times as large and its middle `shift` times the box's half size away from that of its parent,
+    /// by axis. None if planes cut it, but perhaps not together.
     #[inline(always)]
-    pub fn occupancy(&self) -> Occupancy {
-        let reach = self.reach[0] + self.reach[1] + self.reach[2];
-        if self.middle - reach >= self.margin {
-            Occupancy::Open
-        } else if self.middle + reach <= -self.margin {
-            Occupancy::Closed
-        } else {
-            Occupancy::Cut
+    pub fn part(&self, parent: &Heights<R>, shift: [R; 3], scale: R) -> (Option<Occupancy>, Heights<R>) {
+        let mut part = Heights { middle: parent.middle, cut: 0 };
+        for n in (0..MAX_PLANES).filter(|n| parent.cut >> n & 1 == 1) {
+            let [x, y, z] = self.reach[n];
+            let middle = parent.middle[n] + (x * shift[0] + y * shift[1] + z * shift[2]);
+            let reach = self.whole[n] * scale;
+            if middle - reach >= self.margin {
+                return (Some(Occupancy::Open), part);
+            }
+            if !(middle + reach <= -self.margin) {
+                part.cut |= 1 << n;
+                part.middle[n] = middle;
+            }
         }
+        let found = match part.cut.count_ones() {
+            0 => Some(Occupancy::Closed),
+            1 => Some(Occupancy::Cut),
+            _ => self.meets(&part, scale).then_some(Occupancy::Cut),
+        };
+        (found, part)
     }
 
-    /// Its eighth of some number; of a face, twice each quarter.
+    /// The corner farthest inward of the cutting planes taken together lies inside all of them: then interiors meet.
     #[inline(always)]
-    pub fn part(&self, number: usize) -> Self {
-        let half = self.reach.map(|r| r * R::HALF);
-        let moved = |axis: usize| if number >> axis & 1 == 1 { half[axis] } else { -half[axis] };
-        BesidePlane { middle: self.middle + moved(0) + moved(1) + moved(2), reach: half, margin: self.margin }
+    fn meets(&self, part: &Heights<R>, scale: R) -> bool {
+        let cutting = || (0..MAX_PLANES).filter(|n| part.cut >> n & 1 == 1);
+        let sum = cutting().fold([R::ZERO; 3], |s, n| [0, 1, 2].map(|axis| s[axis] + self.reach[n][axis]));
+        let inward = sum.map(|s| -scale.copysign(s));
+        cutting().all(|n| {
+            let [x, y, z] = self.reach[n];
+            part.middle[n] + (x * inward[0] + y * inward[1] + z * inward[2]) < -self.margin
+        })
     }
 }
+
+/// Planes and the heights of a box above them.
+pub type Seen<R> = (Planes<R>, Heights<R>);
 
 /// A body as the subdivision sees it.
 pub trait Body {
@@ -120,12 +149,8 @@ pub trait Body {
         tally: &mut Tally,
     ) -> Occupancy;
 
-    /// If the body is, as far as a box is concerned, what lies below a single plane: how the box lies to that.
-    fn beside_plane(
-        &self,
-        cell: &Aabb<Self::Vector>,
-        near: &[u32],
-    ) -> Option<BesidePlane<<Self::Vector as Vector>::Scalar>>;
+    /// The planes near a box, if the body is a polytope and they are not too many; and the box's heights above them.
+    fn planes(&self, cell: &Aabb<Self::Vector>, near: &[u32]) -> Option<Seen<<Self::Vector as Vector>::Scalar>>;
 
     /// Bounds of the share of a box that is solid; `near` as [`Body::place`] kept it.
     fn measure(
@@ -182,20 +207,28 @@ impl<B: Convex> Body for B {
         ask(self, cell, axis, tally)
     }
 
-    #[inline]
-    fn beside_plane(&self, cell: &Aabb<B::Vector>, near: &[u32]) -> Option<BesidePlane<crate::support::ScalarOf<B>>> {
-        let &[id] = near else { return None };
-        let plane = self.facet(id as usize);
-        // Whether a face lies in an exact plane must be seen exactly.
-        if plane.exact || !self.is_polytope() {
+    fn planes(&self, cell: &Aabb<B::Vector>, near: &[u32]) -> Option<Seen<crate::support::ScalarOf<B>>> {
+        if !self.is_polytope() || near.len() > MAX_PLANES {
             return None;
         }
+        let zero: crate::support::ScalarOf<B> = Real::ZERO;
         let far = cell.min.abs().max(cell.max.abs()).norm_max();
         let margin = (rounding(self) + rounded(far)) * Real::HALF;
-        let (normal, size) = (plane.normal.abs().to_array(), cell.size().to_array());
-        let reach = [0, 1, 2].map(|axis| normal[axis] * size[axis] * Real::HALF);
-        let middle = cell.center().dot(plane.normal) - plane.offset;
-        Some(BesidePlane { middle, reach, margin })
+        let mut planes = Planes { reach: [[zero; 3]; MAX_PLANES], whole: [zero; MAX_PLANES], margin };
+        let mut heights = Heights { middle: [zero; MAX_PLANES], cut: 0 };
+        for (n, &id) in near.iter().enumerate() {
+            let plane = self.facet(id as usize);
+            // Whether a face lies in an exact plane must be seen exactly.
+            if plane.exact {
+                return None;
+            }
+            let (normal, size) = (plane.normal.to_array(), cell.size().to_array());
+            planes.reach[n] = [0, 1, 2].map(|axis| normal[axis] * size[axis] * Real::HALF);
+            planes.whole[n] = plane.normal.abs().dot(cell.size()) * Real::HALF;
+            heights.middle[n] = cell.center().dot(plane.normal) - plane.offset;
+            heights.cut |= 1 << n;
+        }
+        Some((planes, heights))
     }
 
     #[inline]

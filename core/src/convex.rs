@@ -213,8 +213,16 @@ fn no_facet<V: Vector>() -> Plane<V> {
 
 #[inline(always)]
 fn ball<V: Vector>(center: V, radius: V::Scalar, origin: V, direction: V) -> Option<[V::Scalar; 2]> {
-    let (at, p) = beside(origin, direction, center);
-    Some(moved(within(p - center, direction, radius)?, at))
+    let to_center = center - origin;
+    let inv = reciprocal(direction.dot(direction));
+    let nearest = to_center.dot(direction) * inv;
+    let across = to_center - direction * nearest;
+    let half_sq = (radius * radius - across.dot(across)) * inv;
+    if radius < V::Scalar::ZERO || half_sq < V::Scalar::ZERO {
+        return None;
+    }
+    let half = half_sq.sqrt();
+    Some([nearest - half, nearest + half])
 }
 
 impl<V: Vector> Convex for Sphere<V> {

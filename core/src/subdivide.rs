@@ -9,7 +9,7 @@
 //! all with δ the part's size; `Plane` bounds what is left to second order.
 
 use crate::aabb::Aabb;
-use crate::classify::{BesidePlane, Body, Near, Occupancy, Tally};
+use crate::classify::{Body, Heights, MAX_PLANES, Near, Occupancy, Planes, Tally};
 use crate::columns::{Bounds, Columns, MAX_PARTS};
 use crate::grid::Grid;
 use crate::real::{Real, Vector};
@@ -407,16 +407,11 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         let last = level >= depth;
         let alone = list.end - list.first == 1;
         if leaf != Leaf::Plane {
-            let only = self.memory.candidates.get(list.first).filter(|_| alone && !last);
-            let plane = only.and_then(|candidate| {
-                let near = self.memory.facets.get(candidate.first as usize..candidate.end as usize)?;
-                self.bodies.get(candidate.body as usize)?.beside_plane(cell, near)
-            });
-            return match plane {
-                Some(plane) => Known::Enough(below_plane(&plane, depth - level)),
-                None if last => Known::Enough(Bounds::UNKNOWN),
-                None => Known::Divide(Bounds::UNKNOWN),
-            };
+            if last {
+                return Known::Enough(Bounds::UNKNOWN);
+            }
+            let found = if alone { self.below_planes(cell, list, depth - level) } else { None };
+            return found.map_or(Known::Divide(Bounds::UNKNOWN), Known::Enough);
         }
         if !(alone || last) {
             return Known::Divide(Bounds::UNKNOWN);
@@ -438,6 +433,18 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
         }
         let bounds = Bounds { lower, upper: upper.min(R::<B>::ONE) };
         if last || bounds.gap() <= enough { Known::Enough(bounds) } else { Known::Divide(bounds) }
+    }
+
+    /// What the parts of a box say, halved so many times, that a single polytope cuts in few planes.
+    fn below_planes(&mut self, cell: &Aabb<B::Vector>, list: List, levels: u32) -> Option<Bounds<Scalar<B>>> {
+        let Memory { candidates, facets } = &*self.memory;
+        let candidate = candidates.get(list.first)?;
+        let near = facets.get(candidate.first as usize..candidate.end as usize)?;
+        let body = self.bodies.get(candidate.body as usize)?;
+        let (planes, heights) = body.planes(cell, near)?;
+        let flat = cell.size().to_array().map(|s| s == Real::ZERO);
+        let mut parts = Parts { body, near, planes, flat, tally: &mut self.tally };
+        Some(parts.share(cell, &heights, levels, Real::HALF))
     }
 
     /// Room for the rounding of the planes between parts, and of sums.
@@ -463,21 +470,67 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
 /// How far the box of several planes of faces reaches beyond them, as a share of its thickness.
 const OVERHANG: f64 = 1.0 / 1024.0;
 
-/// What the parts of a box say, halved so many times, that only a plane cuts. Nests no deeper than [`MAX_DEPTH`].
-fn below_plane<R: Real>(plane: &BesidePlane<R>, levels: u32) -> Bounds<R> {
-    let (mut lower, mut upper) = (R::ZERO, R::ZERO);
-    for part in (0..8).map(|number| plane.part(number)) {
-        let share = match part.occupancy() {
-            Occupancy::Open => Bounds::OPEN,
-            Occupancy::Closed => Bounds::CLOSED,
-            Occupancy::Cut if levels <= 1 => Bounds::UNKNOWN,
-            Occupancy::Cut => below_plane(&part, levels - 1),
-        };
-        lower += share.lower;
-        upper += share.upper;
+/// A polytope and its planes near a box whose parts are asked for.
+struct Parts<'a, B: Body> {
+    body: &'a B,
+    near: &'a [u32],
+    planes: Planes<Scalar<B>>,
+    flat: [bool; 3],
+    tally: &'a mut Tally,
+}
+
+impl<B: Body> Parts<'_, B> {
+    /// The bounds of a part of the box from its own parts, of which `scale` is the size. Nests no deeper than [`MAX_DEPTH`].
+    fn share(
+        &mut self,
+        cell: &Aabb<B::Vector>,
+        heights: &Heights<Scalar<B>>,
+        levels: u32,
+        scale: Scalar<B>,
+    ) -> Bounds<Scalar<B>> {
+        let count = 1_usize << self.flat.iter().filter(|&&flat| !flat).count();
+        let mut sum: Bounds<Scalar<B>> = Bounds::OPEN;
+        for number in 0..count {
+            let (found, part) = self.planes.part(heights, shift_of(self.flat, number, scale), scale);
+            let share = match found {
+                Some(Occupancy::Open) => continue,
+                Some(Occupancy::Closed) => Bounds::CLOSED,
+                _ if levels > 1 => self.share(&part_of(cell, self.flat, number), &part, levels - 1, scale * Real::HALF),
+                Some(Occupancy::Cut) => Bounds::UNKNOWN,
+                None => self.ask(&part_of(cell, self.flat, number)),
+            };
+            sum.lower += share.lower;
+            sum.upper += share.upper;
+        }
+        let weight = Scalar::<B>::ONE / Real::from_usize(count);
+        Bounds { lower: sum.lower * weight, upper: sum.upper * weight }
     }
-    let eighth = R::from_f64(0.125);
-    Bounds { lower: lower * eighth, upper: upper * eighth }
+
+    /// Planes cut the part, but perhaps not together.
+    #[cold]
+    fn ask(&mut self, part: &Aabb<B::Vector>) -> Bounds<Scalar<B>> {
+        let mut room = [0; MAX_PLANES];
+        let mut axis = B::Vector::ZERO;
+        match self.body.place(part, self.near, &mut Near::new(&mut room), &mut axis, self.tally) {
+            Occupancy::Open => Bounds::OPEN,
+            Occupancy::Cut => Bounds::UNKNOWN,
+            Occupancy::Closed => Bounds::CLOSED,
+        }
+    }
+}
+
+/// From the middle of a box to that of a part, in half sizes of the whole.
+#[inline(always)]
+fn shift_of<R: Real>(flat: [bool; 3], number: usize, scale: R) -> [R; 3] {
+    let mut bits = number;
+    flat.map(|flat| {
+        if flat {
+            return R::ZERO;
+        }
+        let upper = bits & 1 == 1;
+        bits >>= 1;
+        if upper { scale } else { -scale }
+    })
 }
 
 /// The box around a range of cells or faces. Around faces of several planes it is a little thicker: a body that only touches the outermost

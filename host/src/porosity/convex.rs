@@ -9,7 +9,7 @@ use crate::bodies::{Bodies, Body};
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 use voidage_core::aabb::Aabb;
-use voidage_core::classify::{self, BesidePlane, Near, Occupancy, Tally};
+use voidage_core::classify::{self, Near, Occupancy, Seen, Tally};
 use voidage_core::columns::{Bounds, Columns};
 use voidage_core::convex::Plane;
 use voidage_core::grid::Grid;
@@ -68,8 +68,8 @@ impl classify::Body for Convex<'_> {
     ) -> Occupancy {
         of_shape!(self, s => s.place(cell, near, keep, axis, tally))
     }
-    fn beside_plane(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<BesidePlane<f64>> {
-        of_shape!(self, s => s.beside_plane(cell, near))
+    fn planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<Seen<f64>> {
+        of_shape!(self, s => s.planes(cell, near))
     }
     fn measure(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
         of_shape!(self, s => columns.measure(s, cell, near))

@@ -29,7 +29,7 @@ pub struct Row {
     pub seconds: f64,
     /// Shortest time.
     pub fastest: f64,
-    /// Solid volume found [m³].
+    /// Solid volume found, in m³.
     pub volume: f64,
     /// What it should be, if that is known.
     pub exact: Option<f64>,
