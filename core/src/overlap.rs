@@ -395,9 +395,10 @@ impl<'a, R: Real> Overlap<'a, R> {
                     }
                     Branch::Node(n) => &nodes[n as usize],
                 };
-                let place = side(&f.polygon, node.normal, node.offset, self.thickness);
+                let span = span(&f.polygon, node.normal, node.offset);
+                let place = side(span, self.thickness);
                 if place != Place::On
-                    && side(&f.polygon, node.normal, node.offset, self.thickness * R::from_f64(DOUBT)) == Place::On
+                    && side(span, self.thickness * R::from_f64(DOUBT)) == Place::On
                     && f.polygon.doubled_area().iter().any(|a| a.abs() > R::from_f64(SLIVER))
                 {
                     // Not quite one plane, not clearly two: another piece of the same faces may be judged otherwise.
@@ -458,14 +459,20 @@ enum Place {
     Across,
 }
 
+/// Signed distances of the corners of a polygon from a plane, the smallest and the largest.
 #[inline(always)]
-fn side<R: Real>(polygon: &Polygon<R>, normal: [R; 3], offset: R, thickness: R) -> Place {
+fn span<R: Real>(polygon: &Polygon<R>, normal: [R; 3], offset: R) -> (R, R) {
     let (mut min, mut max) = (R::INFINITY, -R::INFINITY);
     for c in polygon.corners() {
         let d = dot(normal, *c) - offset;
-        min = min.min(d);
-        max = max.max(d);
+        min = d.smaller(min);
+        max = d.larger(max);
     }
+    (min, max)
+}
+
+#[inline(always)]
+fn side<R: Real>((min, max): (R, R), thickness: R) -> Place {
     match (min < -thickness, max > thickness) {
         (false, false) => Place::On,
         (false, true) => Place::Positive,
@@ -523,20 +530,22 @@ fn divide<R: Real>(
     // Pieces before the plane gather above `end` and are moved down at last.
     let (mut behind, mut before) = (first, end);
     for p in first + 1..end {
-        let piece = growing[p];
-        match side(&piece.polygon, divider.normal, divider.offset, thickness) {
+        let piece = &growing[p];
+        match side(span(&piece.polygon, divider.normal, divider.offset), thickness) {
             // Solid thinner than rounding: which side of the plane holds it cannot be told.
-            Place::On if backs(&piece, divider, thickness) => return Err(Doubt),
+            Place::On if backs(piece, divider, thickness) => return Err(Doubt),
             Place::On => {}
             Place::Negative => {
-                growing[behind] = piece;
+                growing.copy_within(p..=p, behind);
                 behind += 1;
             }
-            Place::Positive => {
-                *growing.get_mut(before).ok_or(Full)? = piece;
+            Place::Positive if before < growing.len() => {
+                growing.copy_within(p..=p, before);
                 before += 1;
             }
+            Place::Positive => return Err(Full),
             Place::Across => {
+                let piece = *piece;
                 let halves =
                     if piece.polygon.is_full() { piece.polygon.halves() } else { [piece.polygon, Polygon::default()] };
                 for half in halves {
