@@ -139,6 +139,8 @@ pub struct Overlap<'a, R: Real> {
     /// That is more than rounding asks for.
     blurred: bool,
     part_count: usize,
+    /// So many of them have their tree.
+    planted: usize,
     piece_count: usize,
     node_count: usize,
 }
@@ -161,6 +163,7 @@ impl<'a, R: Real> Overlap<'a, R> {
             blurred: blur > rounding,
             thickness,
             part_count: 0,
+            planted: 0,
             piece_count: 0,
             node_count: 0,
         }
@@ -196,9 +199,20 @@ impl<'a, R: Real> Overlap<'a, R> {
             return Ok(());
         }
         let part = Part { first, end: self.piece_count, root: uniform, below };
-        let root = if self.piece_count == first { uniform } else { self.grow(part)? };
-        *self.space.parts.get_mut(self.part_count).ok_or(Full)? = Part { root, ..part };
+        *self.space.parts.get_mut(self.part_count).ok_or(Full)? = part;
         self.part_count += 1;
+        Ok(())
+    }
+
+    /// Build the trees of the bodies added since the last time; not before it is known that all their pieces find room.
+    fn plant(&mut self) -> Result<(), NoProof> {
+        for n in self.planted..self.part_count {
+            let part = self.space.parts[n];
+            if part.end > part.first {
+                self.space.parts[n].root = self.grow(part)?;
+            }
+        }
+        self.planted = self.part_count;
         Ok(())
     }
 
@@ -299,6 +313,7 @@ impl<'a, R: Real> Overlap<'a, R> {
     /// # Errors
     /// [`NoProof`]: divide the cell.
     pub fn cell(&mut self) -> Result<CellUnion<R>, NoProof> {
+        self.plant()?;
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         for own in 0..self.part_count {
             for p in self.space.parts[own].first..self.space.parts[own].end {
@@ -342,6 +357,7 @@ impl<'a, R: Real> Overlap<'a, R> {
     /// # Errors
     /// [`NoProof`], of the workspace or of planes.
     pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
+        self.plant()?;
         let mut square = Polygon::default();
         for (u, v) in [(R::ZERO, R::ZERO), (R::ONE, R::ZERO), (R::ONE, R::ONE), (R::ZERO, R::ONE)] {
             let mut corner = [at; 3];
