@@ -383,13 +383,14 @@ impl<'a, R: Real> Overlap<'a, R> {
     ) -> Result<(), NoProof> {
         let Workspace { nodes, parts, fragments, .. } = &mut self.space;
         let parts = &parts[..self.part_count];
-        let enter = |f: Fragment<R>, part: usize| {
-            let part = if Some(part) == own { part + 1 } else { part };
-            let branch = parts.get(part).map_or(Branch::Open, |p| p.root);
-            Fragment { part, branch, inward: false, twin: false, ..f }
+        let enter = |f: &mut Fragment<R>, part: usize| {
+            f.part = if Some(part) == own { part + 1 } else { part };
+            f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
+            (f.inward, f.twin) = (false, false);
         };
-        let first = enter(Fragment { polygon: *polygon, ..Fragment::default() }, 0);
-        *fragments.first_mut().ok_or(Full)? = first;
+        let first = fragments.first_mut().ok_or(Full)?;
+        first.polygon = *polygon;
+        enter(first, 0);
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
@@ -406,7 +407,8 @@ impl<'a, R: Real> Overlap<'a, R> {
                         continue;
                     }
                     Branch::Open => {
-                        f = enter(f, f.part + 1);
+                        let next = f.part + 1;
+                        enter(&mut f, next);
                         continue;
                     }
                     Branch::Node(n) => &nodes[n as usize],
