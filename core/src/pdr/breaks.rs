@@ -145,6 +145,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 ducts: [area_l, area_r],
                 face: open(i),
                 references: [left[(D + 2) * m + i], right[(D + 2) * m + i]],
+                troubled: self.first_order.is_some_and(|asked| {
+                    let beside = medium.beside(d, name(i), self.periodic[d]);
+                    beside.iter().flatten().any(|&cell| asked[medium.mesh.index(cell)] != 0)
+                }),
             }
         };
         for i in (0..m).filter(|&i| broken(i) && !(open(i) > R::ZERO)) {
