@@ -397,7 +397,7 @@ fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: [&AtThroat<R, D>; 2],
 /// would grow between two of them.
 ///
 /// Both sides have the mass flux Q in common and differ from their cells by the outgoing wave: the pressure by ∓c (Q − Q_K)/a, the
-/// momentum flux by (u ∓ c)(Q − Q_K), the energy flux by (H ∓ u c)(Q − Q_K), left and right. Q is such that the pressures in the
+/// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
 /// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
 fn acoustic<R: Real, const D: usize>(
     face: &JumpFace<R, D>,
@@ -414,8 +414,8 @@ fn acoustic<R: Real, const D: usize>(
         let u = w.velocity[0];
         let change = common - mass[s];
         let impulse = face.ducts[s] * (w.density * u * u + (w.pressure - face.references[s]));
-        let enthalpy = gas.enthalpy(w);
-        (impulse + (u + wave) * change, mass[s] * enthalpy + (enthalpy + u * wave) * change)
+        let enthalpy = gas.enthalpy(w) + wave * change / (face.ducts[s] * w.density);
+        (impulse + (u + wave) * change, common * enthalpy)
     };
     let ((left, energy_l), (right, energy_r)) = (own(0, -c[0]), own(1, c[1]));
     let from_left = common >= R::ZERO;
