@@ -25,8 +25,8 @@
 //! 9. [`step`] — the problem, one slab of one step
 //! 10. [`report`] — what a step did; [`repair`] — the whole step, and what happens to unphysical states
 //! 11. `line` — a long line of cells in pieces
-//! 12. `sweep` — a slab row by row: `reconstruct` (slopes, half step), `faces` (fluxes), `finish` (new states), on the buffers
-//!     of `work` with the loops of `row`
+//! 12. `sweep` — a slab row by row: `reconstruct` (slopes, half step), `faces` (fluxes), `breaks` (both beside walls and jumps),
+//!     `finish` (new states), on the buffers of `work` with the loops of `row`
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.
@@ -34,6 +34,7 @@
 //! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 14 and 16.
 
 pub mod boundary;
+mod breaks;
 pub mod drag;
 mod faces;
 mod finish;

@@ -2,6 +2,7 @@
 
 use voidage::solve::flow::{Flow, Treatment};
 use voidage_core::pdr::{Boundary, Gas, Limiter, Primitive};
+use voidage_tests::euler::property::Source;
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
 
@@ -148,4 +149,27 @@ fn stretched_cells_converge_too() {
     };
     let order = (error(100) / error(400)).log2() / 2.0;
     assert!(order > 1.8, "{order}");
+}
+
+/// Noise of a millionth in a closed duct whose area jumps by a factor of 30 every four cells: sound must not gain energy there.
+#[test]
+fn noise_dies_between_porosity_jumps() {
+    for limiter in [Limiter::Steep, Limiter::VanLeer] {
+        let (rows, block) = (32, 4);
+        let n = rows * block;
+        let volume: Vec<f64> = (0..n).map(|i| if i / block % 2 == 0 { 1.0 } else { 0.03 }).collect();
+        let faces = (0..=n).map(|i| volume[i.min(n - 1)].min(volume[i.max(1) - 1])).collect();
+        let mut flow: Flow<f64, 1> = Flow::uniform([n], [1.0 / n as f64], IDEAL, [[Boundary::Wall; 2]]);
+        flow.scheme.limiter = limiter;
+        flow.set_porosity(volume, [faces], Treatment::default()).unwrap();
+        let mut s = Source::seeded(3);
+        flow.fill(|_| Primitive { density: 1.0, velocity: [0.0], pressure: 1.0 });
+        for i in 0..n {
+            let pressure = 1.0 + 1e-6 * (s.unit() - 0.5);
+            flow.set(i, &Primitive { density: 1.0, velocity: [0.0], pressure });
+        }
+        flow.run(0.75, 20.0).unwrap();
+        let fastest = (0..n).map(|i| flow.get(i).velocity[0].abs()).fold(0.0, f64::max);
+        assert!(fastest < 3e-6, "{limiter:?}: {fastest}");
+    }
 }

@@ -6,3 +6,4 @@ mod extremes;
 mod invariance;
 mod reference;
 mod stress;
+mod walls;

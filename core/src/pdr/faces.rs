@@ -1,12 +1,11 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
 use super::flux::Solver;
-use super::medium::{Medium, jump_high, jump_low};
+use super::medium::{break_high, break_low};
 use super::report::Report;
 use super::row::{self, Openings, var};
 use super::step::PressureForm;
 use super::sweep::{Row, Sweep};
-use super::throat::{JumpFace, jump_fluxes};
 use super::work::Work;
 use crate::real::Real;
 
@@ -65,10 +64,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         row::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &self.face_gas, work.flux, m);
         if let Some(medium) = &self.medium {
             let marks = &medium.porosity.marks[row.start..][..n];
-            if marks.iter().fold(0, |a, b| a | b) & (jump_low(0) | jump_high(0)) != 0 {
-                let jump =
-                    |i: usize| if i < n { marks[i] & jump_low(0) != 0 } else { marks[n - 1] & jump_high(0) != 0 };
-                self.jumps(medium, 0, row.at, jump, (work.left, work.right), work.flux, m);
+            if marks.iter().fold(0, |a, b| a | b) & (break_low(0) | break_high(0)) != 0 {
+                let broken =
+                    |i: usize| if i < n { marks[i] & break_low(0) != 0 } else { marks[n - 1] & break_high(0) != 0 };
+                self.fluxes_at_breaks(medium, 0, row.at, broken, (work.left, work.right), work.flux, m);
             }
         }
         let flux = &*work.flux;
@@ -101,56 +100,6 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             *s = half_g * widths[if d == 0 { i } else { k }];
         }
         Some(spare)
-    }
-
-    /// Replaces the fluxes at the flagged faces of a row. `jump` tells which of the `m` faces are flagged; `at` names the first.
-    fn jumps(
-        &self,
-        medium: &Medium<'_, R, D>,
-        d: usize,
-        at: [usize; D],
-        jump: impl Fn(usize) -> bool,
-        (left, right): (&[R], &[R]),
-        flux: &mut [R],
-        m: usize,
-    ) {
-        /// Faces done side by side.
-        const LANES: usize = 8;
-        let face_at = |i: usize| {
-            let mut face = at;
-            face[0] = i;
-            let (area_l, area_r) = medium.ducts(d, face, self.periodic[d]);
-            JumpFace::<R, D> {
-                states: [row::face_state(left, m, i), row::face_state(right, m, i)],
-                ducts: [area_l, area_r],
-                face: medium.porosity.faces[d][medium.mesh.face(d, face)],
-                references: [left[(D + 2) * m + i], right[(D + 2) * m + i]],
-            }
-        };
-        let mut flagged = (0..m).filter(|&i| jump(i));
-        while let Some(first) = flagged.next() {
-            // A last group of fewer faces repeats its first one.
-            let mut group = [first; LANES];
-            let mut count = 1;
-            for (place, i) in group[1..].iter_mut().zip(&mut flagged) {
-                *place = i;
-                count += 1;
-            }
-            let mut faces = [face_at(first); LANES];
-            for (face, &i) in faces.iter_mut().zip(&group[..count]) {
-                *face = face_at(i);
-            }
-            let fluxes = jump_fluxes(self.problem.scheme.riemann, &faces, &self.face_gas, &self.throat);
-            for (f, &i) in fluxes.iter().zip(&group[..count]) {
-                flux[i] = f.through.mass;
-                flux[m + i] = f.left;
-                for c in 1..D {
-                    flux[(1 + c) * m + i] = f.through.momentum[c];
-                }
-                flux[(D + 1) * m + i] = f.through.energy;
-                flux[(D + 2) * m + i] = f.right;
-            }
-        }
     }
 
     /// Fluxes of a row of faces across axis `d` > 0 between `left` and `work.right`, into `work.flux`. `at` names the row of
@@ -200,10 +149,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         };
         row::fluxes::<R, S, D, ENERGY>(left, right, openings, &self.face_gas, flux, n);
         if let Some(medium) = &self.medium {
-            let (start, bit) = if k < cells { (row_of(k), jump_low(d)) } else { (row_of(cells - 1), jump_high(d)) };
+            let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
             let marks = &medium.porosity.marks[start..][..n];
             if marks.iter().fold(0, |a, b| a | b) & bit != 0 {
-                self.jumps(medium, d, at, |i| marks[i] & bit != 0, (left, right), flux, n);
+                self.fluxes_at_breaks(medium, d, at, |i| marks[i] & bit != 0, (left, right), flux, n);
             }
         }
     }

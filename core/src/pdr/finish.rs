@@ -1,6 +1,6 @@
 //! The new states of a row: fluxes summed, drag applied, the next stable rate found.
 
-use super::medium::{SEALED, SMALL, jump_high, jump_low};
+use super::medium::{BREAKS, SMALL, break_high, break_low, is};
 use super::merge::least_volume;
 use super::report::Report;
 use super::row;
@@ -58,17 +58,12 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 }
             }
             let marks = &medium.porosity.marks[row.start..][..n];
-            if marks.iter().any(|&b| b & !SEALED != 0) {
-                for i in 0..n {
-                    if marks[i] & !SEALED != 0 {
-                        let mut at = row.at;
-                        at[0] = i;
-                        for d in 0..D {
-                            let jump = marks[i] & (jump_low(d) | jump_high(d)) != 0;
-                            if jump || marks[i] & SMALL != 0 {
-                                metric.open[d][i] = self.problem.openness(medium, row.start + i, at, d);
-                            }
-                        }
+            for i in (0..n).filter(|&i| marks[i] & BREAKS != 0 || is(marks[i], SMALL)) {
+                let mut at = row.at;
+                at[0] = i;
+                for d in 0..D {
+                    if marks[i] & (break_low(d) | break_high(d)) != 0 || is(marks[i], SMALL) {
+                        metric.open[d][i] = self.problem.openness(medium, row.start + i, at, d);
                     }
                 }
             }
@@ -104,13 +99,13 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         // Cells of clusters are judged after merging.
         let small = match &self.medium {
             Some(medium) if !self.problem.clusters.0.is_empty() => {
-                Some(&medium.porosity.marks[row.start..][..n]).filter(|m| m.iter().any(|&b| b & SMALL != 0))
+                Some(&medium.porosity.marks[row.start..][..n]).filter(|m| m.iter().any(|&b| is(b, SMALL)))
             }
             _ => None,
         };
         if let Some(marks) = small {
             for i in 0..n {
-                if marks[i] & SMALL != 0 {
+                if is(marks[i], SMALL) {
                     signal[i] = R::ZERO;
                 }
             }
@@ -119,7 +114,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         report.rate = greater(row::largest(&signal[counted.clone()]), report.rate);
         if bad {
             for i in counted {
-                let merged = small.is_some_and(|m| m[i] & SMALL != 0);
+                let merged = small.is_some_and(|m| is(m[i], SMALL));
                 report.unphysical += usize::from(!merged && !self.problem.is_physical(&view.get(to + i)));
             }
         }

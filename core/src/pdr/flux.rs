@@ -67,6 +67,18 @@ impl<R: Real> FaceGas<R> {
         w.pressure * self.inv_gamma_minus_one + R::HALF * w.density * (v[0] * v[0] + tangential)
     }
 
+    /// Total enthalpy per mass.
+    #[inline(always)]
+    pub(super) fn enthalpy<const D: usize>(&self, w: &Primitive<R, D>) -> R {
+        (self.energy(w) + w.pressure) / w.density
+    }
+
+    /// Speed of sound.
+    #[inline(always)]
+    pub(super) fn sound_speed<const D: usize>(&self, w: &Primitive<R, D>) -> R {
+        (self.gamma * w.pressure / w.density).sqrt()
+    }
+
     /// Bounds of the fastest waves: the slower of the left sound wave and of that of the Roe average, and the mirror image.
     /// Batten et al. eq. (4.13), Einfeldt eq. (4.4).
     #[inline(always)]

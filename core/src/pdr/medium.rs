@@ -91,22 +91,33 @@ pub struct Porosity<'a, R, const D: usize> {
     pub marks: &'a [u8],
 }
 
-/// Mark of a cell whose own reconstruction stays first order: less open volume than [`SMALL_SHARE`] of its largest face.
-pub const SMALL: u8 = 1 << 6;
-/// Mark of a cell with no open face: nothing happens there.
-pub const SEALED: u8 = 1 << 7;
+/// The two bits that say what kind of cell it is; none for a plain one.
+pub const KIND: u8 = 3 << 6;
+/// Kind of a cell with no open face: nothing happens there.
+pub const SEALED: u8 = 1 << 6;
+/// Kind of a cell whose own reconstruction stays first order: less open volume than [`SMALL_SHARE`] of its largest face.
+pub const SMALL: u8 = 2 << 6;
 
-/// Mark of a porosity jump at the low face of axis `d`.
+/// Whether a mark is of a kind.
 #[inline(always)]
-pub const fn jump_low(d: usize) -> u8 {
+pub const fn is(mark: u8, kind: u8) -> bool {
+    mark & KIND == kind
+}
+
+/// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall.
+#[inline(always)]
+pub const fn break_low(d: usize) -> u8 {
     1 << (2 * d)
 }
 
-/// Mark of a porosity jump at the high face of axis `d`.
+/// Mark of a break at the high face of axis `d`.
 #[inline(always)]
-pub const fn jump_high(d: usize) -> u8 {
+pub const fn break_high(d: usize) -> u8 {
     2 << (2 * d)
 }
+
+/// Marks of breaks at any face.
+pub const BREAKS: u8 = !KIND;
 
 /// A cell counts as small below this share of its largest open face: the share that merging restores, and so the factor
 /// (its inverse) by which the stable time step may shrink. A little less than the share 1/3 of the first cell of a ball (a duct
@@ -137,10 +148,65 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         greater(a, b)
     }
 
-    /// Throat area of the jump at the low face of `at` along `d`.
-    pub fn passage(&self, d: usize, at: [usize; D], periodic: bool) -> R {
-        let (left, right) = self.ducts(d, at, periodic);
-        throat_area(left, self.porosity.faces[d][self.mesh.face(d, at)], right)
+    /// Area of the wall that a closed face is to the gas in a cell: the duct goes on up to it. A cell between two walls is as
+    /// wide as its open volume; a sealed one feels none.
+    #[inline(always)]
+    pub fn wall(&self, d: usize, at: [usize; D]) -> R {
+        if is(self.porosity.marks[self.mesh.index(at)], SEALED) { R::ZERO } else { self.width(d, at) }
+    }
+
+    /// The same of a cell that is known to be open.
+    fn width(&self, d: usize, at: [usize; D]) -> R {
+        greater(self.duct(d, at), self.porosity.volume[self.mesh.index(at)])
+    }
+
+    /// Areas with which the duct of a cell along `d` meets its low and high face: their open fractions, at a jump that of the
+    /// duct, which goes on behind it, and at a wall that of the wall.
+    pub fn sections(&self, d: usize, at: [usize; D]) -> (R, R) {
+        let mark = self.porosity.marks[self.mesh.index(at)];
+        let (low, high) = self.openings(d, at);
+        let section = |open: R, breaks: bool| {
+            if !breaks {
+                open
+            } else if open > R::ZERO {
+                greater(low, high)
+            } else {
+                self.wall(d, at)
+            }
+        };
+        (section(low, mark & break_low(d) != 0), section(high, mark & break_high(d) != 0))
+    }
+
+    /// Areas that the flux acts on at the low and high face of a cell along `d`: at a jump the throat, at a wall the wall.
+    pub fn passages(&self, d: usize, at: [usize; D], periodic: bool) -> (R, R) {
+        let mark = self.porosity.marks[self.mesh.index(at)];
+        let (low, high) = self.openings(d, at);
+        let passage = |open: R, breaks: bool, face: [usize; D]| {
+            if !breaks {
+                open
+            } else if open > R::ZERO {
+                let (left, right) = self.ducts(d, face, periodic);
+                throat_area(left, open, right)
+            } else {
+                self.wall(d, at)
+            }
+        };
+        let mut above = at;
+        above[d] += 1;
+        (passage(low, mark & break_low(d) != 0, at), passage(high, mark & break_high(d) != 0, above))
+    }
+
+    /// The cells below and above the low face of `at` along `d`, where `at[d]` may be one past the end.
+    pub fn beside(&self, d: usize, at: [usize; D], periodic: bool) -> [Option<[usize; D]>; 2] {
+        let n = self.mesh.cells()[d];
+        let cell = |k: usize| {
+            let mut c = at;
+            c[d] = k;
+            c
+        };
+        let around = |k: usize| periodic.then(|| cell(k));
+        let (i, above) = (at[d], at[d] < n);
+        [if i > 0 { Some(cell(i - 1)) } else { around(n - 1) }, if above { Some(cell(i)) } else { around(0) }]
     }
 
     /// The two duct areas at the low face of `at` along `d`, where `at[d]` may be one past the end. Beyond the domain stands
@@ -183,12 +249,17 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
     let (least, most) = (lesser(left, right), greater(left, right));
     let difference = greater(most - least, least - face);
-    let narrow = difference > R::from_f64(3.0) * threshold * most && difference > R::from_f64(0.2) * threshold;
+    let narrow = difference > R::from_f64(3.0) * threshold * most && is_wall(difference, threshold);
     difference > threshold || narrow
 }
 
-/// Writes the marks of all cells: which faces are jumps (differences of the open fraction above `threshold`; infinity for
-/// none), which cells are small, which are sealed.
+/// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
+fn is_wall<R: Real>(width: R, threshold: R) -> bool {
+    width > R::from_f64(0.2) * threshold
+}
+
+/// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
+/// for no jumps), which cells are small, which are sealed.
 ///
 /// The slices must have the lengths of the mesh; `marks` one byte per cell.
 pub fn mark<R: Real, const D: usize>(
@@ -200,24 +271,24 @@ pub fn mark<R: Real, const D: usize>(
     marks: &mut [u8],
 ) {
     let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
+    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| greater(w, medium.duct(d, at)));
     for cell in 0..marks.len() {
         let at = mesh.coordinates(cell);
         let mut bits = 0;
-        let mut widest = R::ZERO;
         for d in 0..D {
             let (low, high) = medium.openings(d, at);
-            widest = greater(widest, greater(low, high));
             let mut above = at;
             above[d] += 1;
-            let (l, r) = medium.ducts(d, at, periodic[d]);
-            if is_jump(l, low, r, threshold) {
-                bits |= jump_low(d);
-            }
-            let (l, r) = medium.ducts(d, above, periodic[d]);
-            if is_jump(l, high, r, threshold) {
-                bits |= jump_high(d);
+            for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
+                let (left, right) = medium.ducts(d, face, periodic[d]);
+                let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(medium.width(d, *c), threshold);
+                let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
+                if closed || is_jump(left, open, right, threshold) {
+                    bits |= bit;
+                }
             }
         }
+        let widest = widest(at);
         if !(widest > R::ZERO) {
             bits |= SEALED;
         } else if volume[cell] < R::from_f64(SMALL_SHARE) * widest {

@@ -1,9 +1,11 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
+use super::boundary::Boundary;
+use super::breaks::any_breaks;
 use super::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use super::medium::{Medium, SEALED, SMALL, jump_high, jump_low};
+use super::medium::{BREAKS, Medium, SEALED, SMALL, break_high, break_low, is};
 use super::merge::least_volume;
-use super::row::{self, Differences, Rate, var};
+use super::row::{self, Differences, Rate, Three, var};
 use super::state::{Gas, greater, sum};
 use super::sweep::{Row, Sweep};
 use super::work::{Metric, Work};
@@ -39,9 +41,6 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             work.slope.iter_mut().for_each(|s| s.fill(R::ZERO));
         }
         let marks = self.medium.as_ref().map(|m| &m.porosity.marks[row.start..][..n]);
-        if let Some(marks) = marks {
-            self.flatten_at_jumps(marks, &mut work.slope);
-        }
         let here = &work.window[self.block(l, j + usize::from(D == 3))];
         self.half_step(row, here, &work.slope, &work.metric, work.half);
         if self.problem.drag.is_some() {
@@ -79,12 +78,32 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let gravity = self.problem.gravity[d];
             let out = &mut *work.slope[d];
             if gravity == R::ZERO && widths.iter().all(|w| *w == widths[0]) {
-                row::slopes::<R, S, D>(three, &Even, compliance, out, n);
+                self.slopes_along::<S>(d, row, three, &Even, compliance, out);
             } else {
                 let place = if d == 0 { None } else { Some(row.at[d]) };
-                let axis = Uneven { widths, place, half_gravity: R::HALF * gravity, periodic: self.periodic[d] };
-                row::slopes::<R, S, D>(three, &axis, compliance, out, n);
+                let sides = self.problem.boundaries[d];
+                let copied = sides.map(|b| matches!(b, Boundary::Wall | Boundary::ZeroGradient));
+                let half_gravity = R::HALF * gravity;
+                let axis = Uneven { widths, place, half_gravity, periodic: self.periodic[d], copied };
+                self.slopes_along::<S>(d, row, three, &axis, compliance, out);
             }
+        }
+    }
+
+    /// Slopes of a row along one axis, breaks included.
+    fn slopes_along<'a, S: Slope>(
+        &self,
+        d: usize,
+        row: Row<D>,
+        values: impl Fn(usize) -> Three<'a, R>,
+        axis: &impl Differences<R>,
+        compliance: Option<&[R]>,
+        out: &mut [R],
+    ) {
+        row::slopes::<R, S, D>(&values, axis, compliance, out, self.size.n);
+        self.slopes_at_boundaries(d, row, values(1 + d), axis, out);
+        if let Some(medium) = &self.medium {
+            self.slopes_at_breaks::<S>(medium, d, row, values, axis, compliance, out);
         }
     }
 
@@ -123,7 +142,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let (n, padded) = (self.size.n, self.size.padded);
         let any_leaves = row::leaves_physical_set::<R, D>(half, &slope.each_ref().map(|b| &**b), n);
         let asked = self.first_order.map(|f| &f[row.start..][..n]).filter(|f| f.iter().any(|&b| b != 0));
-        let small = marks.filter(|m| m.iter().any(|&b| b & (SMALL | SEALED) != 0));
+        let small = marks.filter(|m| m.iter().any(|&b| is(b, SMALL) || is(b, SEALED)));
         if !any_leaves && asked.is_none() && small.is_none() {
             return;
         }
@@ -131,29 +150,12 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
             let leaves = !(stays(0) && stays(D + 1));
             let asked = asked.is_some_and(|f| f[i] != 0);
-            let small = small.is_some_and(|m| m[i] & (SMALL | SEALED) != 0);
+            let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], SEALED));
             if leaves || asked || small {
                 *fallen += usize::from((leaves || asked) && self.counted.contains(&i));
                 for v in 0..Self::V {
                     half[v * n + i] = here[v * padded + 1 + i];
                     for d in 0..D {
-                        slope[d][v * n + i] = R::ZERO;
-                    }
-                }
-            }
-        }
-    }
-
-    /// No slope across a porosity jump: both cells beside it are flat along that axis.
-    fn flatten_at_jumps(&self, marks: &[u8], slope: &mut [&mut [R]; D]) {
-        let n = self.size.n;
-        if marks.iter().fold(0, |m, b| m | b) & !(SMALL | SEALED) == 0 {
-            return;
-        }
-        for (i, &mark) in marks.iter().enumerate() {
-            for d in 0..D {
-                if mark & (jump_low(d) | jump_high(d)) != 0 {
-                    for v in 0..Self::V {
                         slope[d][v * n + i] = R::ZERO;
                     }
                 }
@@ -204,21 +206,18 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             }
         }
         let marks = &medium.porosity.marks[row.start..][..n];
-        if marks.iter().fold(0, |m, b| m | b) & !(SMALL | SEALED) == 0 {
+        if !any_breaks(marks) {
             return;
         }
-        for i in 0..n {
+        for i in (0..n).filter(|&i| marks[i] & BREAKS != 0) {
+            let mut at = row.at;
+            at[0] = i;
             for d in 0..D {
-                let (low, high) = (marks[i] & jump_low(d) != 0, marks[i] & jump_high(d) != 0);
-                if low || high {
-                    // A jump is the throat's business: the duct goes on behind it.
-                    let mut at = row.at;
-                    at[0] += i;
-                    let (a, b) = medium.openings(d, at);
-                    let duct = greater(a, b);
-                    let (a, b) = (if low { duct } else { a }, if high { duct } else { b });
+                if marks[i] & (break_low(d) | break_high(d)) != 0 {
+                    let (low, high) = medium.sections(d, at);
                     let scale = half_dt / mesh.widths[d][at[d]];
-                    metric.widening[d][i] = (b - a) * metric.spare[i] * scale;
+                    metric.rate[d][i] = R::HALF * (low + high) * metric.spare[i] * scale;
+                    metric.widening[d][i] = (high - low) * metric.spare[i] * scale;
                 }
             }
         }
@@ -278,6 +277,8 @@ struct Uneven<'w, R> {
     place: Option<usize>,
     half_gravity: R,
     periodic: bool,
+    /// The pressure beyond the low and high side is that inside, so gravity has no weight to subtract.
+    copied: [bool; 2],
 }
 
 impl<R: Real> Uneven<'_, R> {
@@ -304,6 +305,9 @@ impl<R: Real> Differences<R> for Uneven<'_, R> {
     #[inline(always)]
     fn half_weight(&self, i: usize) -> Option<(R, R)> {
         let (_, below, above) = self.spacing(i);
-        Some((self.half_gravity * below, self.half_gravity * above))
+        let place = self.place.unwrap_or(i);
+        let low = if self.copied[0] && place == 0 { R::ZERO } else { self.half_gravity * below };
+        let high = if self.copied[1] && place + 1 == self.widths.len() { R::ZERO } else { self.half_gravity * above };
+        Some((low, high))
     }
 }

@@ -86,6 +86,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                     if side == 0 { low } else { high }
                 }
             };
+            // A closed face is a wall, not a side to come in by.
+            if open == R::ZERO {
+                continue;
+            }
             total.density += weight * flux[i + f];
             let mut momentum = [R::ZERO; D];
             momentum[0] = weight * (flux[normal * m + i + f] + open * wall[(D + 2) * m + i + f]);

@@ -4,7 +4,7 @@ use super::drag::Drag;
 use super::flux::{FaceGas, Hllc, Hlle, Riemann, Rusanov};
 use super::limiter::Limiter;
 use super::line;
-use super::medium::{Medium, Mesh, Porosity, SMALL, SMALL_SHARE, jump_high, jump_low};
+use super::medium::{Medium, Mesh, Porosity, SMALL, SMALL_SHARE, break_high, break_low, is};
 use super::merge::{self, Clusters, least_volume};
 use super::report::Report;
 use super::state::{Conserved, Fields, FieldsMut, Gas, greater, lesser, sum};
@@ -226,16 +226,12 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     pub(super) fn openness(&self, medium: &Medium<'_, R, D>, cell: usize, at: [usize; D], d: usize) -> R {
         let marks = medium.porosity.marks[cell];
         let periodic = self.boundaries[d][0] == Boundary::Periodic;
-        let mut above = at;
-        above[d] += 1;
-        let (low, high) = medium.openings(d, at);
-        let low = if marks & jump_low(d) != 0 { medium.passage(d, at, periodic) } else { low };
-        let high = if marks & jump_high(d) != 0 { medium.passage(d, above, periodic) } else { high };
+        let (low, high) = medium.passages(d, at, periodic);
         let passage = greater(low, high);
         let ratio = passage / greater(medium.porosity.volume[cell], least_volume());
-        let merged = marks & SMALL != 0 && !self.clusters.0.is_empty();
+        let merged = is(marks, SMALL) && !self.clusters.0.is_empty();
         // A cluster holds its share of the volume that its widest face asks for; a throat may be wider than its face.
-        let widening = if marks & (jump_low(d) | jump_high(d)) != 0 { R::TWO } else { R::ONE };
+        let widening = if marks & (break_low(d) | break_high(d)) != 0 { R::TWO } else { R::ONE };
         if merged { lesser(ratio, widening * R::from_f64(1.0 / SMALL_SHARE)) } else { ratio }
     }
 

@@ -310,6 +310,8 @@ pub struct JumpFace<R, const D: usize> {
     pub face: R,
     /// Reference pressures on the left and right.
     pub references: [R; 2],
+    /// A step went wrong here: the Riemann problem in the throat, however weak the waves.
+    pub troubled: bool,
 }
 
 /// The fluxes through several jump faces, one per lane.
@@ -364,5 +366,81 @@ fn jump_flux<R: Real, const D: usize>(
     };
     let left = side(0, face.states[0].velocity[0]);
     let right = side(1, -face.states[1].velocity[0]);
-    JumpFlux { through, left, right }
+    let strong = JumpFlux { through, left, right };
+    if face.troubled || !(to > R::ZERO) || at[0].passing < face.ducts[0] || at[1].passing < face.ducts[1] {
+        return strong;
+    }
+    let weak = acoustic(face, at, gas);
+    let share = weakness(weak.through.mass / to, at, gas);
+    if share > R::ZERO { weak.blend(&strong, share) } else { strong }
+}
+
+/// Up to half this strength (Mach number in the throat, or jump of its pressure as a share) waves count as weak, from all of it
+/// on as strong.
+const STRONG: f64 = 0.6;
+
+/// How far the waves at a jump are weak: 1 if sound, 0 if a shock arrives, or if `mass_flux` per area of the throat, that of weak
+/// waves, is more than it would take.
+fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: [&AtThroat<R, D>; 2], gas: &FaceGas<R>) -> R {
+    let mach = |w: &Primitive<R, D>| {
+        let u = greater(w.velocity[0].abs(), mass_flux.abs() / w.density);
+        u / gas.sound_speed(w)
+    };
+    let (p_l, p_r) = (l.state.pressure, r.state.pressure);
+    let strength = greater(greater(mach(&l.state), mach(&r.state)), (p_l - p_r).abs() / lesser(p_l, p_r));
+    let share = R::TWO - strength * R::from_f64(2.0 / STRONG);
+    lesser(greater(share, R::ZERO), R::ONE)
+}
+
+/// The fluxes of weak waves at a change of area: one sound wave into each duct, the stationary wave between them. A Riemann
+/// problem in the throat instead, as for strong waves, gives sound at a contraction energy that it does not have, and noise
+/// would grow between two of them.
+///
+/// Both sides have the mass flux Q in common and differ from their cells by the outgoing wave: the pressure by ∓c (Q − Q_K)/a, the
+/// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
+/// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
+fn acoustic<R: Real, const D: usize>(
+    face: &JumpFace<R, D>,
+    at: [&AtThroat<R, D>; 2],
+    gas: &FaceGas<R>,
+) -> JumpFlux<R, D> {
+    let c: [R; 2] = core::array::from_fn(|s| gas.sound_speed(&face.states[s]));
+    let mass: [R; 2] = core::array::from_fn(|s| face.ducts[s] * (face.states[s].density * face.states[s].velocity[0]));
+    let (stiff_l, stiff_r) = (c[0] / face.ducts[0], c[1] / face.ducts[1]);
+    let drive = at[0].state.pressure - at[1].state.pressure;
+    let common = ((stiff_l * mass[0] + stiff_r * mass[1]) + drive) / (stiff_l + stiff_r);
+    let own = |s: usize, wave: R| {
+        let w = &face.states[s];
+        let u = w.velocity[0];
+        let change = common - mass[s];
+        let impulse = face.ducts[s] * (w.density * u * u + (w.pressure - face.references[s]));
+        let enthalpy = gas.enthalpy(w) + wave * change / (face.ducts[s] * w.density);
+        (impulse + (u + wave) * change, common * enthalpy)
+    };
+    let ((left, energy_l), (right, energy_r)) = (own(0, -c[0]), own(1, c[1]));
+    let from_left = common >= R::ZERO;
+    let (upwind, energy) = if from_left { (&face.states[0], energy_l) } else { (&face.states[1], energy_r) };
+    let momentum = core::array::from_fn(|i| if i == 0 { R::ZERO } else { common * upwind.velocity[i] });
+    JumpFlux { through: Flux { mass: common, momentum, energy, pressure: R::ZERO }, left, right }
+}
+
+impl<R: Real, const D: usize> JumpFlux<R, D> {
+    /// A share of this flux and the rest of another.
+    fn blend(&self, other: &Self, share: R) -> Self {
+        if share == R::ONE {
+            return *self;
+        }
+        let mix = |a: R, b: R| share * a + (R::ONE - share) * b;
+        let (a, b) = (&self.through, &other.through);
+        JumpFlux {
+            through: Flux {
+                mass: mix(a.mass, b.mass),
+                momentum: core::array::from_fn(|i| mix(a.momentum[i], b.momentum[i])),
+                energy: mix(a.energy, b.energy),
+                pressure: b.pressure,
+            },
+            left: mix(self.left, other.left),
+            right: mix(self.right, other.right),
+        }
+    }
 }

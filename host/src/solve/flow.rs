@@ -203,7 +203,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
             let views = faces.each_ref().map(|f| f.as_slice());
             let mut marks = vec![0; n];
             medium::mark(&mesh, &volume, &views, periodic, treatment.jump, &mut marks);
-            if !treatment.merge || marks.iter().all(|m| m & medium::SMALL == 0) {
+            if !treatment.merge || !marks.iter().any(|&m| medium::is(m, medium::SMALL)) {
                 break (marks, Vec::new());
             }
             let mut parent = vec![0; n];
@@ -244,13 +244,15 @@ impl<R: Real, const D: usize> Flow<R, D> {
                 group.clone().for_each(|cell| clustered[cell] = true);
                 examine(&mut group.clone());
             }
-            for cell in (0..n).filter(|&c| marks[c] & medium::SMALL != 0 && !clustered[c]) {
+            for cell in (0..n).filter(|&c| medium::is(marks[c], medium::SMALL) && !clustered[c]) {
                 examine(&mut std::iter::once(cell));
             }
             if outside.is_empty() {
                 // What found no company (a periodic axis of one cell) limits the step like any other cell.
-                for cell in (0..n).filter(|&c| !clustered[c]) {
-                    marks[cell] &= !medium::SMALL;
+                for (mark, _) in marks.iter_mut().zip(&clustered).filter(|(_, clustered)| !**clustered) {
+                    if medium::is(*mark, medium::SMALL) {
+                        *mark &= !medium::KIND;
+                    }
                 }
                 break (marks, clusters);
             }
@@ -300,8 +302,13 @@ impl<R: Real, const D: usize> Flow<R, D> {
         let Some(space) = &self.space else { return 0 };
         let of_cell = |(cell, marks): (usize, &u8)| {
             let at = mesh.coordinates(cell);
-            let low = (0..D).filter(|&d| marks & medium::jump_low(d) != 0).count();
-            low + (0..D).filter(|&d| at[d] + 1 == cells[d] && marks & medium::jump_high(d) != 0).count()
+            let jumps = |d: usize, bit: u8, face: usize| marks & bit != 0 && space.faces[d][face] > R::ZERO;
+            let of_axis = |d: usize| {
+                let low = mesh.face(d, at);
+                let high = at[d] + 1 == cells[d] && jumps(d, medium::break_high(d), low + mesh.face_stride(d));
+                usize::from(jumps(d, medium::break_low(d), low)) + usize::from(high)
+            };
+            (0..D).map(of_axis).sum::<usize>()
         };
         space.marks.iter().enumerate().map(of_cell).sum()
     }

@@ -35,7 +35,7 @@ pub(super) fn hydrostatic(case: &Case) -> Outcome {
         let line = Line { n, domain: [0.0, height] };
         let mut flow = line.flow(gas, [Boundary::Wall; 2]);
         flow.gravity = [-g];
-        let volume = resample(beta, n);
+        let volume: Vec<f64> = (0..n).map(|i| beta[i * beta.len() / n]).collect();
         flow.set_porosity(volume.clone(), [faces_between(&volume)], treatment)?;
         Ok(flow)
     };
@@ -64,9 +64,10 @@ pub(super) fn hydrostatic(case: &Case) -> Outcome {
     flow.run(CFL, t)?;
     let limit = number_after(case.pass(), "max|u|/c <=").unwrap_or(1e-12);
     v.at_most("balanced u/c", fastest(&flow), limit);
-    // Analytic data.
+    // Analytic data, in the same porous space: each row of the table is divided. The order shows from two cells a row on; a
+    // row of one cell is nothing but its two jumps.
     let mut errors = Vec::new();
-    for n in [m / 4, m / 2, m] {
+    for n in [m, 2 * m, 4 * m] {
         let mut flow = build(n, Treatment::default())?;
         flow.fill(|x| at(x[0]).primitive());
         let (mut early, mut late) = (0.0f64, 0.0f64);
@@ -78,8 +79,13 @@ pub(super) fn hydrostatic(case: &Case) -> Outcome {
         errors.push(early.max(late));
         v.holds(&format!("no growth@{n}"), late <= 1.05 * early);
     }
-    v.note("u/c", errors[2]);
-    v.at_least("order", rate(errors[0], errors[2], 4.0), number_after(case.pass(), "order >=").unwrap_or(1.8));
+    v.note("u/c", errors[0]);
+    v.note("rows in two", errors[1]);
+    v.note("rows in four", errors[2]);
+    // Where the analytic data are in discrete balance to rounding there is nothing left to fall.
+    if errors[2] > limit {
+        v.at_least("order", rate(errors[1], errors[2], 2.0), number_after(case.pass(), "order >=").unwrap_or(1.8));
+    }
     // A small bump travels as a bump ten times larger does.
     let response = |bump: f64| -> Result<Vec<f64>, Trouble> {
         let mut out = Vec::new();
