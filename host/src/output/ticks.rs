@@ -61,6 +61,12 @@ pub fn number(value: f64) -> String {
     number_to(value, 1e-3 * value.abs())
 }
 
+/// A measured number for reading: ten digits, no needless zeros.
+#[must_use]
+pub fn measure(value: f64) -> String {
+    number_to(value, 1e-9 * value.abs())
+}
+
 /// A number for reading, to the first digit of `fine`, no needless zeros.
 #[must_use]
 pub fn number_to(value: f64, fine: f64) -> String {
@@ -124,5 +130,7 @@ mod tests {
         assert_eq!(number_to(6_200_010.5, 0.01), "6200010.5");
         assert_eq!(number_to(-3.123_456e-5, 1e-8), "−3.123e−5");
         assert_eq!(number_to(2.0, 0.0), "2");
+        let texts = [9.166_567_214_301_798, 10_129.659_451_750_3, 1e-27 / 3.0, 6e9, -1.0].map(measure);
+        assert_eq!(texts, ["9.166567214", "10129.65945", "3.333333333e−28", "6e9", "−1"]);
     }
 }
