@@ -4,7 +4,7 @@ use crate::bodies::{Bodies, Body, Described, Diagnosis};
 use crate::cli::InspectArgs;
 use crate::error::{Error, Result};
 use crate::output::report;
-use crate::output::ticks::{measure, number, number_to};
+use crate::output::ticks::{measure, plain_to};
 use crate::progress::{Progress, print};
 use crate::run::load;
 use glam::DVec3;
@@ -97,7 +97,7 @@ impl Inspection<'_> {
                 ("named solids", d.solids.to_string()),
                 ("distinct points", d.points.to_string()),
                 ("box", extent(&d.bounds)),
-                ("size", format!("{} m", size.to_array().map(|v| number_to(v, 1e-6 * v)).join(" × "))),
+                ("size", format!("{} m", size.to_array().map(|v| plain_to(v, 1e-6 * v)).join(" × "))),
                 ("shells", d.shells.to_string()),
                 ("bodies", d.bodies.to_string()),
                 ("cavities", d.cavities.to_string()),
@@ -135,8 +135,8 @@ impl Inspection<'_> {
                 self.thin.len(),
                 t.body,
                 t.name,
-                number(t.thickness),
-                number(t.size)
+                plain_to(t.thickness, 1e-3 * t.thickness),
+                plain_to(t.size, 1e-3 * t.size)
             ));
         }
     }
@@ -162,5 +162,5 @@ fn extent([lo, hi]: &[DVec3; 2]) -> String {
 
 /// Coordinates, each to a millionth of `size`.
 fn point(p: DVec3, size: f64) -> String {
-    p.to_array().map(|v| number_to(if v.abs() < 1e-6 * size { 0.0 } else { v }, 1e-6 * size)).join(", ")
+    p.to_array().map(|v| plain_to(if v.abs() < 1e-6 * size { 0.0 } else { v }, 1e-6 * size)).join(", ")
 }

@@ -290,4 +290,13 @@ fn outputs_in_the_directory_of_the_arrays() {
     let done = run(&dir.join("out.vtr"));
     assert!(done.status.success(), "{}", stderr(&done));
     assert!(dir.join("out.vtr").is_file() && dir.join("beta_z.npy").is_file());
+    // The arrays themselves are outputs like any other.
+    let twice = run(&dir.join("beta_v.npy"));
+    assert_eq!(twice.status.code(), Some(2), "{}", stderr(&twice));
+    assert!(stderr(&twice).contains("beta_v.npy: an output would replace"), "{}", stderr(&twice));
+    let mesh = dir.join("beta_x.npy");
+    fs::copy(&skid, &mesh).expect("copied");
+    let over = voidage(&[&"porosity", &mesh, &"--cells", &"4x4x4", &"--npy", &dir]);
+    assert_eq!(over.status.code(), Some(2), "{}", stderr(&over));
+    assert_eq!(fs::read(&mesh).expect("readable"), fs::read(&skid).expect("readable"));
 }
