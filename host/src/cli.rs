@@ -99,7 +99,7 @@ pub struct PorosityArgs {
     #[arg(long, value_name = "NXxNYxNZ", value_parser = parse_cells, conflicts_with = "spacing")]
     pub cells: Option<[usize; 3]>,
     /// Edge length of cubic cells in metres (default: 1/64 of the longest side of the scene)
-    #[arg(long, value_name = "D", value_parser = parse_spacing)]
+    #[arg(long, value_name = "D", value_parser = parse_spacing, allow_negative_numbers = true)]
     pub spacing: Option<f64>,
     /// The grid's box in metres (default: the scene's box and a margin of one cell)
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = parse_bounds, allow_hyphen_values = true)]
@@ -108,10 +108,10 @@ pub struct PorosityArgs {
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
     /// Where bodies overlap and their union has no proof, divide cells until the bounds are this close
-    #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol)]
+    #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol, allow_negative_numbers = true)]
     pub tol: f64,
     /// How often a cell without a proof may be divided by two (default: 6; 3 with --leaf solid or half)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10), allow_negative_numbers = true)]
     pub depth: Option<u32>,
     /// What becomes of parts still cut when a subdivision by GJK ends
     #[arg(long, value_enum, default_value_t = Leaf::Plane)]
@@ -123,7 +123,7 @@ pub struct PorosityArgs {
     #[arg(long)]
     pub no_areas: bool,
     /// Number of threads (default: all cores)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// Write fields for ParaView (VTK rectilinear grid)
     #[arg(short, long, value_name = "OUT.vtr")]
@@ -155,7 +155,7 @@ pub struct SolveArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Number of threads (default: all cores)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// Go on from the checkpoint in the output directory
     #[arg(long)]

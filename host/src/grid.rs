@@ -97,7 +97,7 @@ pub fn edges(source: &Source, scene: Option<[DVec3; 2]>, warnings: &mut Vec<Stri
                 Some(_) => DVec3::ZERO,
                 None => (hi - lo) / (count - 2.0).max(DVec3::ONE),
             };
-            check_count(count)?;
+            few_enough(count).map_err(|reason| Error::usage(format!("grid: {reason}")))?;
             uniform(lo - margin, hi + margin, *cells)
         }
         Source::Spacing(d, bounds) => {
@@ -106,7 +106,7 @@ pub fn edges(source: &Source, scene: Option<[DVec3; 2]>, warnings: &mut Vec<Stri
             let (lo, hi) = (lo - margin, hi + margin);
             // A length that is a whole number of cells but for rounding must not gain one.
             let count = ((hi - lo) / *d - 1e-9).ceil().max(DVec3::ONE);
-            check_count(count)?;
+            few_enough(count).map_err(|reason| Error::usage(format!("grid: {reason}")))?;
             let cells = count.to_array().map(|n| n as usize);
             let end = lo + count * *d;
             if bounds.is_some() && (end - hi).cmpgt(DVec3::splat(*d * 1e-6)).any() {
@@ -121,13 +121,13 @@ pub fn edges(source: &Source, scene: Option<[DVec3; 2]>, warnings: &mut Vec<Stri
     Ok(edges)
 }
 
-fn check_count(count: DVec3) -> Result<()> {
-    let product = count.x * count.y * count.z;
-    if product <= MAX_CELLS {
-        Ok(())
-    } else {
-        Err(Error::usage(format!("grid: {} × {} × {} cells are too many", count.x, count.y, count.z)))
+/// Whether so many cells can be thought of; else why not.
+fn few_enough(count: DVec3) -> std::result::Result<(), String> {
+    let [x, y, z] = count.to_array();
+    if x * y * z <= MAX_CELLS && count.max_element() <= MAX_AXIS {
+        return Ok(());
     }
+    Err(format!("{x} × {y} × {z} cells are too many: at most {MAX_CELLS:e}, and {MAX_AXIS:e} along an axis"))
 }
 
 fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
@@ -147,6 +147,7 @@ fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Edges {
 }
 
 #[derive(Deserialize)]
+#[serde(expecting = "a grid is a table: x, y, z; or origin, spacing, cells")]
 struct Document {
     #[serde(flatten)]
     spec: Spec,
@@ -212,7 +213,8 @@ impl Spec {
                         return Err(wrong(key, format!("needs one number for each axis, not {n}")));
                     }
                 }
-                check_count(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))?;
+                few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
+                    .map_err(|reason| wrong("cells", reason))?;
                 Edges([0, 1, 2].map(|a| match cells.get(a) {
                     Some(&n) => (0..=n).map(|i| origin[a] + spacing[a] * i as f64).collect(),
                     None => UNIT_CELL.to_vec(),
@@ -253,15 +255,20 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
         return Err(Error::file(path, "not a regular file"));
     }
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
+    let text = text.trim_start_matches('\u{feff}');
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
     let document: Document = if json {
-        serde_json::from_str(&text)
+        serde_json::from_str(text)
             .map_err(|e| Error::at(path, format!("line {}", e.line()), format!("no grid: {e}")))?
     } else {
-        toml::from_str(&text).map_err(|e| toml_error(path, &text, &e))?
+        toml::from_str(text).map_err(|e| toml_error(path, text, &e))?
     };
     for key in document.other.keys().filter(|k| !HARMLESS.contains(&k.as_str())) {
         warnings.push(format!("{}: key {key}: not known, ignored", path.display()));
+    }
+    let spec = &document.spec;
+    if spec.x.is_some() && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some()) {
+        warnings.push(format!("{}: x, y, z are given; origin, spacing, cells beside them are ignored", path.display()));
     }
     document.spec.edges(path, "", false)
 }
@@ -321,9 +328,10 @@ fn axis(path: &Path, name: &str, spec: AxisSpec) -> Result<Vec<f64>> {
 
 /// Where the `i`-th of `n` cells ends, if lengths grow geometrically and the last is `ratio` times the first.
 fn share(i: usize, n: usize, ratio: f64) -> f64 {
-    if n == 1 || (ratio - 1.0).abs() < 1e-12 {
+    if n == 1 || ratio == 1.0 {
         return i as f64 / n as f64;
     }
-    let growth = ratio.powf(1.0 / (n - 1) as f64);
-    (growth.powi(i as i32) - 1.0) / (growth.powi(n as i32) - 1.0)
+    // growth = exp(rate); growth^i − 1 would cancel where the ratio is close to 1.
+    let rate = ratio.ln() / (n - 1) as f64;
+    (rate * i as f64).exp_m1() / (rate * n as f64).exp_m1()
 }

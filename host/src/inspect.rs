@@ -2,9 +2,10 @@
 
 use crate::bodies::{Bodies, Body, Described, Diagnosis};
 use crate::cli::InspectArgs;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::report;
-use crate::progress::Progress;
+use crate::output::ticks::{measure, plain_to};
+use crate::progress::{Progress, print};
 use crate::run::load;
 use glam::DVec3;
 use serde::Serialize;
@@ -48,8 +49,9 @@ pub fn inspect(args: &InspectArgs) -> Result<()> {
         report::json(path, &inspection)?;
     }
     if args.json {
-        let text = serde_json::to_string_pretty(&inspection);
-        progress.print(&text.map_err(|e| crate::error::Error::new(format!("cannot write JSON: {e}")))?);
+        let text =
+            serde_json::to_string_pretty(&inspection).map_err(|e| Error::new(format!("cannot write JSON: {e}")))?;
+        print(format!("{text}\n").as_bytes())?;
     } else {
         inspection.table(&progress);
     }
@@ -95,7 +97,7 @@ impl Inspection<'_> {
                 ("named solids", d.solids.to_string()),
                 ("distinct points", d.points.to_string()),
                 ("box", extent(&d.bounds)),
-                ("size", format!("{:.6} × {:.6} × {:.6} m", size.x, size.y, size.z)),
+                ("size", format!("{} m", size.to_array().map(|v| plain_to(v, 1e-6 * v)).join(" × "))),
                 ("shells", d.shells.to_string()),
                 ("bodies", d.bodies.to_string()),
                 ("cavities", d.cavities.to_string()),
@@ -106,8 +108,15 @@ impl Inspection<'_> {
                 ("repeated", d.repeated.to_string()),
                 ("boundary edges", format!("{} ({} of T-junctions)", d.boundary_edges, d.t_junction_edges)),
                 ("holes capped", d.holes.to_string()),
-                ("area", format!("{:.9} m²", d.area)),
-                ("volume", format!("{:.9} m³ signed as read, {:.9} m³ sum of bodies", d.signed_volume, d.body_volume)),
+                ("area", format!("{} m²", measure(d.area))),
+                (
+                    "volume",
+                    format!(
+                        "{} m³ signed as read, {} m³ sum of bodies",
+                        measure(d.signed_volume),
+                        measure(d.body_volume)
+                    ),
+                ),
             ];
             for (name, value) in rows {
                 progress.say(format!("  {name:<18}{value}"));
@@ -122,12 +131,12 @@ impl Inspection<'_> {
         progress.say(format!("body boxes that overlap: {} pairs", self.overlapping_boxes));
         if let Some(t) = self.thin.first() {
             progress.say(format!(
-                "thin bodies: {}; the thinnest is {} \"{}\", about {:.6} m over {:.6} m",
+                "thin bodies: {}; the thinnest is {} \"{}\", about {} m over {} m",
                 self.thin.len(),
                 t.body,
                 t.name,
-                t.thickness,
-                t.size
+                plain_to(t.thickness, 1e-3 * t.thickness),
+                plain_to(t.size, 1e-3 * t.size)
             ));
         }
     }
@@ -136,7 +145,7 @@ impl Inspection<'_> {
 impl Described {
     fn row(&self) -> [String; 6] {
         let (name, shape, porosity) = (self.name.clone(), self.shape.to_owned(), self.porosity.to_string());
-        [name, shape, porosity, self.copies.to_string(), format!("{:.9}", self.volume), extent(&self.bounds)]
+        [name, shape, porosity, self.copies.to_string(), measure(self.volume), extent(&self.bounds)]
     }
 }
 
@@ -147,5 +156,11 @@ fn line([name, shape, porosity, copies, volume, extent]: [String; 6]) -> String 
 
 /// A box for people.
 fn extent([lo, hi]: &[DVec3; 2]) -> String {
-    format!("({:.6}, {:.6}, {:.6}) to ({:.6}, {:.6}, {:.6})", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z)
+    let size = (*hi - *lo).max_element();
+    format!("({}) to ({})", point(*lo, size), point(*hi, size))
+}
+
+/// Coordinates, each to a millionth of `size`.
+fn point(p: DVec3, size: f64) -> String {
+    p.to_array().map(|v| plain_to(if v.abs() < 1e-6 * size { 0.0 } else { v }, 1e-6 * size)).join(", ")
 }

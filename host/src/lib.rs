@@ -1,6 +1,6 @@
 //! Porosity of files on disk: reading, threads, writing. The mathematics is in [`voidage_core`].
 //!
-//! Data flows one way: [`input`], [`scene`] → [`bodies`] → [`grid`] → [`porosity`] → [`output`]; [`run`] shows the stages in order.
+//! Data flows one way: [`input`], [`scene`] → [`bodies`], [`grid`] → [`porosity`] → [`output`]; [`run`] shows the stages in order.
 #![forbid(unsafe_code)]
 
 pub mod bodies;

@@ -1,10 +1,10 @@
 //! The command `voidage`.
 
 use clap::{CommandFactory, Parser};
-use std::io::Write;
 use std::process::ExitCode;
 use voidage::cli::{Cli, Command};
 use voidage::error::{Error, Result};
+use voidage::progress::print;
 use voidage::{inspect, interrupt, run, solve, study};
 
 fn main() -> ExitCode {
@@ -42,19 +42,16 @@ fn execute(command: Command) -> Result<()> {
         }
         Command::Man => {
             let mut page = Vec::new();
-            let rendered = clap_mangen::Man::new(Cli::command()).render(&mut page);
-            rendered.map_err(|e| Error::new(format!("cannot render the manual page: {e}")))?;
+            manual(&mut page).map_err(|e| Error::new(format!("cannot render the manual page: {e}")))?;
             print(&page)
         }
     }
 }
 
-/// To standard output; a reader that closes early is no failure.
-fn print(bytes: &[u8]) -> Result<()> {
-    match std::io::stdout().write_all(bytes) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::new(format!("cannot write to standard output: {e}")))
-        }
-        _ => Ok(()),
-    }
+/// The manual page of the command, followed by those of its commands.
+fn manual(page: &mut Vec<u8>) -> std::io::Result<()> {
+    let mut whole = Cli::command().disable_help_subcommand(true);
+    whole.build();
+    let parts: Vec<_> = whole.get_subcommands().cloned().collect();
+    std::iter::once(whole).chain(parts).try_for_each(|command| clap_mangen::Man::new(command).render(page))
 }

@@ -1,10 +1,23 @@
 //! What the user sees while and after it runs.
 
 use crate::cli::TalkArgs;
+use crate::error::{Error, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::time::Instant;
+
+/// Print a result to standard output, however quiet the run. A reader that closes early is no failure.
+///
+/// # Errors
+/// Standard output takes no more.
+pub fn print(bytes: &[u8]) -> Result<()> {
+    let mut out = std::io::stdout();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::new(format!("cannot write to standard output: {e}"))),
+        _ => Ok(()),
+    }
+}
 
 /// Messages to the terminal, warnings collected, stages timed.
 #[derive(Debug)]
@@ -46,11 +59,6 @@ impl Progress {
             // A reader that closes early (head) is no failure.
             let _ = writeln!(std::io::stdout(), "{}", sentence.as_ref());
         }
-    }
-
-    /// Print a result, however quiet the run.
-    pub fn print(&self, text: &str) {
-        let _ = writeln!(std::io::stdout(), "{text}");
     }
 
     /// A bar of `steps` steps, on a terminal only.

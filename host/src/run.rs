@@ -132,6 +132,9 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
             bodies.bodies.len()
         ));
     }
+    if options.leaf != Leaf::Plane && result.subdivided == 0 {
+        progress.warn("--leaf has no effect: every body was measured by its surface (--method gjk subdivides)");
+    }
     if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
         progress.warn(format!(
             "the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",

@@ -42,3 +42,31 @@ fn every_warning_is_in_the_json() {
     let warnings = report["warnings"].as_array().expect("warnings");
     assert!(warnings.iter().any(|w| w.as_str().is_some_and(|w| w.contains("open: 4 boundary edges"))), "{warnings:?}");
 }
+
+#[test]
+fn sizes_of_any_scale_have_their_digits() {
+    let dir = crate::kit::Scratch::new();
+    let scene = dir.file("grain.toml");
+    let grain = "[[solid]]\nname = 'grain'\nshape = 'box'\nmin = [0, 0, 0]\nmax = [1e-7, 2e-7, 3e-7]\n";
+    std::fs::write(&scene, grain).expect("written");
+    let table = stdout(&voidage(&[&"inspect", &scene]));
+    assert!(table.contains("6e-21") && table.contains("(0, 0, 0) to (1e-7, 2e-7, 3e-7)"), "{table}");
+    let bar = dir.file("bar.obj");
+    std::fs::write(&bar, "v 0 0 0\nv 10 0 0\nv 0 1e-6 0\nv 0 0 1e-6\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        .expect("written");
+    let table = stdout(&voidage(&[&"inspect", &bar]));
+    assert!(table.contains("10 × 1e-6 × 1e-6 m"), "{table}");
+    let summary = stdout(&voidage(&[&"porosity", &scene]));
+    assert!(summary.contains("solid volume  6e-21 m³"), "{summary}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_told() {
+    let full = std::fs::File::create("/dev/full").expect("writable");
+    let mut command = std::process::Command::new(crate::kit::program());
+    command.arg("inspect").arg(fixture("analytic_boxes_aligned.stl")).arg("--json").stdout(full);
+    let output = command.output().expect("the program runs");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("cannot write to standard output"), "{}", stderr(&output));
+}

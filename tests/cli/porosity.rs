@@ -107,6 +107,7 @@ fn grid_files_of_every_form() {
     let forms = [
         ("edges.toml", "x = [0, 1, 2.5, 4]\ny = [0, 4]\nz = [0.0, 4.0]\n", [3, 1, 1]),
         ("edges.json", "{\"nx\": 3, \"x\": [0, 1, 2, 4], \"y\": [0, 4], \"z\": [0, 4], \"uniform\": null}", [3, 1, 1]),
+        ("marked.json", "\u{feff}{\"x\": [0, 4], \"y\": [0, 4], \"z\": [0, 4]}", [1, 1, 1]),
         ("uniform.toml", "origin = [0, 0, 0]\nspacing = [1, 2, 4]\ncells = [4, 2, 1]\n", [4, 2, 1]),
         (
             "segments.toml",
@@ -126,6 +127,36 @@ fn grid_files_of_every_form() {
 }
 
 #[test]
+fn cells_of_a_segment_grow_by_one_factor() {
+    let out = Scratch::new();
+    let file = out.file("grid.toml");
+    let (n, mut warnings) = (100, Vec::new());
+    for ratio in [1.0 + 1e-10, 1.0 - 3e-12, 1.5, -7.0, 1e10] {
+        let x = format!("x = {{ points = [0, 100], cells = [{n}], ratios = [{ratio}] }}\ny = [0, 1]\nz = [0, 1]\n");
+        fs::write(&file, x).expect("written");
+        let edges = voidage::grid::read(&file, &mut warnings).expect("a grid").0;
+        let widths: Vec<f64> = edges[0].windows(2).map(|e| e[1] - e[0]).collect();
+        let last_by_first = if ratio < 0.0 { -1.0 / ratio } else { ratio };
+        let factor = f64::powf(last_by_first, 1.0 / f64::from(n - 1));
+        // Edges are rounded to 1e-14, and their exponents before that.
+        let rounding = 1e-13 * (1.0 + last_by_first.ln().abs());
+        for pair in widths.windows(2) {
+            assert!((pair[1] - factor * pair[0]).abs() < rounding, "{ratio}: {pair:?}");
+        }
+    }
+}
+
+#[test]
+fn what_a_grid_file_says_twice_is_warned_of() {
+    let out = Scratch::new();
+    let grid = out.file("grid.json");
+    fs::write(&grid, "{\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, 1], \"origin\": [5, 5, 5]}").expect("written");
+    let output = voidage(&[&"porosity", &fixture("analytic_boxes_aligned.stl"), &"--grid", &grid]);
+    let message = stderr(&output);
+    assert!(message.contains("grid.json: x, y, z are given; origin"), "{message}");
+}
+
+#[test]
 fn errors_name_file_place_and_reason() {
     let out = Scratch::new();
     let grids = [
@@ -134,11 +165,16 @@ fn errors_name_file_place_and_reason() {
         ("x = [0, nan]\ny = [0, 1]\nz = [0, 1]\n", "x[1]: edge NaN is not finite"),
         ("x = [0, 1]\ny = [0, 1]\nz = [0, \n", "line"),
         ("x = [0, 1]\n", "needs all of x, y, z"),
+        (
+            "origin = [0, 0, 0]\nspacing = [1, 1, 1]\ncells = [10, 10, 4000000000]\n",
+            "key cells: 10 × 10 × 4000000000 cells",
+        ),
+        ("[1, 2]", "a grid is a table"),
         ("cells = [3, 3, 3]\n", "needs x, y, z or origin, spacing, cells"),
         ("x = { points = [0, 1], cells = [0] }\ny = [0, 1]\nz = [0, 1]\n", "key x: a segment needs at least one cell"),
     ];
     for (text, reason) in grids {
-        let grid = out.file("bad.toml");
+        let grid = out.file(if text.starts_with('[') { "bad.toml.json" } else { "bad.toml" });
         fs::write(&grid, text).expect("written");
         let output = voidage(&[&"porosity", &fixture("analytic_boxes_aligned.stl"), &"--grid", &grid]);
         let message = stderr(&output);
@@ -150,7 +186,8 @@ fn errors_name_file_place_and_reason() {
 #[test]
 fn misuse_exits_with_two() {
     let mesh = fixture("analytic_boxes_aligned.stl");
-    let calls: [&[&str]; 9] = [
+    let calls: [&[&str]; 10] = [
+        &["--cells", "2000000000x1x1"],
         &["--cells", "10x10"],
         &["--cells", "0x1x1"],
         &["--cells", "100000x100000x100000"],
@@ -168,6 +205,23 @@ fn misuse_exits_with_two() {
         assert_eq!(output.status.code(), Some(2), "{call:?}: {}", stderr(&output));
     }
     assert_eq!(voidage(&[&"porosity"]).status.code(), Some(2));
+    // A negative number is a value that is wrong, not an option that is not known.
+    for (option, reason) in [("--tol", "needs a fraction from 0 to 1"), ("--depth", "-1 is not in 0..=10")] {
+        let message = stderr(&voidage(&[&"porosity", &mesh, &option, &"-1"]));
+        assert!(message.contains(reason), "{option}: {message}");
+    }
+}
+
+#[test]
+fn a_leaf_without_a_subdivision_is_said() {
+    let mesh = fixture("analytic_boxes_aligned.stl");
+    let told = |more: &[&str]| {
+        let mut arguments: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"porosity", &mesh, &"--cells", &"4x4x4"];
+        arguments.extend(more.iter().map(|a| a as &dyn AsRef<std::ffi::OsStr>));
+        stderr(&voidage(&arguments)).contains("--leaf has no effect")
+    };
+    assert!(told(&["--leaf", "solid"]));
+    assert!(!told(&["--leaf", "solid", "--method", "gjk"]) && !told(&[]));
 }
 
 #[test]
@@ -215,7 +269,10 @@ fn completions_and_manual() {
         assert!(output.status.success() && stdout(&output).contains("porosity"), "{shell}");
     }
     let output = voidage(&[&"man"]);
-    assert!(stdout(&output).contains(".TH voidage"), "{}", stdout(&output));
+    let page = stdout(&output);
+    for part in [".TH voidage", "voidage\\-porosity", "\\-\\-bounds\\-fields", "\\-\\-resume"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
 }
 
 /// The directory that --npy makes may hold the other outputs; any other missing directory is told before the work.
@@ -233,4 +290,13 @@ fn outputs_in_the_directory_of_the_arrays() {
     let done = run(&dir.join("out.vtr"));
     assert!(done.status.success(), "{}", stderr(&done));
     assert!(dir.join("out.vtr").is_file() && dir.join("beta_z.npy").is_file());
+    // The arrays themselves are outputs like any other.
+    let twice = run(&dir.join("beta_v.npy"));
+    assert_eq!(twice.status.code(), Some(2), "{}", stderr(&twice));
+    assert!(stderr(&twice).contains("beta_v.npy: an output would replace"), "{}", stderr(&twice));
+    let mesh = dir.join("beta_x.npy");
+    fs::copy(&skid, &mesh).expect("copied");
+    let over = voidage(&[&"porosity", &mesh, &"--cells", &"4x4x4", &"--npy", &dir]);
+    assert_eq!(over.status.code(), Some(2), "{}", stderr(&over));
+    assert_eq!(fs::read(&mesh).expect("readable"), fs::read(&skid).expect("readable"));
 }

@@ -69,7 +69,7 @@ fn inspect_lists_solids() {
     let ball = "[[solid]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [4, 4, 4]\nradius = 1\nporosity = 0.5\n";
     fs::write(&scene, format!("{BOX}{ball}")).expect("written");
     let text = stdout(&voidage(&[&"inspect", &scene]));
-    for word in ["ball", "sphere", "4.188790205", "(3.000000, 3.000000, 3.000000) to (5.000000, 5.000000, 5.000000)"] {
+    for word in ["ball", "sphere", "4.188790205", "(3, 3, 3) to (5, 5, 5)"] {
         assert!(text.contains(word), "{word}: {text}");
     }
     let output = voidage(&[&"inspect", &scene, &"--json", &"-q"]);

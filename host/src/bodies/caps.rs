@@ -8,41 +8,16 @@ use super::shells::Sets;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 
-/// Rims whose integrals are below this share of the surface's size cancel: rounding of `f32` corners on T-junctions.
+/// A rim whose integrals are below this share of its own size cancels.
 const CANCELS: f64 = 1e-5;
 
-/// Do these directed edges cancel as a chain, so that the surface is closed in space though not in its edges?
-///
-/// A chain that cancels has no integral of any 1-form; a few cubic forms (k·p)³ (m·dp) with fixed odd directions tell.
-#[must_use]
-pub fn cancels(points: &[DVec3], boundary: &[[u32; 2]]) -> bool {
-    let corners = || boundary.iter().flatten().map(|&v| points[v as usize]);
-    let (lo, hi) = corners().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
-    let size = (hi - lo).max_element();
-    if !(size > 0.0) {
-        return true;
-    }
-    let unit = |v: u32| (points[v as usize] - lo) / size;
-    let mut angle = 0.3_f64;
-    (0..8).all(|_| {
-        angle += 2.399_963;
-        let (k, m) = (
-            DVec3::new(angle.cos(), (1.7 * angle).sin(), (2.3 * angle).cos()),
-            DVec3::new((1.3 * angle).sin(), angle.cos(), (0.7 * angle).sin()),
-        );
-        let integral: f64 = boundary
-            .iter()
-            .map(|&[a, b]| {
-                let (p, q) = (unit(a), unit(b));
-                let (s, t) = (k.dot(p), k.dot(q));
-                m.dot(q - p) * (s * s * s + s * s * t + s * t * t + t * t * t) * 0.25
-            })
-            .sum();
-        integral.abs() < CANCELS
-    })
-}
+/// So does one that is off by the rounding of `f32` corners, a few units in the last place of the largest coordinate, …
+const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
-/// A hole in a surface.
+/// … unless it gapes: only a slit stays below this share.
+const GAPES: f64 = 1e-2;
+
+/// Loose edges around a hole in a surface, or along a T-junction.
 #[derive(Debug, Clone)]
 pub struct Rim {
     /// Directed edges of the surface around it.
@@ -73,6 +48,39 @@ pub fn rims(boundary: &[[u32; 2]]) -> Vec<Rim> {
 }
 
 impl Rim {
+    /// Do its edges cancel as a chain, so that the surface is closed in space though not in its edges?
+    ///
+    /// A chain that cancels has no integral of any 1-form; a few cubic forms (k·p)³ (m·dp) with fixed odd directions tell.
+    #[must_use]
+    pub fn cancels(&self, points: &[DVec3]) -> bool {
+        let corners = || self.edges.iter().flatten().map(|&v| points[v as usize]);
+        let (lo, hi) = corners().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+        let size = (hi - lo).max_element();
+        if !(size > 0.0) {
+            return true;
+        }
+        let limit = CANCELS + (ROUNDING * lo.abs().max(hi.abs()).max_element() / size).min(GAPES);
+        let unit = |v: u32| (points[v as usize] - lo) / size;
+        let mut angle = 0.3_f64;
+        (0..8).all(|_| {
+            angle += 2.399_963;
+            let (k, m) = (
+                DVec3::new(angle.cos(), (1.7 * angle).sin(), (2.3 * angle).cos()),
+                DVec3::new((1.3 * angle).sin(), angle.cos(), (0.7 * angle).sin()),
+            );
+            let integral: f64 = self
+                .edges
+                .iter()
+                .map(|&[a, b]| {
+                    let (p, q) = (unit(a), unit(b));
+                    let (s, t) = (k.dot(p), k.dot(q));
+                    m.dot(q - p) * (s * s * s + s * s * t + s * t * t + t * t * t) * 0.25
+                })
+                .sum();
+            integral.abs() < limit
+        })
+    }
+
     /// Triangles that close the hole.
     #[must_use]
     pub fn cap(&self, points: &[DVec3]) -> Vec<[DVec3; 3]> {

@@ -10,7 +10,7 @@ pub mod shells;
 pub mod weld;
 
 use crate::input::Mesh;
-use caps::{cancels, rims};
+use caps::rims;
 use form::Form;
 use glam::DVec3;
 use nesting::{Closed, Role};
@@ -156,7 +156,7 @@ impl Bodies {
         let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
         if let Some(n) = scaled.iter().position(|t| t.iter().any(|p| !(p.abs().max_element() <= LARGEST))) {
             let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(scaled[n][0]));
-            return Err(crate::error::Error::at(&mesh.path, format!("triangle {n}"), reason));
+            return Err(crate::error::Error::at(&mesh.path, format!("triangle {n} (counted from 0)"), reason));
         }
         let mut report = Reporter { file: mesh.path.display().to_string(), warnings: Vec::new() };
         let mut d = Diagnosis {
@@ -239,7 +239,10 @@ impl Reporter {
 
 /// A point for people.
 fn show(p: DVec3) -> String {
-    format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+    match p.abs().max_element() {
+        size if size == 0.0 || (1e-3..1e9).contains(&size) => format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z),
+        _ => format!("({:.6e}, {:.6e}, {:.6e})", p.x, p.y, p.z),
+    }
 }
 
 fn measure(triangles: &[[DVec3; 3]]) -> Diagnosis {
@@ -269,7 +272,7 @@ fn clean(
     if d.repeated > 0 {
         report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
     }
-    close_cracks(&mut mesh, &mut alive, d, report);
+    close_cracks(&mut mesh, &alive, d, report);
     let shells = shells::shells(&mut mesh, &alive, solid_of);
     d.shells = shells.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
@@ -292,21 +295,21 @@ fn distinct(mesh: &Indexed) -> Vec<bool> {
 }
 
 /// If edges lack partners, try whether points that differ by rounding are meant to be one.
-fn close_cracks(mesh: &mut Indexed, alive: &mut Vec<bool>, d: &mut Diagnosis, report: &mut Reporter) {
+fn close_cracks(mesh: &mut Indexed, alive: &[bool], d: &mut Diagnosis, report: &mut Reporter) {
     let before = shells::unmatched_edges(mesh, alive);
     if before == 0 {
         return;
     }
     let largest = d.bounds[0].abs().max(d.bounds[1].abs()).max_element();
+    let loose = shells::unmatched_points(mesh, alive);
     let mut merged = mesh.clone();
-    let moved = weld::merge_close(&mut merged, WELD_ULPS * f64::from(f32::EPSILON) * largest);
-    let still: Vec<bool> = distinct(&merged).iter().zip(alive.iter()).map(|(a, b)| *a && *b).collect();
-    if 2 * shells::unmatched_edges(&merged, &still) > before {
+    let moved = weld::merge_close(&mut merged, alive, &loose, WELD_ULPS * f64::from(f32::EPSILON) * largest);
+    if 2 * shells::unmatched_edges(&merged, alive) > before {
         return;
     }
     report.warn(format!("points up to {moved:.1e} apart were merged to close cracks"));
     d.welded_by = moved;
-    (*mesh, *alive) = (merged, still);
+    *mesh = merged;
 }
 
 /// Make every shell closed: join those that close each other, cap holes.
@@ -325,18 +328,18 @@ fn close(
         let mut triangles: Vec<_> = members.clone().map(corners).collect();
         let boundary: Vec<_> = group.iter().flat_map(|&s| shells[s].boundary.iter().copied()).collect();
         d.boundary_edges += boundary.len();
-        if !boundary.is_empty() && cancels(&mesh.points, &boundary) {
-            d.t_junction_edges += boundary.len();
-        } else {
-            for rim in rims(&boundary) {
-                let cap = rim.cap(&mesh.points);
-                let area: f64 = cap.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum();
-                if largest_hole.is_none_or(|(largest, _)| area > largest) {
-                    largest_hole = Some((area, rim.middle(&mesh.points)));
-                }
-                d.holes += 1;
-                triangles.extend(cap);
+        for rim in rims(&boundary) {
+            if rim.cancels(&mesh.points) {
+                d.t_junction_edges += rim.edges.len();
+                continue;
             }
+            let cap = rim.cap(&mesh.points);
+            let area: f64 = cap.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum();
+            if largest_hole.is_none_or(|(largest, _)| area > largest) {
+                largest_hole = Some((area, rim.middle(&mesh.points)));
+            }
+            d.holes += 1;
+            triangles.extend(cap);
         }
         names.push(members.min().map_or_else(String::new, |&n| name_of(n)));
         closed.push(Closed::new(triangles));

@@ -75,11 +75,24 @@ pub fn roles(shells: &[Closed]) -> Vec<Role> {
     roles
 }
 
-/// Is `inner` inside `outer`? Told by its box and a spread of its corners.
+/// Share of a triangle's size by which a point is pulled off it: more than rounding, less than walls are thick.
+const OFF_THE_SURFACE: f64 = 1e-4;
+
+/// Two closed shells whose volumes differ by less than this share are one surface twice.
+const SAME: f64 = 1e-6;
+
+/// Is `inner` inside `outer`, perhaps touching it? Told by its box and a spread of points just within its own surface.
 fn contains(outer: &Closed, inner: &Closed) -> bool {
     let boxed = outer.bounds[0].cmple(inner.bounds[0]).all() && outer.bounds[1].cmpge(inner.bounds[1]).all();
+    let smaller = inner.volume.abs() < (1.0 - SAME) * outer.volume.abs();
     let step = (inner.triangles.len() / 16).max(1);
-    boxed && inner.triangles.iter().step_by(step).all(|t| winding(outer, (t[0] + t[1] + t[2]) / 3.0).abs() > 0.5)
+    let within = |[a, b, c]: &[DVec3; 3]| {
+        let normal = (b - a).cross(c - a) * inner.volume.signum();
+        let twice_area = normal.length();
+        let pulled = (a + b + c) / 3.0 - normal * (OFF_THE_SURFACE / twice_area.sqrt());
+        twice_area == 0.0 || winding(outer, pulled).abs() > 0.5
+    };
+    boxed && smaller && inner.triangles.iter().step_by(step).all(within)
 }
 
 /// Winding number of a closed shell around a point.

@@ -56,7 +56,8 @@ impl Edges {
     }
 }
 
-fn edges_of(t: [u32; 3]) -> [[u32; 2]; 3] {
+/// The directed edges of a triangle.
+pub fn edges_of(t: [u32; 3]) -> [[u32; 2]; 3] {
     [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
 }
 
@@ -300,4 +301,16 @@ fn orientations(count: usize, links: &[Link]) -> Vec<Turn> {
 #[must_use]
 pub fn unmatched_edges(mesh: &Indexed, alive: &[bool]) -> u64 {
     Edges::new(mesh, alive).each().map(|uses| balance(uses).unsigned_abs()).sum()
+}
+
+/// The points on edges that are not run as often one way as the other.
+#[must_use]
+pub fn unmatched_points(mesh: &Indexed, alive: &[bool]) -> Vec<bool> {
+    let mut unmatched = vec![false; mesh.points.len()];
+    for uses in Edges::new(mesh, alive).each().filter(|uses| balance(uses) != 0) {
+        for v in [uses[0].0 >> 32, uses[0].0 & 0xffff_ffff] {
+            unmatched[v as usize] = true;
+        }
+    }
+    unmatched
 }

@@ -64,18 +64,29 @@ pub fn number(value: f64) -> String {
 /// A number for reading, to the first digit of `fine`, no needless zeros.
 #[must_use]
 pub fn number_to(value: f64, fine: f64) -> String {
+    plain_to(value, fine).replace('-', "−")
+}
+
+/// A measured value, which may be copied: ten digits, no needless zeros.
+#[must_use]
+pub fn measure(value: f64) -> String {
+    plain_to(value, 1e-9 * value.abs())
+}
+
+/// As [`number_to`], with minus signs that programs read.
+#[must_use]
+pub fn plain_to(value: f64, fine: f64) -> String {
     if value == 0.0 || !value.is_finite() {
-        return format!("{}", value.abs() * value.signum()).replace("-0", "0").replace('-', "−");
+        return format!("{}", value.abs() * value.signum()).replace("-0", "0");
     }
     let exponent = |v: f64| v.abs().log10().floor() as i32;
     let (largest, last) = (exponent(value), exponent(fine.max(1e-12 * value.abs())));
-    let text = if (PLAIN.start..9).contains(&largest) {
+    if (PLAIN.start..9).contains(&largest) {
         shorter(&format!("{:.*}", (-last).max(0) as usize, value)).to_owned()
     } else {
         let text = format!("{:.*e}", (largest - last).max(0) as usize, value);
         text.split_once('e').map_or(text.clone(), |(digits, power)| format!("{}e{power}", shorter(digits)))
-    };
-    text.replace('-', "−")
+    }
 }
 
 /// Without zeros at the end of a fraction.
@@ -124,5 +135,7 @@ mod tests {
         assert_eq!(number_to(6_200_010.5, 0.01), "6200010.5");
         assert_eq!(number_to(-3.123_456e-5, 1e-8), "−3.123e−5");
         assert_eq!(number_to(2.0, 0.0), "2");
+        let texts = [9.166_567_214_301_798, 10_129.659_451_750_3, 1e-27 / 3.0, 6e9, -1.0].map(measure);
+        assert_eq!(texts, ["9.166567214", "10129.65945", "3.333333333e-28", "6e9", "-1"]);
     }
 }

@@ -16,8 +16,9 @@ use std::path::{Path, PathBuf};
 /// The first that has none, or would.
 pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    let outputs: Vec<&Path> =
-        [&args.output, &args.png, &args.report].into_iter().flatten().map(|p| p.as_path()).collect();
+    let arrays = arrays(args);
+    let files = [&args.output, &args.png, &args.report].into_iter().flatten();
+    let outputs: Vec<&Path> = arrays.iter().chain(files).map(|p| p.as_path()).collect();
     if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
         return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
     }
@@ -37,6 +38,14 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The arrays that `--npy` writes.
+fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
+    let suffixes: &[&str] = if args.bounds_fields { &["", "_lower", "_upper"] } else { &[""] };
+    let fields: &[&str] = if args.no_areas { &["v"] } else { &["v", "x", "y", "z"] };
+    let names = suffixes.iter().flat_map(|suffix| fields.iter().map(move |field| format!("beta_{field}{suffix}.npy")));
+    args.npy.iter().flat_map(|dir| names.clone().map(|name| dir.join(name))).collect()
 }
 
 /// Write all that was asked for.

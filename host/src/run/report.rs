@@ -4,6 +4,7 @@ use super::command_line;
 use crate::bodies::{Bodies, Described};
 use crate::cli::PorosityArgs;
 use crate::grid::Edges;
+use crate::output::ticks::measure;
 use crate::porosity::{self, Leaf, Porosity};
 use crate::progress::Progress;
 use glam::DVec3;
@@ -105,12 +106,15 @@ impl Report {
             progress
                 .say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
         }
-        progress.say(format!("solid volume  {:.9} m³", self.solid_volume));
+        progress.say(format!("solid volume  {} m³", measure(self.solid_volume)));
         progress.say(format!(
             "cells         {} open, {} cut, {} closed; {} shared by bodies",
             c.open, c.cut, c.closed, c.ambiguous
         ));
-        progress.say(format!("largest gap   {:.1e}", self.max_gap));
+        progress.say(format!(
+            "largest gap   {}",
+            if self.max_gap > 0.0 { format!("{:.1e}", self.max_gap) } else { "0".into() }
+        ));
         progress.say(format!("time          {:.3} s", progress.elapsed()));
     }
 }

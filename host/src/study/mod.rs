@@ -10,7 +10,7 @@ use crate::cli::StudyArgs;
 use crate::error::{Error, Result};
 use crate::output::atomically;
 use crate::output::chart::{Chart, Series};
-use crate::progress::Progress;
+use crate::progress::{Progress, print};
 use case::Case;
 use measure::Row;
 use std::path::Path;
@@ -32,7 +32,7 @@ pub fn study(args: &StudyArgs) -> Result<()> {
             progress.warn("no picture: nothing in this study has an error to draw");
         }
     } else {
-        progress.print(&table::markdown(&case.title, &rows));
+        print(format!("{}\n", table::markdown(&case.title, &rows)).as_bytes())?;
     }
     Ok(())
 }
