@@ -50,7 +50,7 @@ impl<'a> Near<'a> {
     }
 
     #[inline(always)]
-    fn push(&mut self, facet: u32) {
+    pub(crate) fn push(&mut self, facet: u32) {
         match self.items.get_mut(self.count) {
             Some(place) => *place = facet,
             None => self.full = true,
@@ -124,6 +124,15 @@ impl<R: Real> Planes<R> {
     }
 }
 
+/// What a box knows of a body and hands to its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trace<V> {
+    /// Of a convex body a direction that separated a neighbour, or zero; of a surface a point in the box.
+    pub vector: V,
+    /// The surface's winding number at that point, if it is known.
+    pub winding: Option<i32>,
+}
+
 /// Planes and the heights of a box above them.
 pub type Seen<R> = (Planes<R>, Heights<R>);
 
@@ -138,14 +147,14 @@ pub trait Body {
     /// How many facets it has.
     fn facets(&self) -> usize;
 
-    /// Where a box lies. `near` lists the facets that cut a box around this one; those that cut this one go to `keep`. `axis` is a
-    /// direction that separated a neighbour, or zero; a better one replaces it.
+    /// Where a box lies. `near` lists the facets that cut a box around this one; those that cut this one go to `keep`. `trace` is what is
+    /// known from the box around or from a neighbour in it; what is found here replaces it.
     fn place(
         &self,
         cell: &Aabb<Self::Vector>,
         near: &[u32],
         keep: &mut Near,
-        axis: &mut Self::Vector,
+        trace: &mut Trace<Self::Vector>,
         tally: &mut Tally,
     ) -> Occupancy;
 
@@ -178,7 +187,7 @@ impl<B: Convex> Body for B {
         cell: &Aabb<B::Vector>,
         near: &[u32],
         keep: &mut Near,
-        axis: &mut B::Vector,
+        trace: &mut Trace<B::Vector>,
         tally: &mut Tally,
     ) -> Occupancy {
         let zero = Real::ZERO;
@@ -204,7 +213,7 @@ impl<B: Convex> Body for B {
                 _ => {}
             }
         }
-        ask(self, cell, axis, tally)
+        ask(self, cell, &mut trace.vector, tally)
     }
 
     fn planes(&self, cell: &Aabb<B::Vector>, near: &[u32]) -> Option<Seen<crate::support::ScalarOf<B>>> {

@@ -34,7 +34,7 @@ pub enum Method {
     Auto,
     /// Sums over the surface: exact for any closed surface of triangles
     Surface,
-    /// Subdivision by GJK, as in the paper: bounds for convex bodies
+    /// Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close
     Gjk,
 }
 
@@ -199,7 +199,7 @@ fn union(
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
-    let convex = roads.road(options, counts);
+    let convex = roads.road(triangles, options, counts);
     let bins = Bins::new(grid, bodies, triangles, |body| counts(body) && roads.by_surface(body));
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);

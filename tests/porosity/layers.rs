@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Modules from the bottom up; `a/b.rs` counts as `a`. The flow uses scalars only, and no geometry uses the flow.
-const ORDER: [&str; 21] = [
+const ORDER: [&str; 22] = [
     "real",
     "pdr",
     "aabb",
@@ -18,6 +18,7 @@ const ORDER: [&str; 21] = [
     "polytope",
     "columns",
     "classify",
+    "mesh",
     "clip",
     "grid",
     "subdivide",
