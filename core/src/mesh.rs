@@ -26,10 +26,7 @@ pub struct Mesh<'a, V: Vector> {
 impl<'a, V: Vector> Mesh<'a, V> {
     /// A surface; finite.
     pub fn new(triangles: &'a [[V; 3]]) -> Self {
-        let far = V::splat(V::Scalar::INFINITY);
-        let corners = triangles.iter().flatten();
-        let (min, max) = corners.fold((far, -far), |(min, max), &p| (min.min(p), max.max(p)));
-        Mesh { triangles, bounds: Aabb { min, max } }
+        Mesh { triangles, bounds: Aabb::around(triangles.as_flattened()) }
     }
 
     /// What it was made of.

@@ -555,18 +555,18 @@ fn box_of<V: Vector>(grid: &Grid<V::Scalar>, places: Places, range: Range) -> Aa
 /// A part of a box: the bits of its number choose the upper halves along the axes that are not flat.
 #[inline(always)]
 fn part_of<V: Vector>(cell: &Aabb<V>, flat: [bool; 3], number: usize) -> Aabb<V> {
-    let (mut min, mut max, middle) = (cell.min.to_array(), cell.max.to_array(), cell.center().to_array());
     let mut bits = number;
-    for axis in 0..3 {
-        if flat[axis] {
-            continue;
-        }
-        if bits & 1 == 1 {
-            min[axis] = middle[axis];
-        } else {
-            max[axis] = middle[axis];
-        }
-        bits >>= 1;
+    let upper = flat.map(|flat| {
+        let upper = !flat && bits & 1 == 1;
+        bits >>= u32::from(!flat);
+        upper
+    });
+    // Without arrays in between: written by scalars and read as vectors at once they would stall the processor.
+    let (min, max, middle) = (cell.min, cell.max, cell.center());
+    let low = |axis: usize, min: V::Scalar, middle: V::Scalar| if upper[axis] { middle } else { min };
+    let high = |axis: usize, max: V::Scalar, middle: V::Scalar| if upper[axis] || flat[axis] { max } else { middle };
+    Aabb {
+        min: V::new(low(0, min.x(), middle.x()), low(1, min.y(), middle.y()), low(2, min.z(), middle.z())),
+        max: V::new(high(0, max.x(), middle.x()), high(1, max.y(), middle.y()), high(2, max.z(), middle.z())),
     }
-    Aabb { min: V::from_array(min), max: V::from_array(max) }
 }

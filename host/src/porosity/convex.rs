@@ -12,11 +12,10 @@ use std::ops;
 use voidage_core::aabb::Aabb;
 use voidage_core::classify::{self, Near, Occupancy, Seen, Tally, Trace};
 use voidage_core::columns::{Bounds, Columns};
-use voidage_core::convex::Plane;
 use voidage_core::grid::Grid;
 use voidage_core::layer::Layer;
 use voidage_core::mesh::{Mesh, slab};
-use voidage_core::polytope::{Polytope, facets};
+use voidage_core::polytope::{Facet, Polytope, facets};
 use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
 use voidage_core::support::Transformed;
@@ -85,7 +84,7 @@ impl classify::Body for Convex<'_> {
 #[derive(Debug, Default)]
 struct Faceted {
     vertices: Vec<DVec3>,
-    facets: Vec<Plane<DVec3>>,
+    facets: Vec<Facet<DVec3>>,
 }
 
 /// Which body takes which road, and the memory of those that take this one.
@@ -185,8 +184,7 @@ fn faceted(body: &Body, triangles: &[[DVec3; 3]]) -> Option<Faceted> {
     for &p in triangles.iter().flatten() {
         seen.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| vertices.push(p));
     }
-    let none = Plane { normal: DVec3::ZERO, offset: 0.0, exact: false };
-    let mut planes = vec![none; triangles.len()];
+    let mut planes = vec![Facet::none(); triangles.len()];
     let count = facets(&vertices, triangles, &mut planes).ok()?;
     planes.truncate(count);
     Some(Faceted { vertices, facets: planes })
