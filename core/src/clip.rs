@@ -70,8 +70,8 @@ impl<R: Real> Polygon<R> {
     pub fn extent(&self, axis: usize) -> (R, R) {
         let (mut lo, mut hi) = (R::INFINITY, -R::INFINITY);
         for c in self.corners() {
-            lo = lo.min(c[axis]);
-            hi = hi.max(c[axis]);
+            lo = c[axis].smaller(lo);
+            hi = c[axis].larger(hi);
         }
         (lo, hi)
     }

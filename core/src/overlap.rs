@@ -105,8 +105,10 @@ pub struct Task {
 pub struct Workspace<'a, R: Real> {
     /// Pieces of all bodies.
     pub pieces: &'a mut [Piece<R>],
-    /// Pieces in the works while a tree grows.
-    pub growing: &'a mut [Piece<R>],
+    /// Parts of pieces that were cut while a tree grew.
+    pub shards: &'a mut [Piece<R>],
+    /// Which pieces and shards go where while a tree grows.
+    pub order: &'a mut [u32],
     /// Nodes of all trees.
     pub nodes: &'a mut [Node<R>],
     /// Bodies.
@@ -139,6 +141,8 @@ pub struct Overlap<'a, R: Real> {
     /// That is more than rounding asks for.
     blurred: bool,
     part_count: usize,
+    /// So many of them have their tree.
+    planted: usize,
     piece_count: usize,
     node_count: usize,
 }
@@ -161,6 +165,7 @@ impl<'a, R: Real> Overlap<'a, R> {
             blurred: blur > rounding,
             thickness,
             part_count: 0,
+            planted: 0,
             piece_count: 0,
             node_count: 0,
         }
@@ -196,9 +201,20 @@ impl<'a, R: Real> Overlap<'a, R> {
             return Ok(());
         }
         let part = Part { first, end: self.piece_count, root: uniform, below };
-        let root = if self.piece_count == first { uniform } else { self.grow(part)? };
-        *self.space.parts.get_mut(self.part_count).ok_or(Full)? = Part { root, ..part };
+        *self.space.parts.get_mut(self.part_count).ok_or(Full)? = part;
         self.part_count += 1;
+        Ok(())
+    }
+
+    /// Build the trees of the bodies added since the last time; not before it is known that all their pieces find room.
+    fn plant(&mut self) -> Result<(), NoProof> {
+        for n in self.planted..self.part_count {
+            let part = self.space.parts[n];
+            if part.end > part.first {
+                self.space.parts[n].root = self.grow(part)?;
+            }
+        }
+        self.planted = self.part_count;
         Ok(())
     }
 
@@ -262,29 +278,27 @@ impl<'a, R: Real> Overlap<'a, R> {
     /// Build the tree of a body: the largest piece divides, the others go to its sides.
     fn grow(&mut self, part: Part) -> Result<Branch, NoProof> {
         let count = part.end - part.first;
-        let Workspace { pieces, growing, nodes, tasks, .. } = &mut self.space;
-        growing.get_mut(..count).ok_or(Full)?.copy_from_slice(&pieces[part.first..part.end]);
+        let Workspace { pieces, shards, order, nodes, tasks, .. } = &mut self.space;
+        let mut growing = Growing { pieces: &pieces[part.first..part.end], shards, used: 0, thickness: self.thickness };
+        let all = order.get_mut(..count).ok_or(Full)?;
+        all.iter_mut().zip(0..).for_each(|(place, id)| *place = id);
         *tasks.first_mut().ok_or(Full)? = Task { first: 0, end: count, parent: None };
         let (mut open_tasks, root) = (1, self.node_count as u32);
         while open_tasks > 0 {
             open_tasks -= 1;
             let Task { first, end, parent } = tasks[open_tasks];
             let here = Branch::Node(self.node_count as u32);
-            let divider = take_largest(&mut growing[first..end]);
-            *nodes.get_mut(self.node_count).ok_or(Full)? = Node {
-                normal: divider.normal,
-                offset: divider.offset,
-                positive: Branch::Open,
-                negative: Branch::Solid,
-            };
+            let (normal, offset) = growing.largest(&mut order[first..end]);
+            *nodes.get_mut(self.node_count).ok_or(Full)? =
+                Node { normal, offset, positive: Branch::Open, negative: Branch::Solid };
             self.node_count += 1;
             if let Some((node, positive)) = parent {
                 let node = &mut nodes[node as usize];
                 *(if positive { &mut node.positive } else { &mut node.negative }) = here;
             }
-            let middle_end = divide(&divider, growing, first, end, self.thickness)?;
+            let (middle, end) = growing.divide(order, first, end)?;
             let Branch::Node(node) = here else { continue };
-            for (first, end, positive) in [(first, middle_end.0, false), (middle_end.0, middle_end.1, true)] {
+            for (first, end, positive) in [(first, middle, false), (middle, end, true)] {
                 if end > first {
                     *tasks.get_mut(open_tasks).ok_or(Full)? = Task { first, end, parent: Some((node, positive)) };
                     open_tasks += 1;
@@ -299,6 +313,7 @@ impl<'a, R: Real> Overlap<'a, R> {
     /// # Errors
     /// [`NoProof`]: divide the cell.
     pub fn cell(&mut self) -> Result<CellUnion<R>, NoProof> {
+        self.plant()?;
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         for own in 0..self.part_count {
             for p in self.space.parts[own].first..self.space.parts[own].end {
@@ -342,6 +357,7 @@ impl<'a, R: Real> Overlap<'a, R> {
     /// # Errors
     /// [`NoProof`], of the workspace or of planes.
     pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
+        self.plant()?;
         let mut square = Polygon::default();
         for (u, v) in [(R::ZERO, R::ZERO), (R::ONE, R::ZERO), (R::ONE, R::ONE), (R::ZERO, R::ONE)] {
             let mut corner = [at; 3];
@@ -367,13 +383,14 @@ impl<'a, R: Real> Overlap<'a, R> {
     ) -> Result<(), NoProof> {
         let Workspace { nodes, parts, fragments, .. } = &mut self.space;
         let parts = &parts[..self.part_count];
-        let enter = |f: Fragment<R>, part: usize| {
-            let part = if Some(part) == own { part + 1 } else { part };
-            let branch = parts.get(part).map_or(Branch::Open, |p| p.root);
-            Fragment { part, branch, inward: false, twin: false, ..f }
+        let enter = |f: &mut Fragment<R>, part: usize| {
+            f.part = if Some(part) == own { part + 1 } else { part };
+            f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
+            (f.inward, f.twin) = (false, false);
         };
-        let first = enter(Fragment { polygon: *polygon, ..Fragment::default() }, 0);
-        *fragments.first_mut().ok_or(Full)? = first;
+        let first = fragments.first_mut().ok_or(Full)?;
+        first.polygon = *polygon;
+        enter(first, 0);
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
@@ -390,14 +407,16 @@ impl<'a, R: Real> Overlap<'a, R> {
                         continue;
                     }
                     Branch::Open => {
-                        f = enter(f, f.part + 1);
+                        let next = f.part + 1;
+                        enter(&mut f, next);
                         continue;
                     }
                     Branch::Node(n) => &nodes[n as usize],
                 };
-                let place = side(&f.polygon, node.normal, node.offset, self.thickness);
+                let span = span(&f.polygon, node.normal, node.offset);
+                let place = side(span, self.thickness);
                 if place != Place::On
-                    && side(&f.polygon, node.normal, node.offset, self.thickness * R::from_f64(DOUBT)) == Place::On
+                    && side(span, self.thickness * R::from_f64(DOUBT)) == Place::On
                     && f.polygon.doubled_area().iter().any(|a| a.abs() > R::from_f64(SLIVER))
                 {
                     // Not quite one plane, not clearly two: another piece of the same faces may be judged otherwise.
@@ -458,14 +477,20 @@ enum Place {
     Across,
 }
 
+/// Signed distances of the corners of a polygon from a plane, the smallest and the largest.
 #[inline(always)]
-fn side<R: Real>(polygon: &Polygon<R>, normal: [R; 3], offset: R, thickness: R) -> Place {
+fn span<R: Real>(polygon: &Polygon<R>, normal: [R; 3], offset: R) -> (R, R) {
     let (mut min, mut max) = (R::INFINITY, -R::INFINITY);
     for c in polygon.corners() {
         let d = dot(normal, *c) - offset;
-        min = min.min(d);
-        max = max.max(d);
+        min = d.smaller(min);
+        max = d.larger(max);
     }
+    (min, max)
+}
+
+#[inline(always)]
+fn side<R: Real>((min, max): (R, R), thickness: R) -> Place {
     match (min < -thickness, max > thickness) {
         (false, false) => Place::On,
         (false, true) => Place::Positive,
@@ -499,72 +524,93 @@ fn cut<R: Real>(whole: &Polygon<R>, normal: [R; 3], offset: R) -> (Polygon<R>, P
     (negative, positive)
 }
 
-/// The piece of largest area, moved to the front.
-fn take_largest<R: Real>(pieces: &mut [Piece<R>]) -> Piece<R> {
-    let mut best = 0;
-    for p in 1..pieces.len() {
-        if pieces[p].area > pieces[best].area {
-            best = p;
-        }
-    }
-    pieces.swap(0, best);
-    pieces[0]
+/// The pieces of a body while its tree grows, by number: first those of the cell, then the parts of those that were cut.
+struct Growing<'a, R: Real> {
+    pieces: &'a [Piece<R>],
+    shards: &'a mut [Piece<R>],
+    /// So many shards there are.
+    used: usize,
+    thickness: R,
 }
 
-/// Sort the pieces after `growing[first]`, the divider, by the sides of its plane: `first..a` behind, `a..b` before;
-/// returns `(a, b)`. Pieces in the plane are dropped, pieces across are cut.
-fn divide<R: Real>(
-    divider: &Piece<R>,
-    growing: &mut [Piece<R>],
-    first: usize,
-    end: usize,
-    thickness: R,
-) -> Result<(usize, usize), NoProof> {
-    // Pieces before the plane gather above `end` and are moved down at last.
-    let (mut behind, mut before) = (first, end);
-    for p in first + 1..end {
-        let piece = growing[p];
-        match side(&piece.polygon, divider.normal, divider.offset, thickness) {
-            // Solid thinner than rounding: which side of the plane holds it cannot be told.
-            Place::On if backs(&piece, divider, thickness) => return Err(Doubt),
-            Place::On => {}
-            Place::Negative => {
-                growing[behind] = piece;
-                behind += 1;
+impl<R: Real> Growing<'_, R> {
+    fn piece(&self, id: u32) -> &Piece<R> {
+        let id = id as usize;
+        self.pieces.get(id).unwrap_or_else(|| &self.shards[id - self.pieces.len()])
+    }
+
+    fn keep(&mut self, shard: Piece<R>) -> Result<u32, NoProof> {
+        *self.shards.get_mut(self.used).ok_or(Full)? = shard;
+        self.used += 1;
+        Ok((self.pieces.len() + self.used - 1) as u32)
+    }
+
+    /// The plane of the piece of largest area, which moves to the front.
+    fn largest(&self, order: &mut [u32]) -> ([R; 3], R) {
+        let mut best = 0;
+        for p in 1..order.len() {
+            if self.piece(order[p]).area > self.piece(order[best]).area {
+                best = p;
             }
-            Place::Positive => {
-                *growing.get_mut(before).ok_or(Full)? = piece;
-                before += 1;
-            }
-            Place::Across => {
-                let halves =
-                    if piece.polygon.is_full() { piece.polygon.halves() } else { [piece.polygon, Polygon::default()] };
-                for half in halves {
-                    let (negative, positive) = cut(&half, divider.normal, divider.offset);
-                    let part = |polygon: Polygon<R>| Piece {
-                        area: dot(polygon.doubled_area(), piece.normal),
-                        polygon,
-                        ..piece
-                    };
-                    let (negative, positive) = (part(negative), part(positive));
-                    if negative.area > R::ZERO {
-                        // The second half of a full polygon may need room that is not yet free.
-                        if behind > p {
-                            return Err(Full);
+        }
+        order.swap(0, best);
+        let Piece { normal, offset, .. } = *self.piece(order[0]);
+        (normal, offset)
+    }
+
+    /// Sort the pieces after `order[first]`, the divider, by the sides of its plane: `first..a` behind, `a..b` before;
+    /// returns `(a, b)`. Pieces in the plane are dropped, pieces across are cut.
+    fn divide(&mut self, order: &mut [u32], first: usize, end: usize) -> Result<(usize, usize), NoProof> {
+        let divider = order[first];
+        let Piece { normal, offset, .. } = *self.piece(divider);
+        // Pieces before the plane gather above `end` and are moved down at last.
+        let (mut behind, mut before) = (first, end);
+        for p in first + 1..end {
+            let id = order[p];
+            let piece = self.piece(id);
+            match side(span(&piece.polygon, normal, offset), self.thickness) {
+                // Solid thinner than rounding: which side of the plane holds it cannot be told.
+                Place::On if backs(piece, self.piece(divider), self.thickness) => return Err(Doubt),
+                Place::On => {}
+                Place::Negative => {
+                    order[behind] = id;
+                    behind += 1;
+                }
+                Place::Positive => {
+                    *order.get_mut(before).ok_or(Full)? = id;
+                    before += 1;
+                }
+                Place::Across => {
+                    let piece = *piece;
+                    let whole = piece.polygon;
+                    let halves = if whole.is_full() { whole.halves() } else { [whole, Polygon::default()] };
+                    for half in halves {
+                        let (negative, positive) = cut(&half, normal, offset);
+                        let part = |polygon: Polygon<R>| Piece {
+                            area: dot(polygon.doubled_area(), piece.normal),
+                            polygon,
+                            ..piece
+                        };
+                        let (negative, positive) = (part(negative), part(positive));
+                        if negative.area > R::ZERO {
+                            // The second half of a full polygon may need room that is not yet free.
+                            if behind > p {
+                                return Err(Full);
+                            }
+                            order[behind] = self.keep(negative)?;
+                            behind += 1;
                         }
-                        growing[behind] = negative;
-                        behind += 1;
-                    }
-                    if positive.area > R::ZERO {
-                        *growing.get_mut(before).ok_or(Full)? = positive;
-                        before += 1;
+                        if positive.area > R::ZERO {
+                            *order.get_mut(before).ok_or(Full)? = self.keep(positive)?;
+                            before += 1;
+                        }
                     }
                 }
             }
         }
+        order.copy_within(end..before, behind);
+        Ok((behind, behind + before - end))
     }
-    growing.copy_within(end..before, behind);
-    Ok((behind, behind + before - end))
 }
 
 /// Does a piece in the plane of another look the other way and lie, by their boxes, on the same spot?

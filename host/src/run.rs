@@ -1,18 +1,19 @@
 //! The stages of a run, in order: scene → bodies → grid → porosity → output.
 
-use crate::bodies::{Bodies, Described};
+mod files;
+mod report;
+
+use crate::bodies::Bodies;
 use crate::cli::{PorosityArgs, SceneArgs, Unit};
 use crate::error::{Error, Result};
 use crate::grid::{self, Edges, Source};
 use crate::input;
-use crate::output::ticks::number_to;
-use crate::output::vtr::{CellField, Field, Vtr};
-use crate::output::{check_target, npy, png, report};
+use crate::output::{self, ticks::number_to};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
 use crate::progress::Progress;
 use crate::scene;
 use glam::DVec3;
-use serde::Serialize;
+use report::Report;
 use std::path::Path;
 
 /// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does.
@@ -69,7 +70,7 @@ fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
 /// Anything that keeps it from writing all that was asked for.
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
-    check_outputs(args)?;
+    files::check(args)?;
     threads(args.threads)?.install(|| {
         let (bodies, own_grid) = load(&args.scene, &mut progress)?;
         if args.method == Method::Surface {
@@ -84,11 +85,10 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
         let result = measure(&bodies, &edges, options, &mut progress)?;
         let report = Report::new(args, &edges, &bodies, &result);
-        write(args, &edges, &result, &report, &mut progress)?;
+        files::write(args, &edges, &result, &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {
-            let seconds = progress.seconds.clone();
-            report::json(path, &Report { seconds, warnings: progress.warnings.clone(), ..report })?;
+            output::report::json(path, &report.finished(&progress))?;
         }
         Ok(())
     })
@@ -150,32 +150,6 @@ pub fn room_for(bytes: usize) -> Result<()> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
         Error::new(format!("the fields of this grid need {:.1} GB of memory: take fewer cells", bytes as f64 * 1e-9))
     })
-}
-
-/// Outputs must have a place, and none may replace a file of the scene, the grid or another output.
-fn check_outputs(args: &PorosityArgs) -> Result<()> {
-    let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    let outputs: Vec<&Path> =
-        [&args.output, &args.png, &args.report].into_iter().flatten().map(|p| p.as_path()).collect();
-    if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
-        return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
-    }
-    for (n, output) in outputs.iter().enumerate() {
-        // The directory of the arrays is made before.
-        let made = args.npy.as_deref().zip(output.parent()).is_some_and(|(made, parent)| made.starts_with(parent));
-        if !made || output.exists() {
-            check_target(output)?;
-        }
-        let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
-        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
-        if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
-            return Err(Error::usage(format!(
-                "{}: an output would replace another file of this run",
-                output.display()
-            )));
-        }
-    }
-    Ok(())
 }
 
 /// The sums over surfaces measure only what has one.
@@ -262,154 +236,3 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
 
 /// A body whose own share leaves 0..1 by more than this crosses itself.
 const WINDING_TO_WARN: f64 = 1e-6;
-
-fn write(args: &PorosityArgs, edges: &Edges, result: &Porosity, about: &Report, progress: &mut Progress) -> Result<()> {
-    if let Some(dir) = &args.npy {
-        progress.stage("npy", |_| npy::write_all(dir, &fields(edges, result)))?;
-    }
-    if let Some(path) = &args.output {
-        progress.stage("vtr", |_| write_vtr(path, args.compress, edges, result, about))?;
-    }
-    if let Some(path) = &args.png {
-        let [x, y, z] = &edges.0;
-        let name =
-            |p: &std::path::PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
-        progress.stage("png", |_| png::slices(path, &title, x, y, z, "m", &result.beta.v))?;
-    }
-    Ok(())
-}
-
-/// The fields of a result with names: base name, shape, values.
-fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &'a [f64])> {
-    let [nx, ny, nz] = edges.cells();
-    let [lower, upper] = [0, 1].map(|n| result.bounds.as_ref().map(|b| &b[n]));
-    let sets = [("", Some(&result.beta)), ("_lower", lower), ("_upper", upper)];
-    let mut all: Vec<(String, [usize; 3], &[f64])> = Vec::new();
-    for (suffix, set) in sets.into_iter().filter_map(|(suffix, set)| Some((suffix, set?))) {
-        all.push((format!("beta_v{suffix}"), [nx, ny, nz], &set.v));
-        all.push((format!("beta_x{suffix}"), [nx + 1, ny, nz], &set.x));
-        all.push((format!("beta_y{suffix}"), [nx, ny + 1, nz], &set.y));
-        all.push((format!("beta_z{suffix}"), [nx, ny, nz + 1], &set.z));
-    }
-    all.retain(|(_, _, values)| !values.is_empty());
-    all
-}
-
-fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {
-    let [x, y, z] = &edges.0;
-    let all = fields(edges, result);
-    let beta = &result.beta;
-    let mut cell = Vec::new();
-    for (name, _, data) in all.iter().filter(|(name, ..)| name.starts_with("beta_v")) {
-        cell.push(CellField::Values(Field { name, components: 1, data }));
-    }
-    if !beta.x.is_empty() {
-        cell.push(CellField::LowFaces { name: "beta_f", faces: [&beta.x, &beta.y, &beta.z] });
-    }
-    let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
-    let field_data = staggered.map(|(name, _, data)| Field { name, components: 1, data }).collect();
-    let version = format!("voidage {}", about.version);
-    Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }
-        .write(path)
-}
-
-/// What `--report` writes.
-#[derive(Debug, Clone, Serialize)]
-struct Report {
-    version: &'static str,
-    command: String,
-    grid: GridReport,
-    /// Of the union, within the grid in m³.
-    solid_volume: f64,
-    bodies: usize,
-    triangles: usize,
-    roads: RoadReport,
-    cells: porosity::CellCounts,
-    max_gap: f64,
-    divided: usize,
-    leaks: Vec<porosity::Leak>,
-    /// Of scene files.
-    solids: Vec<Described>,
-    warnings: Vec<String>,
-    skipped: Vec<&'static str>,
-    seconds: std::collections::BTreeMap<&'static str, f64>,
-    gjk: porosity::Gjk,
-}
-
-/// How many bodies took which road.
-#[derive(Debug, Clone, Serialize)]
-struct RoadReport {
-    /// Sums over surfaces: exact.
-    surface: usize,
-    /// Subdivision by GJK: bounds.
-    subdivision: usize,
-    /// Of the latter, the rule at its end.
-    leaf: Leaf,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct GridReport {
-    cells: [usize; 3],
-    bounds: [DVec3; 2],
-    unit: &'static str,
-}
-
-impl Report {
-    fn new(args: &PorosityArgs, edges: &Edges, bodies: &Bodies, result: &Porosity) -> Self {
-        let mut skipped = Vec::new();
-        if result.subdivided == 0 {
-            skipped.push("gjk: every body has triangles, and their sums are exact and cheaper");
-        }
-        if args.no_areas {
-            skipped.push("area porosities: --no-areas");
-        }
-        if !args.bounds_fields {
-            skipped.push("bound fields: not asked for (--bounds-fields)");
-        }
-        if result.cells.ambiguous == 0 {
-            skipped.push("unions: no cell is shared by bodies");
-        }
-        Report {
-            version: env!("CARGO_PKG_VERSION"),
-            command: command_line(),
-            grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
-            solid_volume: result.solid_volume,
-            bodies: bodies.bodies.len(),
-            triangles: bodies.triangles.len(),
-            roads: RoadReport {
-                surface: bodies.bodies.len() - result.subdivided,
-                subdivision: result.subdivided,
-                leaf: args.leaf,
-            },
-            cells: result.cells,
-            max_gap: result.max_gap,
-            divided: result.divided,
-            leaks: result.leaks.clone(),
-            solids: bodies.solids.clone(),
-            warnings: Vec::new(),
-            skipped,
-            seconds: std::collections::BTreeMap::new(),
-            gjk: result.gjk,
-        }
-    }
-
-    /// A few lines for the terminal.
-    fn summary(&self, progress: &Progress) {
-        let [nx, ny, nz] = self.grid.cells;
-        let c = self.cells;
-        progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
-        progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
-        if self.roads.subdivision > 0 {
-            progress
-                .say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
-        }
-        progress.say(format!("solid volume  {:.9} m³", self.solid_volume));
-        progress.say(format!(
-            "cells         {} open, {} cut, {} closed; {} shared by bodies",
-            c.open, c.cut, c.closed, c.ambiguous
-        ));
-        progress.say(format!("largest gap   {:.1e}", self.max_gap));
-        progress.say(format!("time          {:.3} s", progress.elapsed()));
-    }
-}

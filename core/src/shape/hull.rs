@@ -9,32 +9,42 @@ use crate::support::{ScalarOf, Support, SupportPoint};
 /// Up to this many vertices a scan is as fast as a climb, and needs no second look.
 const CLIMBED: usize = 64;
 
-/// The farthest vertex. Selections instead of branches, and one comparison in a chain for every four vertices.
+/// The greatest of four values and its position, the first of equals. Selections instead of branches, two at a time.
 #[inline(always)]
-pub(super) fn scan<V: Vector>(vertices: &[V], direction: V) -> u32 {
-    let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
-    let mut fours = vertices.chunks_exact(4);
+fn top<R: Real>(of: [R; 4]) -> (R, u32) {
+    let (pq, rs) = (of[1] > of[0], of[3] > of[2]);
+    let low = if pq { of[1] } else { of[0] };
+    let high = if rs { of[3] } else { of[2] };
+    if high > low { (high, 2 + u32::from(rs)) } else { (low, u32::from(pq)) }
+}
+
+/// The position of the item farthest along a direction, the first of equals; one comparison in a chain for every four items.
+#[inline(always)]
+fn farthest<T: Copy, R: Real>(items: &[T], along: impl Fn(T) -> R) -> u32 {
+    let (mut best, mut index) = (-R::INFINITY, 0);
+    let mut fours = items.chunks_exact(4);
     let mut first = 0;
     for four in &mut fours {
         if let [p, q, r, s] = *four {
-            let along = [p.dot(direction), q.dot(direction), r.dot(direction), s.dot(direction)];
-            let (pq, rs) = (along[1] > along[0], along[3] > along[2]);
-            let low = if pq { along[1] } else { along[0] };
-            let high = if rs { along[3] } else { along[2] };
-            let top = if high > low { high } else { low };
-            let at = first + if high > low { 2 + u32::from(rs) } else { u32::from(pq) };
-            index = if top > best { at } else { index };
+            let (top, which) = top([along(p), along(q), along(r), along(s)]);
+            index = if top > best { first + which } else { index };
             best = if top > best { top } else { best };
         }
         first += 4;
     }
-    for v in fours.remainder() {
-        let along = v.dot(direction);
-        index = if along > best { first } else { index };
-        best = if along > best { along } else { best };
+    for &item in fours.remainder() {
+        let there = along(item);
+        index = if there > best { first } else { index };
+        best = if there > best { there } else { best };
         first += 1;
     }
     index
+}
+
+/// The farthest vertex.
+#[inline(always)]
+pub(super) fn scan<V: Vector>(vertices: &[V], direction: V) -> u32 {
+    farthest(vertices, |v| v.dot(direction))
 }
 
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.
@@ -84,13 +94,8 @@ impl<'a, V: Vector> Hull<'a, V> {
     /// The farthest of some vertices.
     #[inline(always)]
     fn farthest_of(&self, candidates: &[u32], direction: V) -> u32 {
-        let (mut best, mut index) = (-V::Scalar::INFINITY, 0);
-        for &candidate in candidates {
-            let there = self.along(direction, candidate);
-            index = if there > best { candidate } else { index };
-            best = if there > best { there } else { best };
-        }
-        index
+        let at = farthest(candidates, |candidate| self.along(direction, candidate));
+        candidates.get(at as usize).copied().unwrap_or(0)
     }
 
     /// The greatest coordinate along a direction; four chains, so that it runs as fast as the additions allow.

@@ -28,7 +28,8 @@ pub struct Unions {
 
 struct Memory {
     pieces: Vec<Piece<f64>>,
-    growing: Vec<Piece<f64>>,
+    shards: Vec<Piece<f64>>,
+    order: Vec<u32>,
     nodes: Vec<Node<f64>>,
     parts: Vec<Part>,
     fragments: Vec<Fragment<f64>>,
@@ -39,7 +40,8 @@ impl Memory {
     fn new() -> Self {
         Memory {
             pieces: vec![Piece::default(); MAX_PIECES],
-            growing: vec![Piece::default(); 4 * MAX_PIECES],
+            shards: vec![Piece::default(); 4 * MAX_PIECES],
+            order: vec![0; 4 * MAX_PIECES],
             nodes: vec![Node::default(); 4 * MAX_PIECES],
             parts: vec![Part::default(); MAX_PIECES / 4],
             fragments: vec![Fragment::default(); MAX_PIECES],
@@ -50,7 +52,8 @@ impl Memory {
     fn workspace(&mut self) -> Workspace<'_, f64> {
         Workspace {
             pieces: &mut self.pieces,
-            growing: &mut self.growing,
+            shards: &mut self.shards,
+            order: &mut self.order,
             nodes: &mut self.nodes,
             parts: &mut self.parts,
             fragments: &mut self.fragments,
