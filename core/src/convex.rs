@@ -296,7 +296,7 @@ impl<V: Vector> Convex for Cylinder<V> {
 impl<V: Vector> Capsule<V> {
     /// From the nearest point of the core to a point.
     #[inline(always)]
-    fn from_core(&self, point: V) -> V {
+    fn off_core(&self, point: V) -> V {
         let (axis, to) = (self.to - self.from, point - self.from);
         let share = to.dot(axis) / axis.dot(axis);
         let share = if share > V::Scalar::ZERO { share.min(V::Scalar::ONE) } else { V::Scalar::ZERO };
@@ -331,11 +331,11 @@ impl<V: Vector> Convex for Capsule<V> {
     }
     #[inline(always)]
     fn height(&self, point: V) -> [V::Scalar; 2] {
-        [length(self.from_core(point)) - self.radius; 2]
+        [length(self.off_core(point)) - self.radius; 2]
     }
     #[inline(always)]
     fn nearest(&self, point: V) -> Option<V> {
-        let out = self.from_core(point);
+        let out = self.off_core(point);
         Some(point - out + out_to(out, self.radius))
     }
 }
