@@ -50,12 +50,26 @@ impl<'a> Near<'a> {
     }
 
     #[inline(always)]
-    fn push(&mut self, facet: u32) {
+    pub(crate) fn push(&mut self, facet: u32) {
         match self.items.get_mut(self.count) {
             Some(place) => *place = facet,
             None => self.full = true,
         }
         self.count += 1;
+    }
+
+    /// Drops facets; not if there was no room for all.
+    #[inline(always)]
+    fn retain(&mut self, wanted: impl Fn(u32) -> bool) {
+        let mut kept = 0;
+        let Some(items) = self.items.get_mut(..self.count) else { return };
+        for n in 0..items.len() {
+            if wanted(items[n]) {
+                items[kept] = items[n];
+                kept += 1;
+            }
+        }
+        self.count = kept;
     }
 
     #[inline(always)]
@@ -124,6 +138,15 @@ impl<R: Real> Planes<R> {
     }
 }
 
+/// What a box knows of a body and hands to its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trace<V> {
+    /// Of a convex body a direction that separated a neighbour, or zero; of a surface a point in the box.
+    pub vector: V,
+    /// The surface's winding number at that point, if it is known.
+    pub winding: Option<i32>,
+}
+
 /// Planes and the heights of a box above them.
 pub type Seen<R> = (Planes<R>, Heights<R>);
 
@@ -138,14 +161,14 @@ pub trait Body {
     /// How many facets it has.
     fn facets(&self) -> usize;
 
-    /// Where a box lies. `near` lists the facets that cut a box around this one; those that cut this one go to `keep`. `axis` is a
-    /// direction that separated a neighbour, or zero; a better one replaces it.
+    /// Where a box lies. `near` lists the facets that cut a box around this one; those that cut this one go to `keep`. `trace` is what is
+    /// known from the box around or from a neighbour in it; what is found here replaces it.
     fn place(
         &self,
         cell: &Aabb<Self::Vector>,
         near: &[u32],
         keep: &mut Near,
-        axis: &mut Self::Vector,
+        trace: &mut Trace<Self::Vector>,
         tally: &mut Tally,
     ) -> Occupancy;
 
@@ -178,9 +201,12 @@ impl<B: Convex> Body for B {
         cell: &Aabb<B::Vector>,
         near: &[u32],
         keep: &mut Near,
-        axis: &mut B::Vector,
+        trace: &mut Trace<B::Vector>,
         tally: &mut Tally,
     ) -> Occupancy {
+        if self.misses(cell) {
+            return Occupancy::Open;
+        }
         let zero = Real::ZERO;
         let far = cell.min.abs().max(cell.max.abs()).norm_max();
         let margin = (rounding(self) + rounded(far)) * Real::HALF;
@@ -200,11 +226,18 @@ impl<B: Convex> Body for B {
             match keep.count {
                 0 => return Occupancy::Closed,
                 1 => return Occupancy::Cut,
-                _ if deepest_corner_is_inside(self, cell, keep.items(), margin) => return Occupancy::Cut,
+                _ if holds_inner_point(self, cell, keep.items(), margin) => {
+                    let room = B::Vector::splat(margin + margin);
+                    let around = Aabb { min: cell.min - room, max: cell.max + room };
+                    keep.retain(|id| self.facet_bounds(id as usize).is_none_or(|b| b.touches(around)));
+                    return if keep.count == 0 { Occupancy::Closed } else { Occupancy::Cut };
+                }
                 _ => {}
             }
+        } else if let Some(found) = by_height(self, cell, margin, &mut trace.vector) {
+            return found;
         }
-        ask(self, cell, axis, tally)
+        ask(self, cell, &mut trace.vector, tally)
     }
 
     fn planes(&self, cell: &Aabb<B::Vector>, near: &[u32]) -> Option<Seen<crate::support::ScalarOf<B>>> {
@@ -263,20 +296,57 @@ fn ask<B: Convex>(body: &B, cell: &Aabb<B::Vector>, axis: &mut B::Vector, tally:
     if !body.is_polytope() && edges_are_inside(body, cell) { Occupancy::Closed } else { Occupancy::Cut }
 }
 
-/// The corner farthest inward of the facets taken together lies inside all of them: then the interiors meet.
+/// Some point of the box lies inside all of the facets, and not in their rounding: the nearest to the body's centre, or the corner farthest
+/// inward of the facets taken together. Then the interiors meet.
 #[inline(always)]
-fn deepest_corner_is_inside<B: Convex>(
+fn holds_inner_point<B: Convex>(
     body: &B,
     cell: &Aabb<B::Vector>,
     near: &[u32],
     margin: crate::support::ScalarOf<B>,
 ) -> bool {
-    let outward = near.iter().fold(B::Vector::ZERO, |sum, &id| sum + body.facet(id as usize).normal);
-    let corner = crate::support::Support::support(cell, -outward, 0).point;
-    near.iter().all(|&id| {
-        let plane = body.facet(id as usize);
-        corner.dot(plane.normal) - plane.offset < -margin
-    })
+    let is_inside = |point: B::Vector| {
+        near.iter().all(|&id| {
+            let plane = body.facet(id as usize);
+            point.dot(plane.normal) - plane.offset < -margin
+        })
+    };
+    if near.is_empty() {
+        return false;
+    }
+    is_inside(body.center().max(cell.min).min(cell.max)) || {
+        let outward = near.iter().fold(B::Vector::ZERO, |sum, &id| sum + body.facet(id as usize).normal);
+        is_inside(crate::support::Support::support(cell, -outward, 0).point)
+    }
+}
+
+/// What the height of a box's middle tells: the box is smaller, or surface must cut it. If nothing, `axis` becomes a direction that may
+/// separate.
+#[inline(always)]
+fn by_height<B: Convex>(
+    body: &B,
+    cell: &Aabb<B::Vector>,
+    margin: crate::support::ScalarOf<B>,
+    axis: &mut B::Vector,
+) -> Option<Occupancy> {
+    let (half, middle) = (cell.size() * Real::HALF, cell.center());
+    let [low, high] = body.height(middle);
+    let reach = half.dot(half).sqrt() + margin;
+    if low >= reach {
+        return Some(Occupancy::Open);
+    }
+    if high < -margin {
+        // The middle is an inner point.
+        let closed = high <= -reach || edges_are_inside(body, cell);
+        return Some(if closed { Occupancy::Closed } else { Occupancy::Cut });
+    }
+    let to = body.nearest(middle).filter(|_| low > margin)? - middle;
+    let inner = half - B::Vector::splat(margin + margin);
+    if to.abs().max(inner) == inner {
+        return Some(Occupancy::Cut);
+    }
+    *axis = to;
+    None
 }
 
 /// The edges of a box along one axis, and so all of it, are inside the body.

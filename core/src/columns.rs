@@ -123,42 +123,53 @@ impl<'a, B: Convex> View<'a, B> {
 
     /// The heights over a point of the base, of the body grown or shrunk; none where the line may miss it.
     #[inline(always)]
-    fn heights(&self, axis: usize, base: [ScalarOf<B>; 2], grow: ScalarOf<B>) -> Option<Heights<ScalarOf<B>>> {
-        let (mut origin, mut direction) = ([Real::ZERO; 3], [Real::ZERO; 3]);
-        (origin[(axis + 1) % 3], origin[(axis + 2) % 3]) = (base[0], base[1]);
-        direction[axis] = Real::ONE;
+    fn heights<const AXIS: usize>(&self, [u, v]: [ScalarOf<B>; 2], grow: ScalarOf<B>) -> Option<Heights<ScalarOf<B>>> {
+        let (zero, one) = (Real::ZERO, Real::ONE);
+        let (origin, direction) = match AXIS {
+            0 => ([zero, u, v], [one, zero, zero]),
+            1 => ([v, zero, u], [zero, one, zero]),
+            _ => ([u, v, zero], [zero, zero, one]),
+        };
         let chord = self.body.chord(Vector::from_array(origin), Vector::from_array(direction), grow, self.near)?;
         // NaN tells nothing.
         let known = chord[0] <= chord[1];
-        known.then(|| Heights { up: chord[1] - self.lo[axis], down: self.hi[axis] - chord[0] })
+        known.then(|| Heights { up: chord[1] - self.lo[AXIS], down: self.hi[AXIS] - chord[0] })
     }
 
     /// The bounds from columns along `axis`, the base divided into `parts` by `parts`.
     fn along(&self, axis: usize, parts: usize) -> Bounds<ScalarOf<B>> {
+        match axis {
+            0 => self.columns::<0>(parts),
+            1 => self.columns::<1>(parts),
+            _ => self.columns::<2>(parts),
+        }
+    }
+
+    fn columns<const AXIS: usize>(&self, parts: usize) -> Bounds<ScalarOf<B>> {
         type R<B> = ScalarOf<B>;
         let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
-        let (u, v) = (Side::new(self, (axis + 1) % 3, parts), Side::new(self, (axis + 2) % 3, parts));
+        let (u, v) = (Side::new(self, (AXIS + 1) % 3, parts), Side::new(self, (AXIS + 2) % 3, parts));
         let (Some(u), Some(v)) = (u, v) else { return Bounds::OPEN };
-        let full = self.hi[axis] - self.lo[axis];
-        let inner = |i: usize, j: usize| self.heights(axis, [u.at(i), v.at(j)], -self.grow);
+        let full = self.hi[AXIS] - self.lo[AXIS];
+        let inner = |i: usize, j: usize| self.heights::<AXIS>([u.at[i], v.at[j]], -self.grow);
         let mut rows = [[None; MAX_PARTS + 1]; 2];
         let (mut lower, mut upper, mut all, mut none) = (zero, zero, true, true);
         for i in 0..=u.parts {
-            rows[0][i.min(MAX_PARTS)] = inner(i, 0);
+            rows[0][i] = inner(i, 0);
         }
         for j in 0..v.parts {
-            let (mut row_lower, mut row_upper) = (zero, zero);
+            let (mut row_lower, mut row_upper, middle) = (zero, zero, v.middle(j));
             let [below, above] = &mut rows;
             if v.flat {
                 *above = *below;
             } else {
                 for i in 0..=u.parts {
-                    above[i.min(MAX_PARTS)] = inner(i, j + 1);
+                    above[i] = inner(i, j + 1);
                 }
             }
-            for i in 0..u.parts.min(MAX_PARTS) {
+            for i in 0..u.parts {
                 let corners = [below[i], below[i + 1], above[i], above[i + 1]];
-                let middle = || self.heights(axis, [u.middle(i), v.middle(j)], self.grow);
+                let middle = || self.heights::<AXIS>([u.middle(i), middle], self.grow);
                 let [low, high] = filled(corners, middle, full);
                 row_lower += low;
                 row_upper += high;
@@ -255,10 +266,11 @@ fn partly<R: Real>(corners: [Option<Heights<R>>; 4], full: R) -> [R; 2] {
 
 /// A side of the base, as far as the body reaches it.
 struct Side<R> {
-    lo: R,
-    hi: R,
+    /// Where its parts begin and end.
+    at: [R; MAX_PARTS + 1],
     /// Length as a share of the cell's.
     share: R,
+    /// Not more than [`MAX_PARTS`].
     parts: usize,
     flat: bool,
 }
@@ -276,23 +288,18 @@ impl<R: Real> Side<R> {
             return None;
         }
         if view.lo[axis] == view.hi[axis] {
-            return Some(Side { lo, hi, share: R::ONE, parts: 1, flat: true });
+            return Some(Side { at: [lo; MAX_PARTS + 1], share: R::ONE, parts: 1, flat: true });
         }
-        let share = (hi - lo) / (view.hi[axis] - view.lo[axis]);
-        (share > R::ZERO).then_some(Side { lo, hi, share, parts, flat: false })
-    }
-
-    #[inline(always)]
-    fn at(&self, i: usize) -> R {
-        if i == self.parts {
-            self.hi
-        } else {
-            self.lo + (self.hi - self.lo) * (R::from_usize(i) / R::from_usize(self.parts))
+        let (share, parts) = ((hi - lo) / (view.hi[axis] - view.lo[axis]), parts.min(MAX_PARTS));
+        let mut at = [hi; MAX_PARTS + 1];
+        for i in 0..parts {
+            at[i] = lo + (hi - lo) * (R::from_usize(i) / R::from_usize(parts));
         }
+        (share > R::ZERO).then_some(Side { at, share, parts, flat: false })
     }
 
     #[inline(always)]
     fn middle(&self, i: usize) -> R {
-        (self.at(i) + self.at(i + 1)) * R::HALF
+        (self.at[i] + self.at[i + 1]) * R::HALF
     }
 }

@@ -8,60 +8,9 @@
 use crate::aabb::Aabb;
 use crate::exact::{Contact, settle};
 use crate::real::{Real, Vector};
+pub use crate::shape::Plane;
 use crate::shape::{Capsule, Cone, Cylinder, Ellipsoid, Frame, OrientedBox, Sphere, normalized};
 use crate::support::{ScalarOf, Support, Transformed};
-
-/// A flat part of a body's surface: no point of the body has `normal·p > offset`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane<V: Vector> {
-    /// Outward, of length one.
-    pub normal: V,
-    /// Where it stands along the normal.
-    pub offset: V::Scalar,
-    /// Along a coordinate axis, so that neither normal nor offset are rounded, and the flat part lies exactly in it.
-    pub exact: bool,
-}
-
-impl<V: Vector> Plane<V> {
-    /// Across `normal`, of any length, through a point farthest along it.
-    pub fn new(normal: V, through: V) -> Self {
-        let [x, y, z] = normal.to_array();
-        let zero = V::Scalar::ZERO;
-        let exact = [x, y, z].iter().filter(|&&c| c != zero).count() == 1;
-        let sign = |c: V::Scalar| if c == zero { zero } else { V::Scalar::ONE.copysign(c) };
-        let normal = if exact { V::new(sign(x), sign(y), sign(z)) } else { normalized(normal) };
-        Plane { normal, offset: normal.dot(through), exact }
-    }
-
-    /// Lowest and highest `normal·p - offset` over a box, rounded unless the plane is exact.
-    #[inline(always)]
-    pub fn range(&self, cell: &Aabb<V>) -> [V::Scalar; 2] {
-        if self.exact {
-            let high = cell.support(self.normal, 0).point;
-            let low = cell.support(-self.normal, 0).point;
-            return [low.dot(self.normal) - self.offset, high.dot(self.normal) - self.offset];
-        }
-        let middle = (cell.min + cell.max).dot(self.normal) * V::Scalar::HALF - self.offset;
-        let reach = (cell.max - cell.min).dot(self.normal.abs()) * V::Scalar::HALF;
-        [middle - reach, middle + reach]
-    }
-
-    /// Shortens the piece `t` of a line to the inner side of the plane moved outward by `grow`; false if nothing remains.
-    #[inline(always)]
-    fn clip(&self, origin: V, direction: V, grow: V::Scalar, t: &mut [V::Scalar; 2]) -> bool {
-        let zero = V::Scalar::ZERO;
-        let room = self.offset + if self.exact { zero } else { grow } - self.normal.dot(origin);
-        let rate = self.normal.dot(direction);
-        if rate > zero {
-            t[1] = t[1].min(room / rate);
-        } else if rate < zero {
-            t[0] = t[0].max(room / rate);
-        } else if room < zero {
-            return false;
-        }
-        t[0] <= t[1]
-    }
-}
 
 /// A piece of a line, by its parameters; infinite where it has no end.
 pub type Chord<V> = [<V as Vector>::Scalar; 2];
@@ -76,8 +25,32 @@ pub trait Convex: Support {
     /// A flat side, by an index below [`Convex::facets`].
     fn facet(&self, index: usize) -> Plane<Self::Vector>;
 
+    /// A box around the part of the surface that lies in a facet, if it is known.
+    fn facet_bounds(&self, index: usize) -> Option<Aabb<Self::Vector>> {
+        let _ = index;
+        None
+    }
+
     /// The body is what all its facets leave.
     fn is_polytope(&self) -> bool {
+        false
+    }
+
+    /// How far a point is from the surface, negative inside the body: two bounds, but for rounding.
+    fn height(&self, point: Self::Vector) -> [ScalarOf<Self>; 2] {
+        let _ = point;
+        endless()
+    }
+
+    /// The point of the body nearest to one outside, but for rounding, if that is easily had.
+    fn nearest(&self, point: Self::Vector) -> Option<Self::Vector> {
+        let _ = point;
+        None
+    }
+
+    /// Surely shares no point with a box. False tells nothing.
+    fn misses(&self, cell: &Aabb<Self::Vector>) -> bool {
+        let _ = cell;
         false
     }
 
@@ -233,6 +206,26 @@ impl<V: Vector> Convex for Sphere<V> {
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
         ball(self.center, self.radius + grow, origin, direction)
     }
+    #[inline(always)]
+    fn height(&self, point: V) -> [V::Scalar; 2] {
+        [length(point - self.center) - self.radius; 2]
+    }
+    #[inline(always)]
+    fn nearest(&self, point: V) -> Option<V> {
+        Some(self.center + out_to(point - self.center, self.radius))
+    }
+}
+
+/// A vector shortened to a length.
+#[inline(always)]
+fn out_to<V: Vector>(v: V, radius: V::Scalar) -> V {
+    v * (radius / length(v)).min(V::Scalar::ONE)
+}
+
+/// The length of a vector whose squares neither overflow nor vanish; else NaN or too small, which tells nothing.
+#[inline(always)]
+fn length<V: Vector>(v: V) -> V::Scalar {
+    v.dot(v).sqrt()
 }
 
 #[inline(always)]
@@ -255,14 +248,6 @@ impl<V: Vector> Convex for Ellipsoid<V> {
 }
 
 impl<V: Vector> Frame<V> {
-    fn base_facet(&self) -> Plane<V> {
-        Plane::new(self.base - self.top, self.base)
-    }
-
-    fn top_facet(&self) -> Plane<V> {
-        Plane::new(self.top - self.base, self.top)
-    }
-
     /// The components of a vector across the axis.
     #[inline(always)]
     fn lateral(&self, v: V) -> V {
@@ -285,13 +270,52 @@ impl<V: Vector> Convex for Cylinder<V> {
     }
     #[inline(always)]
     fn facet(&self, index: usize) -> Plane<V> {
-        if index == 0 { self.0.base_facet() } else { self.0.top_facet() }
+        self.0.ends[index & 1]
     }
     #[inline(always)]
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
         let mut t = self.0.tube(origin, direction, grow)?;
-        let between = |plane: Plane<V>, t: &mut Chord<V>| plane.clip(origin, direction, grow, t);
-        (between(self.0.base_facet(), &mut t) && between(self.0.top_facet(), &mut t)).then_some(t)
+        self.0.ends.iter().all(|end| end.clip(origin, direction, grow, &mut t)).then_some(t)
+    }
+    #[inline(always)]
+    fn height(&self, point: V) -> [V::Scalar; 2] {
+        let zero = V::Scalar::ZERO;
+        let [down, up] = self.0.ends.map(|end| end.normal.dot(point) - end.offset);
+        let (along, across) = (down.max(up), length(self.0.lateral(point - self.0.base)) - self.0.radius);
+        if along > zero && across > zero { [length(V::new(along, across, zero)); 2] } else { [along.max(across); 2] }
+    }
+    #[inline(always)]
+    fn nearest(&self, point: V) -> Option<V> {
+        let Frame { base, across: [u1, u2], height, radius, ends: [_, top], .. } = self.0;
+        let flat = out_to(self.0.lateral(point - base), radius);
+        let along = top.normal.dot(point - base).max(V::Scalar::ZERO).min(height);
+        Some(base + top.normal * along + (u1 * flat.x() + u2 * flat.y()))
+    }
+}
+
+impl<V: Vector> Capsule<V> {
+    /// From the nearest point of the core to a point.
+    #[inline(always)]
+    fn off_core(&self, point: V) -> V {
+        let (axis, to) = (self.to - self.from, point - self.from);
+        let share = to.dot(axis) / axis.dot(axis);
+        let share = if share > V::Scalar::ZERO { share.min(V::Scalar::ONE) } else { V::Scalar::ZERO };
+        to - axis * share
+    }
+
+    /// The chord of what lies between the planes through the ends.
+    #[inline(always)]
+    fn middle(&self, origin: V, direction: V, grow: V::Scalar) -> Option<Chord<V>> {
+        let unit = normalized(self.to - self.from);
+        if unit == V::ZERO {
+            return None;
+        }
+        let across = |v: V| v - unit * unit.dot(v);
+        let (at, p) = beside(origin, direction, self.center());
+        let mut t = moved(within(across(p - self.from), across(direction), self.radius + grow)?, at);
+        let ends = [(-unit, self.from), (unit, self.to)];
+        let plane = |(normal, end): (V, V)| Plane { normal, offset: normal.dot(end), exact: false };
+        ends.into_iter().all(|end| plane(end).clip(origin, direction, grow, &mut t)).then_some(t)
     }
 }
 
@@ -302,10 +326,17 @@ impl<V: Vector> Convex for Capsule<V> {
     #[inline(always)]
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
         let balls = [self.from, self.to].map(|center| ball(center, self.radius + grow, origin, direction));
-        let middle = Cylinder::new(self.from, self.to, self.radius).chord(origin, direction, grow, &[]);
-        let middle = middle.filter(|_| self.from != self.to);
         let join = |a: Chord<V>, b: Chord<V>| [a[0].min(b[0]), a[1].max(b[1])];
-        balls.into_iter().chain([middle]).flatten().reduce(join)
+        balls.into_iter().chain([self.middle(origin, direction, grow)]).flatten().reduce(join)
+    }
+    #[inline(always)]
+    fn height(&self, point: V) -> [V::Scalar; 2] {
+        [length(self.off_core(point)) - self.radius; 2]
+    }
+    #[inline(always)]
+    fn nearest(&self, point: V) -> Option<V> {
+        let out = self.off_core(point);
+        Some(point - out + out_to(out, self.radius))
     }
 }
 
@@ -315,7 +346,7 @@ impl<V: Vector> Convex for Cone<V> {
     }
     #[inline(always)]
     fn facet(&self, _: usize) -> Plane<V> {
-        self.0.base_facet()
+        self.0.ends[0]
     }
     #[inline(always)]
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
@@ -327,7 +358,17 @@ impl<V: Vector> Convex for Cone<V> {
         let (q, dq) = ((top - p).dot(axis) * slope + out, -(direction.dot(axis) * slope));
         let w = self.0.lateral(p - base);
         let mut t = moved(within_cone(w, self.0.lateral(direction), q, dq)?, at);
-        self.0.base_facet().clip(origin, direction, grow, &mut t).then_some(t)
+        self.0.ends[0].clip(origin, direction, grow, &mut t).then_some(t)
+    }
+    #[inline(always)]
+    fn height(&self, point: V) -> [V::Scalar; 2] {
+        let Frame { ends: [base, top], radius, height, .. } = self.0;
+        let below = base.normal.dot(point) - base.offset;
+        // Of the side, in the plane through the axis and the point.
+        let (left, out) = (top.offset - top.normal.dot(point), length(self.0.lateral(point - self.0.base)));
+        let beside = (out * height - left * radius) / length(V::new(height, radius, V::Scalar::ZERO));
+        let low = below.max(beside);
+        [low, if low < V::Scalar::ZERO { low } else { V::Scalar::INFINITY }]
     }
 }
 

@@ -16,13 +16,14 @@
 //! 11. [`polytope`]: a hull that knows its facets
 //! 12. [`columns`]: bounds of a body's share of a box, from chords
 //! 13. [`classify`]: where a cell or face lies to a body
-//! 14. [`clip`]: convex polygons cut by planes
-//! 15. [`grid`]: cells, faces, index order
-//! 16. [`subdivide`]: cells and faces of convex bodies, by subdivision
-//! 17. [`layer`]: solid fractions of one layer of cells, as bounds that bodies share
-//! 18. [`surface`]: cells, x and y faces of a layer from a triangulated surface
-//! 19. [`section`]: its z faces
-//! 20. [`overlap`]: the exact union of bodies in a cell
+//! 14. [`mesh`]: the same for a closed surface of triangles
+//! 15. [`clip`]: convex polygons cut by planes
+//! 16. [`grid`]: cells, faces, index order
+//! 17. [`subdivide`]: cells and faces of convex bodies, by subdivision
+//! 18. [`layer`]: solid fractions of one layer of cells, as bounds that bodies share
+//! 19. [`surface`]: cells, x and y faces of a layer from a triangulated surface
+//! 20. [`section`]: its z faces
+//! 21. [`overlap`]: the exact union of bodies in a cell
 //!
 //! Beside the geometry, and using none of it, stands the flow:
 //!
@@ -40,6 +41,7 @@ pub mod exact;
 pub mod gjk;
 pub mod grid;
 pub mod layer;
+pub mod mesh;
 pub mod overlap;
 pub mod pdr;
 pub mod polytope;

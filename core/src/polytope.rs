@@ -2,6 +2,9 @@
 //!
 //! The facets are certified when it is made: no vertex lies beyond a facet's plane, and every triangle of the surface lies in its facet's
 //! plane, both within [`rounding`]. So the body is the intersection of the facets' inner sides, within the same.
+//!
+//! In a box that holds an inner point of the body, only facets whose surface reaches the box matter: from that point a segment to a point
+//! beyond another facet's plane, which stays in the box, leaves the body through one of them.
 
 use crate::aabb::Aabb;
 use crate::convex::{Chord, Convex, Plane, rounding, through_facets};
@@ -10,11 +13,33 @@ use crate::real::{Real, Vector};
 use crate::shape::Hull;
 use crate::support::{Support, SupportPoint};
 
+/// A plane, and a box around the triangles that lie in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet<V: Vector> {
+    /// Its plane.
+    pub plane: Plane<V>,
+    /// Around the surface in it.
+    pub bounds: Aabb<V>,
+}
+
+impl<V: Vector> Facet<V> {
+    /// No plane and no surface, to fill memory.
+    pub fn none() -> Self {
+        let plane = Plane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
+        Facet { plane, bounds: Aabb::empty() }
+    }
+
+    fn join(&mut self, corners: &[V; 3]) {
+        self.bounds = self.bounds.union(Aabb::around(corners));
+    }
+}
+
 /// A convex body by vertices and facets, both in the caller's memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polytope<'a, V: Vector> {
     hull: Hull<'a, V>,
-    facets: &'a [Plane<V>],
+    facets: &'a [Facet<V>],
+    bounds: Aabb<V>,
 }
 
 /// Why some triangles are not the surface of a convex body.
@@ -42,7 +67,7 @@ pub enum NotConvex {
 ///
 /// # Errors
 /// [`NotConvex`] tells the first triangle that contradicts.
-pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Plane<V>]) -> Result<usize, NotConvex> {
+pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet<V>]) -> Result<usize, NotConvex> {
     let hull = Hull::new(vertices);
     // What is said later of points inside all facets has roundings of its own.
     let room = rounding(&hull) * V::Scalar::from_f64(0.25);
@@ -53,50 +78,52 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Plane
         let limit = if plane.exact { V::Scalar::ZERO } else { room };
         corners.iter().all(|c| (c.dot(plane.normal) - plane.offset).abs() <= limit)
     };
-    let mut count = 0;
+    let mut count = 0_usize;
     // First the triangles that know their plane; then the thin ones, which must lie in a plane known.
     for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
-        let known = into.get(..count).unwrap_or(&[]);
-        let recent = known.get(count.saturating_sub(4)..).unwrap_or(&[]);
-        if normal == V::ZERO || recent.iter().any(|p| lies_in(p, corners)) {
+        if normal == V::ZERO {
+            continue;
+        }
+        let recent = into.get_mut(count.saturating_sub(4)..count).unwrap_or(&mut []);
+        if let Some(facet) = recent.iter_mut().find(|f| lies_in(&f.plane, corners)) {
+            facet.join(corners);
             continue;
         }
         let plane = Plane::new(normal, a);
         let highest = hull.support(plane.normal, 0).point.dot(plane.normal);
         let plane = Plane { offset: highest, ..plane };
         if lies_in(&plane, corners) {
-            *into.get_mut(count).ok_or(NotConvex::Full)? = plane;
+            *into.get_mut(count).ok_or(NotConvex::Full)? = Facet { plane, bounds: Aabb::around(corners) };
             count += 1;
         } else if lies_in(&Plane::new(normal, a), corners) {
             return Err(NotConvex::Beyond { triangle });
         }
     }
-    let known = into.get(..count).unwrap_or(&[]);
-    let thin = |&[a, b, c]: &[V; 3]| {
+    let known = into.get_mut(..count).unwrap_or(&mut []);
+    for (triangle, corners) in triangles.iter().enumerate() {
+        let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
-        normal == V::ZERO || !lies_in(&Plane::new(normal, a), &[a, b, c])
-    };
-    let unknown = |corners: &[V; 3]| thin(corners) && !known.iter().any(|p| lies_in(p, corners));
-    match triangles.iter().position(unknown) {
-        Some(triangle) => Err(NotConvex::Unknown { triangle }),
-        None if deep_inside(&hull, known, room) => Ok(count),
-        None => Err(NotConvex::NoBody),
+        if normal == V::ZERO || !lies_in(&Plane::new(normal, a), corners) {
+            let facet = known.iter_mut().find(|f| lies_in(&f.plane, corners));
+            facet.ok_or(NotConvex::Unknown { triangle })?.join(corners);
+        }
     }
+    if deep_inside(&hull, known, room) { Ok(count) } else { Err(NotConvex::NoBody) }
 }
 
 /// Some point lies well inside all facets: then what is inside all facets, less the rounding, is inside the surface.
-fn deep_inside<V: Vector>(hull: &Hull<V>, facets: &[Plane<V>], room: V::Scalar) -> bool {
+fn deep_inside<V: Vector>(hull: &Hull<V>, facets: &[Facet<V>], room: V::Scalar) -> bool {
     let count = V::Scalar::from_usize(hull.vertices().len());
     let mean = hull.vertices().iter().fold(V::ZERO, |sum, &v| sum + v) * (V::Scalar::ONE / count);
-    facets.iter().all(|p| mean.dot(p.normal) - p.offset < -(room * V::Scalar::from_f64(16.0)))
+    facets.iter().all(|f| mean.dot(f.plane.normal) - f.plane.offset < -(room * V::Scalar::from_f64(16.0)))
 }
 
 impl<'a, V: Vector> Polytope<'a, V> {
     /// A hull and its facets, as [`facets`] found them.
-    pub fn new(hull: Hull<'a, V>, facets: &'a [Plane<V>]) -> Self {
-        Polytope { hull, facets }
+    pub fn new(hull: Hull<'a, V>, facets: &'a [Facet<V>]) -> Self {
+        Polytope { hull, facets, bounds: Aabb::around(hull.vertices()) }
     }
 }
 
@@ -126,8 +153,11 @@ impl<V: Vector> Convex for Polytope<'_, V> {
     }
     #[inline(always)]
     fn facet(&self, index: usize) -> Plane<V> {
-        let none = Plane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
-        self.facets.get(index).copied().unwrap_or(none)
+        self.facets.get(index).map_or(Facet::none().plane, |f| f.plane)
+    }
+    #[inline(always)]
+    fn facet_bounds(&self, index: usize) -> Option<Aabb<V>> {
+        self.facets.get(index).map(|f| f.bounds)
     }
     fn is_polytope(&self) -> bool {
         true
@@ -135,6 +165,13 @@ impl<V: Vector> Convex for Polytope<'_, V> {
     #[inline(always)]
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, near: &[u32]) -> Option<Chord<V>> {
         through_facets(self, origin, direction, grow, near)
+    }
+    #[inline(always)]
+    fn misses(&self, cell: &Aabb<V>) -> bool {
+        !self.bounds.touches(*cell)
+    }
+    fn bounds(&self) -> Aabb<V> {
+        self.bounds
     }
     fn settled(&self, cell: &Aabb<V>) -> Option<Contact> {
         settle(cell, &self.hull, None).ok()

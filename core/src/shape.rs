@@ -10,10 +10,12 @@ use crate::support::{Support, SupportPoint, magnitude};
 mod adjacency;
 mod curved;
 mod hull;
+mod plane;
 pub use adjacency::Adjacency;
 pub use curved::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
 pub(crate) use curved::{Frame, normalized};
 pub use hull::Hull;
+pub use plane::Plane;
 
 /// A body that is the hull of finitely many points, each exactly representable.
 pub trait Vertices: Support {

@@ -9,9 +9,10 @@
 //! all with δ the part's size; `Plane` bounds what is left to second order.
 
 use crate::aabb::Aabb;
-use crate::classify::{Body, Heights, MAX_PLANES, Near, Occupancy, Planes, Tally};
+use crate::classify::{Body, Heights, MAX_PLANES, Near, Occupancy, Planes, Tally, Trace};
 use crate::columns::{Bounds, Columns, MAX_PARTS};
 use crate::grid::Grid;
+use crate::mesh::slab;
 use crate::real::{Real, Vector};
 
 /// What becomes of a part that is still cut when the depth is spent.
@@ -106,13 +107,13 @@ impl Range {
     }
 }
 
-/// A body that cuts a box: which, what separated it last, and where its facets are listed.
+/// A body that cuts a box: which, what is known of it, and where its facets are listed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Candidate<V> {
     body: u32,
     first: u32,
     end: u32,
-    axis: V,
+    trace: Trace<V>,
 }
 
 /// Caller's memory for the lists, used as stacks; contents do not matter. Where it is full a part keeps the longer list of its
@@ -285,7 +286,7 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
                 *place = facet as u32;
                 end += 1;
             }
-            *candidate = Candidate { body: n as u32, first: first as u32, end: end as u32, axis: B::Vector::ZERO };
+            *candidate = Candidate { body: n as u32, first: first as u32, end: end as u32, trace: Trace::default() };
         }
         Ok(List { first: 0, end: needed.candidates, facets_end: end })
     }
@@ -301,7 +302,7 @@ impl<'a, 'm, B: Body> Walk<'a, 'm, B> {
             let (listed, room) = facets.split_at_mut(facets_end.min(facets.len()));
             let near = listed.get(candidate.first as usize..candidate.end as usize).unwrap_or(&[]);
             let mut keep = Near::new(room);
-            match body.place(cell, near, &mut keep, &mut candidate.axis, &mut self.tally) {
+            match body.place(cell, near, &mut keep, &mut candidate.trace, &mut self.tally) {
                 Occupancy::Open => {}
                 Occupancy::Closed => return Narrowed::Closed,
                 Occupancy::Cut => {
@@ -510,8 +511,8 @@ impl<B: Body> Parts<'_, B> {
     #[cold]
     fn ask(&mut self, part: &Aabb<B::Vector>) -> Bounds<Scalar<B>> {
         let mut room = [0; MAX_PLANES];
-        let mut axis = B::Vector::ZERO;
-        match self.body.place(part, self.near, &mut Near::new(&mut room), &mut axis, self.tally) {
+        let mut trace = Trace::default();
+        match self.body.place(part, self.near, &mut Near::new(&mut room), &mut trace, self.tally) {
             Occupancy::Open => Bounds::OPEN,
             Occupancy::Cut => Bounds::UNKNOWN,
             Occupancy::Closed => Bounds::CLOSED,
@@ -541,11 +542,12 @@ fn box_of<V: Vector>(grid: &Grid<V::Scalar>, places: Places, range: Range) -> Aa
     for axis in 0..3 {
         min[axis] = edge(axis, range.lo[axis]);
         max[axis] = edge(axis, range.hi[axis] - u32::from(places == Places::Faces(axis)));
-        if places == Places::Faces(axis) && max[axis] > min[axis] {
-            let thickness = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG);
-            let room = thickness + (max[axis].abs() + min[axis].abs()) * V::Scalar::EPSILON;
-            (min[axis], max[axis]) = (min[axis] - room, max[axis] + room);
-        }
+    }
+    let exact = Aabb { min: V::from_array(min), max: V::from_array(max) };
+    let Places::Faces(axis) = places else { return exact };
+    if max[axis] > min[axis] {
+        let room = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG) + slab(&exact);
+        (min[axis], max[axis]) = (min[axis] - room, max[axis] + room);
     }
     Aabb { min: V::from_array(min), max: V::from_array(max) }
 }
@@ -553,18 +555,18 @@ fn box_of<V: Vector>(grid: &Grid<V::Scalar>, places: Places, range: Range) -> Aa
 /// A part of a box: the bits of its number choose the upper halves along the axes that are not flat.
 #[inline(always)]
 fn part_of<V: Vector>(cell: &Aabb<V>, flat: [bool; 3], number: usize) -> Aabb<V> {
-    let (mut min, mut max, middle) = (cell.min.to_array(), cell.max.to_array(), cell.center().to_array());
     let mut bits = number;
-    for axis in 0..3 {
-        if flat[axis] {
-            continue;
-        }
-        if bits & 1 == 1 {
-            min[axis] = middle[axis];
-        } else {
-            max[axis] = middle[axis];
-        }
-        bits >>= 1;
+    let upper = flat.map(|flat| {
+        let upper = !flat && bits & 1 == 1;
+        bits >>= u32::from(!flat);
+        upper
+    });
+    // Without arrays in between: written by scalars and read as vectors at once they would stall the processor.
+    let (min, max, middle) = (cell.min, cell.max, cell.center());
+    let low = |axis: usize, min: V::Scalar, middle: V::Scalar| if upper[axis] { middle } else { min };
+    let high = |axis: usize, max: V::Scalar, middle: V::Scalar| if upper[axis] || flat[axis] { max } else { middle };
+    Aabb {
+        min: V::new(low(0, min.x(), middle.x()), low(1, min.y(), middle.y()), low(2, min.z(), middle.z())),
+        max: V::new(high(0, max.x(), middle.x()), high(1, max.y(), middle.y()), high(2, max.z(), middle.z())),
     }
-    Aabb { min: V::from_array(min), max: V::from_array(max) }
 }

@@ -34,7 +34,7 @@ pub enum Method {
     Auto,
     /// Sums over the surface: exact for any closed surface of triangles
     Surface,
-    /// Subdivision by GJK, as in the paper: bounds for convex bodies
+    /// Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close
     Gjk,
 }
 
@@ -161,8 +161,8 @@ pub struct Porosity {
 #[must_use]
 pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
-    // Of several levels, one joins the others.
-    let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(2);
+    // Of several levels, one joins the others, and one is remembered for the next.
+    let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(3);
     size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
 }
 
@@ -184,22 +184,54 @@ pub fn porosity_watched(
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
     let levels = levels(bodies);
     let roads = Roads::choose(bodies, triangles, options);
-    let unions = levels.iter().map(|&level| union(grid, bodies, triangles, &roads, level, options, layer_done));
+    let mut last: Option<Union> = None;
+    let unions = levels.iter().map(|&level| {
+        let found = union(grid, bodies, triangles, &roads, level, last.as_ref(), options, layer_done);
+        last = (levels.last() != Some(&level)).then(|| found.clone());
+        found.porosity
+    });
     levels::join(&levels, unions)
 }
 
-/// Porosities of the union of all bodies up to a level, as if they were solid.
+/// Porosities of the union up to a level, and the totals of its layers.
+#[derive(Clone)]
+struct Union {
+    level: f64,
+    porosity: Porosity,
+    layers: Vec<Summary>,
+}
+
+impl Union {
+    /// May bodies above this level, up to another, change a layer? Bodies in the layers beside it count as well: they may touch.
+    fn may_change(&self, grid: &Grid<f64>, bodies: &Bodies, level: f64, k: usize) -> bool {
+        let edges = grid.edges(2);
+        let (below, above) = (edges[k.saturating_sub(1)], edges[(k + 2).min(edges.len() - 1)]);
+        let mut added = bodies.bodies.iter().filter(|b| b.porosity > self.level && b.porosity <= level);
+        added.any(|b| b.bounds[0].z <= above && b.bounds[1].z >= below)
+    }
+
+    fn copy_layer(&self, k: usize, target: &mut Target) -> Summary {
+        self.porosity.beta.copy_layer(k, &mut target.beta);
+        for (from, into) in self.porosity.bounds.iter().flatten().zip(target.bounds.iter_mut().flatten()) {
+            from.copy_layer(k, into);
+        }
+        self.layers[k].copied()
+    }
+}
+
+/// Porosities of the union of all bodies up to a level, as if they were solid; `last` is that up to the level before.
 fn union(
     grid: &Grid<f64>,
     bodies: &Bodies,
     triangles: &[[DVec3; 3]],
     roads: &Roads,
     level: f64,
+    last: Option<&Union>,
     options: Options,
     layer_done: &(dyn Fn() + Sync),
-) -> Porosity {
+) -> Union {
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
-    let convex = roads.road(options, counts);
+    let convex = roads.road(triangles, options, counts);
     let bins = Bins::new(grid, bodies, triangles, |body| counts(body) && roads.by_surface(body));
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
@@ -208,15 +240,19 @@ fn union(
         .enumerate()
         .map_init(
             || Worker::new(grid, options),
-            |worker, (k, target)| {
-                let summary = worker.layer(grid, &bins, &convex, k, target);
+            |worker, (k, mut target)| {
+                let same = last.filter(|last| !last.may_change(grid, bodies, level, k));
+                let summary = match same {
+                    Some(last) => last.copy_layer(k, &mut target),
+                    None => worker.layer(grid, &bins, &convex, k, target),
+                };
                 layer_done();
                 summary
             },
         )
         .collect();
     let total = summaries.iter().fold(Summary::default(), Summary::join);
-    Porosity {
+    let porosity = Porosity {
         beta,
         bounds,
         cells: total.cells,
@@ -227,7 +263,8 @@ fn union(
         subdivided: roads.subdivided(),
         gjk: Gjk { queries: total.tally.queries, undecided: total.tally.undecided },
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
-    }
+    };
+    Union { level, porosity, layers: summaries }
 }
 
 /// Where each layer writes.

@@ -126,11 +126,12 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
     });
     report_leaks(bodies, &result, progress);
     if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
-        progress.warn(format!(
-            "{} of {} bodies are not convex, or not surely so: measured by their surface",
-            bodies.bodies.len() - result.subdivided,
-            bodies.bodies.len()
-        ));
+        let why = match options.leaf {
+            Leaf::Plane => "are not convex, or not surely so: measured by their surface, exactly",
+            _ => "do not close edge by edge, or are sheets: measured by their surface",
+        };
+        let (count, all) = (bodies.bodies.len() - result.subdivided, bodies.bodies.len());
+        progress.warn(format!("{count} of {all} bodies {why}"));
     }
     if options.leaf != Leaf::Plane && result.subdivided == 0 {
         progress.warn("--leaf has no effect: every body was measured by its surface (--method gjk subdivides)");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Modules of the core from the bottom up; `a/b.rs` counts as `a`. The flow uses scalars only, and no geometry uses the flow.
-const CORE: [&str; 21] = [
+const CORE: [&str; 22] = [
     "real",
     "pdr",
     "aabb",
@@ -18,6 +18,7 @@ const CORE: [&str; 21] = [
     "polytope",
     "columns",
     "classify",
+    "mesh",
     "clip",
     "grid",
     "subdivide",

@@ -6,6 +6,7 @@ mod hulls;
 mod invariance;
 mod known;
 mod layers;
+mod meshes;
 mod overlap;
 mod scenes;
 mod subdivide;

@@ -217,3 +217,30 @@ fn whole_cells_carry_the_porosity_itself() {
         assert_eq!(found.x[..], [0.0, 0.0, porosity, 1.0]);
     }
 }
+
+#[test]
+fn layers_without_porous_solids_are_those_of_the_solid_ones() {
+    // The second scene has a porous needle beside the others through all layers, so that every layer is computed at both levels.
+    let edges = edges([10, 6, 12], 1.0);
+    let parts = solid("sphere", "center = [0.3, 0.4, 0.5]\nradius = 0.25")
+        + &solid("box", "min = [0.1, 0.2, 0.52]\nmax = [0.6, 0.7, 0.57]\nporosity = 0.6");
+    let needle = solid("box", "min = [0.91, 0.9, -1]\nmax = [0.99, 0.99, 2]\nporosity = 0.6");
+    let (few, all) = (run(&edges, &bodies(&parts)), run(&edges, &bodies(&(parts + &needle))));
+    assert!(
+        few.gjk.queries < all.gjk.queries * 3 / 4,
+        "{} queries, {} in all layers",
+        few.gjk.queries,
+        all.gjk.queries
+    );
+    let [nx, ny, nz] = edges.cells();
+    let fields = [few.beta, all.beta];
+    for n in 0..nx * ny * nz {
+        let (i, j, k) = (n % nx, n / nx % ny, n / nx / ny);
+        if i + 2 < nx {
+            let x = (k * ny + j) * (nx + 1) + i;
+            let y = (k * (ny + 1) + j) * nx + i;
+            let of = |f: &FieldSet| [f.v[n], f.x[x], f.y[y], f.z[n], f.z[n + nx * ny]];
+            assert_eq!(of(&fields[0]), of(&fields[1]), "cell {i} {j} {k}");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! Sphere and capsule are a point and a segment with a radius, which is taken off exactly; the others round, and say by how much.
 
-use super::{Point, Segment, only};
+use super::{Plane, Point, Segment, only};
 use crate::real::{Real, Vector};
 use crate::support::{Rounded, Support, SupportPoint, magnitude};
 
@@ -121,6 +121,9 @@ pub(crate) struct Frame<V: Vector> {
     axis: V,
     pub across: [V; 2],
     pub radius: V::Scalar,
+    pub height: V::Scalar,
+    /// Across the axis through base and top.
+    pub ends: [Plane<V>; 2],
 }
 
 impl<V: Vector> Frame<V> {
@@ -138,7 +141,8 @@ impl<V: Vector> Frame<V> {
             V::new(zero, zero, one)
         };
         let u = normalized(unit.cross(other));
-        Frame { base, top, axis, across: [u, unit.cross(u)], radius }
+        let ends = [Plane::new(base - top, base), Plane::new(axis, top)];
+        Frame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
     }
 
     /// From the axis to the point of the circle farthest along a direction.

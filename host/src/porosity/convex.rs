@@ -1,25 +1,26 @@
-//! The road of convex bodies: subdivision by GJK, layer by layer.
+//! The road of subdivision by GJK, layer by layer.
 //!
-//! Bodies known by formula, and those of triangles that are certified to be convex. Their union enters a layer as one
-//! interval a cell and face, beside what the surfaces of other bodies give.
+//! Bodies known by formula, those of triangles that are certified to be convex, and, by the paper's leaves, other closed surfaces triangle
+//! by triangle. Their union enters a layer as one interval a cell and face, beside what the surfaces of other bodies give.
 
-use super::{Method, Options};
+use super::{Leaf, Method, Options};
 use crate::bodies::form::Form;
 use crate::bodies::{Bodies, Body};
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
+use std::ops;
 use voidage_core::aabb::Aabb;
-use voidage_core::classify::{self, Near, Occupancy, Seen, Tally};
+use voidage_core::classify::{self, Near, Occupancy, Seen, Tally, Trace};
 use voidage_core::columns::{Bounds, Columns};
-use voidage_core::convex::Plane;
 use voidage_core::grid::Grid;
 use voidage_core::layer::Layer;
-use voidage_core::polytope::{Polytope, facets};
+use voidage_core::mesh::{Mesh, slab};
+use voidage_core::polytope::{Facet, Polytope, facets};
 use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
 use voidage_core::support::Transformed;
 
-/// A convex body in its place.
+/// A body in its place, convex but for the last kind.
 #[derive(Debug, Clone, Copy)]
 pub enum Convex<'a> {
     /// A ball.
@@ -34,6 +35,8 @@ pub enum Convex<'a> {
     Cone(Cone<DVec3>),
     /// A hull and its facets.
     Polytope(Polytope<'a, DVec3>),
+    /// A closed surface.
+    Mesh(Mesh<'a, DVec3>),
 }
 
 /// The same expression for the shape of any kind.
@@ -46,6 +49,7 @@ macro_rules! of_shape {
             Convex::Capsule($shape) => $value,
             Convex::Cone($shape) => $value,
             Convex::Polytope($shape) => $value,
+            Convex::Mesh($shape) => $value,
         }
     };
 }
@@ -63,16 +67,16 @@ impl classify::Body for Convex<'_> {
         cell: &Aabb<DVec3>,
         near: &[u32],
         keep: &mut Near,
-        axis: &mut DVec3,
+        trace: &mut Trace<DVec3>,
         tally: &mut Tally,
     ) -> Occupancy {
-        of_shape!(self, s => s.place(cell, near, keep, axis, tally))
+        of_shape!(self, s => s.place(cell, near, keep, trace, tally))
     }
     fn planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<Seen<f64>> {
         of_shape!(self, s => s.planes(cell, near))
     }
     fn measure(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
-        of_shape!(self, s => columns.measure(s, cell, near))
+        of_shape!(self, s => classify::Body::measure(s, cell, near, columns))
     }
 }
 
@@ -80,7 +84,7 @@ impl classify::Body for Convex<'_> {
 #[derive(Debug, Default)]
 struct Faceted {
     vertices: Vec<DVec3>,
-    facets: Vec<Plane<DVec3>>,
+    facets: Vec<Facet<DVec3>>,
 }
 
 /// Which body takes which road, and the memory of those that take this one.
@@ -94,6 +98,8 @@ pub struct Roads {
 enum Known {
     Round(Convex<'static>),
     Faceted(Faceted),
+    /// A run of triangles.
+    Closed(ops::Range<usize>),
 }
 
 /// Bodies with more triangles than this stay with their surface: the certificate takes time in proportion to the square.
@@ -108,7 +114,13 @@ impl Roads {
             (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
             (_, Method::Surface) => None,
             (Some(form), _) if body.triangles.is_empty() => round(form).map(Known::Round),
-            _ => faceted(body, &triangles[body.triangles.clone()]).map(Known::Faceted),
+            (_, Method::Auto | Method::Gjk) => {
+                let own = &triangles[body.triangles.clone()];
+                let closed = || options.leaf != Leaf::Plane && !body.sheet && is_closed(own);
+                faceted(body, own)
+                    .map(Known::Faceted)
+                    .or_else(|| closed().then(|| Known::Closed(body.triangles.clone())))
+            }
         };
         use rayon::prelude::*;
         Roads { convex: bodies.bodies.par_iter().map(known).collect() }
@@ -128,17 +140,23 @@ impl Roads {
 
     /// The bodies that go by subdivision, of those that are `wanted`.
     #[must_use]
-    pub fn road(&self, options: Options, wanted: impl Fn(usize) -> bool) -> Road<'_> {
+    pub fn road<'a>(
+        &'a self,
+        triangles: &'a [[DVec3; 3]],
+        options: Options,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Road<'a> {
         let known = self.convex.iter().enumerate().filter(|(body, _)| wanted(*body));
-        let bodies: Vec<_> = known.filter_map(|(_, known)| known.as_ref().map(Known::body)).collect();
+        let bodies: Vec<_> = known.filter_map(|(_, known)| known.as_ref().map(|k| k.body(triangles))).collect();
         Road::new(bodies, options)
     }
 }
 
 impl Known {
-    fn body(&self) -> Convex<'_> {
+    fn body<'a>(&'a self, triangles: &'a [[DVec3; 3]]) -> Convex<'a> {
         match self {
             Known::Round(body) => *body,
+            Known::Closed(run) => Convex::Mesh(Mesh::new(&triangles[run.clone()])),
             Known::Faceted(f) => Convex::Polytope(Polytope::new(Hull::new(&f.vertices), &f.facets)),
         }
     }
@@ -166,11 +184,22 @@ fn faceted(body: &Body, triangles: &[[DVec3; 3]]) -> Option<Faceted> {
     for &p in triangles.iter().flatten() {
         seen.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| vertices.push(p));
     }
-    let none = Plane { normal: DVec3::ZERO, offset: 0.0, exact: false };
-    let mut planes = vec![none; triangles.len()];
+    let mut planes = vec![Facet::none(); triangles.len()];
     let count = facets(&vertices, triangles, &mut planes).ok()?;
     planes.truncate(count);
     Some(Faceted { vertices, facets: planes })
+}
+
+/// Has every edge its reverse?
+fn is_closed(triangles: &[[DVec3; 3]]) -> bool {
+    let bits = |p: DVec3| p.to_array().map(|x| (x + 0.0).to_bits());
+    let mut open = HashMap::default();
+    for [a, b, c] in triangles.iter().map(|t| t.map(bits)) {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *open.entry((from.min(to), from.max(to))).or_insert(0_i64) += if from < to { 1 } else { -1 };
+        }
+    }
+    open.values().all(|&count| count == 0)
 }
 
 /// Bodies under one rule.
@@ -186,6 +215,8 @@ pub struct Road<'a> {
 pub struct Lists {
     candidates: Vec<Candidate<DVec3>>,
     facets: Vec<u32>,
+    /// Of surfaces, those in a layer.
+    triangles: Vec<[DVec3; 3]>,
 }
 
 impl Lists {
@@ -224,23 +255,66 @@ impl<'a> Road<'a> {
 
     /// Add the bodies to layer `k`: its cells, x and y faces, and the z faces below.
     pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
-        let [nx, ny, _] = grid.cells();
-        let mut tally = Tally::default();
+        let nx = grid.cells()[0];
         let Layer { lower, sum, .. } = layer;
-        tally = joined(tally, self.places(grid, Places::Cells, k, lists, nx, lower.cell, sum.cell));
+        let mut wanted = vec![(Places::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
         if self.areas {
-            tally = joined(tally, self.places(grid, Places::Faces(0), k, lists, nx + 1, lower.x, sum.x));
-            tally = joined(tally, self.places(grid, Places::Faces(1), k, lists, nx, lower.y, sum.y));
-            tally = joined(tally, self.places(grid, Places::Faces(2), k, lists, nx, lower.z, sum.z));
+            wanted.push((Places::Faces(0), nx + 1, lower.x, sum.x));
+            wanted.push((Places::Faces(1), nx, lower.y, sum.y));
+            wanted.push((Places::Faces(2), nx, lower.z, sum.z));
         }
-        debug_assert!(lower.cell.len() == nx * ny);
-        tally
+        self.between(grid, [k, k + 1], lists, |road, lists| {
+            let fields = wanted.into_iter();
+            fields
+                .map(|(places, row, lower, sum)| road.places(grid, places, k, lists, row, lower, sum))
+                .fold(Tally::default(), joined)
+        })
     }
 
     /// Add the bodies to the z faces in plane `k`, held in `layer.…z`.
     pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
         let nx = grid.cells()[0];
-        self.places(grid, Places::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
+        self.between(grid, [k, k], lists, |road, lists| {
+            road.places(grid, Places::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
+        })
+    }
+
+    /// Work with what lies between two z planes of the grid: the bodies that do, and of surfaces the triangles.
+    fn between<T>(
+        &self,
+        grid: &Grid<f64>,
+        planes: [usize; 2],
+        lists: &mut Lists,
+        work: impl FnOnce(&Road, &mut Lists) -> T,
+    ) -> T {
+        let end = |axis: usize| [grid.edges(axis)[0], grid.edges(axis)[grid.cells()[axis]]];
+        let [x, y, z] = [0, 1, 2].map(end);
+        let [min, max] = [0, 1].map(|n| DVec3::new(x[n], y[n], z[n]));
+        let room = 2.0 * slab(&Aabb { min, max });
+        let [below, above] = [grid.edges(2)[planes[0]] - room, grid.edges(2)[planes[1]] + room];
+        let mut triangles = std::mem::take(&mut lists.triangles);
+        triangles.clear();
+        let near = self.bodies.iter().filter(|(b, _)| b.min.z <= above && b.max.z >= below);
+        let runs: Vec<_> = near
+            .map(|(bounds, body)| {
+                let first = triangles.len();
+                if let Convex::Mesh(mesh) = body {
+                    let meets = |t: &&[DVec3; 3]| t.iter().any(|p| p.z >= below) && t.iter().any(|p| p.z <= above);
+                    triangles.extend(mesh.triangles().iter().filter(meets));
+                }
+                (*bounds, *body, first..triangles.len())
+            })
+            .collect();
+        let part = |(bounds, body, run): (Aabb<DVec3>, Convex<'a>, ops::Range<usize>)| match body {
+            Convex::Mesh(_) => {
+                let mesh = Mesh::new(&triangles[run]);
+                (classify::Body::bounds(&mesh), Convex::Mesh(mesh))
+            }
+            _ => (bounds, body),
+        };
+        let found = work(&Road { bodies: runs.into_iter().map(part).collect(), ..*self }, lists);
+        lists.triangles = triangles;
+        found
     }
 
     fn places(

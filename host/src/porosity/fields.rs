@@ -45,6 +45,17 @@ impl FieldSet {
         [&self.x, &self.y, &self.z][axis]
     }
 
+    /// One layer into another set's.
+    pub fn copy_layer(&self, k: usize, into: &mut Slices) {
+        let copy = |from: &[f64], into: &mut [f64]| into.copy_from_slice(&from[k * into.len()..][..into.len()]);
+        copy(&self.v, into.v);
+        copy(&self.x, into.x);
+        copy(&self.y, into.y);
+        copy(&self.z, into.z);
+        let top = self.z.len() - into.top.len();
+        into.top.copy_from_slice(&self.z[top..]);
+    }
+
     /// Cut into layers; empty fields give empty slices.
     pub fn layers(&mut self, grid: &Grid<f64>) -> Vec<Slices<'_>> {
         let [nx, ny, nz] = grid.cells();

@@ -18,7 +18,7 @@ const LEAK: f64 = 1e-9;
 const FITS: &str = "slices of a layer fit its grid";
 
 /// What one layer adds to the totals.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Summary {
     /// Cells by kind.
     pub cells: CellCounts,
@@ -37,6 +37,12 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// The same without the work, for a layer that is copied.
+    #[must_use]
+    pub fn copied(&self) -> Self {
+        Summary { divided: 0, tally: Tally::default(), ..self.clone() }
+    }
+
     /// Join totals in the order of layers, so that sums keep their bits for any number of threads.
     #[must_use]
     pub fn join(mut self, other: &Summary) -> Self {
