@@ -1,12 +1,17 @@
 //! The paper's road on surfaces that are not convex, against the sums over the same surfaces, which are exact.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use voidage::bodies::Bodies;
 use voidage::grid::Edges;
 use voidage::input;
 use voidage::porosity::{Leaf, Method, Options, Porosity};
+use voidage_core::aabb::Aabb;
+use voidage_core::classify::Tally;
+use voidage_core::mesh::Mesh;
+use voidage_core::real::{Real, Vector};
+use voidage_core::subdivide::{Candidate, Leaf as Rest, Memory, Rule, share};
 use voidage_tests::convex::{run, small_grid};
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, sphere, turned_box, volume};
@@ -179,6 +184,36 @@ fn bits_do_not_depend_on_threads() {
     let solids = shapes().map(|(_, shape)| shape);
     let one = run(&even_grid(9), &scene(&solids), paper(Leaf::Half, 2), 1);
     assert_eq!(one, run(&even_grid(9), &scene(&solids), paper(Leaf::Half, 2), 3));
+}
+
+/// Bounds of the share of a cube, which may be a face of it.
+fn measured<V: Vector>(triangles: &[[V; 3]], cell: &Aabb<V>) -> [f64; 2] {
+    let (mut candidates, mut facets) = (vec![Candidate::default(); 64], vec![0; 8 * triangles.len()]);
+    let mut memory = Memory { candidates: &mut candidates, facets: &mut facets };
+    let rule = Rule { leaf: Rest::Half, depth: 3, tol: V::Scalar::ZERO };
+    let found = share(cell, &[Mesh::new(triangles)], rule, &mut memory, &mut Tally::default()).expect("room");
+    [found.lower.to_f64(), found.upper.to_f64()]
+}
+
+#[test]
+fn single_and_double_precision_do_not_contradict_each_other() {
+    let mut random = Random::new(23);
+    for (name, shape) in shapes() {
+        let single: Vec<[Vec3; 3]> = shape.iter().map(|t| t.map(|p| p.as_vec3())).collect();
+        let double: Vec<Triangle> = single.iter().map(|t| t.map(|p| p.as_dvec3())).collect();
+        for n in 0..60 {
+            // Every other on the planes of the stairs.
+            let unit = if n % 2 == 0 { 4.0 } else { 1000.0 };
+            let min = ((random.vector::<DVec3>(0.8) * unit).round() / unit).as_vec3();
+            let mut size = Vec3::splat(0.25);
+            if n % 3 > 0 {
+                size[n % 3] = 0.0;
+            }
+            let small = measured(&single, &Aabb { min, max: min + size });
+            let large = measured(&double, &Aabb { min: min.as_dvec3(), max: (min + size).as_dvec3() });
+            assert!(small[0] <= large[1] && large[0] <= small[1], "{name} at {min}: {small:?} and {large:?}");
+        }
+    }
 }
 
 proptest! {
