@@ -131,7 +131,7 @@ fn cells_of_a_segment_grow_by_one_factor() {
     let out = Scratch::new();
     let file = out.file("grid.toml");
     let (n, mut warnings) = (100, Vec::new());
-    for ratio in [1.0 + 1e-10, 1.0 - 3e-12, 1.5, -7.0, 1e10] {
+    for ratio in [1.000_001, 1.0 + 1e-10, 1.0 - 3e-12, 1.5, -7.0, 1e10] {
         let x = format!("x = {{ points = [0, 100], cells = [{n}], ratios = [{ratio}] }}\ny = [0, 1]\nz = [0, 1]\n");
         fs::write(&file, x).expect("written");
         let edges = voidage::grid::read(&file, &mut warnings).expect("a grid").0;
