@@ -15,7 +15,7 @@
 //! (F = 0), keeps every steady state (F = rho (a + ½ CR |u|) u) whatever the step, never turns the sign, and does not swing
 //! when a resting, nearly rigid cell is pushed.
 
-use super::state::{greater, sum};
+use super::state::sum;
 use crate::real::Real;
 
 /// Drag coefficients of all cells; an empty slice stands for zero.
@@ -100,7 +100,7 @@ impl<R: Real, const D: usize> DragCell<R, D> {
 
 /// Length of a vector, without overflow of the squares.
 pub(crate) fn norm<R: Real, const D: usize>(v: [R; D]) -> R {
-    let largest = v.iter().fold(R::ZERO, |m, x| greater(x.abs(), m));
+    let largest = v.iter().fold(R::ZERO, |m, x| R::larger(x.abs(), m));
     if D == 1 || !(largest > R::ZERO) {
         return largest;
     }

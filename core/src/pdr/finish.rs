@@ -4,7 +4,7 @@ use super::medium::{BREAKS, SMALL, break_high, break_low, is};
 use super::merge::least_volume;
 use super::report::Report;
 use super::row;
-use super::state::{FieldsMut, greater};
+use super::state::FieldsMut;
 use super::sweep::{Row, Sweep};
 use super::work::Work;
 use crate::real::Real;
@@ -47,14 +47,14 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let volume = &medium.porosity.volume[row.start..][..n];
             let (inv, scale) = (&mut metric.spare[..n], &mut metric.scale[..n]);
             for i in 0..n {
-                inv[i] = R::ONE / greater(volume[i], least_volume());
+                inv[i] = R::ONE / R::larger(volume[i], least_volume());
                 scale[i] = self.dt * inv[i];
             }
             for d in 0..D {
                 let (low, high) = self.face_rows(medium, d, row);
                 let open = &mut metric.open[d][..n];
                 for i in 0..n {
-                    open[i] = greater(low[i], high[i]) * inv[i];
+                    open[i] = R::larger(low[i], high[i]) * inv[i];
                 }
             }
             let marks = &medium.porosity.marks[row.start..][..n];
@@ -111,7 +111,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             }
         }
         let counted = self.counted.clone();
-        report.rate = greater(row::largest(&signal[counted.clone()]), report.rate);
+        report.rate = R::larger(row::largest(&signal[counted.clone()]), report.rate);
         if bad {
             for i in counted {
                 let merged = small.is_some_and(|m| is(m[i], SMALL));

@@ -7,7 +7,7 @@
 //! References: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 10;
 //! P. Batten, N. Clarke, C. Lambert, D. M. Causon, SIAM J. Sci. Comput. 18 (1997) 1553; B. Einfeldt, SIAM J. Numer. Anal. 25 (1988) 294.
 
-use super::state::{Gas, Primitive, greater, lesser};
+use super::state::{Gas, Primitive};
 use crate::real::Real;
 
 /// What passes a face per unit area and time, in the frame of the face.
@@ -93,7 +93,7 @@ impl<R: Real> FaceGas<R> {
         let a = ((weight_l * a_sq_l + weight_r * a_sq_r)
             + self.half_gamma_minus_one * (weight_l * weight_r) * (jump * jump))
             .sqrt();
-        (lesser(u_l - a_sq_l.sqrt(), u - a), greater(u_r + a_sq_r.sqrt(), u + a))
+        (R::smaller(u_l - a_sq_l.sqrt(), u - a), R::larger(u_r + a_sq_r.sqrt(), u + a))
     }
 }
 
@@ -140,11 +140,11 @@ impl Solver for Hllc {
         let (swept_l, swept_r) = (l.density * (speed_l - u_l), r.density * (speed_r - u_r));
         let star = ((r.pressure - l.pressure) + (swept_l * u_l - swept_r * u_r)) / (swept_l - swept_r);
         let p_star = R::HALF * ((l.pressure + swept_l * (star - u_l)) + (r.pressure + swept_r * (star - u_r)));
-        let p_star = greater(p_star, R::ZERO);
+        let p_star = R::larger(p_star, R::ZERO);
 
         let from_left = star >= R::ZERO;
         let pick = |a: R, b: R| if from_left { a } else { b };
-        let speed = pick(lesser(speed_l, R::ZERO), greater(speed_r, R::ZERO));
+        let speed = pick(R::smaller(speed_l, R::ZERO), R::larger(speed_r, R::ZERO));
         let density = pick(l.density, r.density);
         let velocity: [R; D] = core::array::from_fn(|c| pick(l.velocity[c], r.velocity[c]));
         let pressure = pick(l.pressure, r.pressure);
@@ -210,7 +210,7 @@ impl Solver for Hlle {
         gas: &FaceGas<R>,
     ) -> Flux<R, D> {
         let (speed_l, speed_r) = gas.speeds(l, r);
-        let (low, high) = (lesser(speed_l, R::ZERO), greater(speed_r, R::ZERO));
+        let (low, high) = (R::smaller(speed_l, R::ZERO), R::larger(speed_r, R::ZERO));
         let span = high - low;
         let inv = if span > R::ZERO { R::ONE / span } else { R::ZERO };
         blend::<R, D, ENERGY>(l, r, gas, (high + low) * inv, -(high * low) * inv)
@@ -226,7 +226,7 @@ impl Solver for Rusanov {
         gas: &FaceGas<R>,
     ) -> Flux<R, D> {
         let fastest = |w: &Primitive<R, D>| w.velocity[0].abs() + (gas.gamma * w.pressure / w.density).sqrt();
-        let speed = greater(fastest(l), fastest(r));
+        let speed = R::larger(fastest(l), fastest(r));
         blend::<R, D, ENERGY>(l, r, gas, R::ZERO, R::HALF * speed)
     }
 }

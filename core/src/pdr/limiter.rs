@@ -2,7 +2,6 @@
 //!
 //! References: R. J. LeVeque, *Finite Volume Methods for Hyperbolic Problems*, 2002, sec. 6.9–6.11; P. K. Sweby, SIAM J. Numer. Anal. 21 (1984) 995 (how far a limiter may steepen).
 
-use super::state::lesser;
 use crate::real::Real;
 
 /// How a slope is limited where the solution bends.
@@ -47,7 +46,7 @@ pub(crate) trait Slope {
 #[inline(always)]
 pub(crate) fn wall_slope<R: Real>(here: R, away: R, high: bool) -> R {
     let to_wall = if high { -(here + here) } else { here + here };
-    let size = lesser(to_wall.abs(), R::TWO * away.abs());
+    let size = R::smaller(to_wall.abs(), R::TWO * away.abs());
     let size = if same_sign(to_wall, away) { size } else { R::ZERO };
     if to_wall < R::ZERO { -size } else { size }
 }
@@ -82,7 +81,7 @@ impl Slope for Steep {
     fn entropy_slope<R: Real>(a: R, b: R) -> R {
         let (sum, gap) = (a.abs() + b.abs(), a.abs() - b.abs());
         let steep = R::HALF * sum + R::from_f64(STEEPENING) * (gap * (gap / sum));
-        let size = lesser(steep, R::TWO * lesser(a.abs(), b.abs()));
+        let size = R::smaller(steep, R::TWO * R::smaller(a.abs(), b.abs()));
         let size = if same_sign(a, b) & (sum != R::ZERO) { size } else { R::ZERO };
         if a < R::ZERO { -size } else { size }
     }
@@ -92,7 +91,7 @@ impl Slope for MonotonizedCentral {
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let central = R::HALF * (a + b);
-        let size = lesser(central.abs(), R::TWO * lesser(a.abs(), b.abs()));
+        let size = R::smaller(central.abs(), R::TWO * R::smaller(a.abs(), b.abs()));
         let size = if same_sign(a, b) { size } else { R::ZERO };
         if central < R::ZERO { -size } else { size }
     }
@@ -110,7 +109,7 @@ impl Slope for VanLeer {
 impl Slope for Minmod {
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
-        let size = lesser(a.abs(), b.abs());
+        let size = R::smaller(a.abs(), b.abs());
         let size = if same_sign(a, b) { size } else { R::ZERO };
         if a < R::ZERO { -size } else { size }
     }

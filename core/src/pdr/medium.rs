@@ -2,7 +2,6 @@
 //!
 //! Works on the live axes only: a plane flow has two axes, whichever they are.
 
-use super::state::{greater, lesser};
 use super::throat::throat_area;
 use crate::real::Real;
 
@@ -145,7 +144,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     #[inline(always)]
     pub fn duct(&self, d: usize, at: [usize; D]) -> R {
         let (a, b) = self.openings(d, at);
-        greater(a, b)
+        R::larger(a, b)
     }
 
     /// Area of the wall that a closed face is to the gas in a cell: the duct goes on up to it. A cell between two walls is as
@@ -157,7 +156,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 
     /// The same of a cell that is known to be open.
     fn width(&self, d: usize, at: [usize; D]) -> R {
-        greater(self.duct(d, at), self.porosity.volume[self.mesh.index(at)])
+        R::larger(self.duct(d, at), self.porosity.volume[self.mesh.index(at)])
     }
 
     /// Areas with which the duct of a cell along `d` meets its low and high face: their open fractions, at a jump that of the
@@ -169,7 +168,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
             if !breaks {
                 open
             } else if open > R::ZERO {
-                greater(low, high)
+                R::larger(low, high)
             } else {
                 self.wall(d, at)
             }
@@ -218,7 +217,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         let inner = b[face];
         // Inside, both cells share this face: only the outer face of each is still to be read.
         if i > 0 && i < n {
-            return (greater(b[face - stride], inner), greater(inner, b[face + stride]));
+            return (R::larger(b[face - stride], inner), R::larger(inner, b[face + stride]));
         }
         let cell = |k: usize| {
             let mut c = at;
@@ -247,8 +246,8 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 /// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
 /// point has large shares of small differences: those below a fifth of the threshold do not count).
 fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
-    let (least, most) = (lesser(left, right), greater(left, right));
-    let difference = greater(most - least, least - face);
+    let (least, most) = (R::smaller(left, right), R::larger(left, right));
+    let difference = R::larger(most - least, least - face);
     let narrow = difference > R::from_f64(3.0) * threshold * most && is_wall(difference, threshold);
     difference > threshold || narrow
 }
@@ -271,7 +270,7 @@ pub fn mark<R: Real, const D: usize>(
     marks: &mut [u8],
 ) {
     let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
-    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| greater(w, medium.duct(d, at)));
+    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| R::larger(w, medium.duct(d, at)));
     for cell in 0..marks.len() {
         let at = mesh.coordinates(cell);
         let mut bits = 0;

@@ -7,7 +7,7 @@
 //! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution and its threshold of one half).
 
 use super::medium::{Medium, Mesh, Porosity, SMALL_SHARE};
-use super::state::{Conserved, Fields, FieldsMut, Gas, greater};
+use super::state::{Conserved, Fields, FieldsMut, Gas};
 use crate::real::Real;
 
 /// Marks the last cell of a cluster in the list.
@@ -90,7 +90,7 @@ pub fn clusters<R: Real, const D: usize>(
             picture[i] = r;
             let r = r as usize;
             held[r] += open_volume(i);
-            each_face(i, &mut |_, open| wanted[r] = greater(open, wanted[r]));
+            each_face(i, &mut |_, open| wanted[r] = R::larger(open, wanted[r]));
         }
         let short = |r: usize| held[r] < R::from_f64(SMALL_SHARE) * wanted[r];
         let outside =
@@ -230,7 +230,7 @@ pub(crate) fn settle<R: Real, const D: usize>(
         let (mut total, mut density, mut energy) = (Sum::new(), Sum::new(), Sum::new());
         let mut momentum = [const { Sum::new() }; D];
         for cell in cells.clone() {
-            let v = greater(volume[cell], least_volume()) * mesh.volume(mesh.coordinates(cell));
+            let v = R::larger(volume[cell], least_volume()) * mesh.volume(mesh.coordinates(cell));
             let u = field.get(cell);
             total.add(v);
             density.add(v * u.density);
@@ -260,11 +260,11 @@ pub(crate) fn apply<R: Real, const D: usize>(
     new: &mut FieldsMut<'_, R, D>,
 ) {
     // Changes below this share of the cluster's content count as none.
-    let still = greater(R::from_f64(1e-12), R::from_f64(64.0) * R::EPSILON);
+    let still = R::larger(R::from_f64(1e-12), R::from_f64(64.0) * R::EPSILON);
     let zero = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
     for cluster in clusters.each() {
         let cells = || cluster.iter().map(|e| (e & !LAST) as usize);
-        let weight = |cell: usize| greater(volume[cell], least_volume()) * mesh.volume(mesh.coordinates(cell));
+        let weight = |cell: usize| R::larger(volume[cell], least_volume()) * mesh.volume(mesh.coordinates(cell));
         // Sums over the members that do not depend on their order: carried exactly enough to round alike.
         let (mut total, mut content, mut change) = (Sum::new(), [const { Sum::new() }; 2], [const { Sum::new() }; 2]);
         let (mut momentum, mut push) = ([const { Sum::new() }; D], [const { Sum::new() }; D]);
@@ -277,15 +277,15 @@ pub(crate) fn apply<R: Real, const D: usize>(
             content[1].add(v * a.energy);
             let step = v * (b.density - a.density);
             change[0].add(step);
-            largest.density = greater(step.abs(), largest.density);
+            largest.density = R::larger(step.abs(), largest.density);
             let step = v * (b.energy - a.energy);
             change[1].add(step);
-            largest.energy = greater(step.abs(), largest.energy);
+            largest.energy = R::larger(step.abs(), largest.energy);
             for c in 0..D {
                 momentum[c].add(v * a.momentum[c]);
                 let step = v * (b.momentum[c] - a.momentum[c]);
                 push[c].add(step);
-                largest.momentum[c] = greater(step.abs(), largest.momentum[c]);
+                largest.momentum[c] = R::larger(step.abs(), largest.momentum[c]);
             }
         }
         let total = total.value();
@@ -299,7 +299,7 @@ pub(crate) fn apply<R: Real, const D: usize>(
         // Momentum is measured against mass times a speed, sqrt(E/rho) or, for a barotropic gas, its own.
         let momentum_scale = (content.density * content.energy).sqrt();
         let momentum_moves = (0..D).any(|c| {
-            let scale = greater(momentum_scale, content.momentum[c].abs());
+            let scale = R::larger(momentum_scale, content.momentum[c].abs());
             !(largest.momentum[c] <= still * scale)
         });
         let moves = !(largest.density <= still * content.density)

@@ -6,7 +6,7 @@ use super::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimite
 use super::medium::{BREAKS, Medium, SEALED, SMALL, break_high, break_low, is};
 use super::merge::least_volume;
 use super::row::{self, Differences, Rate, Three, var};
-use super::state::{Gas, greater, sum};
+use super::state::{Gas, sum};
 use super::sweep::{Row, Sweep};
 use super::work::{Metric, Work};
 use crate::real::Real;
@@ -185,7 +185,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let volume = &medium.porosity.volume[row.start..][..n];
         let inv = &mut metric.spare[..n];
         for i in 0..n {
-            inv[i] = R::ONE / greater(volume[i], least_volume());
+            inv[i] = R::ONE / R::larger(volume[i], least_volume());
         }
         for d in 0..D {
             let (low, high) = self.face_rows(medium, d, row);

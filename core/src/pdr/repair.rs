@@ -2,7 +2,7 @@
 //! a floor.
 
 use super::report::Report;
-use super::state::{Conserved, Fields, FieldsMut, Gas, greater, sum};
+use super::state::{Conserved, Fields, FieldsMut, Gas, sum};
 use super::step::{Error, Problem};
 use crate::real::Real;
 
@@ -64,21 +64,21 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             let sound = u.density > R::ZERO && u.density.is_finite() && kinetic < R::MAX * R::EPSILON;
             let mut w = if sound { self.gas.primitive(&u) } else { before };
             if !sound {
-                w.density = greater(before.density * share, R::MIN_POSITIVE);
+                w.density = R::larger(before.density * share, R::MIN_POSITIVE);
             }
             w.pressure = match self.gas {
                 // Above the rounding of the kinetic energy it is stored with.
                 Gas::Ideal { gamma } => {
                     let kinetic = w.density * sum::<R, D>(w.velocity.map(|u| u * u));
                     let least = R::from_f64(64.0) * R::EPSILON * (gamma - R::ONE) * kinetic;
-                    greater(greater(before.pressure * share, least), R::MIN_POSITIVE)
+                    R::larger(R::larger(before.pressure * share, least), R::MIN_POSITIVE)
                 }
                 gas => gas.pressure(w.density, R::ZERO),
             };
             let floored = self.gas.conserved(&w);
             new.set(cell, &floored);
             report.floored += 1;
-            report.rate = greater(self.cell_rate(&floored, cell), report.rate);
+            report.rate = R::larger(self.cell_rate(&floored, cell), report.rate);
         }
         report.unphysical = 0;
     }

@@ -1,6 +1,6 @@
 //! What a step did: its stable rate, its repairs, and what came in through the sides.
 
-use super::state::{Conserved, greater, rotate_back};
+use super::state::{Conserved, rotate_back};
 use super::sweep::{Row, Sweep};
 use crate::real::Real;
 
@@ -29,7 +29,7 @@ impl<R: Real, const D: usize> Report<R, D> {
     /// Joins the report of the next slab.
     #[must_use]
     pub fn and(mut self, other: &Self) -> Self {
-        self.rate = greater(other.rate, self.rate);
+        self.rate = R::larger(other.rate, self.rate);
         self.unphysical += other.unphysical;
         self.first_order += other.first_order;
         self.floored += other.floored;

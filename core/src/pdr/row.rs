@@ -13,7 +13,7 @@
 
 use super::flux::{FaceGas, Solver};
 use super::limiter::Slope;
-use super::state::{Fields, Gas, Primitive, greater, sum};
+use super::state::{Fields, Gas, Primitive, sum};
 use crate::real::Real;
 
 /// Variable `v` of a block of variables `n` long.
@@ -500,11 +500,11 @@ pub(crate) fn largest<R: Real>(row: &[R]) -> R {
     let mut chunks = row.chunks_exact(LANES);
     for chunk in &mut chunks {
         for i in 0..LANES {
-            lanes[i] = greater(chunk[i], lanes[i]);
+            lanes[i] = R::larger(chunk[i], lanes[i]);
         }
     }
-    let tail = chunks.remainder().iter().fold(R::ZERO, |m, &x| greater(x, m));
-    lanes.iter().fold(tail, |m, &x| greater(x, m))
+    let tail = chunks.remainder().iter().fold(R::ZERO, |m, &x| R::larger(x, m));
+    lanes.iter().fold(tail, |m, &x| R::larger(x, m))
 }
 
 /// The face state at index `i` of a block `m` long, in the frame of its axis.

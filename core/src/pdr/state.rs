@@ -6,18 +6,6 @@
 
 use crate::real::Real;
 
-/// The smaller of two values, as one instruction; the second if either is NaN.
-#[inline(always)]
-pub(crate) fn lesser<R: Real>(a: R, b: R) -> R {
-    if a < b { a } else { b }
-}
-
-/// The larger of two values, as one instruction; the second if either is NaN.
-#[inline(always)]
-pub(crate) fn greater<R: Real>(a: R, b: R) -> R {
-    if a > b { a } else { b }
-}
-
 /// Sum of one term per axis, the same bits in any order of the axes: extremes first, then the middle one.
 #[inline(always)]
 pub(crate) fn sum<R: Real, const D: usize>(t: [R; D]) -> R {
@@ -26,9 +14,9 @@ pub(crate) fn sum<R: Real, const D: usize>(t: [R; D]) -> R {
     } else if D == 2 {
         t[0] + t[1]
     } else {
-        let (low, high) = (lesser(t[0], t[1]), greater(t[0], t[1]));
-        let middle = greater(low, lesser(high, t[2]));
-        (lesser(low, t[2]) + greater(high, t[2])) + middle
+        let (low, high) = (R::smaller(t[0], t[1]), R::larger(t[0], t[1]));
+        let middle = R::larger(low, R::smaller(high, t[2]));
+        (R::smaller(low, t[2]) + R::larger(high, t[2])) + middle
     }
 }
 

@@ -7,7 +7,7 @@ use super::line;
 use super::medium::{Medium, Mesh, Porosity, SMALL, SMALL_SHARE, break_high, break_low, is};
 use super::merge::{self, Clusters, least_volume};
 use super::report::Report;
-use super::state::{Conserved, Fields, FieldsMut, Gas, greater, lesser, sum};
+use super::state::{Conserved, Fields, FieldsMut, Gas, sum};
 use super::sweep::Sweep;
 use super::throat::ThroatGas;
 use super::work::Sizes;
@@ -227,12 +227,12 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let marks = medium.porosity.marks[cell];
         let periodic = self.boundaries[d][0] == Boundary::Periodic;
         let (low, high) = medium.passages(d, at, periodic);
-        let passage = greater(low, high);
-        let ratio = passage / greater(medium.porosity.volume[cell], least_volume());
+        let passage = R::larger(low, high);
+        let ratio = passage / R::larger(medium.porosity.volume[cell], least_volume());
         let merged = is(marks, SMALL) && !self.clusters.0.is_empty();
         // A cluster holds its share of the volume that its widest face asks for; a throat may be wider than its face.
         let widening = if marks & (break_low(d) | break_high(d)) != 0 { R::TWO } else { R::ONE };
-        if merged { lesser(ratio, widening * R::from_f64(1.0 / SMALL_SHARE)) } else { ratio }
+        if merged { R::smaller(ratio, widening * R::from_f64(1.0 / SMALL_SHARE)) } else { ratio }
     }
 
     /// Largest signal rate of a field, for the first step; refuses an unphysical cell.
@@ -244,7 +244,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             if !self.is_physical(&u) {
                 return Err(Error::Unphysical { cell });
             }
-            rate = greater(self.cell_rate(&u, cell), rate);
+            rate = R::larger(self.cell_rate(&u, cell), rate);
         }
         Ok(rate)
     }
@@ -263,7 +263,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         for cell in self.clusters.cells() {
             let u = new.get(cell);
             if self.is_physical(&u) {
-                report.rate = greater(self.cell_rate(&u, cell), report.rate);
+                report.rate = R::larger(self.cell_rate(&u, cell), report.rate);
             } else {
                 report.unphysical += 1;
             }

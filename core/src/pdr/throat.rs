@@ -10,7 +10,7 @@
 //! D. Kröner, M. D. Thanh, SIAM J. Numer. Anal. 43 (2005) 796 (stationary waves).
 
 use super::flux::{FaceGas, Flux, Riemann, flux};
-use super::state::{Gas, Primitive, greater, lesser};
+use super::state::{Gas, Primitive};
 use crate::real::Real;
 
 /// Newton steps at most. Away from choking three suffice; at the double root of a choked throat each step halves the error.
@@ -131,9 +131,9 @@ impl<R: Real> ThroatGas<R> {
         let mut d: [R; L] = core::array::from_fn(|i| {
             let (slope, bend) = (R::ONE - n * c[i], c[i] * (n * (n + R::ONE)));
             let rest = c[i] - a[i];
-            let root = greater(slope * slope - R::TWO * bend * rest, R::ZERO).sqrt();
+            let root = R::larger(slope * slope - R::TWO * bend * rest, R::ZERO).sqrt();
             let start = -R::TWO * rest / (slope + root);
-            lesser(greater(start, sonic[i] - R::ONE), a[i])
+            R::smaller(R::larger(start, sonic[i] - R::ONE), a[i])
         });
         for _ in 0..STEPS {
             let powers = whole_powers(d.map(|d| R::ONE + d), whole);
@@ -141,7 +141,7 @@ impl<R: Real> ThroatGas<R> {
                 let q = c[i] / powers[i];
                 let value = d[i] + (q - a[i]);
                 let slope = R::ONE - n * q / (R::ONE + d[i]);
-                d[i] = lesser(d[i] - value / slope, a[i]);
+                d[i] = R::smaller(d[i] - value / slope, a[i]);
             }
         }
         let t = d.map(|d| R::ONE + d);
@@ -246,7 +246,7 @@ impl<R: Real> ThroatGas<R> {
         if matches!(self.gas, Gas::Isothermal { .. }) {
             return pressure * (v / c).exp();
         }
-        let t = greater(R::ONE + v / (self.n * c), R::ZERO);
+        let t = R::larger(R::ONE + v / (self.n * c), R::ZERO);
         match self.whole {
             Some(n) => pressure * whole_power(t, n + 2),
             None => pressure * t.pow(self.n + R::TWO),
@@ -277,11 +277,11 @@ fn newton<R: Real>(start: R, bound: R, f: impl Fn(R) -> (R, R)) -> R {
 /// Area of the throat at a jump face: of a plain jump the mean of both ducts, at most twice the narrower one (so that the
 /// narrow cell's time step shrinks by two at most); of a true orifice its own.
 pub fn throat_area<R: Real>(area_left: R, face: R, area_right: R) -> R {
-    let least = lesser(area_left, area_right);
+    let least = R::smaller(area_left, area_right);
     if !(face > R::ZERO) {
         R::ZERO
     } else if face >= least {
-        lesser(R::HALF * (area_left + area_right), R::TWO * least)
+        R::smaller(R::HALF * (area_left + area_right), R::TWO * least)
     } else {
         face
     }
@@ -383,13 +383,13 @@ const STRONG: f64 = 0.6;
 /// waves, is more than it would take.
 fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: [&AtThroat<R, D>; 2], gas: &FaceGas<R>) -> R {
     let mach = |w: &Primitive<R, D>| {
-        let u = greater(w.velocity[0].abs(), mass_flux.abs() / w.density);
+        let u = R::larger(w.velocity[0].abs(), mass_flux.abs() / w.density);
         u / gas.sound_speed(w)
     };
     let (p_l, p_r) = (l.state.pressure, r.state.pressure);
-    let strength = greater(greater(mach(&l.state), mach(&r.state)), (p_l - p_r).abs() / lesser(p_l, p_r));
+    let strength = R::larger(R::larger(mach(&l.state), mach(&r.state)), (p_l - p_r).abs() / R::smaller(p_l, p_r));
     let share = R::TWO - strength * R::from_f64(2.0 / STRONG);
-    lesser(greater(share, R::ZERO), R::ONE)
+    R::smaller(R::larger(share, R::ZERO), R::ONE)
 }
 
 /// The fluxes of weak waves at a change of area: one sound wave into each duct, the stationary wave between them. A Riemann
