@@ -108,6 +108,18 @@ impl Row {
 /// parts that were meant to touch, in coordinates that were rounded.
 const BLURS: [f64; 5] = [0.0, 1e-12, 1e-10, 1e-8, 1e-6];
 
+/// What an attempt finds with the least blur that gives a proof and an error within the tolerance. An attempt returns its error as well.
+fn with_least_blur<T>(tol: f64, mut attempt: impl FnMut(f64) -> Result<(T, f64), NoProof>) -> Option<T> {
+    for blur in BLURS.into_iter().filter(|&blur| blur == 0.0 || blur < tol) {
+        match attempt(blur) {
+            Ok((found, error)) if blur == 0.0 || 2.0 * error <= tol => return Some(found),
+            Err(NoProof::Full) => return None,
+            Ok(_) | Err(NoProof::Doubt) => {}
+        }
+    }
+    None
+}
+
 /// By how much a union may leave the bounds given by the bodies' own shares and still be rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -168,12 +180,11 @@ impl Unions {
                 let row = row.get_or_insert_with(|| Row::new(bins, k, lo, hi));
                 let (lo, hi) = grid.cell_box([i, j, k]);
                 let refined = match self.union(lo, hi, bins, convex, k, row, |u| agrees(layer, nx, i, j, u, areas)) {
-                    Ok(refined) => Some(refined),
-                    Err(_) if open > self.options.tol => {
+                    None if open > self.options.tol => {
                         divided += 1;
                         self.divide(lo, hi, bins, convex, k)
                     }
-                    Err(_) => None,
+                    known => known,
                 };
                 if let Some(refined) = refined {
                     store(layer, nx, ny, i, j, &refined);
@@ -201,10 +212,10 @@ impl Unions {
                     let row = row.get_or_insert_with(|| Row::new(bins, k, grid.edges(1)[j], grid.edges(1)[j + 1]));
                     let (lo, hi) = grid.cell_box([i, j, k]);
                     match self.union(lo, hi, bins, convex, k, row, |_| true) {
-                        Ok(union) => Some(union.high[2]),
-                        Err(_) if open > self.options.tol => self.divide(lo, hi, bins, convex, k).map(|r| r.high[2]),
-                        Err(_) => None,
+                        None if open > self.options.tol => self.divide(lo, hi, bins, convex, k),
+                        known => known,
                     }
+                    .map(|refined| refined.high[2])
                 };
                 if let Some(bounds) = bounds {
                     improve(&mut layer.lower.z[c], &mut layer.sum.z[c], bounds);
@@ -223,24 +234,15 @@ impl Unions {
         k: usize,
         row: &Row,
         believed: impl Fn(&Refined) -> bool,
-    ) -> Result<Refined, NoProof> {
+    ) -> Option<Refined> {
         if convex.reaches(lo, hi, &mut self.lists) {
-            return Err(NoProof::Full);
+            return None;
         }
-        let tol = self.options.tol;
-        for blur in BLURS.into_iter().filter(|&blur| blur == 0.0 || blur < tol) {
-            match self.blurred_union(lo, hi, bins, k, row, blur) {
-                Err(NoProof::Full) => break,
-                Err(NoProof::Doubt) => {}
-                Ok(union) => {
-                    let refined = Refined::from(union);
-                    if (blur == 0.0 || 2.0 * union.error <= tol) && believed(&refined) {
-                        return Ok(refined);
-                    }
-                }
-            }
-        }
-        Err(NoProof::Doubt)
+        with_least_blur(self.options.tol, |blur| {
+            let union = self.blurred_union(lo, hi, bins, k, row, blur)?;
+            let refined = Refined::from(union);
+            if believed(&refined) { Ok((refined, union.error)) } else { Err(NoProof::Doubt) }
+        })
     }
 
     fn blurred_union(
@@ -360,17 +362,10 @@ impl Unions {
 
     /// The union on a face with walls: exact, or with the least blur that gives a proof.
     fn whole_wall(&mut self, bins: &Bins, axis: usize, sides: &[WallSide; 2]) -> Option<Bounds> {
-        let tol = self.options.tol;
-        for blur in BLURS.into_iter().filter(|&blur| blur == 0.0 || blur < tol) {
-            match self.wall_union(bins, axis, sides, blur) {
-                Ok((closed, error)) if blur == 0.0 || 2.0 * error <= tol => {
-                    return Some(((closed - error).max(0.0), (closed + error).min(1.0)));
-                }
-                Ok(_) | Err(NoProof::Doubt) => {}
-                Err(NoProof::Full) => break,
-            }
-        }
-        None
+        with_least_blur(self.options.tol, |blur| {
+            let (closed, error) = self.wall_union(bins, axis, sides, blur)?;
+            Ok((((closed - error).max(0.0), (closed + error).min(1.0)), error))
+        })
     }
 
     /// Bounds of a face with walls from its quarters, each between halves of the cells on both sides; none if the depth is spent.
