@@ -27,10 +27,23 @@ impl<R: Real> Polygon<R> {
     #[must_use]
     pub fn new(corners: &[[R; 3]]) -> Self {
         let mut p = Self::default();
-        for &c in corners {
-            p.push(c);
-        }
+        p.set(corners);
         p
+    }
+
+    /// Take the given corners instead (at most [`MAX_CORNERS`]; the rest is dropped).
+    #[inline(always)]
+    pub fn set(&mut self, corners: &[[R; 3]]) {
+        self.clear();
+        for &c in corners {
+            self.push(c);
+        }
+    }
+
+    /// Take the corners of another polygon, and only those.
+    #[inline(always)]
+    pub fn assign(&mut self, other: &Self) {
+        self.set(other.corners());
     }
 
     /// The corners in order.
@@ -59,8 +72,9 @@ impl<R: Real> Polygon<R> {
         room
     }
 
+    /// No corners any more.
     #[inline(always)]
-    fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.len = 0;
     }
 
@@ -161,17 +175,19 @@ pub fn split<R: Real>(whole: &Polygon<R>, axis: usize, at: R, below: &mut Polygo
     }
 }
 
-/// The part of a polygon in the slab `lo..hi` of `axis`, in `whole`; `spare` is scratch.
+/// The part of a polygon above coordinate `at` of `axis`, or below; corners on the plane belong to it. The same points as [`split`] finds.
 #[inline]
-pub fn keep_slab<R: Real>(whole: &mut Polygon<R>, axis: usize, lo: R, hi: R, spare: &mut Polygon<R>) {
-    let mut kept = Polygon::default();
-    let (min, max) = whole.extent(axis);
-    if min < lo {
-        split(whole, axis, lo, spare, &mut kept);
-        *whole = kept;
-    }
-    if max > hi {
-        split(whole, axis, hi, &mut kept, spare);
-        *whole = kept;
+pub fn keep<R: Real>(whole: &Polygon<R>, axis: usize, at: R, above: bool, kept: &mut Polygon<R>) {
+    kept.clear();
+    let corners = whole.corners();
+    let Some(&(mut a)) = corners.last() else { return };
+    for &b in corners {
+        if (a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at) {
+            kept.push(crossing(a, b, axis, at));
+        }
+        if b[axis] == at || (b[axis] > at) == above {
+            kept.push(b);
+        }
+        a = b;
     }
 }

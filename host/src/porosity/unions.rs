@@ -13,7 +13,7 @@ use voidage_core::layer::{Layer, gap};
 use voidage_core::overlap::{CellUnion, Fragment, Limit, NoProof, Node, Overlap, Part, Piece, Task, Workspace};
 
 /// Pieces of surface that one cell may hold before it is divided: beyond, trees cost more than smaller cells.
-const MAX_PIECES: usize = 512;
+const MAX_PIECES: usize = 1024;
 
 /// A thread's memory for unions, made when first needed.
 pub struct Unions {
