@@ -50,6 +50,22 @@ impl Edges {
         [0, 1, 2].map(|axis| self.0[axis].len().saturating_sub(1))
     }
 
+    /// Widths of the cells along an axis. Where they differ by no more than edges are rounded, all are one: a flow that is mirrored
+    /// stays so.
+    #[must_use]
+    pub fn widths(&self, axis: usize) -> Vec<f64> {
+        let edges = &self.0[axis];
+        let mut widths: Vec<f64> = edges.windows(2).map(|w| w[1] - w[0]).collect();
+        if let [lo, .., hi] = edges[..] {
+            let mean = (hi - lo) / widths.len() as f64;
+            let rounding = 2.0 * f64::EPSILON * lo.abs().max(hi.abs());
+            if widths.iter().all(|w| (w - mean).abs() <= rounding) {
+                widths.fill(mean);
+            }
+        }
+        widths
+    }
+
     /// Lowest and highest corner.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {

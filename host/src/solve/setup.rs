@@ -78,7 +78,7 @@ pub fn setup<const D: usize>(
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
     let cells = progress.stage("initial", |_| states.initial(edges))?;
 
-    let widths = live.map(|d| edges.0[d].windows(2).map(|w| w[1] - w[0]).collect());
+    let widths = live.map(|d| edges.widths(d));
     let (boundaries, inlets) = boundaries(file, &states, edges, &cells)?;
     let mut flow = Flow::new(widths, gas, boundaries);
     (flow.scheme, flow.careful_steps) = scheme(file)?;
