@@ -44,7 +44,7 @@ pub fn clusters<R: Real, const D: usize>(
         let at = mesh.coordinates(cell);
         let own = mesh.volume(at);
         for d in 0..D {
-            let (low, high) = medium.openings(d, at);
+            let (low, high) = medium.ducts(d, at, periodic[d]).openings(0);
             for (open, up) in [(low, false), (high, true)] {
                 if open > R::ZERO {
                     let edge = if up { cells[d] - 1 } else { 0 };
