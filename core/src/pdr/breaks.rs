@@ -171,22 +171,27 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     ) {
         let gather = |s: usize, v: usize| {
             let values = var(states[s], v, m);
-            group.map(|i| values[i])
+            core::array::from_fn(|l| values[group[l]])
         };
-        let areas = group.map(|i| ducts.beside(i, false));
+        let side = |s: usize| Primitive {
+            density: gather(s, 0),
+            velocity: core::array::from_fn(|c| gather(s, 1 + c)),
+            pressure: gather(s, D + 1),
+        };
+        let (mut face, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
+        for l in 0..LANES {
+            face[l] = ducts.face(group[l]);
+            (areas[0][l], areas[1][l]) = ducts.beside(group[l], false);
+        }
         let mut calm = [R::ONE; LANES];
         if let Some(asked) = self.first_order {
             let troubled = |i: usize| beside(i).iter().flatten().any(|&c| asked[self.problem.mesh.index(c)] != 0);
             calm = group.map(|i| if troubled(i) { R::ZERO } else { R::ONE });
         }
         let faces = JumpFaces {
-            states: [0, 1].map(|s| Primitive {
-                density: gather(s, 0),
-                velocity: core::array::from_fn(|c| gather(s, 1 + c)),
-                pressure: gather(s, D + 1),
-            }),
-            ducts: [areas.map(|a| a.0), areas.map(|a| a.1)],
-            face: group.map(|i| ducts.face(i)),
+            states: [side(0), side(1)],
+            ducts: areas,
+            face,
             references: [gather(0, D + 2), gather(1, D + 2)],
             calm,
         };

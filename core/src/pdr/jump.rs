@@ -56,7 +56,8 @@ pub(super) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
 ) -> JumpFlux<[R; L], D> {
     let [left, right] = &faces.ducts;
     let to: [R; L] = core::array::from_fn(|i| throat_area(left[i], faces.face[i], right[i]));
-    let at = [0, 1].map(|s| throat.carry_all(&faces.states[s], &faces.ducts[s], &to));
+    let side = |s: usize| throat.carry_all(&faces.states[s], &faces.ducts[s], &to);
+    let at = [side(0), side(1)];
     let (walls, calm) = chokes(faces, &at, throat);
     let none = [R::ZERO; L];
     let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
@@ -123,7 +124,7 @@ fn riemann<R: Real, S: Solver, const D: usize>(face: &Carried<R, D>, gas: &FaceG
     JumpFlux {
         mass: to * f.mass,
         energy: to * f.energy,
-        momentum: f.momentum.map(|m| to * m),
+        momentum: core::array::from_fn(|c| to * f.momentum[c]),
         normal: [normal(0), normal(1)],
     }
 }

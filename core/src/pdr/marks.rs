@@ -25,21 +25,47 @@ pub const fn break_high(d: usize) -> u8 {
     2 << (2 * d)
 }
 
-/// The places of the marks that hold any of `bits`, in order. Eight at a time are looked at, as most hold none.
-pub(crate) fn marked(marks: &[u8], bits: u8) -> impl Iterator<Item = usize> + '_ {
-    const WORD: usize = 8;
-    let every = u64::from_le_bytes([bits; WORD]);
-    marks.chunks(WORD).enumerate().flat_map(move |(chunk, bytes)| {
-        let mut word = [0; WORD];
-        word[..bytes.len()].copy_from_slice(bytes);
-        let mut rest = u64::from_le_bytes(word) & every;
-        core::iter::from_fn(move || {
-            let byte = rest.trailing_zeros() as usize / WORD;
-            if byte == WORD {
+/// The places of the marks that hold any of `bits`, in order.
+pub(crate) fn marked(marks: &[u8], bits: u8) -> Marked<'_> {
+    // Most rows hold none: one pass without branches tells.
+    let any = marks.iter().fold(0, |a, b| a | b) & bits != 0;
+    Marked { marks: if any { marks } else { &[] }, every: u64::from_le_bytes([bits; WORD]), next: 0, rest: 0 }
+}
+
+/// Marks looked at together.
+const WORD: usize = 8;
+
+/// Iterator of [`marked`].
+pub(crate) struct Marked<'a> {
+    /// Marks not yet looked at, and the place of the first of them.
+    marks: &'a [u8],
+    next: usize,
+    /// The bits in every byte of a word.
+    every: u64,
+    /// What is left of the word before.
+    rest: u64,
+}
+
+impl Iterator for Marked<'_> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        while self.rest == 0 {
+            let word = if let Some((word, after)) = self.marks.split_first_chunk::<WORD>() {
+                self.marks = after;
+                *word
+            } else if self.marks.is_empty() {
                 return None;
-            }
-            rest &= !(0xff << (WORD * byte));
-            Some(chunk * WORD + byte)
-        })
-    })
+            } else {
+                let last = core::mem::take(&mut self.marks);
+                core::array::from_fn(|i| last.get(i).copied().unwrap_or(0))
+            };
+            self.rest = u64::from_le_bytes(word) & self.every;
+            self.next += WORD;
+        }
+        let byte = self.rest.trailing_zeros() as usize / WORD;
+        self.rest &= !(0xff << (WORD * byte));
+        Some(self.next - WORD + byte)
+    }
 }

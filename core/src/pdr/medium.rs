@@ -66,7 +66,7 @@ impl<R: Real, const D: usize> Mesh<'_, R, D> {
     /// Distance between the two faces of a cell along axis `d`.
     #[inline(always)]
     pub fn face_stride(&self, d: usize) -> usize {
-        self.cells()[..d].iter().product()
+        (0..D).filter(|&a| a < d).fold(1, |s, a| s * self.widths[a].len())
     }
 
     /// Volume of a cell, its obstacles included; length or area in fewer dimensions.

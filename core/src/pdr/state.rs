@@ -47,7 +47,8 @@ impl<R: Copy, const D: usize, const L: usize> Primitive<[R; L], D> {
     /// One of several states side by side.
     #[inline(always)]
     pub(crate) fn lane(&self, i: usize) -> Primitive<R, D> {
-        Primitive { density: self.density[i], velocity: self.velocity.map(|u| u[i]), pressure: self.pressure[i] }
+        let velocity = core::array::from_fn(|c| self.velocity[c][i]);
+        Primitive { density: self.density[i], velocity, pressure: self.pressure[i] }
     }
 
     /// Writes one of them.

@@ -61,14 +61,14 @@ fn whole_power<R: Real>(mut x: R, mut n: u32) -> R {
 #[inline(always)]
 fn whole_powers<R: Real, const L: usize>(mut x: [R; L], mut n: u32) -> [R; L] {
     if n == 5 {
-        return x.map(|x| (x * x) * (x * x) * x);
+        return core::array::from_fn(|i| (x[i] * x[i]) * (x[i] * x[i]) * x[i]);
     }
     let mut result = [R::ONE; L];
     while n > 0 {
         if n & 1 == 1 {
             result = core::array::from_fn(|i| result[i] * x[i]);
         }
-        x = x.map(|x| x * x);
+        x = core::array::from_fn(|i| x[i] * x[i]);
         n >>= 1;
     }
     result
@@ -126,9 +126,9 @@ impl<R: Real> ThroatGas<R> {
     fn subsonic_lanes<const L: usize>(&self, whole: u32, mach_sq: &[R; L], k: &[R; L]) -> ([R; L], [R; L], [bool; L]) {
         const STEPS: usize = 4;
         let n = self.n;
-        let a: [R; L] = mach_sq.map(|m| m * self.inv_n);
+        let a: [R; L] = core::array::from_fn(|i| mach_sq[i] * self.inv_n);
         let c: [R; L] = core::array::from_fn(|i| a[i] * (k[i] * k[i]));
-        let sonic: [R; L] = a.map(|a| (R::ONE + a) * self.share);
+        let sonic: [R; L] = core::array::from_fn(|i| (R::ONE + a[i]) * self.share);
         let choking = whole_powers(sonic, whole);
         let inside = core::array::from_fn(|i| {
             let largest_c = (R::ONE + a[i]) * self.inv_next * choking[i];
@@ -142,15 +142,15 @@ impl<R: Real> ThroatGas<R> {
             R::smaller(R::larger(start, sonic[i] - R::ONE), a[i])
         });
         for _ in 0..STEPS {
-            let powers = whole_powers(d.map(|d| R::ONE + d), whole);
+            let powers = whole_powers(core::array::from_fn::<_, L, _>(|i| R::ONE + d[i]), whole);
             d = core::array::from_fn(|i| {
                 let t = R::ONE + d[i];
                 let step = ((d[i] - a[i]) * powers[i] + c[i]) * t / (powers[i] * t - n * c[i]);
                 R::smaller(d[i] - step, a[i])
             });
         }
-        let t = d.map(|d| R::ONE + d);
-        (whole_powers(t.map(|t| t.sqrt()), whole), t, inside)
+        let t: [R; L] = core::array::from_fn(|i| R::ONE + d[i]);
+        (whole_powers(core::array::from_fn(|i| t[i].sqrt()), whole), t, inside)
     }
 
     /// t^n for t = T/T_cell.
