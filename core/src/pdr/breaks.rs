@@ -58,7 +58,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         for i in marked(marks, break_low(d) | break_high(d)) {
             let (low, high) = ducts.openings(i);
             let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
-            if (breaks[0] && low > R::ZERO) || (breaks[1] && high > R::ZERO) {
+            if (breaks[0] & (low > R::ZERO)) | (breaks[1] & (high > R::ZERO)) {
                 (0..Self::V).for_each(|v| out[v * n + i] = R::ZERO);
                 continue;
             }

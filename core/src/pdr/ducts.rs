@@ -117,13 +117,13 @@ impl<'a, R: Real> Ducts<'a, R> {
     fn areas(&self, i: usize, at_jump: impl Fn(R, bool) -> R) -> (R, R) {
         let (low, high) = self.openings(i);
         let area = |open: R, high: bool| {
-            if !self.breaks(i, high) {
-                open
-            } else if open > R::ZERO {
-                at_jump(open, high)
-            } else {
-                self.wall(i)
+            let breaks = self.breaks(i, high);
+            if breaks & !(open > R::ZERO) {
+                return self.wall(i);
             }
+            // Found in any case: a selection costs less than a wrong guess.
+            let jump = at_jump(open, high);
+            if breaks { jump } else { open }
         };
         (area(low, false), area(high, true))
     }

@@ -84,9 +84,10 @@ impl<R: Real> FaceGas<R> {
     #[inline(always)]
     fn speeds<const D: usize>(&self, l: &Primitive<R, D>, r: &Primitive<R, D>) -> (R, R) {
         let (a_sq_l, a_sq_r) = (self.gamma * l.pressure / l.density, self.gamma * r.pressure / r.density);
-        let (root_l, root_r) = (l.density.sqrt(), r.density.sqrt());
-        let inv = R::ONE / (root_l + root_r);
-        let (weight_l, weight_r) = (root_l * inv, root_r * inv);
+        // The weights √rho_l / (√rho_l + √rho_r) and its mirror image, both times √rho_l + √rho_r: one root instead of two.
+        let mean = R::smaller(l.density * r.density, R::MAX).sqrt();
+        let inv = R::ONE / ((l.density + r.density) + (mean + mean));
+        let (weight_l, weight_r) = ((l.density + mean) * inv, (r.density + mean) * inv);
         let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
         let jump = u_r - u_l;
         let u = weight_l * u_l + weight_r * u_r;

@@ -25,26 +25,29 @@ pub const fn break_high(d: usize) -> u8 {
     2 << (2 * d)
 }
 
+/// Whether any of the marks holds any of `bits`.
+pub(crate) fn any_marked(marks: &[u8], bits: u8) -> bool {
+    marks.iter().fold(0, |a, b| a | b) & bits != 0
+}
+
 /// The places of the marks that hold any of `bits`, in order.
 pub(crate) fn marked(marks: &[u8], bits: u8) -> Marked<'_> {
     // Most rows hold none: one pass without branches tells.
-    let any = marks.iter().fold(0, |a, b| a | b) & bits != 0;
-    Marked { marks: if any { marks } else { &[] }, every: u64::from_le_bytes([bits; WORD]), next: 0, rest: 0 }
+    Marked { marks: if any_marked(marks, bits) { marks } else { &[] }, bits, next: 0, rest: 0 }
 }
 
-/// Marks looked at together.
-const WORD: usize = 8;
-
-/// Iterator of [`marked`].
+/// Iterator of [`marked`]. Marks are looked at 64 at a time: what a processor guesses is only where the last one stands.
 pub(crate) struct Marked<'a> {
     /// Marks not yet looked at, and the place of the first of them.
     marks: &'a [u8],
     next: usize,
-    /// The bits in every byte of a word.
-    every: u64,
-    /// What is left of the word before.
+    bits: u8,
+    /// One bit for each of the marks before `next` that is still to come.
     rest: u64,
 }
+
+/// Marks looked at together.
+const TOGETHER: usize = u64::BITS as usize;
 
 impl Iterator for Marked<'_> {
     type Item = usize;
@@ -52,20 +55,37 @@ impl Iterator for Marked<'_> {
     #[inline(always)]
     fn next(&mut self) -> Option<usize> {
         while self.rest == 0 {
-            let word = if let Some((word, after)) = self.marks.split_first_chunk::<WORD>() {
-                self.marks = after;
-                *word
-            } else if self.marks.is_empty() {
+            if self.marks.is_empty() {
                 return None;
-            } else {
-                let last = core::mem::take(&mut self.marks);
-                core::array::from_fn(|i| last.get(i).copied().unwrap_or(0))
-            };
-            self.rest = u64::from_le_bytes(word) & self.every;
-            self.next += WORD;
+            }
+            let (marks, after) = self.marks.split_at(self.marks.len().min(TOGETHER));
+            self.marks = after;
+            let mut bytes = marks.chunks_exact(8);
+            for (i, eight) in (&mut bytes).enumerate() {
+                self.rest |= bit_of_each(core::array::from_fn(|b| eight[b]), self.bits) << (8 * i);
+            }
+            let last = bytes.remainder();
+            let tail = core::array::from_fn(|b| last.get(b).copied().unwrap_or(0));
+            if !last.is_empty() {
+                self.rest |= bit_of_each(tail, self.bits) << (marks.len() - last.len());
+            }
+            self.next += TOGETHER;
         }
-        let byte = self.rest.trailing_zeros() as usize / WORD;
-        self.rest &= !(0xff << (WORD * byte));
-        Some(self.next - WORD + byte)
+        let place = self.rest.trailing_zeros() as usize;
+        self.rest &= self.rest - 1;
+        Some(self.next - TOGETHER + place)
     }
+}
+
+/// One bit for each of eight marks: whether it holds any of `bits`.
+#[inline(always)]
+fn bit_of_each(marks: [u8; 8], bits: u8) -> u64 {
+    const LOWEST: u64 = u64::from_le_bytes([1; 8]);
+    // Bit i from byte i, all meeting in the highest byte.
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let mut held = u64::from_le_bytes(marks) & u64::from_le_bytes([bits; 8]);
+    held |= held >> 4;
+    held |= held >> 2;
+    held |= held >> 1;
+    (held & LOWEST).wrapping_mul(GATHER) >> 56
 }

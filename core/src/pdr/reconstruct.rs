@@ -2,7 +2,7 @@
 
 use super::boundary::Boundary;
 use super::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use super::marks::{SEALED, SMALL, break_high, break_low, is, marked};
+use super::marks::{KIND, any_marked, break_high, break_low, marked};
 use super::merge::least_volume;
 use super::row::{self, Differences, Rate, Three, var};
 use super::state::{Gas, sum};
@@ -141,7 +141,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let (n, padded) = (self.size.n, self.size.padded);
         let any_leaves = row::leaves_physical_set::<R, D>(half, &slope.each_ref().map(|b| &**b), n);
         let asked = self.first_order.map(|f| &f[row.start..][..n]).filter(|f| f.iter().any(|&b| b != 0));
-        let small = marks.filter(|m| m.iter().any(|&b| is(b, SMALL) || is(b, SEALED)));
+        let small = marks.filter(|m| any_marked(m, KIND));
         if !any_leaves && asked.is_none() && small.is_none() {
             return;
         }
@@ -149,7 +149,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
             let leaves = !(stays(0) && stays(D + 1));
             let asked = asked.is_some_and(|f| f[i] != 0);
-            let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], SEALED));
+            let small = small.is_some_and(|m| m[i] & KIND != 0);
             if leaves || asked || small {
                 *fallen += usize::from((leaves || asked) && self.counted.contains(&i));
                 for v in 0..Self::V {
