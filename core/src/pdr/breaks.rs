@@ -18,7 +18,7 @@ use super::sweep::{Row, Sweep};
 use crate::real::Real;
 
 /// Jump faces done side by side.
-const LANES: usize = 8;
+const LANES: usize = 4;
 
 /// Variables of a state in three dimensions.
 const MOST: usize = 5;

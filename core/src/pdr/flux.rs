@@ -67,10 +67,10 @@ impl<R: Real> FaceGas<R> {
         w.pressure * self.inv_gamma_minus_one + R::HALF * w.density * (v[0] * v[0] + tangential)
     }
 
-    /// Total enthalpy per mass.
+    /// Total enthalpy per volume.
     #[inline(always)]
     pub(super) fn enthalpy<const D: usize>(&self, w: &Primitive<R, D>) -> R {
-        (self.energy(w) + w.pressure) / w.density
+        self.energy(w) + w.pressure
     }
 
     /// Speed of sound.

@@ -144,8 +144,7 @@ const STRONG: f64 = 0.6;
 #[inline(always)]
 fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2], gas: &FaceGas<R>) -> R {
     let mach = |w: &Primitive<R, D>| {
-        let u = R::larger(w.velocity[0].abs(), mass_flux.abs() / w.density);
-        u / gas.sound_speed(w)
+        R::larger((w.density * w.velocity[0]).abs(), mass_flux.abs()) / (w.density * gas.sound_speed(w))
     };
     let step = (l.pressure - r.pressure).abs() / R::smaller(l.pressure, r.pressure);
     let strength = R::larger(R::larger(mach(l), mach(r)), step);
@@ -166,12 +165,13 @@ fn acoustic<R: Real, const D: usize>(face: &Carried<R, D>, gas: &FaceGas<R>) -> 
     let (c_l, c_r) = (gas.sound_speed(l), gas.sound_speed(r));
     let mass = |s: usize| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]);
     let (mass_l, mass_r) = (mass(0), mass(1));
-    let (stiff_l, stiff_r) = (c_l / face.ducts[0], c_r / face.ducts[1]);
-    let drive = face.throat[0].pressure - face.throat[1].pressure;
+    // Stiffnesses c/a of the ducts, times both areas.
+    let (stiff_l, stiff_r) = (c_l * face.ducts[1], c_r * face.ducts[0]);
+    let drive = face.ducts[0] * face.ducts[1] * (face.throat[0].pressure - face.throat[1].pressure);
     let common = ((stiff_l * mass_l + stiff_r * mass_r) + drive) / (stiff_l + stiff_r);
     let own = |s: usize, wave: R, change: R| {
         let (w, duct) = (&face.cell[s], face.ducts[s]);
-        let enthalpy = gas.enthalpy(w) + wave * change / (duct * w.density);
+        let enthalpy = (duct * gas.enthalpy(w) + wave * change) / (duct * w.density);
         (duct * relative_impulse(w, face.references[s]) + (w.velocity[0] + wave) * change, common * enthalpy)
     };
     let ((left, energy_l), (right, energy_r)) = (own(0, -c_l, common - mass_l), own(1, c_r, common - mass_r));

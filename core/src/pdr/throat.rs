@@ -87,7 +87,7 @@ impl<R: Real> ThroatGas<R> {
 
     /// The same for several states at once, one per lane.
     ///
-    /// Nearly all lie below choking on the subsonic branch; they take a fixed number of Newton steps side by side, the others
+    /// Nearly all lie below choking on the subsonic branch; they take a fixed number of steps side by side, the others
     /// go one by one. A lane's result does not depend on its neighbours, and gas at rest comes out as it is.
     pub(crate) fn carry_all<const D: usize, const L: usize>(
         &self,
@@ -120,11 +120,11 @@ impl<R: Real> ThroatGas<R> {
     /// Density and temperature ratio of every lane, and whether they hold: subsonic and not close to choking.
     ///
     /// t − 1 = d obeys d + c (1 + d)^-n = A, c = A k². The parabola that osculates the left side at d = 0 gives a start from
-    /// which four Newton steps reach rounding error wherever k² is below 0.95 of the largest that passes (checked for n from
-    /// 3 to 200). Each is written with one division.
+    /// which three of Halley's steps reach rounding error wherever k² is below 0.95 of the largest that passes (checked for n from
+    /// 3 to 63). Each is written with one division.
     #[inline(always)]
     fn subsonic_lanes<const L: usize>(&self, whole: u32, mach_sq: &[R; L], k: &[R; L]) -> ([R; L], [R; L], [bool; L]) {
-        const STEPS: usize = 4;
+        const STEPS: usize = 3;
         let n = self.n;
         let a: [R; L] = core::array::from_fn(|i| mach_sq[i] * self.inv_n);
         let c: [R; L] = core::array::from_fn(|i| a[i] * (k[i] * k[i]));
@@ -134,10 +134,10 @@ impl<R: Real> ThroatGas<R> {
             let largest_c = (R::ONE + a[i]) * self.inv_next * choking[i];
             (mach_sq[i] < R::ONE) & (c[i] < R::from_f64(0.95) * largest_c)
         });
+        let bend: [R; L] = core::array::from_fn(|i| c[i] * (n * (n + R::ONE)));
         let mut d: [R; L] = core::array::from_fn(|i| {
-            let (slope, bend) = (R::ONE - n * c[i], c[i] * (n * (n + R::ONE)));
-            let rest = c[i] - a[i];
-            let root = R::larger(slope * slope - R::TWO * bend * rest, R::ZERO).sqrt();
+            let (slope, rest) = (R::ONE - n * c[i], c[i] - a[i]);
+            let root = R::larger(slope * slope - R::TWO * bend[i] * rest, R::ZERO).sqrt();
             let start = -R::TWO * rest / (slope + root);
             R::smaller(R::larger(start, sonic[i] - R::ONE), a[i])
         });
@@ -145,7 +145,10 @@ impl<R: Real> ThroatGas<R> {
             let powers = whole_powers(core::array::from_fn::<_, L, _>(|i| R::ONE + d[i]), whole);
             d = core::array::from_fn(|i| {
                 let t = R::ONE + d[i];
-                let step = ((d[i] - a[i]) * powers[i] + c[i]) * t / (powers[i] * t - n * c[i]);
+                // Value and slope, times t^n and t^(n + 1).
+                let value = (d[i] - a[i]) * powers[i] + c[i];
+                let slope = powers[i] * t - n * c[i];
+                let step = R::TWO * value * slope * t / (R::TWO * slope * slope - bend[i] * value);
                 R::smaller(d[i] - step, a[i])
             });
         }

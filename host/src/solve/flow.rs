@@ -4,12 +4,12 @@
 //! advances its own slab of layers; the bits of the state are the same for any number of threads.
 
 use rayon::prelude::*;
-use voidage_core::pdr::{marks, medium};
 use voidage_core::pdr::merge;
 use voidage_core::pdr::{
     Boundary, Clusters, Conserved, Drag, Error, Fields, FieldsMut, Gas, Mesh, Porosity, Primitive, Problem, Report,
     Scheme,
 };
+use voidage_core::pdr::{marks, medium};
 use voidage_core::real::Real;
 
 /// One field of conserved variables.
