@@ -83,11 +83,15 @@ impl<R: Real> FaceGas<R> {
     /// Batten et al. eq. (4.13), Einfeldt eq. (4.4).
     #[inline(always)]
     fn speeds<const D: usize>(&self, l: &Primitive<R, D>, r: &Primitive<R, D>) -> (R, R) {
-        let (a_sq_l, a_sq_r) = (self.gamma * l.pressure / l.density, self.gamma * r.pressure / r.density);
-        // The weights √rho_l / (√rho_l + √rho_r) and its mirror image, both times √rho_l + √rho_r: one root instead of two.
-        let mean = R::smaller(l.density * r.density, R::MAX).sqrt();
-        let inv = R::ONE / ((l.density + r.density) + (mean + mean));
-        let (weight_l, weight_r) = ((l.density + mean) * inv, (r.density + mean) * inv);
+        // One root and one division for the weights √rho_l / (√rho_l + √rho_r) and both 1/rho: with m = √(rho_l rho_r) the weight is
+        // (rho_l + m) / (rho_l + rho_r + 2 m), and 1/rho_l = rho_r/m². Where m² leaves the range of the scalar, waves are off, not NaN.
+        let mean = R::smaller(R::larger(l.density * r.density, R::MIN_POSITIVE), R::MAX).sqrt();
+        let all = (l.density + r.density) + (mean + mean);
+        let inv = R::ONE / (mean * all);
+        let (inv_mean, inv_all) = (all * inv, mean * inv);
+        let (weight_l, weight_r) = ((l.density + mean) * inv_all, (r.density + mean) * inv_all);
+        let a_sq_l = (self.gamma * l.pressure) * (r.density * inv_mean * inv_mean);
+        let a_sq_r = (self.gamma * r.pressure) * (l.density * inv_mean * inv_mean);
         let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
         let jump = u_r - u_l;
         let u = weight_l * u_l + weight_r * u_r;

@@ -175,12 +175,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 }
             }
         }
-        let Some(medium) = &self.medium else {
-            for i in 0..n {
-                metric.rate[0][i] = half_dt / mesh.widths[0][i];
-            }
-            return;
-        };
+        let Some(medium) = &self.medium else { return };
         let volume = &medium.porosity.volume[row.start..][..n];
         let inv = &mut metric.spare[..n];
         for i in 0..n {
