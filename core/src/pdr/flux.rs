@@ -83,21 +83,16 @@ impl<R: Real> FaceGas<R> {
     /// Batten et al. eq. (4.13), Einfeldt eq. (4.4).
     #[inline(always)]
     fn speeds<const D: usize>(&self, l: &Primitive<R, D>, r: &Primitive<R, D>) -> (R, R) {
-        // One root and one division for the weights √rho_l / (√rho_l + √rho_r) and both 1/rho: with m = √(rho_l rho_r) the weight is
-        // (rho_l + m) / (rho_l + rho_r + 2 m), and 1/rho_l = rho_r/m². Where m² leaves the range of the scalar, waves are off, not NaN.
-        let mean = R::smaller(R::larger(l.density * r.density, R::MIN_POSITIVE), R::MAX).sqrt();
-        let all = (l.density + r.density) + (mean + mean);
-        let inv = R::ONE / (mean * all);
-        let (inv_mean, inv_all) = (all * inv, mean * inv);
-        let (weight_l, weight_r) = ((l.density + mean) * inv_all, (r.density + mean) * inv_all);
-        let a_sq_l = (self.gamma * l.pressure) * (r.density * inv_mean * inv_mean);
-        let a_sq_r = (self.gamma * r.pressure) * (l.density * inv_mean * inv_mean);
+        let (a_sq_l, a_sq_r) = (self.gamma * l.pressure / l.density, self.gamma * r.pressure / r.density);
+        // The weights √rho_l and √rho_r, both times √rho_l + √rho_r: one root instead of two, and a sum of weights to divide by.
+        let mean = R::smaller(l.density * r.density, R::MAX).sqrt();
+        let (weight_l, weight_r) = (l.density + mean, r.density + mean);
+        let inv = R::ONE / (weight_l + weight_r);
         let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
         let jump = u_r - u_l;
-        let u = weight_l * u_l + weight_r * u_r;
-        let a = ((weight_l * a_sq_l + weight_r * a_sq_r)
-            + self.half_gamma_minus_one * (weight_l * weight_r) * (jump * jump))
-            .sqrt();
+        let u = (weight_l * u_l + weight_r * u_r) * inv;
+        let mixed = (weight_l * a_sq_l + weight_r * a_sq_r) + self.half_gamma_minus_one * mean * (jump * jump);
+        let a = (mixed * inv).sqrt();
         (R::smaller(u_l - a_sq_l.sqrt(), u - a), R::larger(u_r + a_sq_r.sqrt(), u + a))
     }
 }
@@ -143,18 +138,20 @@ impl Solver for Hllc {
         let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
         // Mass swept by the outer waves, Toro eq. (10.37); negative on the left, positive on the right.
         let (swept_l, swept_r) = (l.density * (speed_l - u_l), r.density * (speed_r - u_r));
-        let star = ((r.pressure - l.pressure) + (swept_l * u_l - swept_r * u_r)) / (swept_l - swept_r);
+        let (push, swept) = ((r.pressure - l.pressure) + (swept_l * u_l - swept_r * u_r), swept_l - swept_r);
+        let star = push / swept;
         let p_star = R::HALF * ((l.pressure + swept_l * (star - u_l)) + (r.pressure + swept_r * (star - u_r)));
         let p_star = R::larger(p_star, R::ZERO);
 
-        let from_left = star >= R::ZERO;
+        // S* >= 0, since what is swept is negative. Share and side follow from the push, so that nothing waits for S*.
+        let from_left = push <= R::ZERO;
         let pick = |a: R, b: R| if from_left { a } else { b };
         let speed = pick(R::smaller(speed_l, R::ZERO), R::larger(speed_r, R::ZERO));
         let density = pick(l.density, r.density);
         let velocity: [R; D] = core::array::from_fn(|c| pick(l.velocity[c], r.velocity[c]));
         let pressure = pick(l.pressure, r.pressure);
-        let gap = star - speed;
-        let share = star / gap;
+        let gap = push - speed * swept;
+        let share = push / gap;
         let share = if gap == R::ZERO { R::ONE } else { share };
         let rest = R::ONE - share;
 
