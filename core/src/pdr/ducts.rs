@@ -112,34 +112,33 @@ impl<'a, R: Real> Ducts<'a, R> {
         self.marks[i] & if high { break_high(self.axis) } else { break_low(self.axis) } != 0
     }
 
-    /// An area for each face of a cell: its open fraction, at a jump as told, at a wall that of the wall.
+    /// An area for the low or high face of a cell: its open fraction, at a jump as told, at a wall that of the wall.
     #[inline(always)]
-    fn areas(&self, i: usize, at_jump: impl Fn(R, bool) -> R) -> (R, R) {
-        let (low, high) = self.openings(i);
-        let area = |open: R, high: bool| {
-            let breaks = self.breaks(i, high);
-            if breaks & !(open > R::ZERO) {
-                return self.wall(i);
-            }
-            // Found in any case: a selection costs less than a wrong guess.
-            let jump = at_jump(open, high);
-            if breaks { jump } else { open }
-        };
-        (area(low, false), area(high, true))
+    fn area(&self, i: usize, high: bool, at_jump: impl Fn(R) -> R) -> R {
+        let open = self.face(if high { i + self.stride } else { i });
+        let breaks = self.breaks(i, high);
+        if breaks & !(open > R::ZERO) {
+            return self.wall(i);
+        }
+        // Found in any case: a selection costs less than a wrong guess.
+        let jump = at_jump(open);
+        if breaks { jump } else { open }
     }
 
     /// Areas with which a duct meets the low and high face of its cell: at a jump it goes on behind the face.
     #[inline(always)]
     pub fn sections(&self, i: usize) -> (R, R) {
-        self.areas(i, |_, _| self.duct(i))
+        let duct = |_| self.duct(i);
+        (self.area(i, false, duct), self.area(i, true, duct))
     }
 
     /// Areas that the flux acts on at the low and high face of a cell: at a jump that of the throat.
     #[inline(always)]
     pub fn passages(&self, i: usize) -> (R, R) {
-        self.areas(i, |open, high| {
+        let throat = |high: bool| {
             let (left, right) = self.beside(i, high);
-            throat_area(left, open, right)
-        })
+            move |open: R| throat_area(left, open, right)
+        };
+        (self.area(i, false, throat(false)), self.area(i, true, throat(true)))
     }
 }
