@@ -111,20 +111,6 @@ pub(crate) struct Hllc;
 pub(crate) struct Hlle;
 pub(crate) struct Rusanov;
 
-/// The flux between two states by the chosen solver.
-pub fn flux<R: Real, const D: usize>(
-    solver: Riemann,
-    l: &Primitive<R, D>,
-    r: &Primitive<R, D>,
-    gas: &FaceGas<R>,
-) -> Flux<R, D> {
-    match solver {
-        Riemann::Hllc => Hllc::flux::<R, D, true>(l, r, gas),
-        Riemann::Hlle => Hlle::flux::<R, D, true>(l, r, gas),
-        Riemann::Rusanov => Rusanov::flux::<R, D, true>(l, r, gas),
-    }
-}
-
 impl Solver for Hllc {
     /// Toro sec. 10.4 with the star pressure averaged over both sides, and the flux written as a share of the upwind side
     /// plus a share of the star pressure: F = s (F_K − S U_K) + (1 − s) p* (0, 1, 0, 0, S*), s = S* / (S* − S).

@@ -3,8 +3,7 @@
 //! No flux of the form beta F + p Δbeta converges where the porosity jumps: the Riemann solver takes the change of velocity
 //! that the change of area causes for a sound wave. So at a jump both states are first carried to one common area, the
 //! throat, by the stationary isentropic wave (constant mass flux, total enthalpy and entropy; only the normal velocity
-//! changes); the fluxes follow in [`super::jump`].
-//! The map is lossless; form losses belong in the drag.
+//! changes); the fluxes follow in `jump`. The map is lossless; form losses belong in the drag.
 //!
 //! References: S. Clain, D. Rochette, J. Comput. Phys. 228 (2009) 8214 (regular and jump part of the porosity);
 //! D. Kröner, M. D. Thanh, SIAM J. Numer. Anal. 43 (2005) 796 (stationary waves).
