@@ -36,11 +36,14 @@
 pub mod boundary;
 mod breaks;
 pub mod drag;
+mod ducts;
 mod faces;
 mod finish;
 pub mod flux;
+mod jump;
 pub mod limiter;
 mod line;
+pub mod marks;
 pub mod medium;
 pub mod merge;
 mod reconstruct;

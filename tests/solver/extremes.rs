@@ -2,6 +2,8 @@
 
 use voidage::solve::flow::{Flow, Treatment};
 use voidage_core::pdr::{Boundary, Error, Gas, Primitive};
+use voidage_tests::euler::property::Source;
+use voidage_tests::euler::{Riemann, State};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
 
@@ -48,6 +50,42 @@ fn tiny_cells_cost_at_most_four_times_the_steps() {
             assert!(porous <= 4 * plain, "{tiny}: {porous} {plain}");
         }
     }
+}
+
+/// Error of a shock tube through random slices of open volume, in the length that they leave, against the same of as many cells
+/// without slices.
+fn through_slices(seed: u64) -> f64 {
+    const N: usize = 200;
+    let mut s = Source::seeded(seed);
+    let sliced: Vec<f64> = (0..N).map(|_| if s.unit() < 0.25 { 10f64.powf(-12.0 * s.unit()) } else { 1.0 }).collect();
+    let (left, right) = (State::new(1.0, 0.0, 1.0), State::new(0.125, 0.0, 0.1));
+    let exact = Riemann::new(left, right, 1.4);
+    let error = |open: Vec<f64>| {
+        let width = 1.0 / open.iter().sum::<f64>();
+        let mut flow: Flow<f64, 1> = Flow::uniform([N], [width], IDEAL, [[Boundary::ZeroGradient; 2]]);
+        flow.set_porosity(open.clone(), [vec![1.0; N + 1]], Treatment::default()).unwrap();
+        for i in 0..N {
+            flow.set(i, &if i < N / 2 { left } else { right }.primitive());
+        }
+        flow.run(0.8, 0.2).unwrap();
+        let middle: f64 = open[..N / 2].iter().sum::<f64>() * width;
+        let mut x = 0.0;
+        let mut error = 0.0;
+        for (i, beta) in open.iter().enumerate() {
+            let own = beta * width;
+            error += own * (flow.get(i).density - exact.at((x + 0.5 * own - middle) / 0.2).rho).abs();
+            x += own;
+        }
+        error
+    };
+    error(sliced) / error(vec![1.0; N])
+}
+
+#[test]
+fn tiny_cells_cost_little_accuracy() {
+    let ratios: Vec<f64> = (0..6).map(through_slices).collect();
+    println!("times the error without slices: {ratios:.2?}");
+    assert!(ratios.iter().sum::<f64>() < 4.5 * 6.0 && ratios.iter().all(|&r| r < 6.0), "{ratios:?}");
 }
 
 #[test]

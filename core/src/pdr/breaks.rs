@@ -5,15 +5,20 @@
 //! would stagnate at a pressure wrong by rho c u. At a jump both cells are flat along the axis and the throat map acts.
 
 use super::boundary::Boundary;
-use super::flux::flux;
+use super::ducts::Ducts;
+use super::flux::Solver;
+use super::jump::{JumpFaces, jump_fluxes};
 use super::limiter::{Slope, wall_slope};
-use super::medium::{BREAKS, Medium, break_high, break_low};
-use super::row::{self, Differences, Three};
+use super::marks::{break_high, break_low, marked};
+use super::medium::Medium;
+use super::row::{self, Differences, Three, var};
 use super::state::Primitive;
 use super::step::PressureForm;
 use super::sweep::{Row, Sweep};
-use super::throat::{JumpFace, jump_fluxes};
 use crate::real::Real;
+
+/// Jump faces done side by side.
+const LANES: usize = 4;
 
 /// Variables of a state in three dimensions.
 const MOST: usize = 5;
@@ -49,16 +54,11 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     ) {
         let n = self.size.n;
         let marks = &medium.porosity.marks[row.start..][..n];
-        let bits = break_low(d) | break_high(d);
-        if marks.iter().fold(0, |a, b| a | b) & bits == 0 {
-            return;
-        }
-        for i in (0..n).filter(|&i| marks[i] & bits != 0) {
-            let mut at = row.at;
-            at[0] = i;
-            let (low, high) = medium.openings(d, at);
-            let breaks = [marks[i] & break_low(d) != 0, marks[i] & break_high(d) != 0];
-            if (breaks[0] && low > R::ZERO) || (breaks[1] && high > R::ZERO) {
+        let ducts = medium.ducts(d, row.at, self.periodic[d]);
+        for i in marked(marks, break_low(d) | break_high(d)) {
+            let (low, high) = ducts.openings(i);
+            let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
+            if (breaks[0] & (low > R::ZERO)) | (breaks[1] & (high > R::ZERO)) {
                 (0..Self::V).for_each(|v| out[v * n + i] = R::ZERO);
                 continue;
             }
@@ -119,92 +119,123 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         }
     }
 
-    /// Replaces the fluxes at the broken faces of a row. `broken` tells which of the `m` faces are; `at` names the first.
-    pub(super) fn fluxes_at_breaks(
+    /// Replaces the fluxes at the broken faces of a row, by their places; `at` names the first of the `m` faces.
+    pub(super) fn fluxes_at_breaks<S: Solver>(
         &self,
         medium: &Medium<'_, R, D>,
         d: usize,
         at: [usize; D],
-        broken: impl Fn(usize) -> bool,
-        (left, right): (&[R], &[R]),
+        broken: impl Iterator<Item = usize>,
+        states: [&[R]; 2],
         flux: &mut [R],
         m: usize,
     ) {
-        /// Jump faces done side by side.
-        const LANES: usize = 8;
-        let name = |i: usize| {
+        let ducts = medium.ducts(d, at, self.periodic[d]);
+        let beside = |i: usize| {
             let mut face = at;
             face[0] = i;
-            face
+            medium.beside(d, face, self.periodic[d])
         };
-        let open = |i: usize| medium.porosity.faces[d][medium.mesh.face(d, name(i))];
-        let face_at = |i: usize| {
-            let (area_l, area_r) = medium.ducts(d, name(i), self.periodic[d]);
-            JumpFace::<R, D> {
-                states: [row::face_state(left, m, i), row::face_state(right, m, i)],
-                ducts: [area_l, area_r],
-                face: open(i),
-                references: [left[(D + 2) * m + i], right[(D + 2) * m + i]],
-                troubled: self.first_order.is_some_and(|asked| {
-                    let beside = medium.beside(d, name(i), self.periodic[d]);
-                    beside.iter().flatten().any(|&cell| asked[medium.mesh.index(cell)] != 0)
-                }),
+        let mut group = [0; LANES];
+        let mut count = 0;
+        for i in broken {
+            if !(ducts.face(i) > R::ZERO) {
+                self.wall_flux::<S>(medium, d, beside(i), states, flux, m, i);
+                continue;
             }
-        };
-        for i in (0..m).filter(|&i| broken(i) && !(open(i) > R::ZERO)) {
-            self.wall_flux(medium, d, name(i), &face_at(i), flux, m, i);
+            group[count] = i;
+            count += 1;
+            if count == LANES {
+                self.flux_group::<S>(&ducts, &group, count, beside, states, flux, m);
+                count = 0;
+            }
         }
-        let mut flagged = (0..m).filter(|&i| broken(i) && open(i) > R::ZERO);
-        while let Some(first) = flagged.next() {
+        if count > 0 {
             // A last group of fewer faces repeats its first one.
-            let mut group = [first; LANES];
-            let mut count = 1;
-            for (place, i) in group[1..].iter_mut().zip(&mut flagged) {
-                *place = i;
-                count += 1;
-            }
-            let mut faces = [face_at(first); LANES];
-            for (face, &i) in faces.iter_mut().zip(&group[..count]) {
-                *face = face_at(i);
-            }
-            let fluxes = jump_fluxes(self.problem.scheme.riemann, &faces, &self.face_gas, &self.throat);
-            for (f, &i) in fluxes.iter().zip(&group[..count]) {
-                flux[i] = f.through.mass;
-                flux[m + i] = f.left;
-                for c in 1..D {
-                    flux[(1 + c) * m + i] = f.through.momentum[c];
-                }
-                flux[(D + 1) * m + i] = f.through.energy;
-                flux[(D + 2) * m + i] = f.right;
-            }
+            let first = group[0];
+            group[count..].fill(first);
+            self.flux_group::<S>(&ducts, &group, count, beside, states, flux, m);
         }
     }
 
-    /// Flux at the closed face `i` of a row, which `at` names: nothing passes, and each side is pushed by its mirror image.
-    fn wall_flux(
+    /// Fluxes at the first `count` jump faces of a group.
+    fn flux_group<S: Solver>(
+        &self,
+        ducts: &Ducts<'_, R>,
+        group: &[usize; LANES],
+        count: usize,
+        beside: impl Fn(usize) -> [Option<[usize; D]>; 2],
+        states: [&[R]; 2],
+        flux: &mut [R],
+        m: usize,
+    ) {
+        let gather = |s: usize, v: usize| {
+            let values = var(states[s], v, m);
+            core::array::from_fn(|l| values[group[l]])
+        };
+        let side = |s: usize| Primitive {
+            density: gather(s, 0),
+            velocity: core::array::from_fn(|c| gather(s, 1 + c)),
+            pressure: gather(s, D + 1),
+        };
+        let (mut face, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
+        for l in 0..LANES {
+            face[l] = ducts.face(group[l]);
+            (areas[0][l], areas[1][l]) = ducts.beside(group[l], false);
+        }
+        let mut calm = [R::ONE; LANES];
+        if let Some(asked) = self.first_order {
+            let troubled = |i: usize| beside(i).iter().flatten().any(|&c| asked[self.problem.mesh.index(c)] != 0);
+            calm = group.map(|i| if troubled(i) { R::ZERO } else { R::ONE });
+        }
+        let faces = JumpFaces {
+            states: [side(0), side(1)],
+            ducts: areas,
+            face,
+            references: [gather(0, D + 2), gather(1, D + 2)],
+            calm,
+        };
+        let f = jump_fluxes::<R, S, D, LANES>(&faces, &self.face_gas, &self.throat);
+        let mut scatter = |v: usize, from: &[R; LANES]| {
+            let to = &mut flux[v * m..][..m];
+            for (value, &i) in from.iter().zip(&group[..count]) {
+                to[i] = *value;
+            }
+        };
+        scatter(0, &f.mass);
+        scatter(1, &f.normal[0]);
+        for c in 1..D {
+            scatter(1 + c, &f.momentum[c]);
+        }
+        scatter(D + 1, &f.energy);
+        scatter(D + 2, &f.normal[1]);
+    }
+
+    /// Flux at the closed face `i` of a row, between the cells `beside` it: nothing passes, and each side is pushed by its mirror
+    /// image.
+    fn wall_flux<S: Solver>(
         &self,
         medium: &Medium<'_, R, D>,
         d: usize,
-        at: [usize; D],
-        face: &JumpFace<R, D>,
+        beside: [Option<[usize; D]>; 2],
+        states: [&[R]; 2],
         out: &mut [R],
         m: usize,
         i: usize,
     ) {
-        let beside = medium.beside(d, at, self.periodic[d]);
         let push = |side: usize| {
             let area = beside[side].map_or(R::ZERO, |cell| match self.problem.scheme.pressure {
-                PressureForm::Geometric => medium.wall(d, cell),
+                PressureForm::Geometric => medium.ducts(d, cell, self.periodic[d]).wall(0),
                 PressureForm::Paper => medium.porosity.volume[medium.mesh.index(cell)],
             });
             if !(area > R::ZERO) {
                 return R::ZERO;
             }
-            let w = face.states[side];
+            let w = row::face_state(states[side], m, i);
             let image = Boundary::Wall.ghost(&w, d, side == 1, self.problem.gas);
             let pair: [&Primitive<R, D>; 2] = if side == 0 { [&w, &image] } else { [&image, &w] };
-            let f = flux(self.problem.scheme.riemann, pair[0], pair[1], &self.face_gas);
-            area * (f.momentum[0] - face.references[side])
+            let f = S::flux::<R, D, false>(pair[0], pair[1], &self.face_gas);
+            area * (f.momentum[0] - states[side][(D + 2) * m + i])
         };
         for v in 0..D + 2 {
             out[v * m + i] = R::ZERO;
@@ -212,9 +243,4 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         out[m + i] = push(0);
         out[(D + 2) * m + i] = push(1);
     }
-}
-
-/// Whether any face of any of these cells breaks.
-pub(super) fn any_breaks(marks: &[u8]) -> bool {
-    marks.iter().fold(0, |a, b| a | b) & BREAKS != 0
 }

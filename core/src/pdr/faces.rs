@@ -1,7 +1,7 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
 use super::flux::Solver;
-use super::medium::{break_high, break_low};
+use super::marks::{break_high, break_low, marked};
 use super::report::Report;
 use super::row::{self, Openings, var};
 use super::step::PressureForm;
@@ -64,11 +64,9 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         row::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &self.face_gas, work.flux, m);
         if let Some(medium) = &self.medium {
             let marks = &medium.porosity.marks[row.start..][..n];
-            if marks.iter().fold(0, |a, b| a | b) & (break_low(0) | break_high(0)) != 0 {
-                let broken =
-                    |i: usize| if i < n { marks[i] & break_low(0) != 0 } else { marks[n - 1] & break_high(0) != 0 };
-                self.fluxes_at_breaks(medium, 0, row.at, broken, (work.left, work.right), work.flux, m);
-            }
+            let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
+            let broken = marked(marks, break_low(0)).chain(last);
+            self.fluxes_at_breaks::<S>(medium, 0, row.at, broken, [work.left, work.right], work.flux, m);
         }
         let flux = &*work.flux;
         for (side, i) in [(0, 0), (1, n)] {
@@ -150,10 +148,8 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         row::fluxes::<R, S, D, ENERGY>(left, right, openings, &self.face_gas, flux, n);
         if let Some(medium) = &self.medium {
             let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
-            let marks = &medium.porosity.marks[start..][..n];
-            if marks.iter().fold(0, |a, b| a | b) & bit != 0 {
-                self.fluxes_at_breaks(medium, d, at, |i| marks[i] & bit != 0, (left, right), flux, n);
-            }
+            let broken = marked(&medium.porosity.marks[start..][..n], bit);
+            self.fluxes_at_breaks::<S>(medium, d, at, broken, [left, right], flux, n);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The new states of a row: fluxes summed, drag applied, the next stable rate found.
 
-use super::medium::{BREAKS, SMALL, break_high, break_low, is};
+use super::marks::{SMALL, break_high, break_low, is, marked};
 use super::merge::least_volume;
 use super::report::Report;
 use super::row;
@@ -50,21 +50,16 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 inv[i] = R::ONE / R::larger(volume[i], least_volume());
                 scale[i] = self.dt * inv[i];
             }
+            let marks = &medium.porosity.marks[row.start..][..n];
             for d in 0..D {
-                let (low, high) = self.face_rows(medium, d, row);
+                let ducts = medium.ducts(d, row.at, self.periodic[d]);
+                let (low, high) = ducts.rows(n);
                 let open = &mut metric.open[d][..n];
                 for i in 0..n {
                     open[i] = R::larger(low[i], high[i]) * inv[i];
                 }
-            }
-            let marks = &medium.porosity.marks[row.start..][..n];
-            for i in (0..n).filter(|&i| marks[i] & BREAKS != 0 || is(marks[i], SMALL)) {
-                let mut at = row.at;
-                at[0] = i;
-                for d in 0..D {
-                    if marks[i] & (break_low(d) | break_high(d)) != 0 || is(marks[i], SMALL) {
-                        metric.open[d][i] = self.problem.openness(medium, row.start + i, at, d);
-                    }
+                for i in marked(marks, break_low(d) | break_high(d) | SMALL) {
+                    open[i] = self.problem.openness(&ducts, i);
                 }
             }
             Some(&metric.scale[..n])

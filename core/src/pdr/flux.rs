@@ -67,10 +67,10 @@ impl<R: Real> FaceGas<R> {
         w.pressure * self.inv_gamma_minus_one + R::HALF * w.density * (v[0] * v[0] + tangential)
     }
 
-    /// Total enthalpy per mass.
+    /// Total enthalpy per volume.
     #[inline(always)]
     pub(super) fn enthalpy<const D: usize>(&self, w: &Primitive<R, D>) -> R {
-        (self.energy(w) + w.pressure) / w.density
+        self.energy(w) + w.pressure
     }
 
     /// Speed of sound.
@@ -84,15 +84,15 @@ impl<R: Real> FaceGas<R> {
     #[inline(always)]
     fn speeds<const D: usize>(&self, l: &Primitive<R, D>, r: &Primitive<R, D>) -> (R, R) {
         let (a_sq_l, a_sq_r) = (self.gamma * l.pressure / l.density, self.gamma * r.pressure / r.density);
-        let (root_l, root_r) = (l.density.sqrt(), r.density.sqrt());
-        let inv = R::ONE / (root_l + root_r);
-        let (weight_l, weight_r) = (root_l * inv, root_r * inv);
+        // The weights √rho_l and √rho_r, both times √rho_l + √rho_r: one root instead of two, and a sum of weights to divide by.
+        let mean = R::smaller(l.density * r.density, R::MAX).sqrt();
+        let (weight_l, weight_r) = (l.density + mean, r.density + mean);
+        let inv = R::ONE / (weight_l + weight_r);
         let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
         let jump = u_r - u_l;
-        let u = weight_l * u_l + weight_r * u_r;
-        let a = ((weight_l * a_sq_l + weight_r * a_sq_r)
-            + self.half_gamma_minus_one * (weight_l * weight_r) * (jump * jump))
-            .sqrt();
+        let u = (weight_l * u_l + weight_r * u_r) * inv;
+        let mixed = (weight_l * a_sq_l + weight_r * a_sq_r) + self.half_gamma_minus_one * mean * (jump * jump);
+        let a = (mixed * inv).sqrt();
         (R::smaller(u_l - a_sq_l.sqrt(), u - a), R::larger(u_r + a_sq_r.sqrt(), u + a))
     }
 }
@@ -111,20 +111,6 @@ pub(crate) struct Hllc;
 pub(crate) struct Hlle;
 pub(crate) struct Rusanov;
 
-/// The flux between two states by the chosen solver.
-pub fn flux<R: Real, const D: usize>(
-    solver: Riemann,
-    l: &Primitive<R, D>,
-    r: &Primitive<R, D>,
-    gas: &FaceGas<R>,
-) -> Flux<R, D> {
-    match solver {
-        Riemann::Hllc => Hllc::flux::<R, D, true>(l, r, gas),
-        Riemann::Hlle => Hlle::flux::<R, D, true>(l, r, gas),
-        Riemann::Rusanov => Rusanov::flux::<R, D, true>(l, r, gas),
-    }
-}
-
 impl Solver for Hllc {
     /// Toro sec. 10.4 with the star pressure averaged over both sides, and the flux written as a share of the upwind side
     /// plus a share of the star pressure: F = s (F_K − S U_K) + (1 − s) p* (0, 1, 0, 0, S*), s = S* / (S* − S).
@@ -138,18 +124,20 @@ impl Solver for Hllc {
         let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
         // Mass swept by the outer waves, Toro eq. (10.37); negative on the left, positive on the right.
         let (swept_l, swept_r) = (l.density * (speed_l - u_l), r.density * (speed_r - u_r));
-        let star = ((r.pressure - l.pressure) + (swept_l * u_l - swept_r * u_r)) / (swept_l - swept_r);
+        let (push, swept) = ((r.pressure - l.pressure) + (swept_l * u_l - swept_r * u_r), swept_l - swept_r);
+        let star = push / swept;
         let p_star = R::HALF * ((l.pressure + swept_l * (star - u_l)) + (r.pressure + swept_r * (star - u_r)));
         let p_star = R::larger(p_star, R::ZERO);
 
-        let from_left = star >= R::ZERO;
+        // S* >= 0, since what is swept is negative. Share and side follow from the push, so that nothing waits for S*.
+        let from_left = push <= R::ZERO;
         let pick = |a: R, b: R| if from_left { a } else { b };
         let speed = pick(R::smaller(speed_l, R::ZERO), R::larger(speed_r, R::ZERO));
         let density = pick(l.density, r.density);
         let velocity: [R; D] = core::array::from_fn(|c| pick(l.velocity[c], r.velocity[c]));
         let pressure = pick(l.pressure, r.pressure);
-        let gap = star - speed;
-        let share = star / gap;
+        let gap = push - speed * swept;
+        let share = push / gap;
         let share = if gap == R::ZERO { R::ONE } else { share };
         let rest = R::ONE - share;
 

@@ -2,7 +2,7 @@
 //!
 //! Works on the live axes only: a plane flow has two axes, whichever they are.
 
-use super::throat::throat_area;
+use super::marks::{SEALED, SMALL, break_high, break_low};
 use crate::real::Real;
 
 /// Cells per live axis and their widths; axis 0 runs fastest.
@@ -66,7 +66,7 @@ impl<R: Real, const D: usize> Mesh<'_, R, D> {
     /// Distance between the two faces of a cell along axis `d`.
     #[inline(always)]
     pub fn face_stride(&self, d: usize) -> usize {
-        self.cells()[..d].iter().product()
+        (0..D).filter(|&a| a < d).fold(1, |s, a| s * self.widths[a].len())
     }
 
     /// Volume of a cell, its obstacles included; length or area in fewer dimensions.
@@ -90,34 +90,6 @@ pub struct Porosity<'a, R, const D: usize> {
     pub marks: &'a [u8],
 }
 
-/// The two bits that say what kind of cell it is; none for a plain one.
-pub const KIND: u8 = 3 << 6;
-/// Kind of a cell with no open face: nothing happens there.
-pub const SEALED: u8 = 1 << 6;
-/// Kind of a cell whose own reconstruction stays first order: less open volume than [`SMALL_SHARE`] of its largest face.
-pub const SMALL: u8 = 2 << 6;
-
-/// Whether a mark is of a kind.
-#[inline(always)]
-pub const fn is(mark: u8, kind: u8) -> bool {
-    mark & KIND == kind
-}
-
-/// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall.
-#[inline(always)]
-pub const fn break_low(d: usize) -> u8 {
-    1 << (2 * d)
-}
-
-/// Mark of a break at the high face of axis `d`.
-#[inline(always)]
-pub const fn break_high(d: usize) -> u8 {
-    2 << (2 * d)
-}
-
-/// Marks of breaks at any face.
-pub const BREAKS: u8 = !KIND;
-
 /// A cell counts as small below this share of its largest open face: the share that merging restores, and so the factor
 /// (its inverse) by which the stable time step may shrink. A little less than the share 1/3 of the first cell of a ball (a duct
 /// whose area goes with r²), which needs no neighbour.
@@ -131,70 +103,6 @@ pub(crate) struct Medium<'a, R, const D: usize> {
 }
 
 impl<R: Real, const D: usize> Medium<'_, R, D> {
-    /// Open fractions of the low and high face of a cell along `d`.
-    #[inline(always)]
-    pub fn openings(&self, d: usize, at: [usize; D]) -> (R, R) {
-        let f = self.mesh.face(d, at);
-        let b = self.porosity.faces[d];
-        (b[f], b[f + self.mesh.face_stride(d)])
-    }
-
-    /// Directional duct area of a cell: the larger of its two faces. Not `beta_v`: a cell of tiny volume behind open faces
-    /// is a thin slice, not a narrow duct.
-    #[inline(always)]
-    pub fn duct(&self, d: usize, at: [usize; D]) -> R {
-        let (a, b) = self.openings(d, at);
-        R::larger(a, b)
-    }
-
-    /// Area of the wall that a closed face is to the gas in a cell: the duct goes on up to it. A cell between two walls is as
-    /// wide as its open volume; a sealed one feels none.
-    #[inline(always)]
-    pub fn wall(&self, d: usize, at: [usize; D]) -> R {
-        if is(self.porosity.marks[self.mesh.index(at)], SEALED) { R::ZERO } else { self.width(d, at) }
-    }
-
-    /// The same of a cell that is known to be open.
-    fn width(&self, d: usize, at: [usize; D]) -> R {
-        R::larger(self.duct(d, at), self.porosity.volume[self.mesh.index(at)])
-    }
-
-    /// Areas with which the duct of a cell along `d` meets its low and high face: their open fractions, at a jump that of the
-    /// duct, which goes on behind it, and at a wall that of the wall.
-    pub fn sections(&self, d: usize, at: [usize; D]) -> (R, R) {
-        let mark = self.porosity.marks[self.mesh.index(at)];
-        let (low, high) = self.openings(d, at);
-        let section = |open: R, breaks: bool| {
-            if !breaks {
-                open
-            } else if open > R::ZERO {
-                R::larger(low, high)
-            } else {
-                self.wall(d, at)
-            }
-        };
-        (section(low, mark & break_low(d) != 0), section(high, mark & break_high(d) != 0))
-    }
-
-    /// Areas that the flux acts on at the low and high face of a cell along `d`: at a jump the throat, at a wall the wall.
-    pub fn passages(&self, d: usize, at: [usize; D], periodic: bool) -> (R, R) {
-        let mark = self.porosity.marks[self.mesh.index(at)];
-        let (low, high) = self.openings(d, at);
-        let passage = |open: R, breaks: bool, face: [usize; D]| {
-            if !breaks {
-                open
-            } else if open > R::ZERO {
-                let (left, right) = self.ducts(d, face, periodic);
-                throat_area(left, open, right)
-            } else {
-                self.wall(d, at)
-            }
-        };
-        let mut above = at;
-        above[d] += 1;
-        (passage(low, mark & break_low(d) != 0, at), passage(high, mark & break_high(d) != 0, above))
-    }
-
     /// The cells below and above the low face of `at` along `d`, where `at[d]` may be one past the end.
     pub fn beside(&self, d: usize, at: [usize; D], periodic: bool) -> [Option<[usize; D]>; 2] {
         let n = self.mesh.cells()[d];
@@ -206,39 +114,6 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         let around = |k: usize| periodic.then(|| cell(k));
         let (i, above) = (at[d], at[d] < n);
         [if i > 0 { Some(cell(i - 1)) } else { around(n - 1) }, if above { Some(cell(i)) } else { around(0) }]
-    }
-
-    /// The two duct areas at the low face of `at` along `d`, where `at[d]` may be one past the end. Beyond the domain stands
-    /// the cell on the other side if the axis is periodic, else a copy of the inner cell.
-    pub fn ducts(&self, d: usize, at: [usize; D], periodic: bool) -> (R, R) {
-        let n = self.mesh.cells()[d];
-        let (i, stride, b) = (at[d], self.mesh.face_stride(d), self.porosity.faces[d]);
-        let face = self.mesh.face(d, at);
-        let inner = b[face];
-        // Inside, both cells share this face: only the outer face of each is still to be read.
-        if i > 0 && i < n {
-            return (R::larger(b[face - stride], inner), R::larger(inner, b[face + stride]));
-        }
-        let cell = |k: usize| {
-            let mut c = at;
-            c[d] = k;
-            self.duct(d, c)
-        };
-        let left = if i > 0 {
-            i - 1
-        } else if periodic {
-            n - 1
-        } else {
-            0
-        };
-        let right = if i < n {
-            i
-        } else if periodic {
-            0
-        } else {
-            n - 1
-        };
-        (cell(left), cell(right))
     }
 }
 
@@ -270,17 +145,19 @@ pub fn mark<R: Real, const D: usize>(
     marks: &mut [u8],
 ) {
     let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
-    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| R::larger(w, medium.duct(d, at)));
+    let ducts = |d: usize, at: [usize; D]| medium.ducts(d, at, periodic[d]);
+    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| R::larger(w, ducts(d, at).duct(0)));
     for cell in 0..marks.len() {
         let at = mesh.coordinates(cell);
         let mut bits = 0;
         for d in 0..D {
-            let (low, high) = medium.openings(d, at);
+            let own = ducts(d, at);
+            let (low, high) = own.openings(0);
             let mut above = at;
             above[d] += 1;
             for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
-                let (left, right) = medium.ducts(d, face, periodic[d]);
-                let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(medium.width(d, *c), threshold);
+                let (left, right) = own.beside(0, bit == break_high(d));
+                let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
                 let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
                 if closed || is_jump(left, open, right, threshold) {
                     bits |= bit;

@@ -1,9 +1,8 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
 use super::boundary::Boundary;
-use super::breaks::any_breaks;
 use super::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use super::medium::{BREAKS, Medium, SEALED, SMALL, break_high, break_low, is};
+use super::marks::{KIND, any_marked, break_high, break_low, marked};
 use super::merge::least_volume;
 use super::row::{self, Differences, Rate, Three, var};
 use super::state::{Gas, sum};
@@ -142,7 +141,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let (n, padded) = (self.size.n, self.size.padded);
         let any_leaves = row::leaves_physical_set::<R, D>(half, &slope.each_ref().map(|b| &**b), n);
         let asked = self.first_order.map(|f| &f[row.start..][..n]).filter(|f| f.iter().any(|&b| b != 0));
-        let small = marks.filter(|m| m.iter().any(|&b| is(b, SMALL) || is(b, SEALED)));
+        let small = marks.filter(|m| any_marked(m, KIND));
         if !any_leaves && asked.is_none() && small.is_none() {
             return;
         }
@@ -150,7 +149,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
             let leaves = !(stays(0) && stays(D + 1));
             let asked = asked.is_some_and(|f| f[i] != 0);
-            let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], SEALED));
+            let small = small.is_some_and(|m| m[i] & KIND != 0);
             if leaves || asked || small {
                 *fallen += usize::from((leaves || asked) && self.counted.contains(&i));
                 for v in 0..Self::V {
@@ -176,19 +175,14 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 }
             }
         }
-        let Some(medium) = &self.medium else {
-            for i in 0..n {
-                metric.rate[0][i] = half_dt / mesh.widths[0][i];
-            }
-            return;
-        };
+        let Some(medium) = &self.medium else { return };
         let volume = &medium.porosity.volume[row.start..][..n];
         let inv = &mut metric.spare[..n];
         for i in 0..n {
             inv[i] = R::ONE / R::larger(volume[i], least_volume());
         }
         for d in 0..D {
-            let (low, high) = self.face_rows(medium, d, row);
+            let (low, high) = medium.ducts(d, row.at, self.periodic[d]).rows(n);
             let (rate, widening) = (&mut metric.rate[d][..n], &mut metric.widening[d][..n]);
             let across = if d == 0 { R::ZERO } else { half_dt / mesh.widths[d][row.at[d]] };
             let widths = &mesh.widths[0][..n];
@@ -206,29 +200,15 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             }
         }
         let marks = &medium.porosity.marks[row.start..][..n];
-        if !any_breaks(marks) {
-            return;
-        }
-        for i in (0..n).filter(|&i| marks[i] & BREAKS != 0) {
-            let mut at = row.at;
-            at[0] = i;
-            for d in 0..D {
-                if marks[i] & (break_low(d) | break_high(d)) != 0 {
-                    let (low, high) = medium.sections(d, at);
-                    let scale = half_dt / mesh.widths[d][at[d]];
-                    metric.rate[d][i] = R::HALF * (low + high) * metric.spare[i] * scale;
-                    metric.widening[d][i] = (high - low) * metric.spare[i] * scale;
-                }
+        for d in 0..D {
+            let ducts = medium.ducts(d, row.at, self.periodic[d]);
+            for i in marked(marks, break_low(d) | break_high(d)) {
+                let (low, high) = ducts.sections(i);
+                let scale = half_dt / mesh.widths[d][row.at[d] + if d == 0 { i } else { 0 }];
+                metric.rate[d][i] = R::HALF * (low + high) * metric.spare[i] * scale;
+                metric.widening[d][i] = (high - low) * metric.spare[i] * scale;
             }
         }
-    }
-
-    /// The rows of open fractions on the low and high faces of axis `d`.
-    pub(super) fn face_rows<'m>(&self, medium: &Medium<'m, R, D>, d: usize, row: Row<D>) -> (&'m [R], &'m [R]) {
-        let start = medium.mesh.face(d, row.at);
-        let b = medium.porosity.faces[d];
-        let n = self.size.n;
-        (&b[start..][..n], &b[start + medium.mesh.face_stride(d)..][..n])
     }
 
     /// Drag over the half step: slows the half state and heats it.

@@ -82,7 +82,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let open = match &self.medium {
                 None => R::ONE,
                 Some(medium) => {
-                    let (low, high) = medium.openings(d, at);
+                    let (low, high) = medium.ducts(d, at, self.periodic[d]).openings(0);
                     if side == 0 { low } else { high }
                 }
             };

@@ -43,6 +43,25 @@ pub struct Primitive<R, const D: usize> {
     pub pressure: R,
 }
 
+impl<R: Copy, const D: usize, const L: usize> Primitive<[R; L], D> {
+    /// One of several states side by side.
+    #[inline(always)]
+    pub(crate) fn lane(&self, i: usize) -> Primitive<R, D> {
+        let velocity = core::array::from_fn(|c| self.velocity[c][i]);
+        Primitive { density: self.density[i], velocity, pressure: self.pressure[i] }
+    }
+
+    /// Writes one of them.
+    #[inline(always)]
+    pub(crate) fn set_lane(&mut self, i: usize, w: &Primitive<R, D>) {
+        self.density[i] = w.density;
+        for c in 0..D {
+            self.velocity[c][i] = w.velocity[c];
+        }
+        self.pressure[i] = w.pressure;
+    }
+}
+
 /// Pore averages that the equations conserve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conserved<R, const D: usize> {

@@ -1,10 +1,11 @@
 //! The problem: mesh, gas, boundaries, porosity, drag and the choices of the scheme; and one slab of one step.
 use super::boundary::Boundary;
 use super::drag::Drag;
+use super::ducts::Ducts;
 use super::flux::{FaceGas, Hllc, Hlle, Riemann, Rusanov};
 use super::limiter::Limiter;
 use super::line;
-use super::medium::{Medium, Mesh, Porosity, SMALL, SMALL_SHARE, break_high, break_low, is};
+use super::medium::{Medium, Mesh, Porosity, SMALL_SHARE};
 use super::merge::{self, Clusters, least_volume};
 use super::report::Report;
 use super::state::{Conserved, Fields, FieldsMut, Gas, sum};
@@ -217,22 +218,26 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             let t = (w.velocity[d].abs() + c) / self.mesh.widths[d][at[d]];
             match self.porosity {
                 None => t,
-                Some(porosity) => t * self.openness(&Medium { mesh: self.mesh, porosity }, cell, at, d),
+                Some(porosity) => {
+                    let medium = Medium { mesh: self.mesh, porosity };
+                    let periodic = self.boundaries[d][0] == Boundary::Periodic;
+                    t * self.openness(&medium.ducts(d, at, periodic), 0)
+                }
             }
         }))
     }
 
-    /// Open area over open volume of a cell along `d`, as far as it limits the step.
-    pub(super) fn openness(&self, medium: &Medium<'_, R, D>, cell: usize, at: [usize; D], d: usize) -> R {
-        let marks = medium.porosity.marks[cell];
-        let periodic = self.boundaries[d][0] == Boundary::Periodic;
-        let (low, high) = medium.passages(d, at, periodic);
-        let passage = R::larger(low, high);
-        let ratio = passage / R::larger(medium.porosity.volume[cell], least_volume());
-        let merged = is(marks, SMALL) && !self.clusters.0.is_empty();
+    /// Open area over open volume of a cell along the axis of its ducts, as far as it limits the step.
+    #[inline(always)]
+    pub(super) fn openness(&self, ducts: &Ducts<'_, R>, i: usize) -> R {
+        let (low, high) = ducts.passages(i);
+        let ratio = R::larger(low, high) / R::larger(ducts.volume(i), least_volume());
+        if self.clusters.0.is_empty() || !ducts.is_small(i) {
+            return ratio;
+        }
         // A cluster holds its share of the volume that its widest face asks for; a throat may be wider than its face.
-        let widening = if marks & (break_low(d) | break_high(d)) != 0 { R::TWO } else { R::ONE };
-        if merged { R::smaller(ratio, widening * R::from_f64(1.0 / SMALL_SHARE)) } else { ratio }
+        let widening = if ducts.breaks(i, false) || ducts.breaks(i, true) { R::TWO } else { R::ONE };
+        R::smaller(ratio, widening * R::from_f64(1.0 / SMALL_SHARE))
     }
 
     /// Largest signal rate of a field, for the first step; refuses an unphysical cell.

@@ -55,7 +55,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let s = self.size;
         let mut work = Work::new(s, scratch);
         for i in 0..s.n {
-            work.metric.inv_width[i] = R::ONE / self.problem.mesh.widths[0][i];
+            let width = self.problem.mesh.widths[0][i];
+            work.metric.inv_width[i] = R::ONE / width;
+            // In a porous medium each row has its own.
+            work.metric.rate[0][i] = R::HALF * self.dt / width;
         }
         let mut report = Report::new();
         if D == 1 {

@@ -4,12 +4,12 @@
 //! advances its own slab of layers; the bits of the state are the same for any number of threads.
 
 use rayon::prelude::*;
-use voidage_core::pdr::medium;
 use voidage_core::pdr::merge;
 use voidage_core::pdr::{
     Boundary, Clusters, Conserved, Drag, Error, Fields, FieldsMut, Gas, Mesh, Porosity, Primitive, Problem, Report,
     Scheme,
 };
+use voidage_core::pdr::{marks, medium};
 use voidage_core::real::Real;
 
 /// One field of conserved variables.
@@ -203,7 +203,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
             let views = faces.each_ref().map(|f| f.as_slice());
             let mut marks = vec![0; n];
             medium::mark(&mesh, &volume, &views, periodic, treatment.jump, &mut marks);
-            if !treatment.merge || !marks.iter().any(|&m| medium::is(m, medium::SMALL)) {
+            if !treatment.merge || !marks.iter().any(|&m| marks::is(m, marks::SMALL)) {
                 break (marks, Vec::new());
             }
             let mut parent = vec![0; n];
@@ -244,14 +244,14 @@ impl<R: Real, const D: usize> Flow<R, D> {
                 group.clone().for_each(|cell| clustered[cell] = true);
                 examine(&mut group.clone());
             }
-            for cell in (0..n).filter(|&c| medium::is(marks[c], medium::SMALL) && !clustered[c]) {
+            for cell in (0..n).filter(|&c| marks::is(marks[c], marks::SMALL) && !clustered[c]) {
                 examine(&mut std::iter::once(cell));
             }
             if outside.is_empty() {
                 // What found no company (a periodic axis of one cell) limits the step like any other cell.
                 for (mark, _) in marks.iter_mut().zip(&clustered).filter(|(_, clustered)| !**clustered) {
-                    if medium::is(*mark, medium::SMALL) {
-                        *mark &= !medium::KIND;
+                    if marks::is(*mark, marks::SMALL) {
+                        *mark &= !marks::KIND;
                     }
                 }
                 break (marks, clusters);
@@ -305,8 +305,8 @@ impl<R: Real, const D: usize> Flow<R, D> {
             let jumps = |d: usize, bit: u8, face: usize| marks & bit != 0 && space.faces[d][face] > R::ZERO;
             let of_axis = |d: usize| {
                 let low = mesh.face(d, at);
-                let high = at[d] + 1 == cells[d] && jumps(d, medium::break_high(d), low + mesh.face_stride(d));
-                usize::from(jumps(d, medium::break_low(d), low)) + usize::from(high)
+                let high = at[d] + 1 == cells[d] && jumps(d, marks::break_high(d), low + mesh.face_stride(d));
+                usize::from(jumps(d, marks::break_low(d), low)) + usize::from(high)
             };
             (0..D).map(of_axis).sum::<usize>()
         };
