@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 use voidage::cli::{Cli, Command};
 use voidage::error::{Error, Result};
-use voidage::progress::print;
+use voidage::progress::{print, visible};
 use voidage::{inspect, interrupt, run, solve, study};
 
 fn main() -> ExitCode {
@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     match execute(Cli::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("error: {}", visible(&error.to_string()));
             ExitCode::from(match error.usage {
                 _ if interrupt::asked() => 130,
                 true => 2,

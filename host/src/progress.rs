@@ -19,6 +19,13 @@ pub fn print(bytes: &[u8]) -> Result<()> {
     }
 }
 
+/// A sentence as a terminal may see it: control characters, which names in files may hold, are spelled out.
+#[must_use]
+pub fn visible(sentence: &str) -> String {
+    let shown = |c: char| if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() };
+    sentence.chars().map(shown).collect()
+}
+
 /// Messages to the terminal, warnings collected, stages timed.
 #[derive(Debug)]
 pub struct Progress {
@@ -48,7 +55,7 @@ impl Progress {
     pub fn warn(&mut self, sentence: impl Into<String>) {
         let sentence = sentence.into();
         if !self.quiet {
-            eprintln!("warning: {sentence}");
+            eprintln!("warning: {}", visible(&sentence));
         }
         self.warnings.push(sentence);
     }
@@ -57,7 +64,7 @@ impl Progress {
     pub fn say(&self, sentence: impl AsRef<str>) {
         if !self.quiet {
             // A reader that closes early (head) is no failure.
-            let _ = writeln!(std::io::stdout(), "{}", sentence.as_ref());
+            let _ = writeln!(std::io::stdout(), "{}", visible(sentence.as_ref()));
         }
     }
 

@@ -269,6 +269,21 @@ fn npy_data_are_aligned_for_any_shape() {
     }
 }
 
+/// A directory made for arrays that then cannot be written goes away again; one that was there stays.
+#[test]
+fn npy_leaves_no_empty_directory_behind() {
+    let dir = Dir::new("new-directory");
+    let arrays = [("no/such/place".to_owned(), [1, 1, 1], &[0.5][..])];
+    for there in [false, true] {
+        let directory = dir.file(if there { "old" } else { "new" });
+        if there {
+            fs::create_dir(&directory).expect("a directory");
+        }
+        npy::write_all(&directory, &arrays).expect_err("no such place");
+        assert_eq!(directory.exists(), there);
+    }
+}
+
 #[test]
 fn npy_round_trip_keeps_every_bit() {
     let dir = Dir::new("npy");

@@ -234,6 +234,23 @@ fn a_target_that_cannot_be_written_is_named() {
     assert!(out.names().is_empty());
 }
 
+/// Before any work: the mesh, which is missing, is not even looked for.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_directory_that_takes_no_file_is_found_first() {
+    let output = voidage(&[&"porosity", &"missing.stl", &"--cells", &"4x4x4", &"-o", &"/proc/place.vtr"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("/proc/place.vtr") && !said.contains("missing.stl"), "{said}");
+}
+
+#[test]
+fn control_characters_of_names_do_not_reach_the_terminal() {
+    let output = voidage(&[&"porosity", &"red\u{1b}[31m.stl", &"--cells", &"4x4x4"]);
+    let said = stderr(&output);
+    assert!(said.contains("red\\u{1b}[31m.stl") && !said.contains('\u{1b}'), "{said:?}");
+}
+
 /// Killed at any moment, a run leaves either no file of the final name or a whole one.
 #[test]
 #[cfg(unix)]

@@ -47,8 +47,18 @@ pub fn together(paths: &[PathBuf], write: impl Fn(usize, &mut dyn Write) -> io::
 /// Can a file be put at `path`? Asked before long work, so that the answer does not come after it.
 ///
 /// # Errors
-/// The target is a directory or read-only, or there is no directory to hold it.
+/// The target is a directory or read-only, there is no directory to hold it, or none that takes a new file.
 pub fn check_target(path: &Path) -> Result<()> {
+    has_place(path)?;
+    if fs::metadata(path).is_ok_and(|old| !old.is_file()) {
+        return Ok(());
+    }
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    Temporary::create(directory(&target)).map(drop).map_err(|cause| Error::io(path, "create", &cause))
+}
+
+/// A directory holds or may hold a file at `path`, and nothing that must stay is there.
+fn has_place(path: &Path) -> Result<()> {
     if let Ok(old) = fs::metadata(path) {
         if old.is_dir() {
             return Err(Error::file(path, "cannot write: it is a directory"));
@@ -70,7 +80,7 @@ fn directory(path: &Path) -> &Path {
 
 /// Write a temporary beside the target; nothing is left to do if the target is no regular file.
 fn beside(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<Option<Finished>> {
-    check_target(path)?;
+    has_place(path)?;
     let failed = |doing| move |cause: io::Error| Error::io(path, doing, &cause);
     let old = fs::metadata(path).ok();
     if old.as_ref().is_some_and(|old| !old.is_file()) {
