@@ -53,8 +53,14 @@ pub fn check_target(path: &Path) -> Result<()> {
     if fs::metadata(path).is_ok_and(|old| !old.is_file()) {
         return Ok(());
     }
+    temporary_for(path).map(drop)
+}
+
+/// A temporary beside the target, links followed.
+fn temporary_for(path: &Path) -> Result<(PathBuf, Temporary, File)> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    Temporary::create(directory(&target)).map(drop).map_err(|cause| Error::io(path, "create", &cause))
+    let (temporary, file) = Temporary::create(directory(&target)).map_err(|cause| Error::io(path, "create", &cause))?;
+    Ok((target, temporary, file))
 }
 
 /// A directory holds or may hold a file at `path`, and nothing that must stay is there.
@@ -87,8 +93,7 @@ fn beside(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()
         let file = OpenOptions::new().write(true).open(path).map_err(failed("open"))?;
         return fill(file, write).map(|()| None).map_err(failed("write"));
     }
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let (temporary, file) = Temporary::create(directory(&target)).map_err(failed("create"))?;
+    let (target, temporary, file) = temporary_for(path)?;
     fill(file, write).map_err(failed("write"))?;
     if let Some(old) = old {
         fs::set_permissions(&temporary.path, old.permissions()).map_err(failed("keep its permissions"))?;

@@ -32,10 +32,10 @@ pub fn write(path: &Path, shape: [usize; 3], data: &[f64]) -> Result<()> {
 /// # Errors
 /// The directory cannot be made, or as [`write()`].
 pub fn write_all(directory: &Path, arrays: &[(String, [usize; 3], &[f64])]) -> Result<()> {
-    let new = !directory.exists();
-    fs::create_dir_all(directory).map_err(|e| Error::io(directory, "create the directory", &e))?;
     let paths: Vec<_> = arrays.iter().map(|(name, ..)| directory.join(format!("{name}.npy"))).collect();
     paths.iter().zip(arrays).try_for_each(|(path, &(_, shape, data))| check(path, shape, data))?;
+    let new = !directory.exists();
+    fs::create_dir_all(directory).map_err(|e| Error::io(directory, "create the directory", &e))?;
     together(&paths, |n, out| write_to(out, arrays[n].1, arrays[n].2)).inspect_err(|_| {
         if new {
             let _ = fs::remove_dir(directory); // it stays if somebody else has put something there
