@@ -81,7 +81,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             |v| &var(flux, v, m)[1..],
             |i| inv[i],
             weight,
-            &mut work.change[0][j * Self::V * n..][..Self::V * n],
+            &mut work.change[0][self.changes(0, j)],
             n,
         );
     }
@@ -178,7 +178,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         at[D - 1] = layer;
         at[d] = j as usize;
         let mut lag = core::mem::take(&mut work.middle);
-        self.cross_below::<S, ENERGY>(d, at, present, j > 0, j as usize, (lag.state, lag.flux), work, report);
+        self.cross_below::<S, ENERGY>(d, at, present, j > 0, (j as usize).saturating_sub(1), (lag.state, lag.flux), work, report);
         core::mem::swap(&mut lag, &mut work.middle);
     }
 
@@ -200,19 +200,19 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let mut lag = core::mem::take(&mut work.last);
         let own = (&mut lag.state[j * f..][..f], &mut lag.flux[j * f..][..f]);
         let differ = l > self.slab.start as isize;
-        self.cross_below::<S, ENERGY>(D - 1, at, present, differ, j + 1, own, work, report);
+        self.cross_below::<S, ENERGY>(D - 1, at, present, differ, j, own, work, report);
         core::mem::swap(&mut lag, &mut work.last);
     }
 
     /// Fluxes through the faces under a row along axis `d` > 0; `at` names the row, `present` tells whether it exists (else the
-    /// boundary does). If `differ`, the changes of the row below follow, at place `place` − 1 of the change block.
+    /// boundary does). If `differ`, the changes of the row below follow, in its layer the row `row_below`.
     fn cross_below<S: Solver, const ENERGY: bool>(
         &self,
         d: usize,
         at: [usize; D],
         present: bool,
         differ: bool,
-        place: usize,
+        row_below: usize,
         (lag_state, lag_flux): (&mut [R], &mut [R]),
         work: &mut Work<'_, R, D>,
         report: &mut Report<R, D>,
@@ -250,7 +250,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 |v| var(high, v, n),
                 |_| inv,
                 weight,
-                &mut work.change[d][(place - 1) * Self::V * n..][..Self::V * n],
+                &mut work.change[d][self.changes(d, row_below)],
                 n,
             );
         }

@@ -42,7 +42,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let n = self.size.n;
         let mesh = &self.problem.mesh;
         let metric = &mut work.metric;
-        let change = core::array::from_fn(|d| &work.change[d][j * Self::V * n..][..Self::V * n]);
+        let change = core::array::from_fn(|d| &work.change[d][self.changes(d, j)]);
         let scale = if let Some(medium) = &self.medium {
             let volume = &medium.porosity.volume[row.start..][..n];
             let (inv, scale) = (&mut metric.spare[..n], &mut metric.scale[..n]);

@@ -76,7 +76,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             let widths = self.problem.mesh.widths[d];
             let gravity = self.problem.gravity[d];
             let out = &mut *work.slope[d];
-            if gravity == R::ZERO && widths.iter().all(|w| *w == widths[0]) {
+            if gravity == R::ZERO && self.even[d] {
                 self.slopes_along::<S>(d, row, three, &Even, compliance, out);
             } else {
                 let place = if d == 0 { None } else { Some(row.at[d]) };

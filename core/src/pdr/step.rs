@@ -190,6 +190,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             size: Sizes::new(&self.mesh),
             periodic: self.periodic(),
             weighted: self.gravity.iter().any(|&g| g != R::ZERO),
+            even: self.mesh.widths.map(|w| w.iter().all(|x| *x == w[0])),
             first_order,
             face_gas: FaceGas::new(self.gas),
             throat: ThroatGas::new(self.gas),

@@ -31,6 +31,8 @@ pub(super) struct Sweep<'p, R, const D: usize> {
     pub size: Sizes,
     pub periodic: [bool; D],
     pub weighted: bool,
+    /// All cells along an axis have one width.
+    pub even: [bool; D],
     pub first_order: Option<&'p [u8]>,
     pub face_gas: FaceGas<R>,
     pub throat: ThroatGas<R>,
@@ -89,7 +91,6 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 self.load_layer(l - 1, &mut work);
                 self.load_layer(l, &mut work);
             }
-            self.load_layer(l + 1, &mut work);
             let wrapped = l.rem_euclid(n_last) as usize;
             let ghost_rows = isize::from(D == 3 && inside);
             for j in -ghost_rows..rows + ghost_rows {
@@ -101,6 +102,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                     continue;
                 }
                 let jw = j.rem_euclid(rows) as usize;
+                if j < rows {
+                    // Row by row, so that memory delivers while the processor computes.
+                    self.load_row(l + 1, jw, &mut work);
+                }
                 let mut at = [0; D];
                 at[D - 1] = wrapped;
                 if D == 3 {
@@ -133,6 +138,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                     self.cross_row::<S, ENERGY>(row, jw, &mut work, &mut report);
                 }
             }
+            self.load_ghost_rows(l + 1, &mut work);
         }
         report
     }
@@ -146,39 +152,56 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         start..start + len
     }
 
-    /// Primitive variables of a layer with its ghosts. A layer beyond a boundary is made from the layer inside it.
+    /// Where the changes of a row along axis `d` stand in their block.
+    pub(super) fn changes(&self, d: usize, row: usize) -> Range<usize> {
+        let len = Self::V * self.size.n;
+        let row = if d == D - 1 { 0 } else { row };
+        row * len..(row + 1) * len
+    }
+
+    /// Primitive variables of a layer with its ghosts.
     fn load_layer(&self, l: isize, work: &mut Work<'_, R, D>) {
+        for j in 0..self.size.rows {
+            self.load_row(l, j, work);
+        }
+        self.load_ghost_rows(l, work);
+    }
+
+    /// Primitive variables of a row with its ghosts. A layer beyond a boundary is made from the layer inside it.
+    fn load_row(&self, l: isize, j: usize, work: &mut Work<'_, R, D>) {
         let s = self.size;
-        let cells = self.problem.mesh.cells();
-        let n_last = if D == 1 { 1 } else { cells[D - 1] as isize };
+        let n_last = if D == 1 { 1 } else { self.problem.mesh.cells()[D - 1] as isize };
         let ghost = D > 1 && !self.periodic[D - 1] && (l < 0 || l >= n_last);
         let source = if ghost { l.clamp(0, n_last - 1) } else { l.rem_euclid(n_last) } as usize;
-        let pad = usize::from(D == 3);
-        for j in 0..s.rows {
-            let start = (source * s.rows + j) * s.n;
-            let block = &mut work.window[self.block(l, j + pad)];
-            row::primitives(self.problem.gas, self.old, start, block, s.padded);
-            let state = |block: &[R], i: usize| row::face_state::<R, D>(block, s.padded, i);
-            let gas = self.problem.gas;
-            let [low, high] = &self.problem.boundaries[0];
-            let (a, b) = if self.periodic[0] {
-                (state(block, s.n), state(block, 1))
-            } else {
-                (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
-            };
-            row::put_state(block, s.padded, 0, &a);
-            row::put_state(block, s.padded, s.padded - 1, &b);
-            if ghost {
-                self.mirror(block, D - 1, l < 0);
-            }
+        let start = (source * s.rows + j) * s.n;
+        let block = &mut work.window[self.block(l, j + usize::from(D == 3))];
+        row::primitives(self.problem.gas, self.old, start, block, s.padded);
+        let state = |block: &[R], i: usize| row::face_state::<R, D>(block, s.padded, i);
+        let gas = self.problem.gas;
+        let [low, high] = &self.problem.boundaries[0];
+        let (a, b) = if self.periodic[0] {
+            (state(block, s.n), state(block, 1))
+        } else {
+            (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
+        };
+        row::put_state(block, s.padded, 0, &a);
+        row::put_state(block, s.padded, s.padded - 1, &b);
+        if ghost {
+            self.mirror(block, D - 1, l < 0);
         }
-        if D == 3 {
-            for (ghost_row, low) in [(0, true), (s.rows + 1, false)] {
-                let inner = if low != self.periodic[1] { 1 } else { s.rows };
-                work.window.copy_within(self.block(l, inner), self.block(l, ghost_row).start);
-                if !self.periodic[1] {
-                    self.mirror(&mut work.window[self.block(l, ghost_row)], 1, low);
-                }
+    }
+
+    /// The rows beyond the sides of axis 1 of a layer of a 3D mesh.
+    fn load_ghost_rows(&self, l: isize, work: &mut Work<'_, R, D>) {
+        if D < 3 {
+            return;
+        }
+        let rows = self.size.rows;
+        for (ghost_row, low) in [(0, true), (rows + 1, false)] {
+            let inner = if low != self.periodic[1] { 1 } else { rows };
+            work.window.copy_within(self.block(l, inner), self.block(l, ghost_row).start);
+            if !self.periodic[1] {
+                self.mirror(&mut work.window[self.block(l, ghost_row)], 1, low);
             }
         }
     }

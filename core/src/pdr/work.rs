@@ -56,9 +56,15 @@ impl Sizes {
         let row = (D + 1) * v * self.n + 3 * f * self.m;
         let (middle, last) = self.lagged::<D>();
         let lagged = 2 * f * self.n * (middle + last);
-        let changes = self.rows * D * v * self.n;
+        let changes = (0..D).map(|d| self.change_rows::<D>(d) * v * self.n).sum::<usize>();
         let metric = (4 * D + 5) * self.n + 2 * self.m;
         window + row + lagged + changes + metric
+    }
+
+    /// Rows whose changes along axis `d` are kept: those of a layer, until the layer above has come. Along the last axis they are
+    /// used at once.
+    fn change_rows<const D: usize>(&self, d: usize) -> usize {
+        if d == D - 1 { 1 } else { self.rows }
     }
 
     /// Rows of face states and fluxes to be kept for the faces above them: along axis 1 of a 3D mesh, and along the last axis.
@@ -127,7 +133,7 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
             left: arena.take(f * s.m),
             right: arena.take(f * s.m),
             flux: arena.take(f * s.m),
-            change: arena.axes(s.rows * v * s.n),
+            change: core::array::from_fn(|d| arena.take(s.change_rows::<D>(d) * v * s.n)),
             metric: Metric {
                 inv_width: arena.take(s.n),
                 rate: arena.axes(s.n),
