@@ -21,7 +21,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     pub(super) fn cross_row<S: Solver, const ENERGY: bool>(
         &self,
         row: Row<D>,
-        j: usize,
+        j: isize,
         work: &mut Work<'_, R, D>,
         report: &mut Report<R, D>,
     ) {
@@ -81,7 +81,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             |v| &var(flux, v, m)[1..],
             |i| inv[i],
             weight,
-            &mut work.change[0][self.changes(0, j)],
+            &mut work.change[0][self.changes(0, self.place(j))],
             n,
         );
     }
@@ -178,7 +178,9 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         at[D - 1] = layer;
         at[d] = j as usize;
         let mut lag = core::mem::take(&mut work.middle);
-        self.cross_below::<S, ENERGY>(d, at, present, j > 0, (j as usize).saturating_sub(1), (lag.state, lag.flux), work, report);
+        let differ = j > self.rows.start as isize;
+        let below_in_tile = if differ { self.place(j - 1) } else { 0 };
+        self.cross_below::<S, ENERGY>(d, at, present, differ, below_in_tile, (lag.state, lag.flux), work, report);
         core::mem::swap(&mut lag, &mut work.middle);
     }
 
@@ -186,7 +188,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     pub(super) fn cross_last<S: Solver, const ENERGY: bool>(
         &self,
         l: isize,
-        j: usize,
+        j: isize,
         present: bool,
         work: &mut Work<'_, R, D>,
         report: &mut Report<R, D>,
@@ -194,25 +196,26 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let f = Self::F * self.size.n;
         let mut at = [0; D];
         if D == 3 {
-            at[1] = j;
+            at[1] = j as usize;
         }
         at[D - 1] = l as usize;
         let mut lag = core::mem::take(&mut work.last);
-        let own = (&mut lag.state[j * f..][..f], &mut lag.flux[j * f..][..f]);
+        let place = self.place(j);
+        let own = (&mut lag.state[place * f..][..f], &mut lag.flux[place * f..][..f]);
         let differ = l > self.slab.start as isize;
-        self.cross_below::<S, ENERGY>(D - 1, at, present, differ, j, own, work, report);
+        self.cross_below::<S, ENERGY>(D - 1, at, present, differ, place, own, work, report);
         core::mem::swap(&mut lag, &mut work.last);
     }
 
     /// Fluxes through the faces under a row along axis `d` > 0; `at` names the row, `present` tells whether it exists (else the
-    /// boundary does). If `differ`, the changes of the row below follow, in its layer the row `row_below`.
+    /// boundary does). If `differ`, the changes of the row below follow, that row's place in the tile is `below_in_tile`.
     fn cross_below<S: Solver, const ENERGY: bool>(
         &self,
         d: usize,
         at: [usize; D],
         present: bool,
         differ: bool,
-        row_below: usize,
+        below_in_tile: usize,
         (lag_state, lag_flux): (&mut [R], &mut [R]),
         work: &mut Work<'_, R, D>,
         report: &mut Report<R, D>,
@@ -250,7 +253,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 |v| var(high, v, n),
                 |_| inv,
                 weight,
-                &mut work.change[d][self.changes(d, row_below)],
+                &mut work.change[d][self.changes(d, below_in_tile)],
                 n,
             );
         }
@@ -266,9 +269,9 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     }
 
     /// Leaves the high face states of the present row for the layer above it.
-    pub(super) fn keep_last(&self, j: usize, work: &mut Work<'_, R, D>) {
+    pub(super) fn keep_last(&self, j: isize, work: &mut Work<'_, R, D>) {
         let n = self.size.n;
         let from = (&*work.half, &*work.slope[D - 1], &*work.metric.weight[D - 1]);
-        self.states(true, D - 1, from, &mut work.last.state[j * Self::F * n..][..Self::F * n], n, 0);
+        self.states(true, D - 1, from, &mut work.last.state[self.place(j) * Self::F * n..][..Self::F * n], n, 0);
     }
 }

@@ -14,26 +14,26 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     pub(super) fn finish_below<const ENERGY: bool>(
         &self,
         l: isize,
-        j: usize,
+        j: isize,
         work: &mut Work<'_, R, D>,
         new: &mut FieldsMut<'_, R, D>,
         report: &mut Report<R, D>,
     ) {
         let mut at = [0; D];
         if D == 3 {
-            at[1] = j;
+            at[1] = j as usize;
         }
         at[D - 1] = l as usize - 1;
         let row = Row { start: self.problem.mesh.index(at), at };
         let to = row.start - self.slab.start * self.problem.mesh.layer();
-        self.finish::<ENERGY>(row, j, work, new, to, report);
+        self.finish::<ENERGY>(row, self.place(j), work, new, to, report);
     }
 
-    /// New states of a row, drag included; their signal rate and whether they are physical.
+    /// New states of the row at a place of the tile, drag included; their signal rate and whether they are physical.
     pub(super) fn finish<const ENERGY: bool>(
         &self,
         row: Row<D>,
-        j: usize,
+        place: usize,
         work: &mut Work<'_, R, D>,
         new: &mut FieldsMut<'_, R, D>,
         to: usize,
@@ -42,7 +42,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         let n = self.size.n;
         let mesh = &self.problem.mesh;
         let metric = &mut work.metric;
-        let change = core::array::from_fn(|d| &work.change[d][self.changes(d, j)]);
+        let change = core::array::from_fn(|d| &work.change[d][self.changes(d, place)]);
         let scale = if let Some(medium) = &self.medium {
             let volume = &medium.porosity.volume[row.start..][..n];
             let (inv, scale) = (&mut metric.spare[..n], &mut metric.scale[..n]);

@@ -12,7 +12,7 @@ use crate::real::Real;
 
 impl<R: Real, const D: usize> Sweep<'_, R, D> {
     /// Slopes and half-step states of a row of real cells; `l` and `j` say where it stands in the window.
-    pub(super) fn reconstruct(&self, row: Row<D>, l: isize, j: usize, work: &mut Work<'_, R, D>, fallen: &mut usize) {
+    pub(super) fn reconstruct(&self, row: Row<D>, l: isize, j: isize, work: &mut Work<'_, R, D>, fallen: &mut usize) {
         match self.problem.scheme.limiter {
             Limiter::Steep => self.reconstruct_with::<Steep>(row, l, j, work, fallen, true),
             Limiter::MonotonizedCentral => self.reconstruct_with::<MonotonizedCentral>(row, l, j, work, fallen, true),
@@ -27,7 +27,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         &self,
         row: Row<D>,
         l: isize,
-        j: usize,
+        j: isize,
         work: &mut Work<'_, R, D>,
         fallen: &mut usize,
         sloped: bool,
@@ -40,7 +40,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
             work.slope.iter_mut().for_each(|s| s.fill(R::ZERO));
         }
         let marks = self.medium.as_ref().map(|m| &m.porosity.marks[row.start..][..n]);
-        let here = &work.window[self.block(l, j + usize::from(D == 3))];
+        let here = &work.window[self.block(l, j)];
         self.half_step(row, here, &work.slope, &work.metric, work.half);
         if self.problem.drag.is_some() {
             self.drag_half(row, here, work.half);
@@ -49,9 +49,8 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     }
 
     /// Slopes of a row along all axes.
-    fn slopes<S: Slope>(&self, row: Row<D>, l: isize, j: usize, work: &mut Work<'_, R, D>) {
+    fn slopes<S: Slope>(&self, row: Row<D>, l: isize, j: isize, work: &mut Work<'_, R, D>) {
         let (n, padded) = (self.size.n, self.size.padded);
-        let j = j + usize::from(D == 3);
         let here = &work.window[self.block(l, j)];
         let split = S::SPLIT && self.problem.gas.has_energy();
         if split {

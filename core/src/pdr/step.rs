@@ -184,7 +184,15 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         counted: Range<usize>,
         scratch: &mut [R],
     ) -> Report<R, D> {
-        let sweep = Sweep {
+        let run = match (self.gas.has_energy(), self.scheme.riemann) {
+            (true, Riemann::Hllc) => Sweep::run::<Hllc, true>,
+            (true, Riemann::Hlle) => Sweep::run::<Hlle, true>,
+            (true, Riemann::Rusanov) => Sweep::run::<Rusanov, true>,
+            (false, Riemann::Hllc) => Sweep::run::<Hllc, false>,
+            (false, Riemann::Hlle) => Sweep::run::<Hlle, false>,
+            (false, Riemann::Rusanov) => Sweep::run::<Rusanov, false>,
+        };
+        let mut sweep = Sweep {
             problem: self,
             medium: self.porosity.map(|porosity| Medium { mesh: self.mesh, porosity }),
             size: Sizes::new(&self.mesh),
@@ -197,17 +205,13 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             old,
             dt,
             slab,
+            rows: 0..1,
             counted,
         };
-        let run = match (self.gas.has_energy(), self.scheme.riemann) {
-            (true, Riemann::Hllc) => Sweep::run::<Hllc, true>,
-            (true, Riemann::Hlle) => Sweep::run::<Hlle, true>,
-            (true, Riemann::Rusanov) => Sweep::run::<Rusanov, true>,
-            (false, Riemann::Hllc) => Sweep::run::<Hllc, false>,
-            (false, Riemann::Hlle) => Sweep::run::<Hlle, false>,
-            (false, Riemann::Rusanov) => Sweep::run::<Rusanov, false>,
-        };
-        run(&sweep, new, scratch)
+        Sizes::tiles(&self.mesh).fold(Report::new(), |report, rows| {
+            sweep.rows = rows;
+            report.and(&run(&sweep, new, scratch))
+        })
     }
 
     /// Signal rate of one cell, jumps and merging included.

@@ -1,7 +1,8 @@
 //! The sweep of a slab of layers.
 //!
 //! Rows come in storage order. A window of three layers of primitive variables moves along the last axis; the fluxes across
-//! the other axes are differenced when the row above arrives. A cell's new state depends on the old field alone, by the same
+//! the other axes are differenced when the row above arrives. Layers of a 3D mesh are cut into tiles of rows, each swept by
+//! itself, so that what a sweep keeps stays in a cache. A cell's new state depends on the old field alone, by the same
 //! operations wherever the slab is cut, so slabs advanced by any number of threads give the same bits.
 
 use super::flux::{FaceGas, Solver};
@@ -11,7 +12,7 @@ use super::row;
 use super::state::{Fields, FieldsMut};
 use super::step::Problem;
 use super::throat::ThroatGas;
-use super::work::{Sizes, Work};
+use super::work::{ROWS_BESIDE, Sizes, Work};
 use crate::real::Real;
 use core::ops::Range;
 
@@ -39,6 +40,8 @@ pub(super) struct Sweep<'p, R, const D: usize> {
     pub old: &'p Fields<'p, R, D>,
     pub dt: R,
     pub slab: Range<usize>,
+    /// Rows of a layer that are advanced: a tile of a 3D mesh, else the one row.
+    pub rows: Range<usize>,
     /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
     pub counted: Range<usize>,
 }
@@ -64,7 +67,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         }
         let mut report = Report::new();
         if D == 1 {
-            self.load_layer(0, &mut work);
+            self.load_row(0, 0, &mut work);
             let row = Row { start: 0, at: [0; D] };
             self.reconstruct(row, 0, 0, &mut work, &mut report.first_order);
             self.cross_row::<S, ENERGY>(row, 0, &mut work, &mut report);
@@ -73,14 +76,15 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         }
         let n_last = self.problem.mesh.cells()[D - 1] as isize;
         let (lo, hi) = (self.slab.start as isize, self.slab.end as isize);
-        let rows = s.rows as isize;
+        let (first, last) = (self.rows.start as isize, self.rows.end as isize);
+        let held = self.held_rows();
         for l in lo - 1..=hi {
             let outside = l < 0 || l >= n_last;
             let inside = l >= lo && l < hi;
             if outside && !self.periodic[D - 1] {
                 // The ghost of a boundary: no cells, only the face beside the domain.
                 if l == hi {
-                    for j in 0..s.rows {
+                    for j in first..last {
                         self.cross_last::<S, ENERGY>(l, j, false, &mut work, &mut report);
                         self.finish_below::<ENERGY>(l, j, &mut work, new, &mut report);
                     }
@@ -88,94 +92,120 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
                 continue;
             }
             if l == lo - 1 || (l == lo && !self.periodic[D - 1] && lo == 0) {
-                self.load_layer(l - 1, &mut work);
-                self.load_layer(l, &mut work);
+                self.load_rows(l - 1, held.clone(), &mut work);
+                self.load_rows(l, held.clone(), &mut work);
             }
+            let mut to_load = held.start;
             let wrapped = l.rem_euclid(n_last) as usize;
             let ghost_rows = isize::from(D == 3 && inside);
-            for j in -ghost_rows..rows + ghost_rows {
-                let ghost = j < 0 || j >= rows;
-                if ghost && !self.periodic[1 % D] {
-                    if j == rows {
+            for j in first - ghost_rows..last + ghost_rows {
+                let ghost = j < first || j >= last;
+                let beyond = j < 0 || j >= self.all_rows();
+                if beyond && !self.periodic[1 % D] {
+                    if j == last {
                         self.cross_middle::<S, ENERGY>(wrapped, j, false, &mut work, &mut report);
                     }
                     continue;
                 }
-                let jw = j.rem_euclid(rows) as usize;
-                if j < rows {
-                    // Row by row, so that memory delivers while the processor computes.
-                    self.load_row(l + 1, jw, &mut work);
-                }
+                // Row by row, so that memory delivers while the processor computes.
+                self.load_rows(l + 1, to_load..j + 1, &mut work);
+                to_load = j + 1;
                 let mut at = [0; D];
                 at[D - 1] = wrapped;
                 if D == 3 {
-                    at[1] = jw;
+                    at[1] = j.rem_euclid(self.all_rows()) as usize;
                 }
                 let row = Row { start: self.problem.mesh.index(at), at };
                 let counted = inside && !ghost;
                 let mut ignored = 0;
-                self.reconstruct(row, l, jw, &mut work, if counted { &mut report.first_order } else { &mut ignored });
+                self.reconstruct(row, l, j, &mut work, if counted { &mut report.first_order } else { &mut ignored });
                 if !ghost {
                     if l == lo - 1 {
-                        self.keep_last(jw, &mut work);
+                        self.keep_last(j, &mut work);
                     } else {
-                        self.cross_last::<S, ENERGY>(l, jw, true, &mut work, &mut report);
+                        self.cross_last::<S, ENERGY>(l, j, true, &mut work, &mut report);
                         if l > lo {
-                            self.finish_below::<ENERGY>(l, jw, &mut work, new, &mut report);
+                            self.finish_below::<ENERGY>(l, j, &mut work, new, &mut report);
                         }
                         if inside {
-                            self.keep_last(jw, &mut work);
+                            self.keep_last(j, &mut work);
                         }
                     }
                 }
                 if D == 3 && inside {
-                    if j >= 0 {
+                    if j >= first {
                         self.cross_middle::<S, ENERGY>(wrapped, j, true, &mut work, &mut report);
                     }
                     self.keep_middle(&mut work);
                 }
                 if inside && !ghost {
-                    self.cross_row::<S, ENERGY>(row, jw, &mut work, &mut report);
+                    self.cross_row::<S, ENERGY>(row, j, &mut work, &mut report);
                 }
             }
-            self.load_ghost_rows(l + 1, &mut work);
+            self.load_rows(l + 1, to_load..held.end, &mut work);
         }
         report
     }
 
-    /// Where a row of layer `l` stands in the window.
-    pub(super) fn block(&self, l: isize, row: usize) -> Range<usize> {
+    /// Rows of a layer of the whole mesh.
+    fn all_rows(&self) -> isize {
+        if D == 3 { self.problem.mesh.cells()[1] as isize } else { 1 }
+    }
+
+    /// Rows of a layer that the window holds: those of the tile and, in 3D, two more on each side; one beyond a side of the domain.
+    fn held_rows(&self) -> Range<isize> {
+        let (first, last) = (self.rows.start as isize, self.rows.end as isize);
+        if D < 3 {
+            return first..last;
+        }
+        let beside = |at_side: bool| if at_side && !self.periodic[1] { 1 } else { ROWS_BESIDE as isize };
+        first - beside(first == 0)..last + beside(last == self.all_rows())
+    }
+
+    /// Where row `j` of layer `l` stands in the window.
+    pub(super) fn block(&self, l: isize, j: isize) -> Range<usize> {
         let s = self.size;
         let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
+        let row = if D == 3 { (j - self.rows.start as isize) as usize + ROWS_BESIDE } else { 0 };
         let len = Self::V * s.padded;
         let start = (slot * s.rows_padded + row) * len;
         start..start + len
     }
 
-    /// Where the changes of a row along axis `d` stand in their block.
-    pub(super) fn changes(&self, d: usize, row: usize) -> Range<usize> {
+    /// Place of row `j` among those of the tile.
+    pub(super) fn place(&self, j: isize) -> usize {
+        j as usize - self.rows.start
+    }
+
+    /// Where the changes of the row at a place of the tile stand along axis `d`.
+    pub(super) fn changes(&self, d: usize, place: usize) -> Range<usize> {
         let len = Self::V * self.size.n;
-        let row = if d == D - 1 { 0 } else { row };
+        let row = if d == D - 1 { 0 } else { place };
         row * len..(row + 1) * len
     }
 
-    /// Primitive variables of a layer with its ghosts.
-    fn load_layer(&self, l: isize, work: &mut Work<'_, R, D>) {
-        for j in 0..self.size.rows {
+    /// Primitive variables of rows of a layer with their ghosts.
+    fn load_rows(&self, l: isize, rows: Range<isize>, work: &mut Work<'_, R, D>) {
+        for j in rows {
             self.load_row(l, j, work);
         }
-        self.load_ghost_rows(l, work);
     }
 
-    /// Primitive variables of a row with its ghosts. A layer beyond a boundary is made from the layer inside it.
-    fn load_row(&self, l: isize, j: usize, work: &mut Work<'_, R, D>) {
+    /// Primitive variables of a row with its ghosts. A layer or row beyond a boundary is made from that inside it.
+    fn load_row(&self, l: isize, j: isize, work: &mut Work<'_, R, D>) {
         let s = self.size;
-        let n_last = if D == 1 { 1 } else { self.problem.mesh.cells()[D - 1] as isize };
-        let ghost = D > 1 && !self.periodic[D - 1] && (l < 0 || l >= n_last);
-        let source = if ghost { l.clamp(0, n_last - 1) } else { l.rem_euclid(n_last) } as usize;
-        let start = (source * s.rows + j) * s.n;
-        let block = &mut work.window[self.block(l, j + usize::from(D == 3))];
-        row::primitives(self.problem.gas, self.old, start, block, s.padded);
+        let inside = |k: isize, cells: isize, d: usize| {
+            if self.periodic[d] { k.rem_euclid(cells) } else { k.clamp(0, cells - 1) }
+        };
+        let mut at = [0; D];
+        if D > 1 {
+            at[D - 1] = inside(l, self.problem.mesh.cells()[D - 1] as isize, D - 1) as usize;
+        }
+        if D == 3 {
+            at[1] = inside(j, self.all_rows(), 1) as usize;
+        }
+        let block = &mut work.window[self.block(l, j)];
+        row::primitives(self.problem.gas, self.old, self.problem.mesh.index(at), block, s.padded);
         let state = |block: &[R], i: usize| row::face_state::<R, D>(block, s.padded, i);
         let gas = self.problem.gas;
         let [low, high] = &self.problem.boundaries[0];
@@ -186,22 +216,10 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
         };
         row::put_state(block, s.padded, 0, &a);
         row::put_state(block, s.padded, s.padded - 1, &b);
-        if ghost {
-            self.mirror(block, D - 1, l < 0);
-        }
-    }
-
-    /// The rows beyond the sides of axis 1 of a layer of a 3D mesh.
-    fn load_ghost_rows(&self, l: isize, work: &mut Work<'_, R, D>) {
-        if D < 3 {
-            return;
-        }
-        let rows = self.size.rows;
-        for (ghost_row, low) in [(0, true), (rows + 1, false)] {
-            let inner = if low != self.periodic[1] { 1 } else { rows };
-            work.window.copy_within(self.block(l, inner), self.block(l, ghost_row).start);
-            if !self.periodic[1] {
-                self.mirror(&mut work.window[self.block(l, ghost_row)], 1, low);
+        for (d, k) in [(D - 1, l), (1, j)] {
+            let across = d > 0 && (d == D - 1 || D == 3);
+            if across && !self.periodic[d] && (k < 0 || k >= self.problem.mesh.cells()[d] as isize) {
+                self.mirror(block, d, k < 0);
             }
         }
     }

@@ -4,6 +4,7 @@
 use super::line;
 use super::medium::Mesh;
 use crate::real::Real;
+use core::ops::Range;
 
 /// Hands out pieces of one slice.
 struct Arena<'s, R>(&'s mut [R]);
@@ -20,6 +21,18 @@ impl<'s, R: Real> Arena<'s, R> {
     }
 }
 
+/// Rows that a tile of a 3D mesh holds beyond its own on each side.
+pub(super) const ROWS_BESIDE: usize = 2;
+/// Cells of a layer of a tile: what a sweep keeps of them, about 300 bytes a cell, should fit a core's own cache.
+const TILE: usize = 4096;
+/// Rows of a tile at least; two more are reconstructed.
+const LEAST_ROWS: usize = 16;
+
+/// Number of tiles of about equal size for layers of so many rows of `n` cells.
+fn tiles(n: usize, rows: usize) -> usize {
+    rows.div_ceil(LEAST_ROWS.max(TILE / n.max(1))).max(1)
+}
+
 /// Sizes of the pieces of scratch.
 #[derive(Clone, Copy)]
 pub(super) struct Sizes {
@@ -27,7 +40,7 @@ pub(super) struct Sizes {
     pub n: usize,
     pub padded: usize,
     pub m: usize,
-    /// Rows of a layer, and with ghost rows.
+    /// Rows of a tile at most, and with those beside it.
     pub rows: usize,
     pub rows_padded: usize,
     /// Layers of the window.
@@ -38,15 +51,22 @@ impl Sizes {
     pub fn new<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> Self {
         let cells = mesh.cells();
         let n = if line::in_pieces::<D>(cells[0]) { line::PIECE } else { cells[0] };
-        let rows = if D == 3 { cells[1] } else { 1 };
+        let rows = if D == 3 { cells[1].div_ceil(tiles(n, cells[1])) } else { 1 };
         Sizes {
             n,
             padded: n + 2,
             m: n + 1,
             rows,
-            rows_padded: if D == 3 { rows + 2 } else { 1 },
+            rows_padded: if D == 3 { rows + 2 * ROWS_BESIDE } else { 1 },
             layers: if D == 1 { 1 } else { 3 },
         }
+    }
+
+    /// The tiles of a mesh, by their rows.
+    pub fn tiles<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> impl Iterator<Item = Range<usize>> {
+        let cells = mesh.cells();
+        let (count, rows) = if D == 3 { (tiles(cells[0], cells[1]), cells[1]) } else { (1, 1) };
+        (0..count).map(move |k| rows * k / count..rows * (k + 1) / count)
     }
 
     pub fn total<const D: usize>(&self) -> usize {
