@@ -3,96 +3,23 @@
 //! [`Flow`] is the core's [`Problem`] with storage: two fields, porosity and drag, scratch for each thread. Each thread
 //! advances its own slab of layers; the bits of the state are the same for any number of threads.
 
+use super::field::Compensated;
+use super::fractions::Space;
+use super::slabs::step;
 use rayon::prelude::*;
-use voidage_core::pdr::merge;
 use voidage_core::pdr::{
-    Boundary, Clusters, Conserved, Drag, Error, Fields, FieldsMut, Gas, Mesh, Porosity, Primitive, Problem, Report,
-    Scheme,
+    Boundary, Clusters, Conserved, Drag, Error, Gas, Mesh, Porosity, Primitive, Problem, Report, Scheme,
 };
-use voidage_core::pdr::{marks, medium};
 use voidage_core::real::Real;
 
-/// One field of conserved variables.
-#[derive(Clone, Debug)]
-pub struct Field<R, const D: usize> {
-    /// Mass per open volume.
-    pub density: Vec<R>,
-    /// Momentum per open volume.
-    pub momentum: [Vec<R>; D],
-    /// Total energy per open volume; empty for a barotropic gas.
-    pub energy: Vec<R>,
-}
-
-impl<R: Real, const D: usize> Field<R, D> {
-    /// A field of zeros.
-    pub fn new(cells: usize, gas: Gas<R>) -> Self {
-        let zeros = || vec![R::ZERO; cells];
-        Field {
-            density: zeros(),
-            momentum: std::array::from_fn(|_| zeros()),
-            energy: if gas.has_energy() { zeros() } else { Vec::new() },
-        }
-    }
-
-    /// To be read.
-    pub fn view(&self) -> Fields<'_, R, D> {
-        Fields {
-            density: &self.density,
-            momentum: self.momentum.each_ref().map(|m| m.as_slice()),
-            energy: &self.energy,
-        }
-    }
-
-    /// To be written.
-    pub fn view_mut(&mut self) -> FieldsMut<'_, R, D> {
-        FieldsMut {
-            density: &mut self.density,
-            momentum: self.momentum.each_mut().map(|m| m.as_mut_slice()),
-            energy: &mut self.energy,
-        }
-    }
-}
-
-/// Open fractions with what the solver derives from them.
-#[derive(Clone, Debug)]
-struct Space<R, const D: usize> {
-    volume: Vec<R>,
-    faces: [Vec<R>; D],
-    marks: Vec<u8>,
-    clusters: Vec<u32>,
-}
+pub use super::field::Field;
+pub use super::fractions::{Tidied, Treatment};
 
 /// Drag coefficients of all cells; an empty vector stands for zero.
 #[derive(Clone, Debug)]
 struct Resistance<R, const D: usize> {
     quadratic: [Vec<R>; D],
     linear: [Vec<R>; D],
-}
-
-/// How porosity enters: the share of the duct above which a difference counts as a jump, and whether small cells merge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Treatment<R> {
-    /// Differences above this share of the wider duct are jumps and get the throat map; infinity for none.
-    pub jump: R,
-    /// Merge cells of little volume behind open faces. Without it the step shrinks with their volume.
-    pub merge: bool,
-}
-
-impl<R: Real> Default for Treatment<R> {
-    fn default() -> Self {
-        Treatment { jump: R::from_f64(0.1), merge: true }
-    }
-}
-
-/// What [`Flow::set_porosity`] changed in the fractions given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Tidied {
-    /// Cells whose fraction was within a few rounding errors of 0 and became 0.
-    pub dust_cells: usize,
-    /// Faces likewise.
-    pub dust_faces: usize,
-    /// Open faces on the sides of the domain that were closed: too little volume behind them for any step.
-    pub closed_faces: usize,
 }
 
 /// How far a flow has come: with the state and the boundaries, all that it needs to go on to the bit.
@@ -177,91 +104,18 @@ impl<R: Real, const D: usize> Flow<R, D> {
 
     /// Gives the space its open fractions. Fractions within a few rounding errors of 0 (negative ones too) count as 0:
     /// geometry leaves such dust where a cell is closed. Returns what was changed.
+    ///
+    /// # Errors
+    /// An array does not fit the mesh.
     pub fn set_porosity(
         &mut self,
-        mut volume: Vec<R>,
-        mut faces: [Vec<R>; D],
+        volume: Vec<R>,
+        faces: [Vec<R>; D],
         treatment: Treatment<R>,
     ) -> Result<Tidied, Error> {
-        let mut tidied = Tidied {
-            dust_cells: without_dust(&mut volume),
-            dust_faces: faces.iter_mut().map(|f| without_dust(f)).sum(),
-            closed_faces: 0,
-        };
-        let mesh = Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) };
-        let n = mesh.len();
-        let fits = |expected: usize, found: usize| {
-            if expected == found { Ok(()) } else { Err(Error::ShapeMismatch { expected, found }) }
-        };
-        fits(n, volume.len())?;
-        for d in 0..D {
-            fits(mesh.faces(d), faces[d].len())?;
-        }
         let periodic = self.boundaries.map(|b| b[0] == Boundary::Periodic);
-        let cells = mesh.cells();
-        let (marks, clusters) = loop {
-            let views = faces.each_ref().map(|f| f.as_slice());
-            let mut marks = vec![0; n];
-            medium::mark(&mesh, &volume, &views, periodic, treatment.jump, &mut marks);
-            if !treatment.merge || !marks.iter().any(|&m| marks::is(m, marks::SMALL)) {
-                break (marks, Vec::new());
-            }
-            let mut parent = vec![0; n];
-            let mut work = vec![R::ZERO; merge::cluster_scratch(n)];
-            let mut clusters = vec![0; n];
-            let used = merge::clusters(&mesh, &volume, &views, periodic, &mut clusters, &mut parent, &mut work);
-            clusters.truncate(used);
-            clusters.shrink_to_fit();
-            // A cluster that found no more neighbours and is still too small for its faces must not stand open to the
-            // outside: its faces on the sides of the domain are closed.
-            let mut outside: Vec<(usize, usize)> = Vec::new();
-            let mut clustered = vec![false; n];
-            let mut examine = |members: &mut dyn Iterator<Item = usize>| {
-                let (mut held, mut wanted, mut edge) = (R::ZERO, R::ZERO, Vec::new());
-                for cell in members {
-                    let at = mesh.coordinates(cell);
-                    let own = mesh.volume(at);
-                    held += volume[cell] * own;
-                    for d in 0..D {
-                        let low = mesh.face(d, at);
-                        let high = low + mesh.face_stride(d);
-                        for (face, last) in [(low, 0), (high, cells[d] - 1)] {
-                            let open = faces[d][face] * own;
-                            if open > wanted {
-                                wanted = open;
-                            }
-                            if !periodic[d] && at[d] == last && open > R::ZERO {
-                                edge.push((d, face));
-                            }
-                        }
-                    }
-                }
-                if held < R::from_f64(medium::SMALL_SHARE) * wanted {
-                    outside.append(&mut edge);
-                }
-            };
-            for group in Clusters(&clusters).groups() {
-                group.clone().for_each(|cell| clustered[cell] = true);
-                examine(&mut group.clone());
-            }
-            for cell in (0..n).filter(|&c| marks::is(marks[c], marks::SMALL) && !clustered[c]) {
-                examine(&mut std::iter::once(cell));
-            }
-            if outside.is_empty() {
-                // What found no company (a periodic axis of one cell) limits the step like any other cell.
-                for (mark, _) in marks.iter_mut().zip(&clustered).filter(|(_, clustered)| !**clustered) {
-                    if marks::is(*mark, marks::SMALL) {
-                        *mark &= !marks::KIND;
-                    }
-                }
-                break (marks, clusters);
-            }
-            tidied.closed_faces += outside.len();
-            for (d, face) in outside {
-                faces[d][face] = R::ZERO;
-            }
-        };
-        self.space = Some(Space { volume, faces, marks, clusters });
+        let (space, tidied) = Space::new(&self.mesh(), periodic, volume, faces, treatment)?;
+        self.space = Some(space);
         self.rate = None;
         Ok(tidied)
     }
@@ -298,19 +152,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
 
     /// Faces where the porosity jumps and the throat map acts.
     pub fn jump_faces(&self) -> usize {
-        let (mesh, cells) = (self.mesh(), self.cells());
-        let Some(space) = &self.space else { return 0 };
-        let of_cell = |(cell, marks): (usize, &u8)| {
-            let at = mesh.coordinates(cell);
-            let jumps = |d: usize, bit: u8, face: usize| marks & bit != 0 && space.faces[d][face] > R::ZERO;
-            let of_axis = |d: usize| {
-                let low = mesh.face(d, at);
-                let high = at[d] + 1 == cells[d] && jumps(d, marks::break_high(d), low + mesh.face_stride(d));
-                usize::from(jumps(d, marks::break_low(d), low)) + usize::from(high)
-            };
-            (0..D).map(of_axis).sum::<usize>()
-        };
-        space.marks.iter().enumerate().map(of_cell).sum()
+        self.space.as_ref().map_or(0, |s| s.jump_faces(&self.mesh()))
     }
 
     /// Open fractions of the cells, if the space has any.
@@ -567,108 +409,4 @@ impl<R: Real, const D: usize> Flow<R, D> {
         }
         Ok(())
     }
-}
-
-/// A sum that carries what its rounding lost: the balance is wanted to rounding whatever the number of cells.
-struct Compensated<R, const D: usize> {
-    sum: Conserved<R, D>,
-    lost: Conserved<R, D>,
-}
-
-impl<R: Real, const D: usize> Default for Compensated<R, D> {
-    fn default() -> Self {
-        let zero = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
-        Compensated { sum: zero, lost: zero }
-    }
-}
-
-impl<R: Real, const D: usize> Compensated<R, D> {
-    fn add(&mut self, x: &Conserved<R, D>) {
-        let add = |sum: &mut R, lost: &mut R, x: R| {
-            let y = x - *lost;
-            let t = *sum + y;
-            *lost = (t - *sum) - y;
-            *sum = t;
-        };
-        let (sum, lost) = (&mut self.sum, &mut self.lost);
-        add(&mut sum.density, &mut lost.density, x.density);
-        add(&mut sum.energy, &mut lost.energy, x.energy);
-        for c in 0..D {
-            add(&mut sum.momentum[c], &mut lost.momentum[c], x.momentum[c]);
-        }
-    }
-}
-
-/// Sets what is within a few rounding errors of 0, or below, to 0; returns how many were not 0 before.
-fn without_dust<R: Real>(fractions: &mut [R]) -> usize {
-    let dust = R::from_f64(16.0) * R::EPSILON;
-    let mut count = 0;
-    for x in fractions.iter_mut().filter(|x| !(**x > dust)) {
-        count += usize::from(*x != R::ZERO);
-        *x = R::ZERO;
-    }
-    count
-}
-
-/// One step on rayon's threads: slabs side by side, merging, fallback, floors, as [`Problem::step`].
-fn step<R: Real, const D: usize>(
-    problem: &Problem<'_, R, D>,
-    old: &Field<R, D>,
-    new: &mut Field<R, D>,
-    marks: &mut [u8],
-    scratch: &mut Vec<Vec<R>>,
-    dt: R,
-) -> Result<Report<R, D>, Error> {
-    let layers = problem.mesh.cells()[D - 1];
-    // A slab of few layers spends its time on the layers beside it.
-    const LEAST_LAYERS: usize = 6;
-    let threads = rayon::current_num_threads().min(layers / LEAST_LAYERS).max(1);
-    let threads = if D == 1 { 1 } else { threads };
-    while scratch.len() < threads {
-        scratch.push(vec![R::ZERO; problem.scratch_len()]);
-    }
-    let scratch = &mut scratch[..threads];
-    if let [one] = scratch {
-        return problem.step(&old.view(), &mut new.view_mut(), dt, marks, one);
-    }
-    let attempt = |new: &mut Field<R, D>,
-                   scratch: &mut [Vec<R>],
-                   marks: Option<&[u8]>|
-     -> Result<Report<R, D>, Error> {
-        let layer = problem.mesh.layer();
-        let mut rest = new.view_mut();
-        let mut slabs = Vec::with_capacity(threads);
-        let mut begin = 0;
-        for t in 0..threads {
-            let end = layers * (t + 1) / threads;
-            let (slab, above) = rest.split_at((end - begin) * layer);
-            slabs.push((begin..end, slab));
-            rest = above;
-            begin = end;
-        }
-        let reports: Result<Vec<_>, Error> = slabs
-            .into_par_iter()
-            .zip(scratch.par_iter_mut())
-            .map(|((range, mut slab), scratch)| problem.advance_slab(&old.view(), &mut slab, range, dt, marks, scratch))
-            .collect();
-        let mut report = reports?.iter().fold(Report::new(), |a, b| a.and(b));
-        problem.merge(&old.view(), &mut new.view_mut(), &mut report);
-        Ok(report)
-    };
-    let mut report = attempt(new, scratch, None)?;
-    if report.unphysical == 0 {
-        return Ok(report);
-    }
-    marks.fill(0);
-    for _ in 0..voidage_core::pdr::repair::FALLBACKS {
-        if problem.mark_troubled(&new.view(), marks) == 0 {
-            break;
-        }
-        report = attempt(new, scratch, Some(marks))?;
-        if report.unphysical == 0 {
-            return Ok(report);
-        }
-    }
-    problem.apply_floors(&old.view(), &mut new.view_mut(), &mut report);
-    Ok(report)
 }

@@ -1,17 +1,21 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`flow`], the stepper; [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and
-//! [`setup`], from the case to a flow; [`frames`], [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
+//! In reading order: `field`, `fractions` (of the open space), `slabs` (one step on all threads), [`flow`], the stepper;
+//! [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and [`setup`], from the case to a flow; [`frames`],
+//! [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
 
 mod arrays;
 pub mod case;
 pub mod checkpoint;
+mod field;
 pub mod flow;
+mod fractions;
 pub mod frames;
 pub mod inlet;
 pub mod report;
 pub mod run;
 pub mod setup;
+mod slabs;
 pub mod space;
 pub mod state;
 pub mod table;
