@@ -17,3 +17,4 @@ pub mod run;
 pub mod scene;
 pub mod solve;
 pub mod study;
+pub mod values;

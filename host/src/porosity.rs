@@ -10,9 +10,9 @@ mod layers;
 mod levels;
 mod planes;
 mod unions;
-mod values;
 
 use crate::bodies::Bodies;
+pub use crate::values::Values;
 use bins::Bins;
 use clap::ValueEnum;
 use convex::Roads;
@@ -22,7 +22,6 @@ use layers::{Summary, Target, Worker};
 pub use levels::levels;
 use rayon::prelude::*;
 use serde::Serialize;
-pub use values::Values;
 use voidage_core::grid::Grid;
 use voidage_core::subdivide;
 

@@ -1,14 +1,13 @@
 //! The same bits along every axis, mirrored, permuted, over open porosity, for any number of threads, at rest.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::solve::flow::{Flow, Scalar, Treatment};
 use voidage_core::pdr::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
-use voidage_core::real::Real;
 use voidage_tests::euler::property::{Source, bits, porosity, step_stays_physical};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
 
 /// A blast in a line of `m` cells along `axis`, uniform across; density, axial velocity and pressure along it.
-fn line<R: Real, const D: usize>(axis: usize, mirrored: bool) -> Vec<[u64; 3]> {
+fn line<R: Scalar, const D: usize>(axis: usize, mirrored: bool) -> Vec<[u64; 3]> {
     let m = 40;
     let mut n = [2; D];
     n[axis] = m;
@@ -166,7 +165,7 @@ fn layers_in_tiles_give_the_bits_of_one() {
     }
 }
 
-fn rest<R: Real, const D: usize>(seed: u64, gas: Gas<R>, riemann: Riemann) {
+fn rest<R: Scalar, const D: usize>(seed: u64, gas: Gas<R>, riemann: Riemann) {
     let mut s = Source::seeded(seed);
     let n: [usize; D] = std::array::from_fn(|d| 5 + d);
     let (volume, faces) = porosity::<R, D>(&mut s, n);
@@ -214,7 +213,7 @@ fn gas_at_rest_stays_at_rest_to_the_bit_over_random_porosity() {
     }
 }
 
-fn open_equals_plain<R: Real, const D: usize>(form: PressureForm) {
+fn open_equals_plain<R: Scalar, const D: usize>(form: PressureForm) {
     let n: [usize; D] = std::array::from_fn(|d| 9 - d);
     let make = |porous: bool| {
         let mut s = Source::seeded(7);

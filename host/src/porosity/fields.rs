@@ -1,6 +1,6 @@
 //! A value for every cell and face, whole and by layers.
 
-use super::values::Values;
+use crate::values::Values;
 use voidage_core::grid::Grid;
 
 /// A value for every cell and face of a grid, x fastest.

@@ -10,6 +10,7 @@ use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::output::atomically;
 use crate::output::bytes::write_f64;
+use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
@@ -145,7 +146,7 @@ pub fn resume<const D: usize>(path: &Path, case: &Fingerprint, setup: &mut Setup
     }
     let wrong = || Error::file(path, "is damaged: its parts do not fit the case");
     let mut values = values.chunks_exact(8).map(|b| f64::from_le_bytes(std::array::from_fn(|i| b[i])));
-    let mut take = |like: &Vec<f64>| values.by_ref().take(like.len()).collect();
+    let mut take = |like: &Values| Values::from(values.by_ref().take(like.len()).collect::<Vec<_>>());
     let old = &setup.flow.state;
     let density = take(&old.density);
     let momentum = old.momentum.each_ref().map(&mut take);

@@ -1,44 +1,47 @@
 //! A field that owns its memory, and sums over fields.
 
+use crate::values::Values;
 use voidage_core::pdr::{Conserved, Fields, FieldsMut, Gas};
 use voidage_core::real::Real;
 
+/// A number that flows are made of: `f32` or `f64`.
+pub trait Scalar: Real + bytemuck::Pod {}
+
+impl Scalar for f32 {}
+impl Scalar for f64 {}
+
 /// One field of conserved variables.
 #[derive(Clone, Debug)]
-pub struct Field<R, const D: usize> {
+pub struct Field<R: Scalar, const D: usize> {
     /// Mass per open volume.
-    pub density: Vec<R>,
+    pub density: Values<R>,
     /// Momentum per open volume.
-    pub momentum: [Vec<R>; D],
+    pub momentum: [Values<R>; D],
     /// Total energy per open volume; empty for a barotropic gas.
-    pub energy: Vec<R>,
+    pub energy: Values<R>,
 }
 
-impl<R: Real, const D: usize> Field<R, D> {
+impl<R: Scalar, const D: usize> Field<R, D> {
     /// A field of zeros.
     pub fn new(cells: usize, gas: Gas<R>) -> Self {
-        let zeros = || vec![R::ZERO; cells];
+        let zeros = || Values::zeros(cells);
         Field {
             density: zeros(),
             momentum: std::array::from_fn(|_| zeros()),
-            energy: if gas.has_energy() { zeros() } else { Vec::new() },
+            energy: if gas.has_energy() { zeros() } else { Values::default() },
         }
     }
 
     /// To be read.
     pub fn view(&self) -> Fields<'_, R, D> {
-        Fields {
-            density: &self.density,
-            momentum: self.momentum.each_ref().map(|m| m.as_slice()),
-            energy: &self.energy,
-        }
+        Fields { density: &self.density, momentum: self.momentum.each_ref().map(|m| &**m), energy: &self.energy }
     }
 
     /// To be written.
     pub fn view_mut(&mut self) -> FieldsMut<'_, R, D> {
         FieldsMut {
             density: &mut self.density,
-            momentum: self.momentum.each_mut().map(|m| m.as_mut_slice()),
+            momentum: self.momentum.each_mut().map(|m| &mut **m),
             energy: &mut self.energy,
         }
     }

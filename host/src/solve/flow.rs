@@ -6,20 +6,20 @@
 use super::field::Compensated;
 use super::fractions::Space;
 use super::slabs::step;
+use crate::values::Values;
 use rayon::prelude::*;
 use voidage_core::pdr::{
     Boundary, Clusters, Conserved, Drag, Error, Gas, Mesh, Porosity, Primitive, Problem, Report, Scheme,
 };
-use voidage_core::real::Real;
 
-pub use super::field::Field;
+pub use super::field::{Field, Scalar};
 pub use super::fractions::{Tidied, Treatment};
 
 /// Drag coefficients of all cells; an empty vector stands for zero.
 #[derive(Clone, Debug)]
-struct Resistance<R, const D: usize> {
-    quadratic: [Vec<R>; D],
-    linear: [Vec<R>; D],
+struct Resistance<R: Scalar, const D: usize> {
+    quadratic: [Values<R>; D],
+    linear: [Values<R>; D],
 }
 
 /// How far a flow has come: with the state and the boundaries, all that it needs to go on to the bit.
@@ -37,7 +37,7 @@ pub struct Clock<R, const D: usize> {
 
 /// A flow in progress.
 #[derive(Clone, Debug)]
-pub struct Flow<R, const D: usize> {
+pub struct Flow<R: Scalar, const D: usize> {
     widths: [Vec<R>; D],
     gas: Gas<R>,
     /// Low and high side of each axis; may change between steps.
@@ -52,7 +52,7 @@ pub struct Flow<R, const D: usize> {
     pub state: Field<R, D>,
     next: Field<R, D>,
     marks: Vec<u8>,
-    scratch: Vec<Vec<R>>,
+    scratch: Vec<Values<R>>,
     rate: Option<R>,
     /// First steps to take at a fifth of the stable step: a blast starts from states whose speeds the estimate cannot know.
     pub careful_steps: usize,
@@ -72,7 +72,7 @@ const REPEATS: usize = 4;
 /// Share of the stable step that careful steps take.
 const CAREFUL_SHARE: f64 = 0.2;
 
-impl<R: Real, const D: usize> Flow<R, D> {
+impl<R: Scalar, const D: usize> Flow<R, D> {
     /// A flow on cells of the given widths; the state is to be set.
     pub fn new(widths: [Vec<R>; D], gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Self {
         let cells = widths.iter().map(Vec::len).product();
@@ -114,7 +114,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
         treatment: Treatment<R>,
     ) -> Result<Tidied, Error> {
         let periodic = self.boundaries.map(|b| b[0] == Boundary::Periodic);
-        let (space, tidied) = Space::new(&self.mesh(), periodic, volume, faces, treatment)?;
+        let (space, tidied) = Space::new(&self.mesh(), periodic, volume.into(), faces.map(Into::into), treatment)?;
         self.space = Some(space);
         self.rate = None;
         Ok(tidied)
@@ -122,7 +122,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
 
     /// Gives the cells their drag, CR in 1/length and the linear coefficient in 1/time; empty vectors stand for zero.
     pub fn set_drag(&mut self, quadratic: [Vec<R>; D], linear: [Vec<R>; D]) {
-        self.resistance = Some(Resistance { quadratic, linear });
+        self.resistance = Some(Resistance { quadratic: quadratic.map(Into::into), linear: linear.map(Into::into) });
     }
 
     /// Cells along each axis.
@@ -184,7 +184,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// # Errors
     /// The field does not fit.
     pub fn resume(&mut self, state: Field<R, D>, clock: Clock<R, D>) -> Result<(), Error> {
-        let fits = |a: &Vec<R>, b: &Vec<R>| match (a.len(), b.len()) {
+        let fits = |a: &[R], b: &[R]| match (a.len(), b.len()) {
             (expected, found) if expected != found => Err(Error::ShapeMismatch { expected, found }),
             _ => Ok(()),
         };
@@ -200,7 +200,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// Memory of the state and the solver's own, without porosity and drag, in units of one conserved field.
     pub fn memory_ratio(&self) -> f64 {
         let bytes = |f: &Field<R, D>| {
-            (f.density.len() + f.momentum.iter().map(Vec::len).sum::<usize>() + f.energy.len()) * size_of::<R>()
+            (f.density.len() + f.momentum.iter().map(|m| m.len()).sum::<usize>() + f.energy.len()) * size_of::<R>()
         };
         let scratch: usize = self.scratch.iter().map(|s| s.len() * size_of::<R>()).sum();
         (bytes(&self.state) + bytes(&self.next) + self.marks.len() + scratch) as f64 / bytes(&self.state) as f64
@@ -209,7 +209,7 @@ impl<R: Real, const D: usize> Flow<R, D> {
     /// Runs a closure with the problem and the two fields.
     fn with_problem<T>(
         &mut self,
-        f: impl FnOnce(&Problem<'_, R, D>, &Field<R, D>, &mut Field<R, D>, &mut [u8], &mut Vec<Vec<R>>) -> T,
+        f: impl FnOnce(&Problem<'_, R, D>, &Field<R, D>, &mut Field<R, D>, &mut [u8], &mut Vec<Values<R>>) -> T,
     ) -> T {
         let problem = Problem {
             mesh: Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) },
@@ -218,13 +218,13 @@ impl<R: Real, const D: usize> Flow<R, D> {
             scheme: self.scheme,
             porosity: self.space.as_ref().map(|s| Porosity {
                 volume: &s.volume,
-                faces: s.faces.each_ref().map(|f| f.as_slice()),
+                faces: s.faces.each_ref().map(|f| &**f),
                 marks: &s.marks,
             }),
             clusters: Clusters(self.space.as_ref().map_or(&[], |s| &s.clusters)),
             drag: self.resistance.as_ref().map(|r| Drag {
-                quadratic: r.quadratic.each_ref().map(|q| q.as_slice()),
-                linear: r.linear.each_ref().map(|q| q.as_slice()),
+                quadratic: r.quadratic.each_ref().map(|q| &**q),
+                linear: r.linear.each_ref().map(|q| &**q),
             }),
             gravity: self.gravity,
         };

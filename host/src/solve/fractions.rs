@@ -1,14 +1,16 @@
 //! The open fractions of a space made ready for the flow: dust swept out, jumps marked, small cells clustered.
 
+use super::field::Scalar;
+use crate::values::Values;
 use voidage_core::pdr::{Clusters, Error, Mesh, marks, medium, merge};
 use voidage_core::real::Real;
 
 /// Open fractions with what the solver derives from them.
 #[derive(Clone, Debug)]
-pub(super) struct Space<R, const D: usize> {
-    pub volume: Vec<R>,
-    pub faces: [Vec<R>; D],
-    pub marks: Vec<u8>,
+pub(super) struct Space<R: Scalar, const D: usize> {
+    pub volume: Values<R>,
+    pub faces: [Values<R>; D],
+    pub marks: Values<u8>,
     pub clusters: Vec<u32>,
 }
 
@@ -38,14 +40,14 @@ pub struct Tidied {
     pub closed_faces: usize,
 }
 
-impl<R: Real, const D: usize> Space<R, D> {
+impl<R: Scalar, const D: usize> Space<R, D> {
     /// Makes the fractions ready. Where a cluster cannot grow large enough, the faces that open it to the outside are closed and
     /// the clusters found again.
     pub fn new(
         mesh: &Mesh<'_, R, D>,
         periodic: [bool; D],
-        mut volume: Vec<R>,
-        mut faces: [Vec<R>; D],
+        mut volume: Values<R>,
+        mut faces: [Values<R>; D],
         treatment: Treatment<R>,
     ) -> Result<(Self, Tidied), Error> {
         let fits = |expected: usize, found: usize| {
@@ -59,8 +61,8 @@ impl<R: Real, const D: usize> Space<R, D> {
             closed_faces: 0,
         };
         loop {
-            let mut space = Space { marks: vec![0; volume.len()], clusters: Vec::new(), volume, faces };
-            let views = space.faces.each_ref().map(|f| f.as_slice());
+            let mut space = Space { marks: Values::zeros(volume.len()), clusters: Vec::new(), volume, faces };
+            let views = space.faces.each_ref().map(|f| &**f);
             medium::mark(mesh, &space.volume, &views, periodic, treatment.jump, &mut space.marks);
             if !treatment.merge || !space.marks.iter().any(|&m| marks::is(m, marks::SMALL)) {
                 return Ok((space, tidied));
@@ -85,7 +87,7 @@ impl<R: Real, const D: usize> Space<R, D> {
         let mut parent = vec![0; n];
         let mut work = vec![R::ZERO; merge::cluster_scratch(n)];
         self.clusters = vec![0; n];
-        let views = self.faces.each_ref().map(|f| f.as_slice());
+        let views = self.faces.each_ref().map(|f| &**f);
         let used = merge::clusters(mesh, &self.volume, &views, periodic, &mut self.clusters, &mut parent, &mut work);
         self.clusters.truncate(used);
         self.clusters.shrink_to_fit();

@@ -1,17 +1,17 @@
 //! One step on all threads.
 
-use super::field::Field;
+use super::field::{Field, Scalar};
+use crate::values::Values;
 use rayon::prelude::*;
 use voidage_core::pdr::{Error, Problem, Report};
-use voidage_core::real::Real;
 
 /// One step on rayon's threads: slabs side by side, merging, fallback, floors, as [`Problem::step`].
-pub(super) fn step<R: Real, const D: usize>(
+pub(super) fn step<R: Scalar, const D: usize>(
     problem: &Problem<'_, R, D>,
     old: &Field<R, D>,
     new: &mut Field<R, D>,
     marks: &mut [u8],
-    scratch: &mut Vec<Vec<R>>,
+    scratch: &mut Vec<Values<R>>,
     dt: R,
 ) -> Result<Report<R, D>, Error> {
     let layers = problem.mesh.cells()[D - 1];
@@ -20,14 +20,14 @@ pub(super) fn step<R: Real, const D: usize>(
     let threads = rayon::current_num_threads().min(layers / LEAST_LAYERS).max(1);
     let threads = if D == 1 { 1 } else { threads };
     while scratch.len() < threads {
-        scratch.push(vec![R::ZERO; problem.scratch_len()]);
+        scratch.push(Values::zeros(problem.scratch_len()));
     }
     let scratch = &mut scratch[..threads];
     if let [one] = scratch {
         return problem.step(&old.view(), &mut new.view_mut(), dt, marks, one);
     }
     let attempt = |new: &mut Field<R, D>,
-                   scratch: &mut [Vec<R>],
+                   scratch: &mut [Values<R>],
                    marks: Option<&[u8]>|
      -> Result<Report<R, D>, Error> {
         let layer = problem.mesh.layer();

@@ -1,6 +1,6 @@
 //! Properties of the solver, driven by tests, seeded random input and the fuzzer.
 
-use voidage::solve::flow::{Field, Flow, Treatment};
+use voidage::solve::flow::{Field, Flow, Scalar, Treatment};
 use voidage_core::pdr::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
 use voidage_core::real::Real;
 
@@ -85,7 +85,7 @@ pub fn porosity<R: Real, const D: usize>(s: &mut Source<'_>, n: [usize; D]) -> (
 
 /// Any step from a finite physical state ends in one: never a NaN, never a negative density or pressure, never a panic,
 /// whatever the porosity, drag, boundaries and step.
-pub fn step_stays_physical<R: Real, const D: usize>(s: &mut Source<'_>) {
+pub fn step_stays_physical<R: Scalar, const D: usize>(s: &mut Source<'_>) {
     let n: [usize; D] = std::array::from_fn(|_| 1 + usize::from(s.bits() % 6));
     let cells: usize = n.iter().product();
     let gas = gas::<R>(s);
@@ -191,7 +191,7 @@ pub fn step_from_bytes(bytes: &[u8]) {
 }
 
 /// Bits of a field, for comparison.
-pub fn bits<R: Real, const D: usize>(field: &Field<R, D>) -> Vec<u64> {
+pub fn bits<R: Scalar, const D: usize>(field: &Field<R, D>) -> Vec<u64> {
     let all = field.density.iter().chain(field.momentum.iter().flatten()).chain(&field.energy);
     // Adding zero makes one zero of both.
     all.map(|x| (*x + R::ZERO).to_f64().to_bits()).collect()
