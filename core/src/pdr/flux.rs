@@ -7,7 +7,7 @@
 //! References: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 10;
 //! P. Batten, N. Clarke, C. Lambert, D. M. Causon, SIAM J. Sci. Comput. 18 (1997) 1553; B. Einfeldt, SIAM J. Numer. Anal. 25 (1988) 294.
 
-use super::state::{Gas, Primitive};
+use super::state::{Gas, Primitive, each};
 use crate::real::Real;
 
 /// What passes a face per unit area and time, in the frame of the face.
@@ -131,10 +131,10 @@ impl Solver for Hllc {
 
         // S* >= 0, since what is swept is negative. Share and side follow from the push, so that nothing waits for S*.
         let from_left = push <= R::ZERO;
-        let pick = |a: R, b: R| if from_left { a } else { b };
+        let pick = |a: R, b: R| core::hint::select_unpredictable(from_left, a, b);
         let speed = pick(R::smaller(speed_l, R::ZERO), R::larger(speed_r, R::ZERO));
         let density = pick(l.density, r.density);
-        let velocity: [R; D] = core::array::from_fn(|c| pick(l.velocity[c], r.velocity[c]));
+        let velocity: [R; D] = each(|c| pick(l.velocity[c], r.velocity[c]));
         let pressure = pick(l.pressure, r.pressure);
         let gap = push - speed * swept;
         let share = push / gap;

@@ -5,7 +5,7 @@
 //! its own side of the stationary wave, so the two cells lose different normal momentum.
 
 use super::flux::{FaceGas, Flux, Solver};
-use super::state::Primitive;
+use super::state::{Primitive, each};
 use super::throat::{AtThroat, ThroatGas, throat_area};
 use crate::real::Real;
 
@@ -55,7 +55,7 @@ pub(super) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
     throat: &ThroatGas<R>,
 ) -> JumpFlux<[R; L], D> {
     let [left, right] = &faces.ducts;
-    let to: [R; L] = core::array::from_fn(|i| throat_area(left[i], faces.face[i], right[i]));
+    let to: [R; L] = each(|i| throat_area(left[i], faces.face[i], right[i]));
     let side = |s: usize| throat.carry_all(&faces.states[s], &faces.ducts[s], &to);
     let at = [side(0), side(1)];
     let (walls, calm) = chokes(faces, &at, throat);
@@ -124,7 +124,7 @@ fn riemann<R: Real, S: Solver, const D: usize>(face: &Carried<R, D>, gas: &FaceG
     JumpFlux {
         mass: to * f.mass,
         energy: to * f.energy,
-        momentum: core::array::from_fn(|c| to * f.momentum[c]),
+        momentum: each(|c| to * f.momentum[c]),
         normal: [normal(0), normal(1)],
     }
 }
@@ -176,11 +176,11 @@ fn acoustic<R: Real, const D: usize>(face: &Carried<R, D>, gas: &FaceGas<R>) -> 
     };
     let ((left, energy_l), (right, energy_r)) = (own(0, -c_l, common - mass_l), own(1, c_r, common - mass_r));
     let from_left = common >= R::ZERO;
-    let pick = |a: R, b: R| if from_left { a } else { b };
+    let pick = |a: R, b: R| core::hint::select_unpredictable(from_left, a, b);
     JumpFlux {
         mass: common,
         energy: pick(energy_l, energy_r),
-        momentum: core::array::from_fn(|c| common * pick(l.velocity[c], r.velocity[c])),
+        momentum: each(|c| common * pick(l.velocity[c], r.velocity[c])),
         normal: [left, right],
     }
 }
@@ -198,7 +198,7 @@ impl<R: Real, const D: usize> JumpFlux<R, D> {
         JumpFlux {
             mass: mix(self.mass, other.mass),
             energy: mix(self.energy, other.energy),
-            momentum: core::array::from_fn(|c| mix(self.momentum[c], other.momentum[c])),
+            momentum: each(|c| mix(self.momentum[c], other.momentum[c])),
             normal: [mix(self.normal[0], other.normal[0]), mix(self.normal[1], other.normal[1])],
         }
     }

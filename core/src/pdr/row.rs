@@ -13,7 +13,7 @@
 
 use super::flux::{FaceGas, Solver};
 use super::limiter::Slope;
-use super::state::{Fields, Gas, Primitive, sum};
+use super::state::{Fields, Gas, Primitive, each, sum};
 use crate::real::Real;
 
 /// Variable `v` of a block of variables `n` long.
@@ -63,7 +63,7 @@ pub(crate) fn primitives<R: Real, const D: usize>(
             let energy = &old.energy[start..][..cells];
             for i in 0..cells {
                 let inv = R::ONE / density[i];
-                let kinetic = R::HALF * sum::<R, D>(core::array::from_fn(|c| momentum[c][i] * (momentum[c][i] * inv)));
+                let kinetic = R::HALF * sum::<R, D>(each(|c| momentum[c][i] * (momentum[c][i] * inv)));
                 rho[i] = density[i];
                 for c in 0..D {
                     u[c][i] = momentum[c][i] * inv;
@@ -223,24 +223,24 @@ pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     // Axis 0 always comes as a row; the others only in a porous medium.
     debug_assert!(is_row[0] && (0..D).all(|d| is_row[d] == (POROUS || d == 0)));
     for i in 0..n {
-        let velocity: [R; D] = core::array::from_fn(|c| u[c][i]);
+        let velocity: [R; D] = each(|c| u[c][i]);
         let inv_rho = R::ONE / rho[i];
         let stiff = gamma * p[i];
-        let scale: [R; D] = core::array::from_fn(|d| if POROUS || d == 0 { rows[d][i] } else { ones[d] });
-        let wide: [R; D] = core::array::from_fn(|d| if POROUS { widening[d][i] * velocity[d] } else { R::ZERO });
-        let d_rho: [R; D] = core::array::from_fn(|d| {
+        let scale: [R; D] = each(|d| if POROUS || d == 0 { rows[d][i] } else { ones[d] });
+        let wide: [R; D] = each(|d| if POROUS { widening[d][i] * velocity[d] } else { R::ZERO });
+        let d_rho: [R; D] = each(|d| {
             let t = scale[d] * (velocity[d] * s_rho[d][i] + rho[i] * s_u[d][d][i]);
             if POROUS { t + wide[d] * rho[i] } else { t }
         });
         out_rho[i] = rho[i] - sum::<R, D>(d_rho);
         for c in 0..D {
-            let d_u: [R; D] = core::array::from_fn(|d| {
+            let d_u: [R; D] = each(|d| {
                 let advection = velocity[d] * s_u[d][c][i];
                 scale[d] * if d == c { advection + s_p[d][i] * inv_rho } else { advection }
             });
             out_u[c][i] = velocity[c] - sum::<R, D>(d_u);
         }
-        let d_p: [R; D] = core::array::from_fn(|d| {
+        let d_p: [R; D] = each(|d| {
             let t = scale[d] * (velocity[d] * s_p[d][i] + stiff * s_u[d][d][i]);
             if POROUS { t + wide[d] * stiff } else { t }
         });
@@ -248,7 +248,7 @@ pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     }
     if weighted {
         for i in 0..n {
-            let d_p: [R; D] = core::array::from_fn(|d| {
+            let d_p: [R; D] = each(|d| {
                 let scale = if POROUS || d == 0 { rows[d][i] } else { ones[d] };
                 scale * (u[d][i] * (rho[i] * weight[d][i]))
             });
@@ -352,8 +352,8 @@ fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM:
     let other = &mut rest[..m];
     let [face, vol_l, vol_r] = if FORM == 0 { [l_rho; 3] } else { openings.map(|b| &b[..m]) };
     for i in 0..m {
-        let l = Primitive { density: l_rho[i], velocity: core::array::from_fn(|c| l_u[c][i]), pressure: l_p[i] };
-        let r = Primitive { density: r_rho[i], velocity: core::array::from_fn(|c| r_u[c][i]), pressure: r_p[i] };
+        let l = Primitive { density: l_rho[i], velocity: each(|c| l_u[c][i]), pressure: l_p[i] };
+        let r = Primitive { density: r_rho[i], velocity: each(|c| r_u[c][i]), pressure: r_p[i] };
         let f = S::flux::<R, D, ENERGY>(&l, &r, gas);
         let (mut to_left, mut to_right) = (f.momentum[0] - l_wall[i], f.momentum[0] - r_wall[i]);
         let b = face[i];
@@ -429,13 +429,13 @@ pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool>(
         match scale {
             None => {
                 for i in 0..n {
-                    new[i] = old[i] - dt * sum::<R, D>(core::array::from_fn(|d| parts[d][i]));
+                    new[i] = old[i] - dt * sum::<R, D>(each(|d| parts[d][i]));
                 }
             }
             Some(scale) => {
                 let scale = &scale[..n];
                 for i in 0..n {
-                    new[i] = old[i] - scale[i] * sum::<R, D>(core::array::from_fn(|d| parts[d][i]));
+                    new[i] = old[i] - scale[i] * sum::<R, D>(each(|d| parts[d][i]));
                 }
             }
         }
@@ -465,7 +465,7 @@ pub(crate) fn signal_rates<R: Real, const D: usize, const POROUS: bool>(
     let gamma = gas.gamma();
     let open: [&[R]; D] = if POROUS { open.map(|o| &o[..n]) } else { [density; D] };
     let speeds = |i: usize, inv: R, c: R| {
-        sum::<R, D>(core::array::from_fn(|d| {
+        sum::<R, D>(each(|d| {
             let t = ((momentum[d][i] * inv).abs() + c) * inv_width(d, i);
             if POROUS { t * open[d][i] } else { t }
         }))
@@ -475,7 +475,7 @@ pub(crate) fn signal_rates<R: Real, const D: usize, const POROUS: bool>(
         let energy = &new.energy[from..][..n];
         for i in 0..n {
             let inv = R::ONE / density[i];
-            let kinetic = R::HALF * sum::<R, D>(core::array::from_fn(|c| momentum[c][i] * (momentum[c][i] * inv)));
+            let kinetic = R::HALF * sum::<R, D>(each(|c| momentum[c][i] * (momentum[c][i] * inv)));
             let p = (gamma - R::ONE) * (energy[i] - kinetic);
             let r = speeds(i, inv, (gamma * p * inv).sqrt());
             bad |= u64::from(!((density[i] > R::ZERO) & (p > R::ZERO) & (r < R::INFINITY)));
@@ -509,11 +509,7 @@ pub(crate) fn largest<R: Real>(row: &[R]) -> R {
 
 /// The face state at index `i` of a block `m` long, in the frame of its axis.
 pub(crate) fn face_state<R: Real, const D: usize>(block: &[R], m: usize, i: usize) -> Primitive<R, D> {
-    Primitive {
-        density: block[i],
-        velocity: core::array::from_fn(|c| block[(1 + c) * m + i]),
-        pressure: block[(D + 1) * m + i],
-    }
+    Primitive { density: block[i], velocity: each(|c| block[(1 + c) * m + i]), pressure: block[(D + 1) * m + i] }
 }
 
 /// Writes a state into a state or face state block.

@@ -6,6 +6,17 @@
 
 use crate::real::Real;
 
+/// One value per axis or lane. As [`core::array::from_fn`], by a loop that compilers unroll before they look for vectors: with the
+/// other they do so or not by how a program is put together.
+#[inline(always)]
+pub(crate) fn each<R: Real, const N: usize>(f: impl Fn(usize) -> R) -> [R; N] {
+    let mut values = [R::ZERO; N];
+    for i in 0..N {
+        values[i] = f(i);
+    }
+    values
+}
+
 /// Sum of one term per axis, the same bits in any order of the axes: extremes first, then the middle one.
 #[inline(always)]
 pub(crate) fn sum<R: Real, const D: usize>(t: [R; D]) -> R {
