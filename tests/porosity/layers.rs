@@ -29,9 +29,10 @@ const CORE: [&str; 22] = [
 ];
 
 /// Modules of the host likewise.
-const HOST: [&str; 14] = [
+const HOST: [&str; 15] = [
     "error",
     "interrupt",
+    "values",
     "input",
     "bodies",
     "grid",
