@@ -1,8 +1,8 @@
 //! A zeroed array of numbers, on huge pages where it is large.
 //!
-//! A field of porosity is written once from end to end, and the kernel clears each page at its first touch. With pages of 4 kB that costs as
-//! much time as all the geometry of a scene; with pages of 2 MB hardly any. A flow reads and writes all its fields each step, more
-//! than the translation cache holds in small pages.
+//! A field of porosity is written once from end to end, and the kernel clears each page at its first touch. With pages of 4 kB
+//! that costs as much time as all the geometry of a scene; with pages of 2 MB hardly any. A flow reads and writes all its fields
+//! each step, more than the translation cache holds in small pages.
 
 use bytemuck::Pod;
 use memmap2::MmapMut;

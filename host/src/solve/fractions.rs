@@ -68,9 +68,13 @@ impl<R: Scalar, const D: usize> Space<R, D> {
                 return Ok((space, tidied));
             }
             space.cluster(mesh, periodic);
-            let outside = space.outside_of_small_clusters(mesh, periodic);
+            let alone = space.small_cells_alone();
+            let outside = space.outside_of_small_clusters(mesh, periodic, &alone);
             if outside.is_empty() {
-                space.release_single_cells();
+                // What found no company (a periodic axis of one cell) limits the step like any other cell.
+                for cell in alone {
+                    space.marks[cell] &= !marks::KIND;
+                }
                 return Ok((space, tidied));
             }
             tidied.closed_faces += outside.len();
@@ -93,16 +97,21 @@ impl<R: Scalar, const D: usize> Space<R, D> {
         self.clusters.shrink_to_fit();
     }
 
-    /// Tells of each cell whether it belongs to a cluster.
-    fn clustered(&self) -> Vec<bool> {
+    /// Small cells that belong to no cluster.
+    fn small_cells_alone(&self) -> Vec<usize> {
         let mut clustered = vec![false; self.volume.len()];
         Clusters(&self.clusters).groups().flatten().for_each(|cell| clustered[cell] = true);
-        clustered
+        (0..clustered.len()).filter(|&c| marks::is(self.marks[c], marks::SMALL) && !clustered[c]).collect()
     }
 
     /// Open faces (axis, index) on the sides of the domain of clusters, and of small cells without one, that found no more neighbours
     /// and are still too small for their faces: they must not stand open to the outside.
-    fn outside_of_small_clusters(&self, mesh: &Mesh<'_, R, D>, periodic: [bool; D]) -> Vec<(usize, usize)> {
+    fn outside_of_small_clusters(
+        &self,
+        mesh: &Mesh<'_, R, D>,
+        periodic: [bool; D],
+        alone: &[usize],
+    ) -> Vec<(usize, usize)> {
         let cells = mesh.cells();
         let mut outside: Vec<(usize, usize)> = Vec::new();
         let mut examine = |members: &mut dyn Iterator<Item = usize>| {
@@ -132,21 +141,10 @@ impl<R: Scalar, const D: usize> Space<R, D> {
         for group in Clusters(&self.clusters).groups() {
             examine(&mut group.clone());
         }
-        let clustered = self.clustered();
-        for cell in (0..clustered.len()).filter(|&c| marks::is(self.marks[c], marks::SMALL) && !clustered[c]) {
+        for &cell in alone {
             examine(&mut std::iter::once(cell));
         }
         outside
-    }
-
-    /// What found no company (a periodic axis of one cell) limits the step like any other cell.
-    fn release_single_cells(&mut self) {
-        let clustered = self.clustered();
-        for (mark, _) in self.marks.iter_mut().zip(&clustered).filter(|(_, clustered)| !**clustered) {
-            if marks::is(*mark, marks::SMALL) {
-                *mark &= !marks::KIND;
-            }
-        }
     }
 
     /// Faces where the porosity jumps and the throat map acts.
