@@ -92,7 +92,7 @@ impl Inspection<'_> {
         for d in self.files {
             progress.say(&d.file);
             let size = d.bounds[1] - d.bounds[0];
-            let rows: [(&str, String); 17] = [
+            let rows: [(&str, String); 18] = [
                 ("triangles", d.triangles.to_string()),
                 ("named solids", d.solids.to_string()),
                 ("distinct points", d.points.to_string()),
@@ -106,6 +106,7 @@ impl Inspection<'_> {
                 ("turned triangles", d.turned.to_string()),
                 ("degenerate", d.degenerate.to_string()),
                 ("repeated", d.repeated.to_string()),
+                ("backs dropped", d.doubled.to_string()),
                 ("boundary edges", format!("{} ({} of T-junctions)", d.boundary_edges, d.t_junction_edges)),
                 ("holes capped", d.holes.to_string()),
                 ("area", format!("{} m²", measure(d.area))),

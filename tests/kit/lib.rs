@@ -1,6 +1,7 @@
 //! Generators, oracles and properties shared by tests, fuzz targets and benches.
 #![forbid(unsafe_code)]
 
+pub mod boxes;
 pub mod convex;
 pub mod corpus;
 pub mod dirty;

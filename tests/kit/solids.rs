@@ -175,6 +175,7 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         volume: 0.0,
         bounds: form.bounds(),
         cavities: 0,
+        doubtful: false,
         sheet: false,
     };
     Bodies { bodies: forms.iter().enumerate().map(body).collect(), ..Bodies::default() }

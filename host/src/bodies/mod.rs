@@ -4,16 +4,22 @@
 //! defined meaning; see [`Diagnosis`].
 
 pub mod caps;
+pub mod copies;
+pub mod crossing;
 pub mod form;
+pub mod join;
 pub mod nesting;
 pub mod shells;
+pub mod tree;
 pub mod weld;
 
 use crate::input::Mesh;
 use caps::rims;
+use crossing::Found;
 use form::Form;
 use glam::DVec3;
 use nesting::{Closed, Role};
+use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 use serde::Serialize;
 use shells::{Sets, Shell};
@@ -44,6 +50,8 @@ pub struct Body {
     pub bounds: [DVec3; 2],
     /// Cavities attached.
     pub cavities: usize,
+    /// It is not known which part of its box is solid.
+    pub doubtful: bool,
     /// No volume: a sheet, which blocks faces where it lies in their plane.
     pub sheet: bool,
 }
@@ -63,6 +71,8 @@ pub struct Diagnosis {
     pub degenerate: usize,
     /// Triangles that repeat another and were dropped.
     pub repeated: usize,
+    /// Triangles that are the back of another (double-sided surface) and were dropped.
+    pub doubled: usize,
     /// Largest distance by which points were moved to close cracks; 0 if none.
     pub welded_by: f64,
     /// Triangles whose orientation disagreed with their neighbours and were turned.
@@ -81,6 +91,10 @@ pub struct Diagnosis {
     pub boundary_edges: usize,
     /// Of these, edges of T-junctions, which close in space.
     pub t_junction_edges: usize,
+    /// Shells that wind more than once around a part of what they hold, or cross themselves.
+    pub crossing: usize,
+    /// Of these, those that stayed as they are: what they hold is in doubt.
+    pub doubtful: usize,
     /// Holes that were capped.
     pub holes: usize,
     /// Bodies in the end.
@@ -172,32 +186,33 @@ impl Bodies {
             return Err(crate::error::Error::file(&mesh.path, reason));
         };
         let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
-        let (closed, names) = close(&indexed, &shells, name_of, &mut d, &mut report);
-        self.assemble(closed, names, &mut d, &mut report);
+        let mut closed = close(&indexed, &shells, name_of, &mut d, &mut report);
+        resolve(&mut closed, &mut d, &mut report);
+        self.assemble(closed, &mut d, &mut report);
         self.warnings.append(&mut report.warnings);
         self.diagnoses.push(d);
         Ok(())
     }
 
     /// Give the shells their roles and orientation, and store them.
-    fn assemble(&mut self, shells: Vec<Closed>, names: Vec<String>, d: &mut Diagnosis, report: &mut Reporter) {
+    fn assemble(&mut self, parts: Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
+        let (names, shells): (Vec<String>, Vec<Closed>) = parts.into_iter().map(|p| (p.name, p.shell)).unzip();
         let roles = nesting::roles(&shells);
         let first = self.bodies.len();
         for (s, shell) in shells.iter().enumerate().filter(|&(s, _)| roles[s] == Role::Body) {
             let begin = self.triangles.len();
             let mut volume = self.push(shell, true);
-            let cavities = (0..shells.len()).filter(|&c| roles[c] == Role::CavityOf(s));
-            let mut count = 0;
-            for c in cavities {
-                volume -= self.push(&shells[c], false);
-                count += 1;
-            }
+            let cavities: Vec<&Closed> =
+                (0..shells.len()).filter(|&c| roles[c] == Role::CavityOf(s)).map(|c| &shells[c]).collect();
+            let count = cavities.len();
+            let (joined, clear) = joined(&cavities);
+            volume -= joined.iter().map(|cavity| self.push(cavity, false)).sum::<f64>();
             d.inside_out += usize::from(shell.volume < 0.0 && !shell.is_sheet());
             d.cavities += count;
             d.sheets += usize::from(shell.is_sheet());
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
-            let (name, form, porosity) = (names[s].clone(), None, 0.0);
-            self.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: count, sheet });
+            let (name, form, porosity, doubtful) = (names[s].clone(), None, 0.0, shell.doubtful || !clear);
+            self.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: count, doubtful, sheet });
         }
         d.bodies = self.bodies.len() - first;
         d.body_volume = self.bodies[first..].iter().map(|b| b.volume).sum();
@@ -223,6 +238,36 @@ impl Bodies {
         self.triangles.extend(shell.triangles.iter().map(|&[a, b, c]| if turn { [a, c, b] } else { [a, b, c] }));
         shell.volume.abs()
     }
+}
+
+/// The cavities of a body, overlapping ones made one; and whether that was possible.
+fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
+    let meet = |a: &Closed, b: &Closed| a.bounds[0].cmplt(b.bounds[1]).all() && b.bounds[0].cmplt(a.bounds[1]).all();
+    let mut sets = Sets::new(cavities.len());
+    for (n, a) in cavities.iter().enumerate() {
+        (0..n).filter(|&m| meet(a, cavities[m])).for_each(|m| sets.join(m, n));
+    }
+    let mut groups: HashMap<usize, Vec<usize>> = HashMap::default();
+    (0..cavities.len()).for_each(|n| groups.entry(sets.find(n)).or_default().push(n));
+    let mut groups: Vec<_> = groups.into_values().collect();
+    groups.sort();
+    let mut clear = true;
+    let mut one = |group: Vec<usize>| {
+        let whole = Closed::new(group.iter().flat_map(|&n| cavities[n].triangles.iter().copied()).collect());
+        match group.len() {
+            1 => whole,
+            _ => match crossing::look(&whole.triangles, whole.bounds) {
+                Found::Simple => whole,
+                Found::Resolved(made) => Closed::new(made.surface),
+                Found::Doubtful(_) => {
+                    clear = false;
+                    whole
+                }
+            },
+        }
+    };
+    let joined = groups.into_iter().map(&mut one).collect();
+    (joined, clear)
 }
 
 /// Collects warnings of one file.
@@ -268,12 +313,10 @@ fn clean(
         report.warn(format!("{} degenerate triangles (no area) are ignored", d.degenerate));
     }
     let mut alive = distinct(&mesh);
-    d.repeated = shells::drop_repeats(&mesh, &mut alive);
-    if d.repeated > 0 {
-        report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
-    }
+    d.repeated = copies::drop_repeats(&mesh, &mut alive);
     close_cracks(&mut mesh, &alive, d, report);
-    let shells = shells::shells(&mut mesh, &alive, solid_of);
+    let mut shells = shells::shells(&mut mesh, &alive, solid_of);
+    drop_copies(&mesh, &mut shells, d, report);
     d.shells = shells.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {
@@ -287,6 +330,21 @@ fn clean(
         ));
     }
     Some((mesh, shells))
+}
+
+/// Drop the shells that repeat others or are their backs.
+fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, d: &mut Diagnosis, report: &mut Reporter) {
+    let found = copies::redundant(mesh, shells);
+    let mut redundant = found.shells.into_iter();
+    shells.retain(|_| redundant.next() != Some(true));
+    d.repeated += found.repeated;
+    d.doubled = found.doubled;
+    if d.repeated > 0 {
+        report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
+    }
+    if d.doubled > 0 {
+        report.warn(format!("{} triangles are the backs of others (double-sided surface) and were dropped", d.doubled));
+    }
 }
 
 /// Triangles with three different corners.
@@ -312,6 +370,17 @@ fn close_cracks(mesh: &mut Indexed, alive: &[bool], d: &mut Diagnosis, report: &
     *mesh = merged;
 }
 
+/// A closed shell on its way to a body.
+struct Part {
+    name: String,
+    shell: Closed,
+    /// As those of [`Shell`].
+    cluster: usize,
+    guessed: bool,
+    /// It was open.
+    capped: bool,
+}
+
 /// Make every shell closed: join those that close each other, cap holes.
 fn close(
     mesh: &Indexed,
@@ -319,15 +388,16 @@ fn close(
     name_of: impl Fn(u32) -> String,
     d: &mut Diagnosis,
     report: &mut Reporter,
-) -> (Vec<Closed>, Vec<String>) {
+) -> Vec<Part> {
     let corners = |n: &u32| mesh.triangles[*n as usize].map(|v| mesh.points[v as usize]);
-    let (mut closed, mut names) = (Vec::new(), Vec::new());
+    let mut closed = Vec::new();
     let mut largest_hole: Option<(f64, DVec3)> = None;
     for group in groups(shells) {
         let members = group.iter().flat_map(|&s| shells[s].triangles.iter());
         let mut triangles: Vec<_> = members.clone().map(corners).collect();
-        let boundary: Vec<_> = group.iter().flat_map(|&s| shells[s].boundary.iter().copied()).collect();
+        let boundary = without_opposites(group.iter().flat_map(|&s| shells[s].boundary.iter().copied()));
         d.boundary_edges += boundary.len();
+        let mut capped = false;
         for rim in rims(&boundary) {
             if rim.cancels(&mesh.points) {
                 d.t_junction_edges += rim.edges.len();
@@ -339,10 +409,13 @@ fn close(
                 largest_hole = Some((area, rim.middle(&mesh.points)));
             }
             d.holes += 1;
+            capped = true;
             triangles.extend(cap);
         }
-        names.push(members.min().map_or_else(String::new, |&n| name_of(n)));
-        closed.push(Closed::new(triangles));
+        let name = members.min().map_or_else(String::new, |&n| name_of(n));
+        let cluster = group.iter().map(|&s| shells[s].cluster).min().unwrap_or(0);
+        let guessed = group.iter().any(|&s| shells[s].guessed);
+        closed.push(Part { name, shell: Closed::new(triangles), cluster, guessed, capped });
     }
     if d.t_junction_edges > 0 {
         report.warn(format!("{} edges have no partner (T-junctions), but the surface closes", d.t_junction_edges));
@@ -355,7 +428,93 @@ fn close(
             show(place)
         ));
     }
-    (closed, names)
+    closed
+}
+
+/// Make every surface that crosses itself the surface of what it winds around; and parts that overlap where they share edges the
+/// surface of what they wind around together, unless each by itself is simple.
+fn resolve(parts: &mut Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
+    let look = |s: &Closed| if s.is_sheet() { Found::Simple } else { crossing::look(&s.triangles, s.bounds) };
+    let turned = |p: &Part, way: f64| p.shell.volume * way < 0.0 && !p.shell.is_sheet();
+    let meet = |a: &Closed, b: &Closed| a.bounds[0].cmple(b.bounds[1]).all() && b.bounds[0].cmple(a.bounds[1]).all();
+    let beside_turned = |p: &Part| parts.iter().any(|q| turned(q, p.shell.volume) && meet(&p.shell, &q.shell));
+    let single = |p: &Part| match look(&p.shell) {
+        // Which of several parts that were joined is turned cannot be told.
+        Found::Resolved(made) if made.touches && !p.guessed => Found::Doubtful(made.place),
+        seen => seen,
+    };
+    let mut found: Vec<Found> = parts.par_iter().map(single).collect();
+    let mut clusters: HashMap<usize, Vec<usize>> = HashMap::default();
+    for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.guessed) {
+        clusters.entry(part.cluster).or_default().push(n);
+    }
+    let mut gone = vec![false; parts.len()];
+    for members in clusters.into_values() {
+        let simple = |&n: &usize| {
+            let shell = &parts[n].shell;
+            matches!(found[n], Found::Simple) && shell.volume > 0.0 && !shell.is_sheet()
+        };
+        let capped = members.iter().any(|&n| parts[n].capped);
+        if !capped && members.iter().all(simple) {
+            continue;
+        }
+        let mixed = [-1.0, 1.0].iter().all(|&way| members.iter().any(|&n| turned(&parts[n], way)));
+        let whole = Closed::new(members.iter().flat_map(|&n| parts[n].shell.triangles.iter().copied()).collect());
+        found[members[0]] = match look(&whole) {
+            Found::Resolved(made) if made.both_ways || made.walls || capped || mixed => Found::Doubtful(made.place),
+            Found::Simple => Found::Doubtful(whole.bounds[0]),
+            seen => seen,
+        };
+        parts[members[0]].shell = whole;
+        members[1..].iter().for_each(|&n| gone[n] = true);
+    }
+    let mut first = [None; 2];
+    for (part, found) in parts.iter_mut().zip(found).zip(&gone).filter(|(_, gone)| !**gone).map(|(both, _)| both) {
+        match found {
+            Found::Simple => {}
+            Found::Resolved(made) => {
+                part.shell = Closed::new(made.surface);
+                d.crossing += 1;
+                first[0].get_or_insert(made.place);
+            }
+            Found::Doubtful(place) => {
+                part.shell.doubtful = true;
+                d.crossing += 1;
+                d.doubtful += 1;
+                first[1].get_or_insert(place);
+            }
+        }
+    }
+    let mut gone = gone.into_iter();
+    parts.retain(|_| gone.next() != Some(true));
+    if let [Some(place), _] = first {
+        report.warn(format!(
+            "{} surfaces cross themselves (the first near {}); what they wind around counts once",
+            d.crossing - d.doubtful,
+            show(place)
+        ));
+    }
+    if let [_, Some(place)] = first {
+        report.warn(format!(
+            "{} surfaces cross themselves (the first near {}) so that what they hold cannot be told; cells within their boxes are anything from open to closed",
+            d.doubtful,
+            show(place)
+        ));
+    }
+}
+
+/// Edges without those that run back along others: there two sides of a sheet meet.
+fn without_opposites(edges: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
+    let mut edges: Vec<([u32; 2], bool)> = edges.map(|[a, b]| ([a.min(b), a.max(b)], a < b)).collect();
+    edges.sort_unstable();
+    let mut left = Vec::new();
+    for uses in edges.chunk_by(|a, b| a.0 == b.0) {
+        let ([a, b], up) = (uses[0].0, uses.iter().filter(|(_, up)| *up).count());
+        let down = uses.len() - up;
+        let edge = if up > down { [a, b] } else { [b, a] };
+        left.extend(std::iter::repeat_n(edge, up.abs_diff(down)));
+    }
+    left
 }
 
 /// Shells that belong together: closed ones alone, open ones with those that share a corner of their boundary.

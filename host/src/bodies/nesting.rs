@@ -3,6 +3,7 @@
 //! A shell inside another and of opposite orientation is a cavity of it (or, inside a cavity, an island). A shell of the same
 //! orientation as its container is a body of its own, as is a shell inside nothing, whichever way round it is.
 
+use super::crossing::solid_angle;
 use glam::DVec3;
 
 /// A closed shell as the nesting sees it.
@@ -14,6 +15,8 @@ pub struct Closed {
     pub volume: f64,
     /// Bounding box.
     pub bounds: [DVec3; 2],
+    /// What it holds cannot be told.
+    pub doubtful: bool,
 }
 
 impl Closed {
@@ -22,7 +25,7 @@ impl Closed {
     pub fn new(triangles: Vec<[DVec3; 3]>) -> Self {
         let corners = || triangles.iter().flatten().copied();
         let bounds = corners().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
-        Closed { volume: signed_volume(&triangles, (bounds[0] + bounds[1]) * 0.5), bounds, triangles }
+        Closed { volume: signed_volume(&triangles, (bounds[0] + bounds[1]) * 0.5), bounds, triangles, doubtful: false }
     }
 
     /// Area of the surface.
@@ -54,12 +57,12 @@ pub enum Role {
     CavityOf(usize),
 }
 
-/// The role of every shell. Sheets are bodies.
+/// The role of every shell. Sheets are bodies, and so is what is doubtful.
 #[must_use]
 pub fn roles(shells: &[Closed]) -> Vec<Role> {
     let mut roles = vec![Role::Body; shells.len()];
     let sign = |s: usize| shells[s].volume > 0.0;
-    let solid: Vec<usize> = (0..shells.len()).filter(|&s| !shells[s].is_sheet()).collect();
+    let solid: Vec<usize> = (0..shells.len()).filter(|&s| !shells[s].is_sheet() && !shells[s].doubtful).collect();
     if solid.iter().all(|&s| sign(s)) || solid.iter().all(|&s| !sign(s)) {
         return roles;
     }
@@ -96,17 +99,6 @@ fn contains(outer: &Closed, inner: &Closed) -> bool {
 }
 
 /// Winding number of a closed shell around a point.
-/// A. van Oosterom and J. Strackee, *The solid angle of a plane triangle*, IEEE Trans. Biomed. Eng. 30 (1983), eq. (8).
 fn winding(shell: &Closed, point: DVec3) -> f64 {
-    let angle: f64 = shell
-        .triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|p| p - point);
-            let [la, lb, lc] = [a.length(), b.length(), c.length()];
-            let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-            2.0 * a.dot(b.cross(c)).atan2(below)
-        })
-        .sum();
-    angle / (4.0 * std::f64::consts::PI)
+    shell.triangles.iter().map(|t| solid_angle(t, point)).sum()
 }

@@ -13,6 +13,8 @@ pub struct Bins<'a> {
     /// A body's triangles in a layer: body, first entry in `ids`, bounding box of those triangles.
     groups: Vec<Group>,
     ids: Vec<u32>,
+    /// Boxes of bodies of which it is not known where they are solid.
+    doubtful: Vec<[DVec3; 2]>,
 }
 
 /// A body's triangles in a layer.
@@ -38,10 +40,12 @@ impl<'a> Bins<'a> {
         triangles: &'a [[DVec3; 3]],
         wanted: impl Fn(usize) -> bool + Clone,
     ) -> Self {
-        let all = bodies.bodies.iter().enumerate().filter(|(b, _)| wanted(*b));
-        let runs = all.map(|(b, body)| (b as u32, body.triangles.clone()));
+        let all = bodies.bodies.iter().enumerate().filter(move |(b, _)| wanted(*b));
+        let doubtful = all.clone().filter(|(_, body)| body.doubtful).map(|(_, body)| body.bounds).collect();
+        let runs = all.filter(|(_, body)| !body.doubtful).map(|(b, body)| (b as u32, body.triangles.clone()));
         let mut bins = Self::of(grid, triangles, runs.flat_map(|(b, run)| run.map(move |t| (b, t as u32))));
         bins.groups.iter_mut().for_each(|g| g.sheet = bodies.bodies[g.body as usize].sheet);
+        bins.doubtful = doubtful;
         bins
     }
 
@@ -81,13 +85,19 @@ impl<'a> Bins<'a> {
             }
             layers.push(begin..groups.len());
         }
-        Bins { triangles, layers, groups, ids: entries.into_iter().map(|(_, t)| t).collect() }
+        Bins { triangles, layers, groups, ids: entries.into_iter().map(|(_, t)| t).collect(), doubtful: Vec::new() }
     }
 
     /// All triangles.
     #[must_use]
     pub fn triangles(&self) -> &'a [[DVec3; 3]] {
         self.triangles
+    }
+
+    /// Boxes of bodies of which it is not known where they are solid.
+    #[must_use]
+    pub fn doubtful(&self) -> &[[DVec3; 2]] {
+        &self.doubtful
     }
 
     /// The bodies that touch layer `k`, and which of their triangles do.

@@ -110,6 +110,7 @@ impl Roads {
     #[must_use]
     pub fn choose(bodies: &Bodies, triangles: &[[DVec3; 3]], options: Options) -> Self {
         let known = |body: &Body| match (&body.form, options.method) {
+            _ if body.doubtful => None,
             // Planes are measured by their surface: exact, and cheaper than any subdivision.
             (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
             (_, Method::Surface) => None,

@@ -5,6 +5,7 @@ use super::convex::{Lists, Road, joined};
 use super::fields::Slices;
 use super::unions::Unions;
 use super::{CellCounts, Options};
+use std::ops::Range;
 use voidage_core::classify::Tally;
 use voidage_core::grid::Grid;
 use voidage_core::layer::{Fields, Layer};
@@ -139,6 +140,7 @@ impl Worker {
         if bins.groups(k).len() > usize::from(convex.is_empty()) {
             (out.cells.ambiguous, out.divided) = self.unions.resolve(grid, bins, convex, k, &mut layer);
         }
+        doubt(grid, k, bins, &mut layer);
         let end = self.options.solid_end();
         tally(grid, k, &layer, end, &mut out);
         let Layer { lower, sum, .. } = &mut layer;
@@ -182,8 +184,45 @@ impl Worker {
         }
         out.tally = joined(out.tally, convex.add_top(grid, k + 1, &mut self.lists, &mut layer));
         self.unions.resolve_top(grid, bins, convex, k, &mut layer);
+        doubt_z(grid, k + 1, bins, &mut layer);
         settle(layer.lower.z, layer.sum.z, low, high, self.options.solid_end(), out);
         beta.copy_from_slice(layer.lower.z);
+    }
+}
+
+/// The cells along an axis that a run of coordinates reaches or touches.
+fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
+    edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
+}
+
+/// Within the boxes of doubtful bodies all of layer `k` may be solid.
+fn doubt(grid: &Grid<f64>, k: usize, bins: &Bins, layer: &mut Layer<f64>) {
+    let nx = grid.cells()[0];
+    let may = |sum: &mut [f64]| sum.iter_mut().for_each(|s| *s = s.max(1.0));
+    for [lo, hi] in bins.doubtful().iter().filter(|[lo, hi]| reached(grid.edges(2), lo.z, hi.z).contains(&k)) {
+        let (i, j) = (reached(grid.edges(0), lo.x, hi.x), reached(grid.edges(1), lo.y, hi.y));
+        if i.is_empty() || j.is_empty() {
+            continue;
+        }
+        for row in j.clone() {
+            may(&mut layer.sum.cell[row * nx..][i.clone()]);
+            may(&mut layer.sum.x[row * (nx + 1)..][i.start..i.end + 1]);
+        }
+        for row in j.start..j.end + 1 {
+            may(&mut layer.sum.y[row * nx..][i.clone()]);
+        }
+    }
+    doubt_z(grid, k, bins, layer);
+}
+
+/// Within the boxes of doubtful bodies all z faces in plane `plane`, held in `layer.…z`, may be closed.
+fn doubt_z(grid: &Grid<f64>, plane: usize, bins: &Bins, layer: &mut Layer<f64>) {
+    let (nx, at) = (grid.cells()[0], grid.edges(2)[plane]);
+    for [lo, hi] in bins.doubtful().iter().filter(|[lo, hi]| (lo.z..=hi.z).contains(&at)) {
+        for row in reached(grid.edges(1), lo.y, hi.y) {
+            let reached = reached(grid.edges(0), lo.x, hi.x);
+            layer.sum.z[row * nx..][reached].iter_mut().for_each(|s| *s = s.max(1.0));
+        }
     }
 }
 

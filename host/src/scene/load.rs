@@ -50,7 +50,7 @@ fn add_solid(scene: &Scene, solid: &Solid, bodies: &mut Bodies) -> Result<()> {
             let bounds = form.as_ref().map_or_else(Default::default, |f| f.bounds());
             let (volume, porosity) = (solid.shape.volume(), solid.porosity);
             let name = name(solid, at, "");
-            bodies.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: 0, sheet: false });
+            bodies.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: 0, doubtful: false, sheet: false });
         }
         return Ok(());
     };

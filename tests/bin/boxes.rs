@@ -1,0 +1,32 @@
+//! Random scenes of boxes against their oracle: `boxes FIRST COUNT`, seeds from FIRST on. Prints those that fail, and totals.
+
+use rayon::prelude::*;
+use voidage_tests::boxes::bounds_hold;
+
+fn main() {
+    let numbers: Vec<u64> = std::env::args().skip(1).map(|a| a.parse().expect("a number")).collect();
+    let [first, count] = numbers[..] else { panic!("boxes FIRST COUNT") };
+    let found: Vec<_> = (first..first + count)
+        .into_par_iter()
+        .map(|seed| {
+            let begin = std::time::Instant::now();
+            let found = bounds_hold(seed).inspect_err(|text| println!("{text}"));
+            if begin.elapsed().as_secs_f64() > 0.5 {
+                println!("slow {seed} {:?}", begin.elapsed());
+            }
+            found
+        })
+        .collect();
+    let visited: Vec<_> = found.iter().flatten().collect();
+    let of = |what: fn(&voidage_tests::boxes::Visited) -> bool| visited.iter().filter(|v| what(v)).count();
+    println!(
+        "seeds {first}..{}: {} wrong; {} defined, {} exact, {} hollow, {} doubled",
+        first + count,
+        found.len() - visited.len(),
+        of(|v| v.defined),
+        of(|v| v.exact),
+        of(|v| v.hollow),
+        of(|v| v.doubled)
+    );
+    assert!(visited.len() == found.len(), "values outside their bounds");
+}

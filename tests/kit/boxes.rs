@@ -1,0 +1,367 @@
+//! The exact oracle for one file of axis-aligned boxes: coordinate compression, in integers.
+//!
+//! **What the solid of such a file is.** Each box is a body, whatever touches it, and the solid is the union of all bodies. A box that is there
+//! more than once is there once; with double-sided triangles it is that box, outward. If boxes of both
+//! orientations are there, one inside another of opposite orientation that is itself a body (the smallest that holds it; touching from
+//! within is inside) is a cavity of that body, and only of that one; any other box is a body, whichever way round. Panels have no volume.
+//!
+//! **Walls.** A point of a face is open if both one-sided limits are, unless a wall without thickness lies there: a panel, what is left
+//! of a body between a cavity and its own outside, or between two of its cavities.
+
+use crate::random::Random;
+use crate::solids::{Triangle, cuboid};
+use glam::DVec3;
+use std::path::PathBuf;
+use voidage::bodies::Bodies;
+use voidage::grid::Edges;
+use voidage::input::{Mesh, Solid};
+use voidage::porosity::{FieldSet, Options, Porosity, porosity};
+
+/// A point, in units of the scene.
+type Point = [i64; 3];
+
+/// A box, or a panel if it is flat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Brick {
+    /// Lowest corner.
+    pub min: Point,
+    /// Highest corner.
+    pub max: Point,
+    /// Its triangles look inward.
+    pub inverted: bool,
+}
+
+impl Brick {
+    fn volume(&self) -> i64 {
+        (0..3).map(|a| self.max[a] - self.min[a]).product()
+    }
+
+    fn holds(&self, other: &Brick) -> bool {
+        (0..3).all(|a| self.min[a] <= other.min[a] && other.max[a] <= self.max[a])
+    }
+
+    fn overlaps(&self, other: &Brick) -> bool {
+        (0..3).all(|a| self.min[a] < other.max[a] && other.min[a] < self.max[a])
+    }
+
+    /// Is it around the voxel with these corners?
+    fn covers(&self, lo: Point, hi: Point) -> bool {
+        (0..3).all(|a| self.min[a] <= lo[a] && hi[a] <= self.max[a])
+    }
+
+    /// Does its surface lie in the facet `lo..hi`, flat along `axis`?
+    fn walls(&self, axis: usize, lo: Point, hi: Point) -> bool {
+        self.covers(lo, hi) && [self.min[axis], self.max[axis]].contains(&lo[axis])
+    }
+}
+
+/// Boxes and a grid.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The boxes.
+    pub bricks: Vec<Brick>,
+    /// Panels: flat boxes.
+    pub panels: Vec<Brick>,
+    /// Planes of the grid.
+    pub edges: [Vec<i64>; 3],
+    /// The file's triangles, in metres.
+    pub triangles: Vec<Triangle>,
+    /// Where the origin is [units].
+    pub offset: i64,
+    /// A unit [m], a power of two.
+    pub unit: f64,
+}
+
+/// A body: a box without its cavities.
+struct Hollow {
+    outside: Brick,
+    cavities: Vec<Brick>,
+}
+
+impl Hollow {
+    fn covers(&self, lo: Point, hi: Point) -> bool {
+        self.outside.covers(lo, hi) && !self.cavities.iter().any(|c| c.covers(lo, hi))
+    }
+
+    fn walls(&self, axis: usize, lo: Point, hi: Point) -> bool {
+        self.outside.walls(axis, lo, hi) || self.cavities.iter().any(|c| c.walls(axis, lo, hi))
+    }
+}
+
+/// Which boxes are bodies and which their cavities. None where the text leaves it open: a box is there in both orientations, boxes of both
+/// orientations overlap in part, one
+/// with a cavity is there twice (the copy may fill it), one lies in a cavity of its own orientation, or of two smallest containers of one size one
+/// would make a cavity, and one not.
+fn bodies(bricks: &[Brick]) -> Option<Vec<Hollow>> {
+    let crossing = |a: &Brick, b: &Brick| a.inverted != b.inverted && a.overlaps(b) && !a.holds(b) && !b.holds(a);
+    if bricks.iter().any(|a| bricks.iter().any(|b| crossing(a, b))) {
+        return None;
+    }
+    let mut distinct: Vec<Brick> = Vec::new();
+    for b in bricks {
+        match distinct.iter_mut().find(|d| d.min == b.min && d.max == b.max) {
+            Some(same) if same.inverted != b.inverted => return None,
+            Some(_) => {}
+            None => distinct.push(*b),
+        }
+    }
+    distinct.sort_by_key(|b| -b.volume());
+    let mut cavity_of: Vec<Option<usize>> = vec![None; distinct.len()];
+    for s in 0..distinct.len() {
+        let inner = distinct[s];
+        let role = |p: usize| (distinct[p].inverted != inner.inverted && cavity_of[p].is_none()).then_some(p);
+        let holding = (0..s).filter(|&p| distinct[p].holds(&inner) && distinct[p].volume() > inner.volume());
+        let Some(parent) = holding.clone().next_back() else { continue };
+        let mut rivals = holding.filter(|&p| distinct[p].volume() == distinct[parent].volume());
+        if rivals.any(|p| role(p).is_some() != role(parent).is_some()) {
+            return None;
+        }
+        cavity_of[s] = role(parent);
+        if cavity_of[parent].is_some() && distinct[parent].inverted == inner.inverted {
+            return None;
+        }
+        let copies = bricks.iter().filter(|b| b.min == distinct[parent].min && b.max == distinct[parent].max);
+        if cavity_of[s].is_some() && copies.count() > 1 {
+            return None;
+        }
+    }
+    let hollow = |s: usize| {
+        let cavities = (0..distinct.len()).filter(|&c| Some(s) == cavity_of[c]).map(|c| distinct[c]);
+        Hollow { outside: distinct[s], cavities: cavities.collect() }
+    };
+    Some((0..distinct.len()).filter(|&s| cavity_of[s].is_none()).map(hollow).collect())
+}
+
+impl Scene {
+    /// A scene of up to six boxes, at random: nested, flush, touching, repeated, turned inward, with panels, wholly or partly double-sided,
+    /// far from the origin, of any size; triangles shuffled; a grid along the boxes' faces or not.
+    #[must_use]
+    pub fn random(seed: u64) -> Self {
+        let mut rng = Random::new(seed);
+        let rng = &mut rng;
+        let side = [2, 3, 4, 8][rng.below(4)];
+        let corner = |rng: &mut Random| [0; 3].map(|_: i64| 4 * rng.below(side + 1) as i64);
+        let double = [0, 0, 0, 1, 2][rng.below(5)];
+        let flips = double == 0 && rng.below(3) == 0;
+        let mut bricks: Vec<Brick> = Vec::new();
+        let count = 1 + rng.below(6);
+        while bricks.len() < count {
+            let inverted = flips && rng.below(3) == 0;
+            if rng.below(10) == 0 && !bricks.is_empty() {
+                bricks.push(bricks[rng.below(bricks.len())]);
+                continue;
+            }
+            let (a, b) = (corner(rng), corner(rng));
+            let (min, max) = ([0, 1, 2].map(|i| a[i].min(b[i])), [0, 1, 2].map(|i| a[i].max(b[i])));
+            if (0..3).all(|i| min[i] < max[i]) {
+                bricks.push(Brick { min, max, inverted });
+            }
+        }
+        let (unit, offset) = match rng.below(3) {
+            0 => (1.0, 0),
+            1 => (2f64.powi(rng.below(61) as i32 - 30), 0),
+            _ => (2f64.powi(rng.below(41) as i32 - 20), 1 << rng.below(24)),
+        };
+        let mut scene =
+            Scene { bricks, panels: Vec::new(), edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
+        for n in 0..scene.bricks.len() {
+            let brick = scene.bricks[n];
+            for quad in scene.surface(&brick).chunks_exact(4) {
+                let two = if rng.below(2) == 0 { [0, 1, 2, 0, 2, 3] } else { [0, 1, 3, 1, 2, 3] };
+                let back = double == 1 || (double == 2 && rng.below(6) == 0);
+                for t in two.chunks_exact(3) {
+                    let [a, b, c] = [quad[t[0]], quad[t[1]], quad[t[2]]];
+                    scene.triangles.push(if brick.inverted { [a, c, b] } else { [a, b, c] });
+                    if back {
+                        scene.triangles.push(if brick.inverted { [a, b, c] } else { [a, c, b] });
+                    }
+                }
+            }
+        }
+        if rng.below(2) == 0 {
+            for n in (1..scene.triangles.len()).rev() {
+                scene.triangles.swap(n, rng.below(n + 1));
+            }
+        }
+        scene
+    }
+
+    /// The four corners of each of a box' sides, counter-clockwise from outside, in metres.
+    fn surface(&self, brick: &Brick) -> Vec<DVec3> {
+        let (lo, hi) = (self.metres(brick.min), self.metres(brick.max));
+        cuboid(lo, hi).chunks_exact(2).flat_map(|pair| [pair[0][0], pair[0][1], pair[0][2], pair[1][2]]).collect()
+    }
+
+    fn metres(&self, p: Point) -> DVec3 {
+        DVec3::from_array(p.map(|c| (c + self.offset) as f64 * self.unit))
+    }
+
+    /// Its fields as they must be; none where the solid is not defined.
+    #[must_use]
+    pub fn truth(&self) -> Option<FieldSet> {
+        let bodies = bodies(&self.bricks)?;
+        let all = || self.bricks.iter().chain(&self.panels);
+        let axis = |a: usize| {
+            let mut at: Vec<i64> = all().flat_map(|b| [b.min[a], b.max[a]]).chain(self.edges[a].iter().copied()).collect();
+            at.sort_unstable();
+            at.dedup();
+            at
+        };
+        let at = [axis(0), axis(1), axis(2)];
+        let count = at.each_ref().map(|a| a.len() - 1);
+        let point = |v: [usize; 3]| [0, 1, 2].map(|a| at[a][v[a]]);
+        let solid = |v: [usize; 3]| {
+            let (lo, hi) = (point(v), point(v.map(|c| c + 1)));
+            bodies.iter().any(|b| b.covers(lo, hi))
+        };
+        let index = |v: [usize; 3]| (v[2] * count[1] + v[1]) * count[0] + v[0];
+        let mut filled = vec![false; count.iter().product()];
+        for_each([0; 3], count, |v| filled[index(v)] = solid(v));
+        let inside = |v: [isize; 3]| {
+            (0..3).all(|a| (0..count[a] as isize).contains(&v[a])) && filled[index(v.map(|c| c as usize))]
+        };
+        let closed = |axis: usize, v: [usize; 3]| {
+            let above = v.map(|c| c as isize);
+            let mut below = above;
+            below[axis] -= 1;
+            let mut end = v.map(|c| c + 1);
+            end[axis] = v[axis];
+            let (lo, hi) = (point(v), point(end));
+            inside(above)
+                || inside(below)
+                || bodies.iter().any(|b| b.walls(axis, lo, hi))
+                || self.panels.iter().any(|p| p.walls(axis, lo, hi))
+        };
+        let find = |p: Point| [0, 1, 2].map(|a| at[a].partition_point(|&c| c < p[a]));
+        let cells = [0, 1, 2].map(|a| self.edges[a].len() - 1);
+        let mut set = FieldSet::default();
+        let corner = |c: [usize; 3]| [0, 1, 2].map(|a| self.edges[a][c[a]]);
+        let mut field = Vec::new();
+        for_each([0; 3], cells, |c| {
+            let (lo, hi) = (corner(c), corner(c.map(|i| i + 1)));
+            let mut open = 0;
+            for_each(find(lo), find(hi), |v| {
+                if !filled[index(v)] {
+                    open += (0..3).map(|a| at[a][v[a] + 1] - at[a][v[a]]).product::<i64>();
+                }
+            });
+            field.push(open as f64 / (0..3).map(|a| hi[a] - lo[a]).product::<i64>() as f64);
+        });
+        set.v = std::mem::take(&mut field).into();
+        for axis in 0..3 {
+            let mut faces = cells;
+            faces[axis] += 1;
+            let across = [0, 1, 2].into_iter().filter(|&a| a != axis);
+            for_each([0; 3], faces, |f| {
+                let mut end = f.map(|i| i + 1);
+                end[axis] = f[axis];
+                let (lo, hi) = (corner(f), corner(end));
+                let (first, mut last) = (find(lo), find(hi));
+                last[axis] += 1;
+                let mut open = 0;
+                for_each(first, last, |v| {
+                    if !closed(axis, v) {
+                        open += across.clone().map(|a| at[a][v[a] + 1] - at[a][v[a]]).product::<i64>();
+                    }
+                });
+                field.push(open as f64 / across.clone().map(|a| hi[a] - lo[a]).product::<i64>() as f64);
+            });
+            let values = std::mem::take(&mut field).into();
+            match axis {
+                0 => set.x = values,
+                1 => set.y = values,
+                _ => set.z = values,
+            }
+        }
+        Some(set)
+    }
+
+    /// What is found for its triangles, all in one solid without a name.
+    ///
+    /// # Panics
+    /// If the triangles are refused.
+    #[must_use]
+    pub fn measured(&self) -> (Bodies, Porosity) {
+        let solids = vec![Solid { name: String::new(), triangles: 0..self.triangles.len() }];
+        let mesh =
+            Mesh { path: PathBuf::from("boxes.stl"), solids, triangles: self.triangles.clone(), warnings: Vec::new() };
+        let mut bodies = Bodies::default();
+        bodies.add(&mesh, 1.0).expect("boxes have an area");
+        let edges = self.edges.each_ref().map(|e| e.iter().map(|&c| (c + self.offset) as f64 * self.unit).collect());
+        let options = Options { bounds: true, ..Options::default() };
+        let found = porosity(&Edges(edges).grid(None).expect("a grid"), &bodies, options);
+        (bodies, found)
+    }
+}
+
+/// Planes along the lattice, or anywhere.
+fn planes(rng: &mut Random, side: usize) -> Vec<i64> {
+    let side = 4 * side as i64;
+    match rng.below(4) {
+        0 => (0..=side / 4).map(|i| 4 * i).collect(),
+        1 => (0..=side / 4).step_by(2).map(|i| 4 * i).chain([side + 4]).collect(),
+        2 => vec![-1, side / 2 + 1, side + 3],
+        _ => {
+            let mut planes: Vec<i64> = (0..2 + rng.below(4)).map(|_| rng.below(side as usize + 3) as i64 - 1).collect();
+            planes.extend([-1, side]);
+            planes.sort_unstable();
+            planes.dedup();
+            planes
+        }
+    }
+}
+
+fn for_each(lo: [usize; 3], hi: [usize; 3], mut visit: impl FnMut([usize; 3])) {
+    for z in lo[2]..hi[2] {
+        for y in lo[1]..hi[1] {
+            for x in lo[0]..hi[0] {
+                visit([x, y, z]);
+            }
+        }
+    }
+}
+
+/// What one scene was.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Visited {
+    /// Its solid is defined.
+    pub defined: bool,
+    /// All its bounds coincide.
+    pub exact: bool,
+    /// It has cavities.
+    pub hollow: bool,
+    /// Surface was dropped that was there twice.
+    pub doubled: bool,
+}
+
+/// By how much a value may leave its bounds.
+pub const SLACK: f64 = 1e-12;
+
+/// Every value of the scene with this seed lies within its bounds.
+///
+/// # Errors
+/// The first value that does not, with its place.
+pub fn bounds_hold(seed: u64) -> Result<Visited, String> {
+    let scene = Scene::random(seed);
+    let Some(truth) = scene.truth() else { return Ok(Visited::default()) };
+    let (bodies, found) = scene.measured();
+    let [lower, upper] = found.bounds.as_ref().expect("bounds");
+    let of = |set: &'_ FieldSet| [set.v.to_vec(), set.x.to_vec(), set.y.to_vec(), set.z.to_vec()];
+    for (name, ((t, l), u)) in ["v", "x", "y", "z"].iter().zip(of(&truth).iter().zip(of(lower)).zip(of(upper))) {
+        for (n, (t, (l, u))) in t.iter().zip(l.iter().zip(&u)).enumerate() {
+            if !(l - SLACK <= *t && *t <= u + SLACK) {
+                return Err(format!(
+                    "seed {seed}: beta_{name}[{n}] is {t}, its bounds {l} and {u}\n{:?}\n{:?}\n{:?}",
+                    scene.bricks, scene.edges, bodies.warnings
+                ));
+            }
+        }
+    }
+    let d = &bodies.diagnoses[0];
+    Ok(Visited {
+        defined: true,
+        exact: found.max_gap <= SLACK,
+        hollow: d.cavities > 0,
+        doubled: d.repeated + d.doubled > 0,
+    })
+}
