@@ -3,18 +3,23 @@
 mod files;
 mod report;
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Body};
 use crate::cli::{PorosityArgs, SceneArgs, Unit};
 use crate::error::{Error, Result};
 use crate::grid::{self, Edges, Source};
 use crate::input;
-use crate::output::{self, ticks::number_to};
+use crate::output::{
+    self,
+    ticks::{measure as number, number_to},
+};
+use crate::porosity::snap::{self, OffPlanes};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
 use crate::progress::Progress;
 use crate::scene;
 use glam::DVec3;
 use report::Report;
 use std::path::Path;
+use voidage_core::grid::Grid;
 
 /// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does.
 ///
@@ -40,7 +45,7 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
         mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
         progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
         if args.unit.is_none() {
-            smell_millimetres(path, &bodies, progress);
+            warn_if_millimetres(path, &bodies, progress);
         }
     }
     bodies.warnings.iter().for_each(|w| progress.warn(w.as_str()));
@@ -50,7 +55,7 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
 /// No plant is larger than this in metres, and few parts are smaller than this in millimetres.
 const LARGEST_PLANT: f64 = 1000.0;
 
-fn smell_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
+fn warn_if_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
     let Some([lo, hi]) = bodies.diagnoses.last().map(|d| d.bounds) else { return };
     let size = hi - lo;
     if size.max_element() >= LARGEST_PLANT && size.max_element() < LARGEST_PLANT * 1e4 {
@@ -117,7 +122,7 @@ pub fn threads(count: Option<u16>) -> Result<rayon::ThreadPool> {
 /// The edges are no grid, or one beyond memory.
 pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut Progress) -> Result<Porosity> {
     let grid = edges.grid(None)?;
-    look_for_misfit(bodies, edges, progress);
+    warn_if_outside(bodies, edges, &grid, progress);
     room_for(porosity::memory(&grid, bodies, options))?;
     let layers = edges.cells()[2] * porosity::levels(bodies).len();
     let result = progress.stage("porosity", |p| {
@@ -125,6 +130,7 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
         porosity::porosity_watched(&grid, bodies, options, &|| bar.inc(1))
     });
     report_leaks(bodies, &result, progress);
+    report_sheets(bodies, result.sheets_off_planes, progress);
     if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
         let why = match options.leaf {
             Leaf::Plane => "are not convex, or not surely so: measured by their surface, exactly",
@@ -184,27 +190,56 @@ fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
 }
 
 /// Geometry outside the grid does not count; say so.
-fn look_for_misfit(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
+fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     let fine = 1e-6 * (hi - lo).max(max - min).max_element();
     let point = |p: DVec3| {
         format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
     };
     let extent = |p, q| format!("{} to {}", point(p), point(q));
-    if !(min.cmplt(hi).all() && max.cmpgt(lo).all()) {
+    // What is flush with the grid but for rounding is within.
+    let near = snap::near(grid);
+    let room = |b: &Body| near + b.single.map_or(DVec3::ZERO, |s| s.error(b.bounds[0]).max(s.error(b.bounds[1])));
+    let beyond = |b: &Body| {
+        let room = room(b);
+        (b.bounds[0] + room).cmplt(lo).any() || (b.bounds[1] - room).cmpgt(hi).any()
+    };
+    if !((min + near).cmplt(hi).all() && (max - near).cmpgt(lo).all()) {
         progress.warn(format!(
             "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
             bodies.files(),
             extent(min, max),
             extent(lo, hi)
         ));
-    } else if min.cmplt(lo).any() || max.cmpgt(hi).any() {
+        return;
+    }
+    if bodies.bodies.iter().any(beyond) {
         progress.warn(format!(
             "{}: the geometry, {}, extends beyond the grid, {}; only what is inside counts",
             bodies.files(),
             extent(min, max),
             extent(lo, hi)
         ));
+    }
+    let outside = |[min, max]: [DVec3; 2]| (min - near).cmpgt(hi).any() || (max + near).cmplt(lo).any();
+    let solids = bodies.solids.iter().filter(|s| outside(s.bounds)).map(|s| format!("solid \"{}\"", s.name));
+    let files = bodies.diagnoses.iter().filter(|d| outside(d.bounds)).map(|d| d.file.clone());
+    let names: Vec<String> = if bodies.solids.is_empty() { files.collect() } else { solids.collect() };
+    if let Some(names) = listed(&names) {
+        progress.warn(format!("{names}: outside the grid, {}, and without effect", extent(lo, hi)));
+    }
+}
+
+/// Names that a sentence holds at most.
+const MOST_NAMES: usize = 5;
+
+/// Names in a sentence, the first few of many; none if there are none.
+fn listed(names: &[String]) -> Option<String> {
+    let shown = names[..names.len().min(MOST_NAMES)].join(", ");
+    match names.len() {
+        0 => None,
+        n if n > MOST_NAMES => Some(format!("{shown} and {} more", n - MOST_NAMES)),
+        _ => Some(shown),
     }
 }
 
@@ -233,6 +268,18 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
         progress.warn(format!(
             "{files}: a surface cuts through itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
             result.winding
+        ));
+    }
+}
+
+fn report_sheets(bodies: &Bodies, off: OffPlanes, progress: &mut Progress) {
+    if off.sheets > 0 {
+        progress.warn(format!(
+            "{}: of {} sheets without thickness, {} block nothing with {} m² in all, which lie in no plane of the grid",
+            bodies.files(),
+            bodies.bodies.iter().filter(|b| b.sheet).count(),
+            off.sheets,
+            number(off.area)
         ));
     }
 }

@@ -121,7 +121,7 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
     for (n, triangles) in solids.iter().enumerate() {
         let solids = vec![Solid { name: format!("solid {n}"), triangles: 0..triangles.len() }];
         let path = PathBuf::from(format!("solid-{n}.stl"));
-        let mesh = Mesh { path, solids, triangles: triangles.clone(), warnings: Vec::new() };
+        let mesh = Mesh { path, solids, triangles: triangles.clone(), single_precision: false, warnings: Vec::new() };
         bodies.add(&mesh, 1.0).expect("a solid with an area");
     }
     bodies
@@ -171,6 +171,7 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         name: format!("solid {n}"),
         triangles: 0..0,
         form: Some(form.clone()),
+        single: None,
         porosity: 0.0,
         volume: 0.0,
         bounds: form.bounds(),

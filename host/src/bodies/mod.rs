@@ -7,6 +7,7 @@ pub mod caps;
 pub mod form;
 pub mod nesting;
 pub mod shells;
+pub mod single;
 pub mod weld;
 
 use crate::input::Mesh;
@@ -17,6 +18,7 @@ use nesting::{Closed, Role};
 use rustc_hash::FxHashMap as HashMap;
 use serde::Serialize;
 use shells::{Sets, Shell};
+use single::SingleSource;
 use std::ops::Range;
 use weld::Indexed;
 
@@ -36,6 +38,9 @@ pub struct Body {
     /// What it is by formula, if that is known.
     #[serde(skip)]
     pub form: Option<Form>,
+    /// Where its corners were rounded to `f32`, if they were.
+    #[serde(skip)]
+    pub single: Option<SingleSource>,
     /// Its own open fraction: 0 is solid.
     pub porosity: f64,
     /// Solid volume of this body alone.
@@ -173,7 +178,11 @@ impl Bodies {
         };
         let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
         let (closed, names) = close(&indexed, &shells, name_of, &mut d, &mut report);
+        let first = self.bodies.len();
         self.assemble(closed, names, &mut d, &mut report);
+        if mesh.single_precision {
+            self.bodies[first..].iter_mut().for_each(|b| b.single = Some(SingleSource::scaled(scale)));
+        }
         self.warnings.append(&mut report.warnings);
         self.diagnoses.push(d);
         Ok(())
@@ -196,8 +205,8 @@ impl Bodies {
             d.cavities += count;
             d.sheets += usize::from(shell.is_sheet());
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
-            let (name, form, porosity) = (names[s].clone(), None, 0.0);
-            self.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: count, sheet });
+            let (name, form, single, porosity) = (names[s].clone(), None, None, 0.0);
+            self.bodies.push(Body { name, triangles, form, single, porosity, volume, bounds, cavities: count, sheet });
         }
         d.bodies = self.bodies.len() - first;
         d.body_volume = self.bodies[first..].iter().map(|b| b.volume).sum();

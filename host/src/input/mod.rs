@@ -29,6 +29,8 @@ pub struct Mesh {
     pub solids: Vec<Solid>,
     /// Corners in winding order, all finite; counter-clockwise seen from outside, if the file keeps the convention.
     pub triangles: Vec<[DVec3; 3]>,
+    /// The coordinates are numbers of `f32`: those of a binary STL, or of a text that was written from such.
+    pub single_precision: bool,
     /// What was passed over or guessed: sentences that name the file and the reason.
     pub warnings: Vec<String>,
 }
@@ -44,7 +46,8 @@ pub struct Solid {
 
 impl Mesh {
     fn new(path: &Path) -> Self {
-        Mesh { path: path.to_owned(), solids: Vec::new(), triangles: Vec::new(), warnings: Vec::new() }
+        let (solids, triangles, warnings) = (Vec::new(), Vec::new(), Vec::new());
+        Mesh { path: path.to_owned(), solids, triangles, single_precision: false, warnings }
     }
 
     fn warn(&mut self, what: impl std::fmt::Display) {

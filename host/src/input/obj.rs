@@ -10,7 +10,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::polygon::{EarClipper, Split};
-use super::text::{Tally, Token, Tokens, quote};
+use super::text::{SingleDigits, Tally, Token, Tokens, quote};
 use super::{Mesh, Solid};
 use crate::error::{Error, Result};
 
@@ -29,6 +29,7 @@ struct Reader<'a> {
     path: &'a Path,
     tokens: Tokens<'a>,
     vertices: Vec<DVec3>,
+    digits: SingleDigits,
     /// Indices into `vertices`, counted from 0, of all faces; checked at the end.
     corners: Vec<usize>,
     faces: Vec<Face>,
@@ -82,9 +83,9 @@ const CURVED: &[&str] = &[
 
 impl<'a> Reader<'a> {
     fn new(path: &'a Path, text: &'a [u8]) -> Self {
-        let oddities = Oddities::default();
+        let (digits, oddities) = (SingleDigits::default(), Oddities::default());
         let (vertices, corners, faces, names) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Reader { path, tokens: Tokens::new(text), vertices, corners, faces, names, oddities }
+        Reader { path, tokens: Tokens::new(text), vertices, digits, corners, faces, names, oddities }
     }
 
     fn statement(&mut self, keyword: Token) -> Result<()> {
@@ -115,6 +116,7 @@ impl<'a> Reader<'a> {
                 return Err(self.error(keyword.at, format!("a vertex has three coordinates, found {i}")));
             };
             *coordinate = token.number().map_err(|reason| self.error(token.at, reason))?;
+            self.digits.see(token.bytes, *coordinate);
         }
         self.vertices.push(DVec3::from_array(vertex));
         Ok(())
@@ -169,6 +171,7 @@ impl<'a> Reader<'a> {
         let mut mesh = Mesh::new(self.path);
         let firsts = self.triangulate(&mut mesh)?;
         mesh.solids = self.solids(&firsts);
+        mesh.single_precision = self.digits.are_single();
         let Oddities { short, curved, unknown, forced } = self.oddities;
         let sentences = [
             (short, "face with fewer than three corners; ignored"),

@@ -169,6 +169,53 @@ impl<'a> Iterator for Tokens<'a> {
     }
 }
 
+/// Whether numbers of a text were written from `f32`, as their digits tell.
+///
+/// They were if each of them is what some `f32` looks like with as many digits as it has, and one of them could not be told from a
+/// number of `f64` by its shortness: it has 8 digits or more, or 13 if it is an `f32` exactly, as 450000.25 may be by chance. Of `f64`
+/// with 9 digits or more hardly any pass; with fewer, half a unit in the last place of `f32` is less than the digits leave open.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SingleDigits {
+    /// A number that no `f32` looks like.
+    denied: bool,
+    /// A number of many digits that one does.
+    shown: bool,
+}
+
+impl SingleDigits {
+    /// Takes a number into account, as it stands in the text and as it was read.
+    pub fn see(&mut self, text: &[u8], value: f64) {
+        if self.denied {
+            return;
+        }
+        let single = f64::from(value as f32);
+        let (count, last) = digits(text);
+        let exact = single == value;
+        // A little more than half of the last digit, for the rounding of this very test.
+        self.denied = !exact && !((single - value).abs() <= 0.500_001 * 10_f64.powi(last));
+        self.shown |= count >= if exact { 13 } else { 8 };
+    }
+
+    /// Whether all numbers so far are those of `f32`.
+    pub fn are_single(self) -> bool {
+        self.shown && !self.denied
+    }
+}
+
+/// Of a number in a text: how many digits it has, zeros before the first and after the last other digit aside, and the power of ten of
+/// the last one written.
+fn digits(text: &[u8]) -> (usize, i32) {
+    let end = text.iter().position(|byte| matches!(byte, b'e' | b'E')).unwrap_or(text.len());
+    let (mantissa, exponent) = (&text[..end], text.get(end + 1..).unwrap_or(&[]));
+    let exponent = std::str::from_utf8(exponent).ok().and_then(|e| e.parse::<i32>().ok()).unwrap_or(0);
+    let decimals = mantissa.iter().position(|&byte| byte == b'.').map_or(0, |point| mantissa.len() - point - 1);
+    let written = mantissa.iter().filter(|byte| byte.is_ascii_digit());
+    let leading = written.clone().take_while(|&&byte| byte == b'0').count();
+    let trailing = written.clone().rev().take_while(|&&byte| byte == b'0').count();
+    let last = exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX));
+    (written.count().saturating_sub(leading + trailing), last)
+}
+
 /// How often something was met, and where first: a million oddities make one warning.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Tally {

@@ -26,6 +26,7 @@ pub(super) struct Report {
     max_gap: f64,
     divided: usize,
     leaks: Vec<porosity::Leak>,
+    sheets_off_planes: porosity::snap::OffPlanes,
     /// Of scene files.
     solids: Vec<Described>,
     warnings: Vec<String>,
@@ -83,6 +84,7 @@ impl Report {
             max_gap: result.max_gap,
             divided: result.divided,
             leaks: result.leaks.clone(),
+            sheets_off_planes: result.sheets_off_planes,
             solids: bodies.solids.clone(),
             warnings: Vec::new(),
             skipped,

@@ -49,8 +49,9 @@ fn add_solid(scene: &Scene, solid: &Solid, bodies: &mut Bodies) -> Result<()> {
             let triangles = push_surface(bodies, &surface, &motion);
             let bounds = form.as_ref().map_or_else(Default::default, |f| f.bounds());
             let (volume, porosity) = (solid.shape.volume(), solid.porosity);
-            let name = name(solid, at, "");
-            bodies.bodies.push(Body { name, triangles, form, porosity, volume, bounds, cavities: 0, sheet: false });
+            let (name, single) = (name(solid, at, ""), None);
+            let body = Body { name, triangles, form, single, porosity, volume, bounds, cavities: 0, sheet: false };
+            bodies.bodies.push(body);
         }
         return Ok(());
     };
@@ -68,7 +69,8 @@ fn add_solid(scene: &Scene, solid: &Solid, bodies: &mut Bodies) -> Result<()> {
             let corners = bodies.triangles[triangles.clone()].iter().flatten();
             let bounds = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &p| [a.min(p), b.max(p)]);
             let (name, porosity) = (name(solid, at, &body.name), solid.porosity);
-            bodies.bodies.push(Body { name, triangles, porosity, bounds, ..body.clone() });
+            let single = body.single.map(|s| s.moved(motion.matrix(), motion.apply(DVec3::ZERO)));
+            bodies.bodies.push(Body { name, triangles, single, porosity, bounds, ..body.clone() });
         }
     }
     bodies.diagnoses.append(&mut original.diagnoses);

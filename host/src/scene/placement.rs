@@ -31,6 +31,12 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// The rotation alone.
+    #[must_use]
+    pub fn matrix(&self) -> DMat3 {
+        self.turn.map_or(DMat3::IDENTITY, |(matrix, _)| matrix)
+    }
+
     /// Where a point goes.
     #[must_use]
     pub fn apply(&self, p: DVec3) -> DVec3 {

@@ -7,7 +7,7 @@ use crate::bodies::form::Form;
 use crate::cli::Unit;
 use crate::error::Result;
 use clap::ValueEnum;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -176,7 +176,7 @@ impl Shape {
             Shape::Sphere { center, radius } => Form::Sphere(Sphere { center: at(center), radius: *radius }),
             Shape::Ellipsoid { center, semi_axes } => {
                 let about_origin = Ellipsoid { center: DVec3::ZERO, semi_axes: *semi_axes };
-                let turn = motion.turn.map_or(DMat3::IDENTITY, |(matrix, _)| matrix);
+                let turn = motion.matrix();
                 let columns = [turn.x_axis, turn.y_axis, turn.z_axis];
                 Form::Ellipsoid(Transformed::new(about_origin, columns, DVec3::ONE, at(center)))
             }

@@ -407,8 +407,9 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
         if probes[..n].iter().any(|other| other.name == probe.name) {
             return Err(file.wrong(&format!("{key}.name"), format!("\"{}\" is the name of another", probe.name)));
         }
-        let at = cell_at(&setup.edges, probe.at)
-            .ok_or_else(|| file.wrong(&format!("{key}.at"), format!("{:?} is outside the grid", probe.at)))?;
+        let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
+            file.wrong(&format!("{key}.at"), format!("{:?} of \"{}\" is outside the grid", probe.at, probe.name))
+        })?;
         let [nx, ny, _] = setup.edges.cells();
         let cell = (at[2] * ny + at[1]) * nx + at[0];
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {

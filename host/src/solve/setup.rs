@@ -76,7 +76,7 @@ pub fn setup<const D: usize>(
     let mut skipped: Vec<String> =
         (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
-    let cells = progress.stage("initial", |_| states.initial(edges))?;
+    let cells = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
 
     let widths = live.map(|d| edges.widths(d));
     let (boundaries, inlets) = boundaries(file, &states, edges, &cells)?;

@@ -85,11 +85,11 @@ impl<const D: usize> States<'_, D> {
         Ok(std::array::from_fn(|d| given[self.live[d]].unwrap_or(base.map_or(0.0, |b| b[d]))))
     }
 
-    /// All cells at the beginning, x fastest.
+    /// All cells at the beginning, x fastest; `warn` is told of regions without a cell.
     ///
     /// # Errors
     /// As [`States::state`]; an array that cannot be read or holds no states; cells without a state.
-    pub fn initial(&self, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
+    pub fn initial(&self, edges: &Edges, warn: &mut dyn FnMut(String)) -> Result<Vec<Primitive<f64, D>>> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
         run::room_for(count.saturating_mul(BYTES_A_CELL))?;
@@ -104,11 +104,17 @@ impl<const D: usize> States<'_, D> {
         };
         for (n, region) in keys.regions.iter().enumerate() {
             let key = format!("initial.regions[{n}]");
-            let shape = self.shape(&key, region)?;
+            let (shape, mut empty) = (self.shape(&key, region)?, true);
             for (cell, state) in cells.iter_mut().enumerate() {
                 if shape.holds(centre(edges, cell)) {
+                    empty = false;
                     *state = Some(self.state(&key, region, *state)?);
                 }
+            }
+            if empty {
+                let place =
+                    if shape.is_outside(edges) { "lies outside the grid" } else { "holds the centre of no cell" };
+                warn(format!("{}: {key} {place}: it has no effect", self.file.path.display()));
             }
         }
         match cells.iter().position(Option::is_none) {
@@ -187,6 +193,15 @@ enum Shape {
 }
 
 impl Shape {
+    /// Wholly beyond the grid.
+    fn is_outside(&self, edges: &Edges) -> bool {
+        let [lo, hi] = edges.bounds().map(|p| p.to_array());
+        (0..3).any(|a| match self {
+            Shape::Box(min, max) => max[a] < lo[a] || min[a] > hi[a],
+            Shape::Ball(center, radius) => center[a] + radius < lo[a] || center[a] - radius > hi[a],
+        })
+    }
+
     fn holds(&self, x: [f64; 3]) -> bool {
         match self {
             Shape::Box(min, max) => (0..3).all(|a| min[a] <= x[a] && x[a] <= max[a]),

@@ -10,7 +10,10 @@
 //! endsolid NAME             (any number of solids)
 //! ```
 //!
-//! Coordinates are read as `f64`: the text has the digits, and rounding them to `f32` would move surfaces. Our own reader, because
+//! Some exporters write `color R G B` after the name or before a facet, and `end loop`, `end facet`, `end solid` in two words.
+//!
+//! Coordinates are read as `f64`: the text has the digits, and rounding them to `f32` would move surfaces. Whether they were written from
+//! `f32`, the digits tell too ([`SingleDigits`]). Our own reader, because
 //! `stl_io` rounds, stops after the first solid and drops the names. Keywords in any case; line ends only end names and comments.
 
 use std::path::Path;
@@ -18,12 +21,13 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::error::{Error, Result};
-use crate::input::text::{Tally, Token, Tokens, quote};
+use crate::input::text::{SingleDigits, Tally, Token, Tokens, quote};
 use crate::input::{Mesh, Solid};
 
 /// Reads all solids of a text.
 pub fn read(path: &Path, text: &[u8]) -> Result<Mesh> {
-    let mut reader = Reader { tokens: Tokens::new(text), mesh: Mesh::new(path), oddities: Oddities::default() };
+    let (mesh, digits, oddities) = (Mesh::new(path), SingleDigits::default(), Oddities::default());
+    let mut reader = Reader { tokens: Tokens::new(text), mesh, digits, oddities };
     while let Some(token) = reader.keyword() {
         if token.is("solid") {
             reader.solid()?;
@@ -42,6 +46,7 @@ pub fn read(path: &Path, text: &[u8]) -> Result<Mesh> {
 struct Reader<'a> {
     tokens: Tokens<'a>,
     mesh: Mesh,
+    digits: SingleDigits,
     oddities: Oddities,
 }
 
@@ -73,7 +78,8 @@ impl<'a> Reader<'a> {
         let start = self.tokens.at();
         let end = self.facet_in_line().unwrap_or_else(|| self.tokens.line_end());
         self.tokens.go_to(end);
-        self.facets(self.tokens.trimmed(start, end))
+        let name = self.tokens.trimmed(start, end);
+        self.facets(without_colour(&name).to_owned())
     }
 
     /// Facets up to the end of their solid.
@@ -84,7 +90,8 @@ impl<'a> Reader<'a> {
             let is_empty = self.mesh.triangles.len() == first;
             match self.keyword() {
                 Some(token) if token.is("facet") => self.facet(token)?,
-                Some(token) if token.is("endsolid") => {
+                Some(token) if token.is("color") => self.skip_colour()?,
+                Some(token) if self.is_end(token, "solid") => {
                     self.skip_end_name();
                     break;
                 }
@@ -115,8 +122,8 @@ impl<'a> Reader<'a> {
         }
         self.expect("loop")?;
         let corners = [self.vertex()?, self.vertex()?, self.vertex()?];
-        self.expect("endloop")?;
-        self.expect("endfacet")?;
+        self.expect_end("loop")?;
+        self.expect_end("facet")?;
         self.mesh.triangles.push(corners);
         Ok(())
     }
@@ -146,8 +153,14 @@ impl<'a> Reader<'a> {
     }
 
     fn number(&mut self) -> Result<f64> {
+        let (token, value) = self.number_at()?;
+        self.digits.see(token.bytes, value);
+        Ok(value)
+    }
+
+    fn number_at(&mut self) -> Result<(Token<'a>, f64)> {
         let Some(token) = self.tokens.next() else { return Err(self.unexpected("a number", None)) };
-        token.number().map_err(|reason| self.error(token.at, reason))
+        token.number().map(|value| (token, value)).map_err(|reason| self.error(token.at, reason))
     }
 
     fn expect(&mut self, keyword: &str) -> Result<()> {
@@ -155,6 +168,34 @@ impl<'a> Reader<'a> {
             Some(token) if token.is(keyword) => Ok(()),
             token => Err(self.unexpected(&format!("`{keyword}`"), token)),
         }
+    }
+
+    fn expect_end(&mut self, what: &str) -> Result<()> {
+        match self.keyword() {
+            Some(token) if self.is_end(token, what) => Ok(()),
+            token => Err(self.unexpected(&format!("`end{what}`"), token)),
+        }
+    }
+
+    /// Whether something ends with this word, or with `end` and the next, which is passed over then.
+    fn is_end(&mut self, token: Token, what: &str) -> bool {
+        if token.bytes.len() == 3 && token.is("end") {
+            let mut ahead = self.tokens.clone();
+            let found = ahead.next().is_some_and(|word| word.is(what));
+            if found {
+                self.tokens = ahead;
+            }
+            return found;
+        }
+        token
+            .bytes
+            .split_at_checked(3)
+            .is_some_and(|(end, rest)| end.eq_ignore_ascii_case(b"end") && rest.eq_ignore_ascii_case(what.as_bytes()))
+    }
+
+    /// The three shares of red, green and blue, which say nothing about the surface.
+    fn skip_colour(&mut self) -> Result<()> {
+        (0..3).try_for_each(|_| self.number_at().map(drop))
     }
 
     /// Passes over the name after `endsolid`, which ends with its line, or before the next solid when all is on one line.
@@ -206,6 +247,7 @@ impl<'a> Reader<'a> {
                 self.mesh.warn(sentence);
             }
         }
+        self.mesh.single_precision = self.digits.are_single();
         Ok(self.mesh)
     }
 
@@ -226,6 +268,20 @@ impl<'a> Reader<'a> {
     fn error(&self, at: usize, reason: String) -> Error {
         Error::at(&self.mesh.path, self.tokens.line(at), reason)
     }
+}
+
+/// A name without `color R G B` at its end.
+fn without_colour(name: &str) -> &str {
+    let mut rest = name;
+    for _ in 0..3 {
+        let Some((before, word)) = rest.rsplit_once(char::is_whitespace) else { return name };
+        if word.parse::<f64>().is_err() {
+            return name;
+        }
+        rest = before.trim_end();
+    }
+    let (before, word) = rest.rsplit_once(char::is_whitespace).unwrap_or(("", rest));
+    if word.eq_ignore_ascii_case("color") { before.trim_end() } else { name }
 }
 
 /// Whether a facet begins with this word and those ahead: `facet [normal NX NY NZ] outer loop`. A name may hold the first, even

@@ -72,6 +72,7 @@ pub fn read(path: &Path, mut bytes: Vec<u8>, len: u64) -> Result<Mesh> {
     // Blank lines for a header: stl_io would take one that begins with `solid` for ASCII, and look for its end far into the file.
     bytes.iter_mut().take(HEADER).for_each(|byte| *byte = b'\n');
     mesh.triangles = triangles(path, bytes)?;
+    mesh.single_precision = true;
     mesh.solids.push(Solid { name: String::new(), triangles: 0..mesh.triangles.len() });
     Ok(mesh)
 }
