@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 use voidage::solve::flow::{Flow, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Primitive};
+use voidage_core::flow::{Boundary, Gas, Primitive};
 
 fn median(mut t: Vec<f64>) -> f64 {
     t.sort_by(f64::total_cmp);

@@ -6,7 +6,7 @@ use voidage::bodies::form::Form;
 use voidage::bodies::{Bodies, Body};
 use voidage::input::{Mesh, Solid};
 use voidage::scene::hull::Hull;
-use voidage_core::shape::Sphere;
+use voidage_core::convex::shape::Sphere;
 
 /// A triangle: three corners, counter-clockwise from outside.
 pub type Triangle = [DVec3; 3];

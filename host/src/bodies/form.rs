@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use std::sync::Arc;
-use voidage_core::aabb::Aabb;
-use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
-use voidage_core::support::{Support, Transformed};
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
+use voidage_core::convex::support::{Support, Transformed};
+use voidage_core::number::aabb::Aabb;
 
 /// A convex body in its place, in metres.
 #[derive(Debug, Clone)]

@@ -5,11 +5,11 @@ use super::convex::{Lists, Road, joined};
 use super::fields::Slices;
 use super::unions::Unions;
 use super::{CellCounts, Options};
-use voidage_core::classify::Tally;
 use voidage_core::grid::Grid;
-use voidage_core::layer::{Fields, Layer};
-use voidage_core::section::{Side, add_section};
-use voidage_core::surface::{Scratch, add_body};
+use voidage_core::grid::fields::{Fields, Layer};
+use voidage_core::subdivide::place::Tally;
+use voidage_core::surface::cells::{Scratch, add_body};
+use voidage_core::surface::z_faces::{Side, add_section};
 
 /// Rows that miss zero by more than this fraction of a face leak.
 const LEAK: f64 = 1e-9;

@@ -11,9 +11,9 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::sync::Arc;
-use voidage_core::aabb::Aabb;
-use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
-use voidage_core::support::Transformed;
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
+use voidage_core::convex::support::Transformed;
+use voidage_core::number::aabb::Aabb;
 
 /// A shape as the scene describes it, before it is placed. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,7 +14,7 @@ use crate::values::Values;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
-use voidage_core::pdr::{Conserved, Report};
+use voidage_core::flow::{Conserved, Report};
 
 /// First bytes of the file; the last is the version of the layout.
 const MAGIC: &[u8; 8] = b"VOIDAGE\x01";

@@ -1,8 +1,8 @@
 //! A field that owns its memory, and sums over fields.
 
 use crate::values::Values;
-use voidage_core::pdr::{Conserved, Fields, FieldsMut, Gas};
-use voidage_core::real::Real;
+use voidage_core::flow::{Conserved, Fields, FieldsMut, Gas};
+use voidage_core::number::real::Real;
 
 /// A number that flows are made of: `f32` or `f64`.
 pub trait Scalar: Real + bytemuck::Pod {}

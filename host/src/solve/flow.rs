@@ -8,7 +8,7 @@ use super::fractions::Space;
 use super::slabs::step;
 use crate::values::Values;
 use rayon::prelude::*;
-use voidage_core::pdr::{
+use voidage_core::flow::{
     Boundary, Clusters, Conserved, Drag, Error, Gas, Mesh, Porosity, Primitive, Problem, Report, Scheme,
 };
 

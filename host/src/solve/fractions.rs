@@ -2,8 +2,9 @@
 
 use super::field::Scalar;
 use crate::values::Values;
-use voidage_core::pdr::{Clusters, Error, Mesh, marks, medium, merge};
-use voidage_core::real::Real;
+use voidage_core::flow::porosity::{clusters, flags, fractions};
+use voidage_core::flow::{Clusters, Error, Mesh};
+use voidage_core::number::real::Real;
 
 /// Open fractions with what the solver derives from them.
 #[derive(Clone, Debug)]
@@ -63,8 +64,8 @@ impl<R: Scalar, const D: usize> Space<R, D> {
         loop {
             let mut space = Space { marks: Values::zeros(volume.len()), clusters: Vec::new(), volume, faces };
             let views = space.faces.each_ref().map(|f| &**f);
-            medium::mark(mesh, &space.volume, &views, periodic, treatment.jump, &mut space.marks);
-            if !treatment.merge || !space.marks.iter().any(|&m| marks::is(m, marks::SMALL)) {
+            fractions::mark(mesh, &space.volume, &views, periodic, treatment.jump, &mut space.marks);
+            if !treatment.merge || !space.marks.iter().any(|&m| flags::is(m, flags::SMALL)) {
                 return Ok((space, tidied));
             }
             space.cluster(mesh, periodic);
@@ -73,7 +74,7 @@ impl<R: Scalar, const D: usize> Space<R, D> {
             if outside.is_empty() {
                 // What found no company (a periodic axis of one cell) limits the step like any other cell.
                 for cell in alone {
-                    space.marks[cell] &= !marks::KIND;
+                    space.marks[cell] &= !flags::KIND;
                 }
                 return Ok((space, tidied));
             }
@@ -89,10 +90,10 @@ impl<R: Scalar, const D: usize> Space<R, D> {
     fn cluster(&mut self, mesh: &Mesh<'_, R, D>, periodic: [bool; D]) {
         let n = self.volume.len();
         let mut parent = vec![0; n];
-        let mut work = vec![R::ZERO; merge::cluster_scratch(n)];
+        let mut work = vec![R::ZERO; clusters::cluster_scratch(n)];
         self.clusters = vec![0; n];
         let views = self.faces.each_ref().map(|f| &**f);
-        let used = merge::clusters(mesh, &self.volume, &views, periodic, &mut self.clusters, &mut parent, &mut work);
+        let used = clusters::clusters(mesh, &self.volume, &views, periodic, &mut self.clusters, &mut parent, &mut work);
         self.clusters.truncate(used);
         self.clusters.shrink_to_fit();
     }
@@ -101,7 +102,7 @@ impl<R: Scalar, const D: usize> Space<R, D> {
     fn small_cells_alone(&self) -> Vec<usize> {
         let mut clustered = vec![false; self.volume.len()];
         Clusters(&self.clusters).groups().flatten().for_each(|cell| clustered[cell] = true);
-        (0..clustered.len()).filter(|&c| marks::is(self.marks[c], marks::SMALL) && !clustered[c]).collect()
+        (0..clustered.len()).filter(|&c| flags::is(self.marks[c], flags::SMALL) && !clustered[c]).collect()
     }
 
     /// Open faces (axis, index) on the sides of the domain of clusters, and of small cells without one, that found no more neighbours
@@ -134,7 +135,7 @@ impl<R: Scalar, const D: usize> Space<R, D> {
                     }
                 }
             }
-            if held < R::from_f64(medium::SMALL_SHARE) * wanted {
+            if held < R::from_f64(fractions::SMALL_SHARE) * wanted {
                 outside.append(&mut edge);
             }
         };
@@ -155,8 +156,8 @@ impl<R: Scalar, const D: usize> Space<R, D> {
             let jumps = |d: usize, bit: u8, face: usize| marks & bit != 0 && self.faces[d][face] > R::ZERO;
             let of_axis = |d: usize| {
                 let low = mesh.face(d, at);
-                let high = at[d] + 1 == cells[d] && jumps(d, marks::break_high(d), low + mesh.face_stride(d));
-                usize::from(jumps(d, marks::break_low(d), low)) + usize::from(high)
+                let high = at[d] + 1 == cells[d] && jumps(d, flags::break_high(d), low + mesh.face_stride(d));
+                usize::from(jumps(d, flags::break_low(d), low)) + usize::from(high)
             };
             (0..D).map(of_axis).sum::<usize>()
         };

@@ -9,7 +9,7 @@ use super::flow::Flow;
 use super::state::States;
 use crate::error::Result;
 use crate::grid::Edges;
-use voidage_core::pdr::{Boundary, Gas, Primitive};
+use voidage_core::flow::{Boundary, Gas, Primitive};
 
 /// An inlet of a flow.
 #[derive(Debug, Clone)]

@@ -58,7 +58,7 @@ impl Report {
     ) -> Self {
         let flow = &setup.flow;
         let content = flow.content();
-        let entered = |of: fn(&voidage_core::pdr::Conserved<f64, D>) -> f64| {
+        let entered = |of: fn(&voidage_core::flow::Conserved<f64, D>) -> f64| {
             flow.total.inflow.iter().flatten().map(of).sum::<f64>()
         };
         let drift = |now: f64, begin: f64, entered: f64| (now - begin - entered) / begin;

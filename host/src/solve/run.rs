@@ -362,8 +362,8 @@ fn formats(output: &OutputKeys) -> &[Format] {
 }
 
 /// What is the matter with a flow that cannot go on: the cell, and its values.
-fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::pdr::Error>) -> String {
-    use voidage_core::pdr::Error::Unphysical;
+fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::flow::Error>) -> String {
+    use voidage_core::flow::Error::Unphysical;
     let (flow, gas) = (&setup.flow, setup.flow.gas());
     let physical = |cell: usize| {
         let w = flow.get(cell);

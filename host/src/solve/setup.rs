@@ -11,7 +11,7 @@ use crate::grid::Edges;
 use crate::progress::Progress;
 use serde::Serialize;
 use std::path::Path;
-use voidage_core::pdr::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
+use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
 
 /// Names of the axes.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
@@ -123,7 +123,7 @@ pub fn setup<const D: usize>(
 }
 
 /// An error of the core as one of the case.
-fn refused(file: &CaseFile, error: voidage_core::pdr::Error) -> Error {
+fn refused(file: &CaseFile, error: voidage_core::flow::Error) -> Error {
     Error::file(&file.path, format!("the flow cannot be set up: {error:?}"))
 }
 

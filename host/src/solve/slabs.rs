@@ -3,7 +3,7 @@
 use super::field::{Field, Scalar};
 use crate::values::Values;
 use rayon::prelude::*;
-use voidage_core::pdr::{Error, Problem, Report};
+use voidage_core::flow::{Error, Problem, Report};
 
 /// One step on rayon's threads: slabs side by side, merging, fallback, floors, as [`Problem::step`].
 pub(super) fn step<R: Scalar, const D: usize>(
@@ -55,7 +55,7 @@ pub(super) fn step<R: Scalar, const D: usize>(
         return Ok(report);
     }
     marks.fill(0);
-    for _ in 0..voidage_core::pdr::repair::FALLBACKS {
+    for _ in 0..voidage_core::flow::fallback::FALLBACKS {
         if problem.mark_troubled(&new.view(), marks) == 0 {
             break;
         }

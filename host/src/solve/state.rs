@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::grid::Edges;
 use crate::run;
 use std::path::Path;
-use voidage_core::pdr::{Gas, Primitive};
+use voidage_core::flow::{Gas, Primitive};
 
 /// What is needed to read a state.
 #[derive(Debug, Clone, Copy)]
