@@ -11,10 +11,9 @@ mod levels;
 pub mod snap;
 mod unions;
 
-use crate::bodies::Bodies;
-pub use crate::values::Values;
+use crate::geometry::bodies::Bodies;
+pub use crate::huge::HugeVec;
 use bins::Bins;
-use clap::ValueEnum;
 use convex::Roads;
 pub use fields::FieldSet;
 use glam::DVec3;
@@ -26,9 +25,9 @@ use voidage_core::grid::Grid;
 use voidage_core::subdivide;
 
 /// How volumes are found.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision
+    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision.
     #[default]
     Auto,
     /// Sums over the surface: exact for any closed surface of triangles
@@ -38,7 +37,7 @@ pub enum Method {
 }
 
 /// What becomes of the smallest parts of a cell that a body still cuts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Leaf {
     /// Touched counts as solid: the paper's rule, which finds too much

@@ -1,8 +1,8 @@
 //! Triangles to bodies: what may be moved, capped and taken for a cavity, wherever the scene lies.
 
 use glam::{DVec3, dvec3};
-use voidage::bodies::Bodies;
-use voidage::input::{Mesh, Solid};
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::{Mesh, Solid};
 
 type Triangle = [DVec3; 3];
 

@@ -2,17 +2,18 @@
 
 use glam::DVec3;
 use std::path::Path;
-use voidage::bodies::Bodies;
 use voidage::error::Error;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::{Mesh, Solid};
+use voidage::geometry::read;
+use voidage::geometry::scene::{self, shape::Shape};
 use voidage::grid::Edges;
-use voidage::input::{self, Mesh, Solid};
 use voidage::porosity::{FieldSet, Leaf, Method, Options, porosity};
-use voidage::scene::{self, shape::Shape};
 
 /// Any bytes, read as a mesh file, give bodies with fractions within 0..1, or an error.
 pub fn any_file_is_measured_or_refused(bytes: &[u8]) {
     for name in ["fuzz.stl", "fuzz.obj"] {
-        if let Ok(mesh) = input::from_bytes(Path::new(name), bytes.to_vec()) {
+        if let Ok(mesh) = read::from_bytes(Path::new(name), bytes.to_vec()) {
             measure(&mesh, 1);
         }
     }

@@ -3,7 +3,7 @@
 //! CAD writes 2.8e-17 where it means 0, and a file of `f32` 0.300000012 where it means 0.3. A wall that misses the plane of a face by so
 //! little would block the face or not by chance; in the plane it blocks it. No corner moves farther than its source was rounded.
 
-use crate::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
