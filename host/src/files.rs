@@ -6,6 +6,7 @@
 //! In reading order: [`whole`], `bytes`; [`npy`], [`vtr`], [`json`].
 
 pub(crate) mod bytes;
+#[cfg(feature = "cli")]
 pub mod json;
 pub mod npy;
 pub mod vtr;

@@ -7,6 +7,7 @@ pub mod form;
 pub mod mesh;
 pub mod read;
 pub mod repair;
+#[cfg(feature = "scene")]
 pub mod scene;
 pub mod single;
 pub mod unit;

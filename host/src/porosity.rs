@@ -20,7 +20,6 @@ use glam::DVec3;
 use layers::{Summary, Target, Worker};
 pub use levels::levels;
 use rayon::prelude::*;
-use serde::Serialize;
 use voidage_core::grid::Grid;
 use voidage_core::subdivide;
 
@@ -37,8 +36,9 @@ pub enum Method {
 }
 
 /// What becomes of the smallest parts of a cell that a body still cuts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Leaf {
     /// Touched counts as solid: the paper's rule, which finds too much
     Solid,
@@ -98,7 +98,8 @@ impl Default for Options {
 }
 
 /// Cells by kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CellCounts {
     /// No solid.
     pub open: usize,
@@ -111,7 +112,8 @@ pub struct CellCounts {
 }
 
 /// How often GJK was asked.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Gjk {
     /// Queries.
     pub queries: u64,
@@ -120,7 +122,8 @@ pub struct Gjk {
 }
 
 /// Where a body's surface fails to close.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Leak {
     /// The body.
     pub body: usize,

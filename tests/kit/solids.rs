@@ -1,7 +1,6 @@
 //! Triangulated solids, outward, and scenes of them.
 
 use glam::{DMat3, DVec3};
-use std::path::PathBuf;
 use voidage::geometry::bodies::{Bodies, Body};
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::{Mesh, Solid};
@@ -120,8 +119,7 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
     let mut bodies = Bodies::default();
     for (n, triangles) in solids.iter().enumerate() {
         let solids = vec![Solid { name: format!("solid {n}"), triangles: 0..triangles.len() }];
-        let path = PathBuf::from(format!("solid-{n}.stl"));
-        let mesh = Mesh { path, solids, triangles: triangles.clone(), single_precision: false, warnings: Vec::new() };
+        let mesh = Mesh { name: format!("solid-{n}.stl"), solids, ..Mesh::from(triangles.clone()) };
         bodies.add(&mesh, 1.0).expect("a solid with an area");
     }
     bodies

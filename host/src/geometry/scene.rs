@@ -29,11 +29,11 @@ pub mod shape;
 pub mod table;
 
 use crate::error::{Error, Result};
-use crate::grid::{self, Edges};
+use crate::grid::{Edges, file};
 use placement::{MOST_COPIES, Placement};
 use shape::Shape;
 use std::path::{Path, PathBuf};
-use table::{Source, StrictTable};
+use table::{StrictTable, TomlText};
 use toml::de::DeTable;
 
 /// A scene file.
@@ -84,8 +84,8 @@ pub fn read(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn parse(path: &Path, text: &str) -> Result<Scene> {
-    let table = DeTable::parse(text).map_err(|e| grid::toml_error(path, text, &e))?;
-    let source = Source::new(path, text);
+    let table = DeTable::parse(text).map_err(|e| file::toml_error(path, text, &e))?;
+    let source = TomlText::new(path, text);
     let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
     let solids = solids(&mut keys)?;
     let grid = keys.grid("grid")?;

@@ -4,7 +4,8 @@
 //! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
 use crate::error::{Error, Result};
-use crate::grid::{self, Edges, Spec};
+use crate::grid::Edges;
+use crate::grid::file::{self, GridTable};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +16,7 @@ pub struct Case {
     /// Written over pictures and into reports.
     pub title: Option<String>,
     /// Cells; an axis left out, or of one cell, is no part of the flow.
-    pub grid: Spec,
+    pub grid: GridTable,
     /// The space; open, if left out.
     #[serde(default)]
     pub porosity: PorosityKeys,
@@ -335,7 +336,7 @@ impl CaseFile {
     /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
-        let case = toml::from_str(&text).map_err(|e| grid::toml_error(path, &text, &e))?;
+        let case = toml::from_str(&text).map_err(|e| file::toml_error(path, &text, &e))?;
         Ok(CaseFile { path: path.to_owned(), case })
     }
 
@@ -368,7 +369,7 @@ impl CaseFile {
     /// No grid.
     pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
         match self.case.grid.elsewhere() {
-            Some(file) => grid::read(&self.resolve(file), warnings),
+            Some(file) => file::read(&self.resolve(file), warnings),
             None => self.case.grid.clone().edges(&self.path, "grid.", true),
         }
     }

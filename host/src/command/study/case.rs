@@ -31,9 +31,10 @@
 //! ```
 
 use crate::error::{Error, Result};
-use crate::geometry::scene::table::{self, Source, StrictTable};
+use crate::geometry::scene::table::{self, StrictTable, TomlText};
 use crate::geometry::scene::{self, Solid};
-use crate::grid::{Edges, toml_error};
+use crate::grid::Edges;
+use crate::grid::file::toml_error;
 use crate::porosity::{Leaf, Method, Options};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
@@ -104,7 +105,7 @@ const MOST: usize = 1024;
 pub fn read(path: &Path) -> Result<Case> {
     let text = table::read_text(path, LARGEST_FILE)?;
     let table = DeTable::parse(&text).map_err(|e| toml_error(path, &text, &e))?;
-    let source = Source::new(path, &text);
+    let source = TomlText::new(path, &text);
     let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
     let title = keys.get("title", table::text)?.unwrap_or_default();
     let repeats = keys.get("repeats", few)?.unwrap_or(3);

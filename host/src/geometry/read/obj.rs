@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
             let reason = format!("no faces: {} vertices, but no `f` with three of them", self.vertices.len());
             return Err(Error::at(self.path, self.tokens.last_line(), self.with_first_unknown(reason)));
         }
-        let mut mesh = Mesh::new(self.path);
+        let mut mesh = Mesh::of_file(self.path);
         let firsts = self.triangulate(&mut mesh)?;
         mesh.solids = self.solids(&firsts);
         mesh.single_precision = self.digits.are_single();
