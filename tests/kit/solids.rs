@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use voidage::geometry::bodies::{Bodies, Body};
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::{Mesh, Solid};
-use voidage::geometry::scene::hull::Hull;
+use voidage::geometry::scene::hull::HullSolid;
 use voidage_core::convex::shape::Sphere;
 
 /// A triangle: three corners, counter-clockwise from outside.
@@ -130,7 +130,7 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
 /// # Panics
 /// For fewer than four points.
 #[must_use]
-pub fn point_sphere(count: usize) -> Hull {
+pub fn point_sphere(count: usize) -> HullSolid {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let points: Vec<DVec3> = (0..count)
         .map(|n| {
@@ -140,12 +140,12 @@ pub fn point_sphere(count: usize) -> Hull {
             (DVec3::new(r * cos, r * sin, z) * 1e6).round() / 1e6
         })
         .collect();
-    Hull::new(&points).expect("points of a sphere span a volume")
+    HullSolid::new(&points).expect("points of a sphere span a volume")
 }
 
 /// A hull as the text of an OBJ file.
 #[must_use]
-pub fn obj(hull: &Hull) -> String {
+pub fn obj(hull: &HullSolid) -> String {
     let mut text = String::new();
     for p in &hull.corners {
         text += &format!("v {} {} {}\n", p.x, p.y, p.z);

@@ -24,7 +24,7 @@ const LEVEL: u8 = 1;
 
 /// An array of its own: `data.len() / components` tuples, interleaved.
 #[derive(Clone, Copy, Debug)]
-pub struct Field<'a> {
+pub struct NamedField<'a> {
     /// Name shown by the viewer.
     pub name: &'a str,
     /// Values in a tuple.
@@ -37,7 +37,7 @@ pub struct Field<'a> {
 #[derive(Clone, Copy, Debug)]
 pub enum CellField<'a> {
     /// One tuple for each cell.
-    Values(Field<'a>),
+    Values(NamedField<'a>),
     /// A vector from three arrays with one value for each cell.
     Vector {
         /// Name shown by the viewer.
@@ -66,7 +66,7 @@ pub struct Vtr<'a> {
     /// Fields to colour by; the first scalar and the first vector become the active ones.
     pub cell: Vec<CellField<'a>>,
     /// Arrays of any length that go with the file, such as face fields. One value called `TimeValue` is the time.
-    pub field_data: Vec<Field<'a>>,
+    pub field_data: Vec<NamedField<'a>>,
     /// Text that goes with the file: name and value.
     pub text: Vec<(&'a str, &'a str)>,
     /// Compress with zlib.
@@ -202,7 +202,7 @@ impl Arrays<'_> {
 
 fn cell_array<'a>(field: &CellField<'a>, cells: [usize; 3]) -> std::result::Result<Array<'a>, String> {
     let (name, components, source) = match *field {
-        CellField::Values(Field { name, components, data }) => (name, components, Some(ArraySource::Values(data))),
+        CellField::Values(NamedField { name, components, data }) => (name, components, Some(ArraySource::Values(data))),
         CellField::Vector { name, parts } => (name, 3, ArraySource::vector(parts, cells)),
         CellField::LowFaces { name, faces } => (name, 3, ArraySource::low_faces(faces, cells)),
     };
@@ -213,8 +213,8 @@ fn cell_array<'a>(field: &CellField<'a>, cells: [usize; 3]) -> std::result::Resu
         .ok_or_else(|| format!("the field '{name}' does not have the length of a grid of {nx} x {ny} x {nz} cells"))
 }
 
-fn free_array<'a>(field: &Field<'a>) -> std::result::Result<Array<'a>, String> {
-    let Field { name, components, data } = *field;
+fn free_array<'a>(field: &NamedField<'a>) -> std::result::Result<Array<'a>, String> {
+    let NamedField { name, components, data } = *field;
     if components == 0 || data.is_empty() || data.len() % components != 0 {
         return Err(format!("the array '{name}' has {} values for {components} components", data.len()));
     }

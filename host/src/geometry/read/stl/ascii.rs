@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::geometry::mesh::{Mesh, Solid};
-use crate::geometry::read::text::{SingleDigits, Tally, Token, Tokens, quote};
+use crate::geometry::read::text::{OddityCount, SingleDigits, Token, Tokens, quote};
 
 /// Reads all solids of a text.
 pub fn read(path: &Path, text: &[u8]) -> Result<Mesh> {
@@ -54,11 +54,11 @@ struct Reader<'a> {
 /// What is read in spite of the format, and warned of.
 #[derive(Default)]
 struct Oddities {
-    comments: Tally,
-    empty: Tally,
-    endless: Tally,
-    homeless: Tally,
-    normals: Tally,
+    comments: OddityCount,
+    empty: OddityCount,
+    endless: OddityCount,
+    homeless: OddityCount,
+    normals: OddityCount,
 }
 
 impl<'a> Reader<'a> {
