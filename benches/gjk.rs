@@ -13,11 +13,11 @@ use parry3d_f64::math::{Pose as ParryPose, Rotation};
 use parry3d_f64::query::details as parry;
 use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, SupportMap};
 use voidage_benches::compare;
-use voidage_core::aabb::Aabb;
-use voidage_core::gjk::{Distance, Intersection, distance, intersect};
-use voidage_core::sat::{BoxTriangle, box_triangle};
-use voidage_core::shape::{Hull, OrientedBox, Triangle};
-use voidage_core::support::{Support, SupportPoint};
+use voidage_core::convex::gjk::{Distance, Intersection, distance, intersect};
+use voidage_core::convex::sat::{BoxTriangle, box_triangle};
+use voidage_core::convex::shape::{Hull, OrientedBox, Triangle};
+use voidage_core::convex::support::{Support, SupportPoint};
+use voidage_core::number::aabb::Aabb;
 use voidage_tests::pairs::{Geodesic, Nearness, Pose, approach, boxes, triangles};
 use voidage_tests::random::Random;
 
@@ -50,13 +50,13 @@ impl<S: Support> Support for Counted<'_, S> {
     fn center(&self) -> S::Vector {
         self.0.center()
     }
-    fn extent(&self) -> <S::Vector as voidage_core::real::Vector>::Scalar {
+    fn extent(&self) -> <S::Vector as voidage_core::number::real::Vector>::Scalar {
         self.0.extent()
     }
-    fn radius(&self) -> <S::Vector as voidage_core::real::Vector>::Scalar {
+    fn radius(&self) -> <S::Vector as voidage_core::number::real::Vector>::Scalar {
         self.0.radius()
     }
-    fn slack(&self) -> <S::Vector as voidage_core::real::Vector>::Scalar {
+    fn slack(&self) -> <S::Vector as voidage_core::number::real::Vector>::Scalar {
         self.0.slack()
     }
 }

@@ -4,7 +4,9 @@
 //! with x fastest: cell `(k*ny + j)*nx + i`, as Fortran `a(nx,ny,nz)` and VTK. A face field is one longer along its own
 //! axis: x faces `(k*ny + j)*(nx+1) + i`, y faces `(k*(ny+1) + j)*nx + i`, z faces `(k*ny + j)*nx + i`.
 
-use crate::real::Real;
+pub mod fields;
+
+use crate::number::real::Real;
 
 /// Edges of a rectilinear grid, borrowed from the caller, checked once.
 #[derive(Clone, Copy, Debug)]

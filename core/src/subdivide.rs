@@ -1,6 +1,6 @@
 //! Depth-first subdivision of a grid against convex bodies: solid shares of cells or faces, as bounds.
 //!
-//! A range of cells is asked of every body that may reach it: open, closed or cut ([`crate::classify`]). Open bodies leave the list, one
+//! A range of cells is asked of every body that may reach it: open, closed or cut ([`crate::subdivide::place`]). Open bodies leave the list, one
 //! closed body closes the range, and what is cut is bisected down to single cells; these into eight parts, or four of a face, down to
 //! `depth`. So the union is counted once. Each part takes over the bodies that cut its parent, the facets of them that did, and the last
 //! separating axis.
@@ -8,12 +8,16 @@
 //! At the end of the road stands a [`Leaf`] rule: `Solid` is that of the paper, whose shares lie (δ/2)∮(|n_x|+|n_y|+|n_z|)dS too high in
 //! all with δ the part's size; `Plane` bounds what is left to second order.
 
-use crate::aabb::Aabb;
-use crate::classify::{Body, Heights, MAX_PLANES, Near, Occupancy, Planes, Tally, Trace};
-use crate::columns::{Bounds, Columns, MAX_PARTS};
+pub mod chord_bounds;
+pub mod mesh;
+pub mod place;
+
 use crate::grid::Grid;
-use crate::mesh::slab;
-use crate::real::{Real, Vector};
+use crate::number::aabb::Aabb;
+use crate::number::real::{Real, Vector};
+use crate::subdivide::chord_bounds::{Bounds, Columns, MAX_PARTS};
+use crate::subdivide::mesh::slab;
+use crate::subdivide::place::{Body, Heights, MAX_PLANES, Near, Occupancy, Planes, Tally, Trace};
 
 /// What becomes of a part that is still cut when the depth is spent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

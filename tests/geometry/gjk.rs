@@ -5,13 +5,13 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use voidage_core::aabb::Aabb;
-use voidage_core::contain::{Containment, Contains, contains};
-use voidage_core::exact::{self, Contact};
-use voidage_core::gjk::{Distance, Intersection, Reason, distance, intersect};
-use voidage_core::sat::BoxTriangle;
-use voidage_core::shape::*;
-use voidage_core::support::{MinkowskiDifference, Rounded, Support, Transformed};
+use voidage_core::convex::containment::{Containment, Contains, contains};
+use voidage_core::convex::exact::{self, Contact};
+use voidage_core::convex::gjk::{Distance, Intersection, Reason, distance, intersect};
+use voidage_core::convex::sat::BoxTriangle;
+use voidage_core::convex::shape::*;
+use voidage_core::convex::support::{MinkowskiDifference, Rounded, Support, Transformed};
+use voidage_core::number::aabb::Aabb;
 use voidage_tests::corpus::{Case, Score, by_kind, read};
 use voidage_tests::gjk::*;
 use voidage_tests::oracle;
@@ -368,7 +368,7 @@ where
     let decided = match intersect(a, b, None) {
         Intersection::Apart { axis } => {
             assert_eq!(truth, Contact::Disjoint, "{name}: said apart");
-            assert!(voidage_core::gjk::separates(a, b, axis), "{name}: unproved");
+            assert!(voidage_core::convex::gjk::separates(a, b, axis), "{name}: unproved");
             true
         }
         Intersection::Overlapping { .. } => {

@@ -3,24 +3,25 @@
 //! **What the solid of such a file is.** Each box is a body, whatever touches it, and the solid is the union of all bodies. A box that is there
 //! more than once is there once; with double-sided triangles it is that box, outward. If boxes of both
 //! orientations are there, one inside another of opposite orientation that is itself a body (the smallest that holds it; touching from
-//! within is inside) is a cavity of that body, and only of that one; any other box is a body, whichever way round. Panels have no volume.
+//! within is inside) is a cavity of that body, and only of that one; any other box is a body, whichever way round.
 //!
-//! **Walls.** A point of a face is open if both one-sided limits are, unless a wall without thickness lies there: a panel, what is left
-//! of a body between a cavity and its own outside, or between two of its cavities.
+//! Where both orientations are there, a box that shares whole edges with several others is not defined: whose edges they are cannot be told.
+//!
+//! **Walls.** A point of a face is open if both one-sided limits are. What is left of a body between a cavity and its own outside, or
+//! between two of its cavities, has no thickness: it may block or not.
 
 use crate::random::Random;
 use crate::solids::{Triangle, cuboid};
 use glam::DVec3;
-use std::path::PathBuf;
-use voidage::bodies::Bodies;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::Mesh;
 use voidage::grid::Edges;
-use voidage::input::{Mesh, Solid};
 use voidage::porosity::{FieldSet, Options, Porosity, porosity};
 
 /// A point, in units of the scene.
 type Point = [i64; 3];
 
-/// A box, or a panel if it is flat.
+/// A box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Brick {
     /// Lowest corner.
@@ -38,6 +39,13 @@ impl Brick {
 
     fn holds(&self, other: &Brick) -> bool {
         (0..3).all(|a| self.min[a] <= other.min[a] && other.max[a] <= self.max[a])
+    }
+
+    /// Is a whole edge of one an edge of the other?
+    fn shares_an_edge(&self, other: &Brick) -> bool {
+        let ends = |b: &Brick, a: usize| [b.min[a], b.max[a]];
+        let meet = |a: usize| ends(self, a).iter().any(|end| ends(other, a).contains(end));
+        (0..3).any(|a| ends(self, a) == ends(other, a) && (0..3).all(|b| b == a || meet(b)))
     }
 
     fn overlaps(&self, other: &Brick) -> bool {
@@ -60,8 +68,6 @@ impl Brick {
 pub struct Scene {
     /// The boxes.
     pub bricks: Vec<Brick>,
-    /// Panels: flat boxes.
-    pub panels: Vec<Brick>,
     /// Planes of the grid.
     pub edges: [Vec<i64>; 3],
     /// The file's triangles, in metres.
@@ -83,8 +89,11 @@ impl Hollow {
         self.outside.covers(lo, hi) && !self.cavities.iter().any(|c| c.covers(lo, hi))
     }
 
+    /// Does a part of its surface lie in the facet `lo..hi`, flat along `axis`, and not within a cavity?
     fn walls(&self, axis: usize, lo: Point, hi: Point) -> bool {
-        self.outside.walls(axis, lo, hi) || self.cavities.iter().any(|c| c.walls(axis, lo, hi))
+        let within = |c: &Brick| c.covers(lo, hi) && c.min[axis] < lo[axis] && lo[axis] < c.max[axis];
+        (self.outside.walls(axis, lo, hi) || self.cavities.iter().any(|c| c.walls(axis, lo, hi)))
+            && !self.cavities.iter().any(within)
     }
 }
 
@@ -95,6 +104,11 @@ impl Hollow {
 fn bodies(bricks: &[Brick]) -> Option<Vec<Hollow>> {
     let crossing = |a: &Brick, b: &Brick| a.inverted != b.inverted && a.overlaps(b) && !a.holds(b) && !b.holds(a);
     if bricks.iter().any(|a| bricks.iter().any(|b| crossing(a, b))) {
+        return None;
+    }
+    let mixed = bricks.iter().any(|b| b.inverted) && bricks.iter().any(|b| !b.inverted);
+    let touched = |a: &Brick| bricks.iter().filter(|b| *b != a && a.shares_an_edge(b)).count();
+    if mixed && bricks.iter().any(|b| touched(b) > 1) {
         return None;
     }
     let mut distinct: Vec<Brick> = Vec::new();
@@ -162,8 +176,7 @@ impl Scene {
             1 => (2f64.powi(rng.below(61) as i32 - 30), 0),
             _ => (2f64.powi(rng.below(41) as i32 - 20), 1 << rng.below(24)),
         };
-        let mut scene =
-            Scene { bricks, panels: Vec::new(), edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
+        let mut scene = Scene { bricks, edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
         for n in 0..scene.bricks.len() {
             let brick = scene.bricks[n];
             for quad in scene.surface(&brick).chunks_exact(4) {
@@ -196,13 +209,13 @@ impl Scene {
         DVec3::from_array(p.map(|c| (c + self.offset) as f64 * self.unit))
     }
 
-    /// Its fields as they must be; none where the solid is not defined.
+    /// Its fields as they must be, walls without thickness open or closed; none where the solid is not defined.
     #[must_use]
-    pub fn truth(&self) -> Option<FieldSet> {
+    pub fn truth(&self, thin_walls_block: bool) -> Option<FieldSet> {
         let bodies = bodies(&self.bricks)?;
-        let all = || self.bricks.iter().chain(&self.panels);
         let axis = |a: usize| {
-            let mut at: Vec<i64> = all().flat_map(|b| [b.min[a], b.max[a]]).chain(self.edges[a].iter().copied()).collect();
+            let mut at: Vec<i64> =
+                self.bricks.iter().flat_map(|b| [b.min[a], b.max[a]]).chain(self.edges[a].iter().copied()).collect();
             at.sort_unstable();
             at.dedup();
             at
@@ -227,10 +240,7 @@ impl Scene {
             let mut end = v.map(|c| c + 1);
             end[axis] = v[axis];
             let (lo, hi) = (point(v), point(end));
-            inside(above)
-                || inside(below)
-                || bodies.iter().any(|b| b.walls(axis, lo, hi))
-                || self.panels.iter().any(|p| p.walls(axis, lo, hi))
+            inside(above) || inside(below) || (thin_walls_block && bodies.iter().any(|b| b.walls(axis, lo, hi)))
         };
         let find = |p: Point| [0, 1, 2].map(|a| at[a].partition_point(|&c| c < p[a]));
         let cells = [0, 1, 2].map(|a| self.edges[a].len() - 1);
@@ -282,9 +292,7 @@ impl Scene {
     /// If the triangles are refused.
     #[must_use]
     pub fn measured(&self) -> (Bodies, Porosity) {
-        let solids = vec![Solid { name: String::new(), triangles: 0..self.triangles.len() }];
-        let mesh =
-            Mesh { path: PathBuf::from("boxes.stl"), solids, triangles: self.triangles.clone(), warnings: Vec::new() };
+        let mesh = Mesh { name: "boxes".into(), ..Mesh::from(self.triangles.clone()) };
         let mut bodies = Bodies::default();
         bodies.add(&mesh, 1.0).expect("boxes have an area");
         let edges = self.edges.each_ref().map(|e| e.iter().map(|&c| (c + self.offset) as f64 * self.unit).collect());
@@ -328,8 +336,12 @@ pub struct Visited {
     pub defined: bool,
     /// All its bounds coincide.
     pub exact: bool,
+    /// Boxes of both orientations.
+    pub flipped: bool,
     /// It has cavities.
     pub hollow: bool,
+    /// What some triangles hold could not be told.
+    pub doubtful: bool,
     /// Surface was dropped that was there twice.
     pub doubled: bool,
 }
@@ -343,15 +355,19 @@ pub const SLACK: f64 = 1e-12;
 /// The first value that does not, with its place.
 pub fn bounds_hold(seed: u64) -> Result<Visited, String> {
     let scene = Scene::random(seed);
-    let Some(truth) = scene.truth() else { return Ok(Visited::default()) };
+    let Some([closed, open]) = scene.truth(true).zip(scene.truth(false)).map(<[FieldSet; 2]>::from) else {
+        return Ok(Visited::default());
+    };
     let (bodies, found) = scene.measured();
     let [lower, upper] = found.bounds.as_ref().expect("bounds");
-    let of = |set: &'_ FieldSet| [set.v.to_vec(), set.x.to_vec(), set.y.to_vec(), set.z.to_vec()];
-    for (name, ((t, l), u)) in ["v", "x", "y", "z"].iter().zip(of(&truth).iter().zip(of(lower)).zip(of(upper))) {
-        for (n, (t, (l, u))) in t.iter().zip(l.iter().zip(&u)).enumerate() {
-            if !(l - SLACK <= *t && *t <= u + SLACK) {
+    let of = |set: &FieldSet| [set.v.to_vec(), set.x.to_vec(), set.y.to_vec(), set.z.to_vec()];
+    let [closed, open, lower, upper] = [&closed, &open, lower, upper].map(of);
+    for (field, name) in ["v", "x", "y", "z"].into_iter().enumerate() {
+        for n in 0..closed[field].len() {
+            let [least, most, l, u] = [&closed, &open, &lower, &upper].map(|set| set[field][n]);
+            if !(l - SLACK <= most && least <= u + SLACK) {
                 return Err(format!(
-                    "seed {seed}: beta_{name}[{n}] is {t}, its bounds {l} and {u}\n{:?}\n{:?}\n{:?}",
+                    "seed {seed}: beta_{name}[{n}] is {least} to {most}, its bounds {l} and {u}\n{:?}\n{:?}\n{:?}",
                     scene.bricks, scene.edges, bodies.warnings
                 ));
             }
@@ -361,7 +377,9 @@ pub fn bounds_hold(seed: u64) -> Result<Visited, String> {
     Ok(Visited {
         defined: true,
         exact: found.max_gap <= SLACK,
+        flipped: scene.bricks.iter().any(|b| b.inverted) && scene.bricks.iter().any(|b| !b.inverted),
         hollow: d.cavities > 0,
+        doubtful: d.doubtful > 0,
         doubled: d.repeated + d.doubled > 0,
     })
 }

@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use serde_json::Value;
-use voidage_core::exact::{self, Contact, Relation};
-use voidage_core::gjk::{self, Distance, Intersection, Overlap, Reason};
-use voidage_core::real::{Real, Vector};
-use voidage_core::shape::Hull;
+use voidage_core::convex::exact::{self, Contact, Relation};
+use voidage_core::convex::gjk::{self, Distance, Intersection, Overlap, Reason};
+use voidage_core::convex::shape::Hull;
+use voidage_core::number::real::{Real, Vector};
 
 use crate::oracle;
 use crate::random::Random;

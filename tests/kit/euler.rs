@@ -7,7 +7,7 @@ pub mod cases;
 pub mod expression;
 pub mod property;
 
-use voidage_core::pdr::Primitive;
+use voidage_core::flow::Primitive;
 
 /// One state: density, velocity, pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]

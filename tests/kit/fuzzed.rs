@@ -1,12 +1,12 @@
 //! What the fuzz targets run, as functions of bytes: also on saved findings, without a fuzzer.
 
 use glam::{DVec3, Vec3};
-use voidage_core::contain::contains;
-use voidage_core::exact::{self, Contact};
-use voidage_core::gjk::{self, Distance, Intersection};
-use voidage_core::real::{Real, Vector};
-use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, OrientedBox, Sphere};
-use voidage_core::support::Support;
+use voidage_core::convex::containment::contains;
+use voidage_core::convex::exact::{self, Contact};
+use voidage_core::convex::gjk::{self, Distance, Intersection};
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, OrientedBox, Sphere};
+use voidage_core::convex::support::Support;
+use voidage_core::number::real::{Real, Vector};
 
 use crate::gjk::{
     booleans_are_true, box_and_triangle_agree, changes_do_not_matter, containment_is_true, distances_are_true,
@@ -100,7 +100,7 @@ pub fn raw(bytes: &[u8]) {
     sound(&bodies.3, &hull);
     sound(&bodies.4, &bodies.0);
     sound(&bodies.5, &bodies.1);
-    let cell = voidage_core::aabb::Aabb::around(&[r, s]);
+    let cell = voidage_core::number::aabb::Aabb::around(&[r, s]);
     let _ = (contains(&bodies.0, &cell), contains(&bodies.5, &cell), contains(&bodies.1, &cell));
 }
 

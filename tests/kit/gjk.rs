@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use voidage_core::aabb::Aabb;
-use voidage_core::contain::{Containment, contains};
-use voidage_core::exact::{self, Contact, Relation};
-use voidage_core::gjk::{self, Distance, Intersection, Overlap};
-use voidage_core::real::{Real, Vector};
-use voidage_core::sat::{BoxTriangle, box_triangle};
-use voidage_core::shape::{Hull, Triangle, Vertices};
+use voidage_core::convex::containment::{Containment, contains};
+use voidage_core::convex::exact::{self, Contact, Relation};
+use voidage_core::convex::gjk::{self, Distance, Intersection, Overlap};
+use voidage_core::convex::sat::{BoxTriangle, box_triangle};
+use voidage_core::convex::shape::{Hull, Triangle, Vertices};
+use voidage_core::number::aabb::Aabb;
+use voidage_core::number::real::{Real, Vector};
 
 use crate::corpus::vectors;
 use crate::oracle;
@@ -123,7 +123,7 @@ pub fn false_proofs_are_refused((a, b): &Pair, axis: [f64; 3], truth: Contact) {
     }
     // Any four pairs of vertices.
     let pick = |h: &Hull<DVec3>| std::array::from_fn(|i| h.vertex((i * 7 + 3) % h.count()));
-    let simplex = voidage_core::simplex::Simplex { a: pick(&ha), b: pick(&hb) };
+    let simplex = voidage_core::convex::simplex::Simplex { a: pick(&ha), b: pick(&hb) };
     if simplex.holds_origin(0.0) {
         assert_eq!(truth, Contact::Overlapping, "{simplex:?} accepted");
     }

@@ -3,7 +3,7 @@
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
-use voidage_core::exact::Contact;
+use voidage_core::convex::exact::Contact;
 
 type P = [BigInt; 3];
 

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat3, DQuat, DVec3};
-use voidage_core::gjk::{Distance, distance};
-use voidage_core::shape::{Adjacency, OrientedBox};
-use voidage_core::support::Support;
+use voidage_core::convex::gjk::{Distance, distance};
+use voidage_core::convex::shape::{Adjacency, OrientedBox};
+use voidage_core::convex::support::Support;
 
 use crate::random::Random;
 

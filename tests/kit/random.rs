@@ -1,7 +1,7 @@
 //! Seeded random numbers: the same on every machine.
 
 use glam::{DMat3, DVec3};
-use voidage_core::real::{Real, Vector};
+use voidage_core::number::real::{Real, Vector};
 
 /// SplitMix64. Reference: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", *OOPSLA* 2014.
 #[derive(Clone, Debug)]

@@ -1,10 +1,10 @@
 //! The core by itself, as another solver would use it, in both precisions.
 
+use voidage_core::grid::fields::{Fields, Layer, ShapeMismatch};
 use voidage_core::grid::{Grid, GridError};
-use voidage_core::layer::{Fields, Layer, ShapeMismatch};
-use voidage_core::real::{Real, Vector};
-use voidage_core::section::{Side, add_section};
-use voidage_core::surface::{Scratch, add_body};
+use voidage_core::number::real::{Real, Vector};
+use voidage_core::surface::cells::{Scratch, add_body};
+use voidage_core::surface::z_faces::{Side, add_section};
 use voidage_tests::solids::{sphere, volume};
 
 /// Solid volume of one closed surface in the unit cube, and the largest leak.

@@ -1,7 +1,7 @@
 //! Conservation, hydrostatic balance, drag.
 
-use voidage::solve::flow::{Flow, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Primitive};
+use voidage::flow::{Flow, Treatment};
+use voidage_core::flow::{Boundary, Gas, Primitive};
 use voidage_tests::euler::property::{Source, porosity};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };

@@ -1,7 +1,7 @@
 //! Convergence: smooth flow, and the flow through porosity jumps that classical forms get wrong.
 
-use voidage::solve::flow::{Flow, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Limiter, Primitive};
+use voidage::flow::{Flow, Treatment};
+use voidage_core::flow::{Boundary, Gas, Limiter, Primitive};
 use voidage_tests::euler::property::Source;
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };

@@ -1,7 +1,7 @@
 //! The same bits along every axis, mirrored, permuted, over open porosity, for any number of threads, at rest.
 
-use voidage::solve::flow::{Flow, Scalar, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
+use voidage::flow::{Flow, Scalar, Treatment};
+use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
 use voidage_tests::euler::property::{Source, bits, porosity, step_stays_physical};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };

@@ -1,7 +1,7 @@
 //! Long lines, other units, and flows known to trouble shock-capturing schemes.
 
-use voidage::solve::flow::{Flow, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Primitive, Riemann};
+use voidage::flow::{Flow, Treatment};
+use voidage_core::flow::{Boundary, Gas, Primitive, Riemann};
 use voidage_tests::euler::property::{Source, bits, porosity};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };

@@ -4,21 +4,21 @@
 //! by triangle. Their union enters a layer as one interval a cell and face, beside what the surfaces of other bodies give.
 
 use super::{Leaf, Method, Options};
-use crate::bodies::form::Form;
-use crate::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::form::Form;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 use std::ops;
-use voidage_core::aabb::Aabb;
-use voidage_core::classify::{self, Near, Occupancy, Seen, Tally, Trace};
-use voidage_core::columns::{Bounds, Columns};
+use voidage_core::convex::polytope::{Facet, Polytope, facets};
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
+use voidage_core::convex::support::Transformed;
 use voidage_core::grid::Grid;
-use voidage_core::layer::Layer;
-use voidage_core::mesh::{Mesh, slab};
-use voidage_core::polytope::{Facet, Polytope, facets};
-use voidage_core::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
+use voidage_core::grid::fields::Layer;
+use voidage_core::number::aabb::Aabb;
+use voidage_core::subdivide::chord_bounds::{Bounds, Columns};
+use voidage_core::subdivide::mesh::{Mesh, slab};
+use voidage_core::subdivide::place::{self, Near, Occupancy, Seen, Tally, Trace};
 use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
-use voidage_core::support::Transformed;
 
 /// A body in its place, convex but for the last kind.
 #[derive(Debug, Clone, Copy)]
@@ -54,13 +54,13 @@ macro_rules! of_shape {
     };
 }
 
-impl classify::Body for Convex<'_> {
+impl place::Body for Convex<'_> {
     type Vector = DVec3;
     fn bounds(&self) -> Aabb<DVec3> {
-        of_shape!(self, s => classify::Body::bounds(s))
+        of_shape!(self, s => place::Body::bounds(s))
     }
     fn facets(&self) -> usize {
-        of_shape!(self, s => classify::Body::facets(s))
+        of_shape!(self, s => place::Body::facets(s))
     }
     fn place(
         &self,
@@ -76,7 +76,7 @@ impl classify::Body for Convex<'_> {
         of_shape!(self, s => s.planes(cell, near))
     }
     fn measure(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
-        of_shape!(self, s => classify::Body::measure(s, cell, near, columns))
+        of_shape!(self, s => place::Body::measure(s, cell, near, columns))
     }
 }
 
@@ -223,7 +223,7 @@ pub struct Lists {
 impl Lists {
     /// Enough for some bodies at once; as much for the same bodies whatever was there before, so that the bits are the same.
     fn memory(&mut self, bodies: &[Convex]) -> Memory<'_, DVec3> {
-        let facets: usize = bodies.iter().map(classify::Body::facets).sum();
+        let facets: usize = bodies.iter().map(place::Body::facets).sum();
         let (candidates, facets) = (8 * bodies.len() + 1024, 8 * facets + (1 << 14));
         self.candidates.resize(self.candidates.len().max(candidates), Candidate::default());
         self.facets.resize(self.facets.len().max(facets), 0);
@@ -239,7 +239,7 @@ impl<'a> Road<'a> {
     #[must_use]
     pub fn new(bodies: Vec<Convex<'a>>, options: Options) -> Self {
         let rule = Rule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
-        let bodies = bodies.into_iter().map(|b| (classify::Body::bounds(&b), b)).collect();
+        let bodies = bodies.into_iter().map(|b| (place::Body::bounds(&b), b)).collect();
         Road { bodies, rule, areas: options.areas }
     }
 
@@ -309,7 +309,7 @@ impl<'a> Road<'a> {
         let part = |(bounds, body, run): (Aabb<DVec3>, Convex<'a>, ops::Range<usize>)| match body {
             Convex::Mesh(_) => {
                 let mesh = Mesh::new(&triangles[run]);
-                (classify::Body::bounds(&mesh), Convex::Mesh(mesh))
+                (place::Body::bounds(&mesh), Convex::Mesh(mesh))
             }
             _ => (bounds, body),
         };

@@ -6,11 +6,11 @@ use super::fields::Slices;
 use super::unions::Unions;
 use super::{CellCounts, Options};
 use std::ops::Range;
-use voidage_core::classify::Tally;
 use voidage_core::grid::Grid;
-use voidage_core::layer::{Fields, Layer};
-use voidage_core::section::{Side, add_section};
-use voidage_core::surface::{Scratch, add_body};
+use voidage_core::grid::fields::{Fields, Layer};
+use voidage_core::subdivide::place::Tally;
+use voidage_core::surface::cells::{Scratch, add_body};
+use voidage_core::surface::z_faces::{Side, add_section};
 
 /// Rows that miss zero by more than this fraction of a face leak.
 const LEAK: f64 = 1e-9;
@@ -195,33 +195,40 @@ fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
     edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
 }
 
-/// Within the boxes of doubtful bodies all of layer `k` may be solid.
+/// Forget what is known of some cells or faces.
+fn forget(lower: &mut [f64], sum: &mut [f64], run: Range<usize>) {
+    lower[run.clone()].fill(0.0);
+    sum[run].fill(1.0);
+}
+
+/// Within the boxes of doubtful bodies, which may be solid or cavities, all of layer `k` is anything from open to closed.
 fn doubt(grid: &Grid<f64>, k: usize, bins: &Bins, layer: &mut Layer<f64>) {
     let nx = grid.cells()[0];
-    let may = |sum: &mut [f64]| sum.iter_mut().for_each(|s| *s = s.max(1.0));
+    let Layer { lower, sum, .. } = layer;
     for [lo, hi] in bins.doubtful().iter().filter(|[lo, hi]| reached(grid.edges(2), lo.z, hi.z).contains(&k)) {
         let (i, j) = (reached(grid.edges(0), lo.x, hi.x), reached(grid.edges(1), lo.y, hi.y));
         if i.is_empty() || j.is_empty() {
             continue;
         }
-        for row in j.clone() {
-            may(&mut layer.sum.cell[row * nx..][i.clone()]);
-            may(&mut layer.sum.x[row * (nx + 1)..][i.start..i.end + 1]);
+        let row = |n: usize, nx: usize, more: usize| n * nx + i.start..n * nx + i.end + more;
+        for n in j.clone() {
+            forget(lower.cell, sum.cell, row(n, nx, 0));
+            forget(lower.x, sum.x, row(n, nx + 1, 1));
         }
-        for row in j.start..j.end + 1 {
-            may(&mut layer.sum.y[row * nx..][i.clone()]);
+        for n in j.start..j.end + 1 {
+            forget(lower.y, sum.y, row(n, nx, 0));
         }
     }
     doubt_z(grid, k, bins, layer);
 }
 
-/// Within the boxes of doubtful bodies all z faces in plane `plane`, held in `layer.…z`, may be closed.
+/// As [`doubt`], for the z faces in plane `plane`, held in `layer.…z`.
 fn doubt_z(grid: &Grid<f64>, plane: usize, bins: &Bins, layer: &mut Layer<f64>) {
     let (nx, at) = (grid.cells()[0], grid.edges(2)[plane]);
     for [lo, hi] in bins.doubtful().iter().filter(|[lo, hi]| (lo.z..=hi.z).contains(&at)) {
-        for row in reached(grid.edges(1), lo.y, hi.y) {
-            let reached = reached(grid.edges(0), lo.x, hi.x);
-            layer.sum.z[row * nx..][reached].iter_mut().for_each(|s| *s = s.max(1.0));
+        let i = reached(grid.edges(0), lo.x, hi.x);
+        for n in reached(grid.edges(1), lo.y, hi.y).filter(|_| !i.is_empty()) {
+            forget(layer.lower.z, layer.sum.z, n * nx + i.start..n * nx + i.end);
         }
     }
 }

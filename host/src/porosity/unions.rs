@@ -7,10 +7,10 @@ use super::layers::Worker;
 use super::{Options, targets};
 use glam::DVec3;
 use std::ops::Range;
-use voidage_core::aabb::Aabb;
 use voidage_core::grid::Grid;
-use voidage_core::layer::{Layer, gap};
-use voidage_core::overlap::{CellUnion, Fragment, Limit, NoProof, Node, Overlap, Part, Piece, Task, Workspace};
+use voidage_core::grid::fields::{Layer, gap};
+use voidage_core::number::aabb::Aabb;
+use voidage_core::surface::union::{CellUnion, Fragment, Limit, NoProof, Node, Overlap, Part, Piece, Task, Workspace};
 
 /// Pieces of surface that one cell may hold before it is divided: beyond, trees cost more than smaller cells.
 const MAX_PIECES: usize = 1024;

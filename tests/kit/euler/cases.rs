@@ -18,7 +18,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
-use voidage_core::pdr::{Boundary, Error};
+use voidage_core::flow::{Boundary, Error};
 
 /// One case on disk.
 pub struct Case {

@@ -1,8 +1,8 @@
 //! Properties of the solver, driven by tests, seeded random input and the fuzzer.
 
-use voidage::solve::flow::{Field, Flow, Scalar, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
-use voidage_core::real::Real;
+use voidage::flow::{Field, Flow, Scalar, Treatment};
+use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
+use voidage_core::number::real::Real;
 
 /// A source of numbers: bytes while they last, then a generator seeded by them.
 pub struct Source<'a> {

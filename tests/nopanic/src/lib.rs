@@ -2,16 +2,16 @@
 #![no_std]
 
 use glam::{DVec3, Vec3};
-use voidage_core::aabb::Aabb;
-use voidage_core::contain::{Containment, Contains, contains};
-use voidage_core::exact;
-use voidage_core::gjk::{Distance, Intersection, distance, intersect, separates};
-use voidage_core::real::{Real, Vector};
-use voidage_core::sat::{BoxTriangle, box_triangle};
-use voidage_core::shape::{
+use voidage_core::number::aabb::Aabb;
+use voidage_core::convex::containment::{Containment, Contains, contains};
+use voidage_core::convex::exact;
+use voidage_core::convex::gjk::{Distance, Intersection, distance, intersect, separates};
+use voidage_core::number::real::{Real, Vector};
+use voidage_core::convex::sat::{BoxTriangle, box_triangle};
+use voidage_core::convex::shape::{
     Adjacency, Capsule, Cone, Cylinder, Ellipsoid, Hull, OrientedBox, Point, Segment, Sphere, Triangle, Vertices,
 };
-use voidage_core::support::{MinkowskiDifference, Rounded, Support, Transformed};
+use voidage_core::convex::support::{MinkowskiDifference, Rounded, Support, Transformed};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

@@ -3,8 +3,8 @@
 use super::{Case, Trouble, Verdict};
 use crate::euler::expression::evaluate;
 use crate::euler::{State, mean};
-use voidage::solve::flow::{Flow, Treatment};
-use voidage_core::pdr::{Boundary, Gas};
+use voidage::flow::{Flow, Treatment};
+use voidage_core::flow::{Boundary, Gas};
 
 /// CFL number of all one-dimensional runs.
 pub(super) const CFL: f64 = 0.75;
@@ -68,7 +68,7 @@ impl Line {
 
 /// Largest relative gap between what the domain holds and what it held plus what came in.
 pub(super) struct Balance<const D: usize> {
-    before: voidage_core::pdr::Conserved<f64, D>,
+    before: voidage_core::flow::Conserved<f64, D>,
 }
 
 impl<const D: usize> Balance<D> {

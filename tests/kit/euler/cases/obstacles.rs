@@ -5,8 +5,8 @@ use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::Riemann;
 use crate::euler::expression::number_after;
 use std::collections::BTreeMap;
-use voidage::solve::flow::{Flow, Treatment};
-use voidage_core::pdr::{Boundary, Gas, Limiter, Primitive, Scheme};
+use voidage::flow::{Flow, Treatment};
+use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Scheme};
 
 pub(super) fn drag(case: &Case) -> Outcome {
     let mut v = Verdict::default();

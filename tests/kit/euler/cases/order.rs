@@ -3,8 +3,8 @@
 use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::expression::{evaluate, number_after};
-use voidage::solve::flow::Flow;
-use voidage_core::pdr::{Boundary, Gas, Limiter, Primitive, Scheme};
+use voidage::flow::Flow;
+use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Scheme};
 
 pub(super) fn order(case: &Case) -> Outcome {
     if case.data.get("mean_velocity").is_some() { vortex(case) } else { advected_wave(case) }
@@ -185,12 +185,12 @@ fn average(
     at: &impl Fn([f64; 2], f64, bool) -> Primitive<f64, 2>,
     gas: Gas<f64>,
     sides: [[f64; 2]; 2],
-) -> voidage_core::pdr::Conserved<f64, 2> {
+) -> voidage_core::flow::Conserved<f64, 2> {
     const X: [f64; 4] =
         [-0.861_136_311_594_052_6, -0.339_981_043_584_856_3, 0.339_981_043_584_856_3, 0.861_136_311_594_052_6];
     const W: [f64; 4] =
         [0.173_927_422_568_726_9, 0.326_072_577_431_273_1, 0.326_072_577_431_273_1, 0.173_927_422_568_726_9];
-    let mut sum = voidage_core::pdr::Conserved { density: 0.0, momentum: [0.0; 2], energy: 0.0 };
+    let mut sum = voidage_core::flow::Conserved { density: 0.0, momentum: [0.0; 2], energy: 0.0 };
     for a in 0..4 {
         for b in 0..4 {
             let x = [

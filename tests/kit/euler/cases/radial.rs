@@ -4,8 +4,8 @@ use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::State;
 use crate::euler::expression::number_after;
-use voidage::solve::flow::Flow;
-use voidage_core::pdr::{Boundary, Gas, Limiter, Primitive, Riemann, Scheme};
+use voidage::flow::Flow;
+use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Riemann, Scheme};
 
 /// Exponent of the radius in the porous variant of a radial case: dimensions less one.
 fn radial_exponent(case: &Case) -> Result<i32, Trouble> {

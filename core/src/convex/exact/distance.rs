@@ -1,0 +1,92 @@
+//! The exact distance, rounded at the end.
+
+use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, cross, dot, is_zero, minus};
+use super::lattice::{Lattice, one, times_power};
+use super::search::Pair;
+use super::{NotFinite, V1, V2};
+use crate::convex::shape::Vertices;
+use crate::number::real::{Real, Vector};
+
+/// An exact distance, rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The distance, to a relative error of 16 ε or a step of the subnormal numbers; 0 exactly if a point is shared.
+    pub distance: f64,
+    /// The nearest point of the first body, to rounding.
+    pub a: [f64; 3],
+    /// The nearest point of the second body, to rounding.
+    pub b: [f64; 3],
+}
+
+/// The distance of two bodies, from exact signs and exact products: right to the last digits however the vertices lie. A distance beyond
+/// the largest number is infinite.
+pub fn distance<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Nearest, NotFinite>
+where
+    A: Vertices,
+    B: Vertices<Vector = A::Vector>,
+{
+    let pair = Pair { a, b, lattice: Lattice::new(a, b)? };
+    let search = pair.search(hint, false);
+    let points = search.simplex.points();
+    let (sq, weights) = match points {
+        [p] => (Ratio::new(dot::<_, _, DEGREE_4>(&p.w, &p.w), one()), [one(), Int::ZERO, Int::ZERO]),
+        [p, q] => {
+            let e = minus(&q.w, &p.w);
+            let area: V2 = cross(&p.w, &e);
+            let weights = [dot(&q.w, &e), dot::<_, _, DEGREE_4>(&p.w, &e).negated(), Int::ZERO];
+            (Ratio::new(dot(&area, &area), dot(&e, &e)), weights)
+        }
+        [p, q, r] => {
+            let n: V2 = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
+            let height: Int<DEGREE_3> = dot(&n, &p.w);
+            let part = |x: &V1, y: &V1| dot::<_, _, DEGREE_4>(&n, &cross::<_, _, DEGREE_2>(x, y));
+            let weights = [part(&q.w, &r.w), part(&r.w, &p.w), part(&p.w, &q.w)];
+            (Ratio::square_over(height, dot(&n, &n)), weights)
+        }
+        _ => (Ratio { m: 0.0, e: 0 }, [one(), Int::ZERO, Int::ZERO]),
+    };
+    // Only the ratios of the weights count.
+    let top = weights.iter().filter(|w| !w.is_zero()).map(|w| w.to_float().1).max().unwrap_or(0);
+    let weights = weights.map(|w| {
+        let (m, e) = w.to_float();
+        times_power(m, e - top)
+    });
+    let total: f64 = weights.iter().sum();
+    // No gap is so small that it may pass for a shared point.
+    let least = if is_zero(&search.direction) { 0.0 } else { f64::from_bits(1) };
+    let mut nearest = Nearest { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
+    for (p, weight) in points.iter().zip(weights) {
+        let (i, j) = p.pair;
+        let (u, v) = (a.vertex(i as usize).to_array(), b.vertex(j as usize).to_array());
+        for k in 0..3 {
+            nearest.a[k] += weight / total * u[k].to_f64();
+            nearest.b[k] += weight / total * v[k].to_f64();
+        }
+    }
+    Ok(nearest)
+}
+
+/// A positive number `m · 2^e`.
+struct Ratio {
+    m: f64,
+    e: i32,
+}
+
+impl Ratio {
+    fn new(numerator: Int<DEGREE_4>, denominator: Int<DEGREE_4>) -> Self {
+        let ((m, e), (n, f)) = (numerator.to_float(), denominator.to_float());
+        Ratio { m: m / n, e: e - f }
+    }
+
+    fn square_over(root: Int<DEGREE_3>, denominator: Int<DEGREE_4>) -> Self {
+        let ((m, e), (n, f)) = (root.to_float(), denominator.to_float());
+        Ratio { m: m * m / n, e: 2 * e - f }
+    }
+
+    /// Square root, times `2^unit`.
+    fn root(&self, unit: i32) -> f64 {
+        let odd = self.e & 1;
+        let m = if odd == 0 { self.m } else { 2.0 * self.m };
+        times_power(Real::sqrt(m), (self.e - odd) / 2 + unit)
+    }
+}

@@ -1,0 +1,124 @@
+//! The search for the point of the difference nearest to the origin, every sign exact.
+
+use core::cmp::Ordering;
+
+use super::V3;
+use super::integer::{DEGREE_4, Int, dot, is_zero, minus, negated};
+use super::lattice::{Difference, Lattice, direction, exponent, parts, times_power};
+use super::simplex::{Points, nearest};
+use crate::convex::shape::Vertices;
+use crate::number::real::{Real, Vector};
+
+/// Where an exact search ended.
+pub(super) struct Search {
+    /// The smallest simplex that holds the nearest point.
+    pub(super) simplex: Points,
+    /// Towards it from the origin; zero if it is the origin.
+    pub(super) direction: V3,
+    /// An axis along which nothing of the difference lies below the origin, if one came up.
+    pub(super) weak: Option<V3>,
+}
+
+/// Two bodies on their lattice.
+pub(super) struct Pair<'a, A, B> {
+    pub(super) a: &'a A,
+    pub(super) b: &'a B,
+    pub(super) lattice: Lattice,
+}
+
+/// Rounding of a scalar product of a rounded direction and a vertex, in units of ε |d|₁ (largest coordinate): three roundings of the product,
+/// two of the direction; twice, as two of them are compared; the rest is room.
+const FILTER_ROUNDINGS: f64 = 16.0;
+
+impl<A, B> Pair<'_, A, B>
+where
+    A: Vertices,
+    B: Vertices<Vector = A::Vector>,
+{
+    /// The vertex farthest along a direction; a filter in floating point leaves few to compare exactly.
+    fn farthest<S: Vertices>(&self, shape: &S, d: &V3) -> u32 {
+        let rounded = direction(d);
+        let norm = rounded[0].abs() + rounded[1].abs() + rounded[2].abs();
+        // In units of the largest coordinate's power of two.
+        let along = |i: usize| {
+            let p = shape.vertex(i).to_array();
+            let x = |k: usize| times_power(p[k].to_f64(), -self.lattice.top);
+            rounded[0] * x(0) + rounded[1] * x(1) + rounded[2] * x(2)
+        };
+        let close = FILTER_ROUNDINGS * f64::EPSILON * norm * 2.0;
+        let mut highest = f64::NEG_INFINITY;
+        for i in 0..shape.count() {
+            highest = Real::max(highest, along(i));
+        }
+        let mut best: Option<(u32, Int<DEGREE_4>)> = None;
+        let mut single = None;
+        for i in 0..shape.count() {
+            if along(i) < highest - close {
+                continue;
+            }
+            let i = i as u32;
+            if best.is_none() {
+                match single {
+                    None => {
+                        single = Some(i);
+                        continue;
+                    }
+                    Some(first) => best = Some((first, self.along(shape, d, first))),
+                }
+            }
+            let here = self.along(shape, d, i);
+            if best.is_some_and(|(_, there)| here.minus(&there).is_positive()) {
+                best = Some((i, here));
+            }
+        }
+        best.map(|b| b.0).or(single).unwrap_or(0)
+    }
+
+    fn along<S: Vertices>(&self, shape: &S, d: &V3, i: u32) -> Int<DEGREE_4> {
+        dot(d, &self.lattice.point(shape.vertex(i as usize)))
+    }
+
+    /// The point of the difference that lies lowest along a direction.
+    pub(super) fn lowest(&self, d: &V3) -> Difference {
+        let pair = (self.farthest(self.a, d), self.farthest(self.b, &negated(d)));
+        self.lattice.difference(self.a, self.b, pair)
+    }
+
+    /// Towards the nearest point. With `any` the search ends at the first axis that separates strictly.
+    pub(super) fn search(&self, hint: Option<A::Vector>, any: bool) -> Search {
+        let first = match hint {
+            Some(hint) if hint.is_finite() => {
+                let d = hint.to_array().map(|x| {
+                    let (m, e) = (x.to_f64(), 60 - exponent(hint));
+                    let (negative, m, e) = parts(if (-2000..2000).contains(&e) { times_power(m, e) } else { 0.0 });
+                    // Below the unit it does not matter: a hint need not be exact.
+                    if m == 0 || e < 0 { Int::ZERO } else { Int::shifted(negative, m, e as u32) }
+                });
+                self.lowest(&d)
+            }
+            _ => self.lattice.difference(self.a, self.b, (0, 0)),
+        };
+        let mut simplex = Points { items: [first; 4], count: 1 };
+        let mut weak = None;
+        loop {
+            let (kept, direction) = nearest(&simplex);
+            simplex = kept;
+            if is_zero(&direction) {
+                return Search { simplex, direction, weak };
+            }
+            let new = self.lowest(&direction);
+            let along: Int<DEGREE_4> = dot(&direction, &new.w);
+            match along.sign() {
+                Ordering::Greater if any => return Search { simplex, direction, weak },
+                Ordering::Equal => weak = Some(direction),
+                _ => {}
+            }
+            let start = simplex.items[0].w;
+            let progress: Int<DEGREE_4> = dot(&direction, &minus(&new.w, &start));
+            if !progress.is_negative() {
+                return Search { simplex, direction, weak };
+            }
+            simplex.push(new);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The origin is a point of the difference: is it inside? By turning a plane about the face, edge or vertex that holds it.
+
+use core::cmp::Ordering;
+
+use super::integer::{DEGREE_4, Int, cross, dot, is_zero, minus, negated, resized};
+use super::lattice::{Difference, one};
+use super::search::Pair;
+use super::simplex::{Points, nearest_in_cone, turn};
+use super::{Axis, Relation, Surround, V1, V2, V3};
+use crate::convex::shape::Vertices;
+
+impl<A, B> Pair<'_, A, B>
+where
+    A: Vertices,
+    B: Vertices<Vector = A::Vector>,
+{
+    /// The origin is inside the triangle: are there points on both sides of its plane?
+    pub(super) fn about_face(&self, p: &Difference, q: &Difference, r: &Difference) -> Relation {
+        let normal: V2 = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
+        match self.both_sides(&resized(&normal)) {
+            Ok((low, high)) => Relation::Overlapping(Surround::of(&[p, q, r, &low, &high])),
+            Err(axis) => Relation::Touching(axis),
+        }
+    }
+
+    /// Points strictly on both sides of the plane through the origin across `d`, or the axis that has none below.
+    #[expect(clippy::result_large_err, reason = "as large as the other outcome")]
+    fn both_sides(&self, d: &V3) -> Result<(Difference, Difference), Axis> {
+        let low = self.lowest(d);
+        if !dot::<_, _, DEGREE_4>(d, &low.w).is_negative() {
+            return Err(Axis(*d));
+        }
+        let opposite = negated(d);
+        let high = self.lowest(&opposite);
+        if !dot::<_, _, DEGREE_4>(&opposite, &high.w).is_negative() {
+            return Err(Axis(opposite));
+        }
+        Ok((low, high))
+    }
+
+    /// The origin is between two points: seen along that edge, are there points in every half plane?
+    pub(super) fn about_edge(&self, p: &Difference, q: &Difference) -> Relation {
+        let e = minus(&q.w, &p.w);
+        let (mut first, mut last) = match self.both_sides(&across(&e)) {
+            Ok(found) => found,
+            Err(axis) => return Relation::Touching(axis),
+        };
+        // Turns `last` away from `first` until the sector between them is all, a half plane, or cannot grow.
+        if turn(&e, &first.w, &last.w) == Ordering::Less {
+            (first, last) = (last, first);
+        }
+        loop {
+            let outward: V2 = cross(&e, &last.w);
+            if turn(&e, &first.w, &last.w) == Ordering::Equal {
+                return match self.both_sides(&resized(&outward)) {
+                    Ok((low, high)) => Relation::Overlapping(Surround::of(&[p, q, &first, &last, &low, &high])),
+                    Err(axis) => Relation::Touching(axis),
+                };
+            }
+            let inward = negated(&resized(&outward));
+            let new = self.lowest(&inward);
+            if !dot::<_, _, DEGREE_4>(&inward, &new.w).is_negative() {
+                return Relation::Touching(Axis(inward));
+            }
+            if turn(&e, &first.w, &new.w) == Ordering::Less {
+                return Relation::Overlapping(Surround::of(&[p, q, &first, &last, &new]));
+            }
+            last = new;
+        }
+    }
+
+    /// The origin is a vertex of the difference. Some other point is taken, and the cone of all points searched for its opposite.
+    pub(super) fn about_vertex(&self) -> Relation {
+        let axis = [one(), Int::ZERO, Int::ZERO];
+        let anchor = match self.both_sides(&axis) {
+            Ok((low, _)) => low,
+            Err(axis) => return Relation::Touching(axis),
+        };
+        let target = negated(&anchor.w);
+        let mut cone = Points { items: [anchor; 4], count: 0 };
+        loop {
+            let (kept, residual) = nearest_in_cone(&target, &cone);
+            cone = kept;
+            if is_zero(&residual) {
+                return match cone.points() {
+                    [p] => self.about_edge(&anchor, p),
+                    [p, q] => self.about_face(&anchor, p, q),
+                    [p, q, r] => Relation::Overlapping(Surround::of(&[&anchor, p, q, r])),
+                    _ => Relation::Touching(Axis(axis)),
+                };
+            }
+            let down = negated(&residual);
+            let new = self.lowest(&down);
+            if !dot::<_, _, DEGREE_4>(&down, &new.w).is_negative() {
+                return Relation::Touching(Axis(down));
+            }
+            cone.push(new);
+        }
+    }
+}
+
+/// Some vector across `e`, not zero.
+fn across(e: &V1) -> V3 {
+    let [x, y, _] = resized(e);
+    let zero = Int::ZERO;
+    if x.is_zero() { [one(), zero, zero] } else { [y.negated(), x, zero] }
+}

@@ -1,0 +1,154 @@
+//! Two bodies of a query, and the power of two that brings them to a size one can compute with.
+//!
+//! Points stay as the bodies give them, so that a proof names points of the bodies to the last bit; only their differences are scaled.
+
+use super::{Reason, SUPPORT_ROUNDINGS};
+use crate::convex::support::{Support, SupportPoint, lengthened};
+use crate::number::real::{Real, Vector};
+
+/// The power of two to multiply two bodies with, so that their extents add to something near one.
+pub(super) enum Scale<R> {
+    Keep,
+    Multiply(R),
+    Refuse(Reason),
+}
+
+pub(super) fn scale<R: Real>(extent: R) -> Scale<R> {
+    if extent >= R::SCALE_MIN && extent <= R::SCALE_MAX {
+        return Scale::Keep;
+    }
+    if !extent.is_finite() {
+        return Scale::Refuse(Reason::NotFinite);
+    }
+    let unit = extent.binade();
+    // 1/unit must be finite, and ε times the extent, as slacks are made of, a thousand times the subnormal step.
+    if !(unit >= R::MIN_POSITIVE * R::from_f64(1024.0)) {
+        return Scale::Refuse(Reason::TooSmall);
+    }
+    Scale::Multiply(R::ONE / unit)
+}
+
+/// Two bodies. Lengths and differences come in units of `1 / factor`, which is 1 unless `SCALED`.
+pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
+    a: &'a A,
+    b: &'a B,
+    factor: R,
+    /// No component of a difference exceeds this.
+    pub extent: R,
+    /// How far a difference may be off in each component, besides one rounding.
+    pub slack: R,
+}
+
+impl<'a, A, B, V, const SCALED: bool> Pair<'a, A, B, V::Scalar, SCALED>
+where
+    V: Vector,
+    A: Support<Vector = V>,
+    B: Support<Vector = V>,
+{
+    #[inline(always)]
+    pub fn new(a: &'a A, b: &'a B, extent: V::Scalar, factor: V::Scalar) -> Self {
+        let factor = if SCALED { factor } else { V::Scalar::ONE };
+        let slack = a.slack() + b.slack();
+        if SCALED {
+            Pair { a, b, factor, extent: extent * factor, slack: slack * factor }
+        } else {
+            Pair { a, b, factor, extent, slack }
+        }
+    }
+
+    /// Rounding of a least value `d·(b - a)`, for each unit of |d|₁.
+    #[inline(always)]
+    pub fn margin(&self) -> V::Scalar {
+        V::Scalar::from_f64(SUPPORT_ROUNDINGS) * V::Scalar::EPSILON * self.extent + self.slack + V::Scalar::UNDERFLOW
+    }
+
+    /// Sum of the radii.
+    #[inline(always)]
+    pub fn radii(&self) -> V::Scalar {
+        self.scaled(self.a.radius() + self.b.radius())
+    }
+
+    #[inline(always)]
+    fn scaled(&self, length: V::Scalar) -> V::Scalar {
+        if SCALED { length * self.factor } else { length }
+    }
+
+    /// A scaled length as it is.
+    #[inline(always)]
+    pub fn unscaled(&self, length: V::Scalar) -> V::Scalar {
+        if SCALED { length * (V::Scalar::ONE / self.factor) } else { length }
+    }
+
+    /// From a point of the first body to one of the second. By components: a vector of `f32` chosen as a whole would be kept as integers.
+    #[inline(always)]
+    pub fn difference(&self, a: V, b: V) -> V {
+        let part = |a, b| self.scaled(b) - self.scaled(a);
+        V::new(part(a.x(), b.x()), part(a.y(), b.y()), part(a.z(), b.z()))
+    }
+
+    /// As long as the points are small, and the reverse, so that products with them neither overflow nor underflow.
+    #[inline(always)]
+    fn fitted(&self, direction: V) -> V {
+        let one = V::Scalar::ONE;
+        let (to_one, stretch) = if SCALED {
+            let longest = V::Scalar::EPSILON / V::Scalar::MIN_POSITIVE;
+            (one / direction.norm_max().binade(), self.factor.min(longest).max(one / longest))
+        } else {
+            (one, one)
+        };
+        direction * to_one * stretch
+    }
+
+    /// The point of the first body farthest along `axis`, and that of the second farthest against it.
+    #[inline(always)]
+    pub fn supports(&self, axis: V, starts: (u32, u32)) -> (SupportPoint<V>, SupportPoint<V>) {
+        let along = self.fitted(axis);
+        (self.a.support(along, starts.0), self.b.support(-along, starts.1))
+    }
+
+    /// The same points made sure of, for a proof.
+    #[inline(always)]
+    pub fn farther(&self, axis: V, a: SupportPoint<V>, b: SupportPoint<V>) -> (SupportPoint<V>, SupportPoint<V>) {
+        let along = self.fitted(axis);
+        (self.a.farther(along, a.index).unwrap_or(a), self.b.farther(-along, b.index).unwrap_or(b))
+    }
+
+    /// A first direction from `a` to `b`: never zero, always finite.
+    #[inline(always)]
+    pub fn seed(&self, hint: Option<V>) -> V {
+        let direction = match hint {
+            Some(hint) => hint,
+            None => self.difference(self.a.center(), self.b.center()),
+        };
+        let size = direction.norm_1();
+        let usual = size > V::Scalar::SCALE_MIN && size < V::Scalar::SCALE_MAX;
+        if usual { direction } else { unusual_seed(direction) }
+    }
+
+    /// The bodies.
+    pub fn bodies(&self) -> (&'a A, &'a B) {
+        (self.a, self.b)
+    }
+
+    /// A lower bound of the distance, by the support planes across `axis`.
+    pub fn gap(&self, axis: V) -> Option<V::Scalar> {
+        let axis = lengthened(axis);
+        let size = axis.norm_1();
+        if !(size >= V::Scalar::ONE) || !size.is_finite() {
+            return None;
+        }
+        let (a, b) = self.supports(axis, (0, 0));
+        let (a, b) = self.farther(axis, a, b);
+        let along = self.difference(a.point, b.point).dot(axis) - self.margin() * size;
+        let relative = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
+        let less = along - along.abs() * relative;
+        Some(less / axis.dot(axis).sqrt() - self.radii() * (V::Scalar::ONE + relative))
+    }
+}
+
+#[cold]
+fn unusual_seed<V: Vector>(direction: V) -> V {
+    let direction = lengthened(direction);
+    let fine = direction.is_finite() && direction.norm_1() > V::Scalar::SCALE_MIN;
+    if fine { direction } else { V::new(V::Scalar::ONE, V::Scalar::ZERO, V::Scalar::ZERO) }
+}

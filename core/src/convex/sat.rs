@@ -1,0 +1,132 @@
+//! A triangle against an axis-aligned box, by the thirteen directions that could separate them.
+//!
+//! Those are the three axes of the box, the normal of the triangle, and the nine products of a box edge with a triangle edge: one of them
+//! is normal to a facet of the Minkowski difference wherever it has one. If the projections overlap on all of them, so do the interiors.
+//! A flat box is welcome: a cell face is one.
+//!
+//! Reference: T. Akenine-Möller, "Fast 3D triangle-box overlap testing", *J. Graphics Tools* 6 (2001); with a bound on every rounding.
+
+use crate::convex::shape::Triangle;
+use crate::convex::support::Support;
+use crate::number::aabb::Aabb;
+use crate::number::real::{Real, Vector};
+
+/// What [`box_triangle`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BoxTriangle<V> {
+    /// No interior point is shared: along `axis`, from the box to the triangle, none lies beyond one of the other.
+    Apart {
+        /// Of any length.
+        axis: V,
+    },
+    /// An interior point is shared.
+    Overlapping,
+    /// They touch or nearly so, or the triangle is degenerate, or numbers are not finite, too large or too small.
+    Undecided,
+}
+
+/// Roundings of a projection, in units of ε and of the sum of its absolute products: two differences (1), for the normal another two and a
+/// product (2), the last product and its sums (2); doubled to cover those of the box and of the bound itself.
+const PROJECTION_ROUNDINGS: f64 = 12.0;
+
+/// The order of two projections.
+enum Order {
+    Apart,
+    Beyond,
+    Overlap,
+    Unsure,
+}
+
+/// The projection `low..=high` of the triangle on `axis` against that of a box from the origin to `size`. `reach` bounds the products.
+#[inline(always)]
+fn order<V: Vector>(axis: V, size: V, low: V::Scalar, high: V::Scalar, reach: V::Scalar) -> Order {
+    let zero = V::Scalar::ZERO;
+    let [x, y, z] = [axis.x() * size.x(), axis.y() * size.y(), axis.z() * size.z()];
+    let top = x.larger(zero) + y.larger(zero) + z.larger(zero);
+    let bottom = x.smaller(zero) + y.smaller(zero) + z.smaller(zero);
+    let error = V::Scalar::from_f64(PROJECTION_ROUNDINGS) * V::Scalar::EPSILON * reach + V::Scalar::UNDERFLOW;
+    if low >= top + error {
+        Order::Apart
+    } else if high <= bottom - error {
+        Order::Beyond
+    } else if low < top - error && high > bottom + error {
+        Order::Overlap
+    } else {
+        Order::Unsure
+    }
+}
+
+/// Do the interiors of a box and a triangle meet? Exact on the three axes of the box: what only touches a face of the box is apart.
+///
+/// ```
+/// use glam::Vec3;
+/// use voidage_core::{number::aabb::Aabb, convex::sat::{BoxTriangle, box_triangle}, convex::shape::Triangle};
+///
+/// let cell = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+/// let triangle = Triangle { a: Vec3::new(0.5, 0.5, -1.0), b: Vec3::new(0.6, 0.5, 2.0), c: Vec3::new(0.5, 0.7, 2.0) };
+/// assert_eq!(box_triangle(&cell, &triangle), BoxTriangle::Overlapping);
+/// ```
+pub fn box_triangle<V: Vector>(cell: &Aabb<V>, triangle: &Triangle<V>) -> BoxTriangle<V> {
+    let extent = cell.extent() + triangle.extent();
+    if !(extent >= V::Scalar::SCALE_MIN && extent <= V::Scalar::SCALE_MAX) {
+        return BoxTriangle::Undecided;
+    }
+    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+    let Triangle { a, b, c } = *triangle;
+    let (low, high) = (a.min(b).min(c).to_array(), a.max(b).max(c).to_array());
+    let (min, max) = (cell.min.to_array(), cell.max.to_array());
+    for k in 0..3 {
+        let along = |s: V::Scalar| {
+            let mut axis = [zero; 3];
+            axis[k] = s;
+            V::from_array(axis)
+        };
+        if low[k] >= max[k] {
+            return BoxTriangle::Apart { axis: along(one) };
+        }
+        if high[k] <= min[k] {
+            return BoxTriangle::Apart { axis: along(-one) };
+        }
+    }
+
+    let size = cell.size();
+    let p = [a - cell.min, b - cell.min, c - cell.min];
+    let edges = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
+    let far = p[0].abs().max(p[1].abs()).max(p[2].abs()) + size;
+    let mut sure = true;
+
+    let normal = edges[0].cross(edges[1]);
+    // An edge is a difference of differences: its rounding is one of the points, however short it is.
+    let rough = far + far;
+    let (e, f) = (rough.to_array(), edges[0].abs().max(edges[1].abs()).to_array());
+    let area = V::new(e[1] * f[2] + e[2] * f[1], e[2] * f[0] + e[0] * f[2], e[0] * f[1] + e[1] * f[0]);
+    let height = normal.dot(p[0]);
+    match order(normal, size, height, height, area.dot(far)) {
+        Order::Apart => return BoxTriangle::Apart { axis: normal },
+        Order::Beyond => return BoxTriangle::Apart { axis: -normal },
+        Order::Overlap => {}
+        Order::Unsure => sure = false,
+    }
+
+    let [fx, fy, fz] = far.to_array();
+    let reach = [fy * fz, fz * fx, fx * fy].map(|r| r + r + r + r);
+    for edge in edges {
+        let [x, y, z] = edge.to_array();
+        let axes = [V::new(zero, -z, y), V::new(z, zero, -x), V::new(-y, x, zero)];
+        for (axis, reach) in axes.into_iter().zip(reach) {
+            if axis == V::ZERO {
+                continue;
+            }
+            let along = p.map(|p| axis.dot(p));
+            let low = along[0].smaller(along[1]).smaller(along[2]);
+            let high = along[0].larger(along[1]).larger(along[2]);
+            match order(axis, size, low, high, reach) {
+                Order::Apart => return BoxTriangle::Apart { axis },
+                Order::Beyond => return BoxTriangle::Apart { axis: -axis },
+                Order::Overlap => {}
+                Order::Unsure => sure = false,
+            }
+        }
+    }
+    if sure { BoxTriangle::Overlapping } else { BoxTriangle::Undecided }
+}

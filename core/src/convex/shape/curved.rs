@@ -1,0 +1,233 @@
+//! Bodies with curved surfaces: sphere, capsule, ellipsoid, cylinder, cone.
+//!
+//! Sphere and capsule are a point and a segment with a radius, which is taken off exactly; the others round, and say by how much.
+
+use super::{Plane, Point, Segment, only};
+use crate::convex::support::{Rounded, Support, SupportPoint, magnitude};
+use crate::number::real::{Real, Vector};
+
+/// A ball: a point with a radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere<V: Vector> {
+    /// Centre.
+    pub center: V,
+    /// Radius, not negative.
+    pub radius: V::Scalar,
+}
+
+/// A segment with a radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule<V: Vector> {
+    /// One end of the core.
+    pub from: V,
+    /// The other end.
+    pub to: V,
+    /// Radius, not negative.
+    pub radius: V::Scalar,
+}
+
+impl<V: Vector> Sphere<V> {
+    #[inline(always)]
+    fn rounded(&self) -> Rounded<Point<V>> {
+        Rounded { core: Point(self.center), radius: self.radius }
+    }
+}
+
+impl<V: Vector> Capsule<V> {
+    #[inline(always)]
+    fn rounded(&self) -> Rounded<Segment<V>> {
+        Rounded { core: Segment { from: self.from, to: self.to }, radius: self.radius }
+    }
+}
+
+macro_rules! support_of_rounded {
+    ($shape:ident) => {
+        impl<V: Vector> Support for $shape<V> {
+            type Vector = V;
+            const ROUNDED: bool = true;
+            #[inline(always)]
+            fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
+                self.rounded().support(direction, start)
+            }
+            #[inline(always)]
+            fn center(&self) -> V {
+                self.rounded().center()
+            }
+            #[inline(always)]
+            fn extent(&self) -> V::Scalar {
+                self.rounded().extent()
+            }
+            #[inline(always)]
+            fn radius(&self) -> V::Scalar {
+                self.radius
+            }
+        }
+    };
+}
+support_of_rounded!(Sphere);
+support_of_rounded!(Capsule);
+
+/// `v` by its length; zero for zero. Components of any size.
+pub(crate) fn normalized<V: Vector>(v: V) -> V {
+    let unit = v.norm_max().binade();
+    if !(unit > V::Scalar::ZERO) || !unit.is_finite() {
+        return V::ZERO;
+    }
+    let v = v * (V::Scalar::ONE / unit);
+    v * (V::Scalar::ONE / v.dot(v).sqrt())
+}
+
+/// An ellipsoid with axes along x, y and z; see [`crate::convex::support::Transformed`] for others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid<V> {
+    /// Centre.
+    pub center: V,
+    /// Half the length along each axis, not negative.
+    pub semi_axes: V,
+}
+
+#[inline(always)]
+fn times<V: Vector>(a: V, b: V) -> V {
+    V::new(a.x() * b.x(), a.y() * b.y(), a.z() * b.z())
+}
+
+impl<V: Vector> Support for Ellipsoid<V> {
+    type Vector = V;
+    #[inline(always)]
+    fn support(&self, direction: V, _: u32) -> SupportPoint<V> {
+        let on_unit_ball = normalized(times(self.semi_axes, normalized(direction)));
+        only(self.center + times(self.semi_axes, on_unit_ball))
+    }
+    #[inline(always)]
+    fn center(&self) -> V {
+        self.center
+    }
+    #[inline(always)]
+    fn extent(&self) -> V::Scalar {
+        magnitude(self.center.abs() + self.semi_axes.abs())
+            * (V::Scalar::ONE + V::Scalar::from_f64(4.0) * V::Scalar::EPSILON)
+    }
+    #[inline(always)]
+    fn slack(&self) -> V::Scalar {
+        V::Scalar::from_f64(24.0) * V::Scalar::EPSILON * self.extent()
+    }
+}
+
+/// A centre, an axis and two vectors across it: what cylinder and cone have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frame<V: Vector> {
+    pub base: V,
+    pub top: V,
+    axis: V,
+    pub across: [V; 2],
+    pub radius: V::Scalar,
+    pub height: V::Scalar,
+    /// Across the axis through base and top.
+    pub ends: [Plane<V>; 2],
+}
+
+impl<V: Vector> Frame<V> {
+    pub fn new(base: V, top: V, radius: V::Scalar) -> Self {
+        let axis = top - base;
+        let unit = normalized(axis);
+        let [x, y, z] = unit.abs().to_array();
+        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
+        // The coordinate axis least along ours.
+        let other = if x <= y && x <= z {
+            V::new(one, zero, zero)
+        } else if y <= z {
+            V::new(zero, one, zero)
+        } else {
+            V::new(zero, zero, one)
+        };
+        let u = normalized(unit.cross(other));
+        let ends = [Plane::new(base - top, base), Plane::new(axis, top)];
+        Frame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
+    }
+
+    /// From the axis to the point of the circle farthest along a direction.
+    #[inline(always)]
+    fn rim(&self, direction: V) -> V {
+        let [u, v] = self.across;
+        let zero = V::Scalar::ZERO;
+        let local = normalized(V::new(u.dot(direction), v.dot(direction), zero));
+        (u * local.x() + v * local.y()) * self.radius
+    }
+
+    fn extent(&self) -> V::Scalar {
+        let bad = if self.radius >= V::Scalar::ZERO { V::Scalar::ZERO } else { V::Scalar::INFINITY };
+        let highest = self.base.abs() + self.axis.abs() + V::splat(self.radius);
+        magnitude(highest) * (V::Scalar::ONE + V::Scalar::from_f64(16.0) * V::Scalar::EPSILON) + bad
+    }
+
+    fn slack(&self) -> V::Scalar {
+        // A handful of roundings in the frame, in the direction across it, in its unit vector and in the sums.
+        V::Scalar::from_f64(48.0) * V::Scalar::EPSILON * self.extent()
+    }
+}
+
+/// A cylinder with flat ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder<V: Vector>(pub(crate) Frame<V>);
+
+impl<V: Vector> Cylinder<V> {
+    /// Between the centres of its ends. With both in one place it is that point.
+    pub fn new(from: V, to: V, radius: V::Scalar) -> Self {
+        Cylinder(Frame::new(from, to, radius))
+    }
+}
+
+impl<V: Vector> Support for Cylinder<V> {
+    type Vector = V;
+    #[inline(always)]
+    fn support(&self, direction: V, _: u32) -> SupportPoint<V> {
+        let rim = self.0.rim(direction);
+        let end = if self.0.axis.dot(direction) > V::Scalar::ZERO { self.0.axis } else { V::ZERO };
+        only(self.0.base + end + rim)
+    }
+    #[inline(always)]
+    fn center(&self) -> V {
+        self.0.base + self.0.axis * V::Scalar::HALF
+    }
+    #[inline(always)]
+    fn extent(&self) -> V::Scalar {
+        self.0.extent()
+    }
+    #[inline(always)]
+    fn slack(&self) -> V::Scalar {
+        self.0.slack()
+    }
+}
+
+/// A cone with a flat base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone<V: Vector>(pub(crate) Frame<V>);
+
+impl<V: Vector> Cone<V> {
+    /// From the centre and radius of its base to its apex. With both in one place it is that point.
+    pub fn new(base: V, apex: V, radius: V::Scalar) -> Self {
+        Cone(Frame::new(base, apex, radius))
+    }
+}
+
+impl<V: Vector> Support for Cone<V> {
+    type Vector = V;
+    #[inline(always)]
+    fn support(&self, direction: V, _: u32) -> SupportPoint<V> {
+        let rim = self.0.rim(direction);
+        let across = if self.0.axis.dot(direction) > rim.dot(direction) { self.0.axis } else { rim };
+        only(self.0.base + across)
+    }
+    #[inline(always)]
+    fn center(&self) -> V {
+        self.0.base + self.0.axis * V::Scalar::from_f64(0.25)
+    }
+    #[inline(always)]
+    fn extent(&self) -> V::Scalar {
+        self.0.extent()
+    }
+    #[inline(always)]
+    fn slack(&self) -> V::Scalar {
+        self.0.slack()
+    }
+}

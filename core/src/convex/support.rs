@@ -1,0 +1,269 @@
+//! Support mappings: the point of a convex body farthest along a direction.
+//!
+//! A body enters [`crate::convex::gjk`] only through [`Support`]. Besides the point it states how far rounding may have moved that point, so that
+//! an answer can be proved. Adaptors compose bodies from bodies.
+//!
+//! Reference: G. van den Bergen, *Collision Detection in Interactive 3D Environments*, 2003, section 3.2.
+
+use crate::number::real::{Real, Vector};
+
+/// Scalar of a body.
+pub type ScalarOf<S> = <<S as Support>::Vector as Vector>::Scalar;
+
+/// A support point, and where a search for the next one should start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupportPoint<V> {
+    /// The point.
+    pub point: V,
+    /// Index of the vertex, for bodies that have any.
+    pub index: u32,
+}
+
+/// A convex body: a core, given by its support mapping, thickened by a radius.
+///
+/// For any finite direction `d` that is not zero, with `p` the point of the core that [`Support::farthest`] returns:
+/// - some point of the core lies within `slack` of `p` in every component;
+/// - no point of the core lies farther along `d` than `d·p + |d|₁ (4 ε extent + slack)`.
+pub trait Support {
+    /// The vectors of the space.
+    type Vector: Vector;
+    /// Whether [`Support::radius`] may be other than zero.
+    const ROUNDED: bool = false;
+
+    /// A point of the core farthest along `direction`, of any length but zero. `start` is the index of an earlier answer, or 0; it may
+    /// shorten the search. The point may be farthest only among its neighbours: see [`Support::farther`].
+    fn support(&self, direction: Self::Vector, start: u32) -> SupportPoint<Self::Vector>;
+
+    /// A point farther along `direction` than the one of index `found`, which is what [`Support::support`] returned for it; if there is
+    /// one. Asked before a proof is built on the answer.
+    fn farther(&self, direction: Self::Vector, found: u32) -> Option<SupportPoint<Self::Vector>> {
+        let _ = (direction, found);
+        None
+    }
+
+    /// The point of the core farthest along `direction`.
+    fn farthest(&self, direction: Self::Vector) -> SupportPoint<Self::Vector> {
+        let found = self.support(direction, 0);
+        self.farther(direction, found.index).unwrap_or(found)
+    }
+
+    /// Some point well inside, to start from.
+    fn center(&self) -> Self::Vector;
+
+    /// No coordinate of the body exceeds this in absolute value. NaN or infinite if anything in the body is.
+    fn extent(&self) -> ScalarOf<Self>;
+
+    /// Radius of the balls around the core's points which, together, are the body.
+    fn radius(&self) -> ScalarOf<Self> {
+        Real::ZERO
+    }
+
+    /// How far rounding may have moved a support point, in each component. Zero for bodies given by their vertices.
+    fn slack(&self) -> ScalarOf<Self> {
+        Real::ZERO
+    }
+}
+
+impl<S: Support> Support for &S {
+    type Vector = S::Vector;
+    const ROUNDED: bool = S::ROUNDED;
+    #[inline(always)]
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        (**self).support(direction, start)
+    }
+    #[inline(always)]
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        (**self).farther(direction, found)
+    }
+    #[inline(always)]
+    fn center(&self) -> S::Vector {
+        (**self).center()
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<S> {
+        (**self).extent()
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<S> {
+        (**self).radius()
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<S> {
+        (**self).slack()
+    }
+}
+
+/// Largest absolute component; NaN if any component is NaN or infinite.
+#[inline(always)]
+pub(crate) fn magnitude<V: Vector>(v: V) -> V::Scalar {
+    v.norm_max() + v.norm_1() * V::Scalar::ZERO
+}
+
+/// A body thickened by a radius: all points within `radius` of it. The radius is finite and not negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounded<S: Support> {
+    /// What is thickened.
+    pub core: S,
+    /// By how much.
+    pub radius: ScalarOf<S>,
+}
+
+impl<S: Support> Support for Rounded<S> {
+    type Vector = S::Vector;
+    const ROUNDED: bool = true;
+    #[inline(always)]
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        self.core.support(direction, start)
+    }
+    #[inline(always)]
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        self.core.farther(direction, found)
+    }
+    #[inline(always)]
+    fn center(&self) -> S::Vector {
+        self.core.center()
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<S> {
+        let radius = if self.radius >= Real::ZERO { self.radius } else { Real::INFINITY };
+        (self.core.extent() + radius) * (ScalarOf::<S>::ONE + ScalarOf::<S>::EPSILON)
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<S> {
+        self.core.radius() + self.radius
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<S> {
+        self.core.slack()
+    }
+}
+
+/// A body scaled along its own axes, then rotated, then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transformed<S: Support> {
+    pub(crate) shape: S,
+    pub(crate) columns: [S::Vector; 3],
+    pub(crate) translation: S::Vector,
+    norm: ScalarOf<S>,
+    /// Scale of the radius; zero if the scale differs by axis and the ball becomes an ellipsoid.
+    round: ScalarOf<S>,
+}
+
+impl<S: Support> Transformed<S> {
+    /// Maps a point `p` to `translation + rotation (scale ∘ p)`; `rotation` holds the images of the three axes, orthonormal.
+    pub fn new(shape: S, rotation: [S::Vector; 3], scale: S::Vector, translation: S::Vector) -> Self {
+        let [sx, sy, sz] = scale.to_array();
+        let columns = [rotation[0] * sx, rotation[1] * sy, rotation[2] * sz];
+        let rows = columns[0].abs() + columns[1].abs() + columns[2].abs();
+        let even = sx.abs() == sy.abs() && sy.abs() == sz.abs();
+        let round = if even { sx.abs() } else { Real::ZERO };
+        Transformed { shape, columns, translation, norm: magnitude(rows), round }
+    }
+
+    #[inline(always)]
+    fn apply(&self, p: S::Vector) -> S::Vector {
+        self.columns[0] * p.x() + self.columns[1] * p.y() + self.columns[2] * p.z() + self.translation
+    }
+
+    #[inline(always)]
+    fn local(&self, direction: S::Vector) -> S::Vector {
+        let [x, y, z] = self.columns;
+        S::Vector::new(x.dot(direction), y.dot(direction), z.dot(direction))
+    }
+
+    /// A point of the shape as one of ours; `local` is the direction it was found in.
+    #[inline(always)]
+    fn image(&self, found: SupportPoint<S::Vector>, local: S::Vector) -> SupportPoint<S::Vector> {
+        let mut point = found.point;
+        if S::ROUNDED && self.round == Real::ZERO {
+            let length = local.length();
+            if length > Real::ZERO {
+                // Divided first: the quotient is below one whatever the scale.
+                let unit = S::Vector::new(local.x() / length, local.y() / length, local.z() / length);
+                point += unit * self.shape.radius();
+            }
+        }
+        SupportPoint { point: self.apply(point), index: found.index }
+    }
+}
+
+impl<S: Support> Support for Transformed<S> {
+    type Vector = S::Vector;
+    const ROUNDED: bool = S::ROUNDED;
+    #[inline(always)]
+    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
+        let local = self.local(direction);
+        self.image(self.shape.support(local, start), local)
+    }
+    #[inline(always)]
+    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
+        let local = self.local(direction);
+        self.shape.farther(local, found).map(|found| self.image(found, local))
+    }
+    #[inline(always)]
+    fn center(&self) -> S::Vector {
+        self.apply(self.shape.center())
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<S> {
+        let one = ScalarOf::<S>::ONE;
+        // The rotation may be off by some roundings: a little more than the sum.
+        (self.norm * self.shape.extent() + magnitude(self.translation))
+            * (one + ScalarOf::<S>::from_f64(64.0) * ScalarOf::<S>::EPSILON)
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<S> {
+        self.shape.radius() * self.round
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<S> {
+        // Mapping the direction and the point, each with some roundings of its terms; what the shape itself is off by is mapped too.
+        self.norm * self.shape.slack() + ScalarOf::<S>::from_f64(32.0) * ScalarOf::<S>::EPSILON * self.extent()
+    }
+}
+
+/// All differences `b - a` of points of two bodies. It holds the origin exactly if they meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MinkowskiDifference<A, B> {
+    /// What is subtracted.
+    pub a: A,
+    /// What it is subtracted from.
+    pub b: B,
+}
+
+impl<A: Support, B: Support<Vector = A::Vector>> Support for MinkowskiDifference<A, B> {
+    type Vector = A::Vector;
+    const ROUNDED: bool = A::ROUNDED || B::ROUNDED;
+    #[inline(always)]
+    fn support(&self, direction: A::Vector, _: u32) -> SupportPoint<A::Vector> {
+        // One index cannot name two vertices, so both are made sure of at once.
+        let point = self.b.farthest(direction).point - self.a.farthest(-direction).point;
+        SupportPoint { point, index: 0 }
+    }
+    #[inline(always)]
+    fn center(&self) -> A::Vector {
+        self.b.center() - self.a.center()
+    }
+    #[inline(always)]
+    fn extent(&self) -> ScalarOf<A> {
+        (self.a.extent() + self.b.extent()) * (ScalarOf::<A>::ONE + ScalarOf::<A>::EPSILON)
+    }
+    #[inline(always)]
+    fn radius(&self) -> ScalarOf<A> {
+        self.a.radius() + self.b.radius()
+    }
+    #[inline(always)]
+    fn slack(&self) -> ScalarOf<A> {
+        self.a.slack() + self.b.slack() + ScalarOf::<A>::EPSILON * self.extent()
+    }
+}
+
+/// Scaled up or down by a power of two, so that the largest component is between 1 and 2; zero and non-finite vectors as they are.
+#[inline(always)]
+pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
+    // Subnormal numbers have no power of two of their own to divide by.
+    let subnormal = direction.norm_max() < V::Scalar::MIN_POSITIVE;
+    let direction = if subnormal { direction * (V::Scalar::ONE / V::Scalar::EPSILON) } else { direction };
+    let unit = direction.norm_max().binade();
+    if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
+}

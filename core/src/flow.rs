@@ -1,0 +1,49 @@
+//! The Euler equations of a gas in a porous space (porosity / distributed resistance).
+//!
+//! Unknowns are pore averages: mass, momentum, and for an ideal gas energy, per open volume. With the open fraction `beta_v`
+//! of each cell and `beta_x`, `beta_y`, `beta_z` of each face,
+//!
+//! ```text
+//! d(beta_v rho)/dt   + div(beta_f rho u)   = 0
+//! d(beta_v rho u)/dt + div(beta_f rho u u) = -beta_v grad p + beta_v rho g + R       R_i/beta_v = -rho (a_i + ½ CR_i |u|) u_i
+//! d(beta_v rho E)/dt + div(beta_f rho H u) = beta_v rho g·u
+//! ```
+//!
+//! The scheme is MUSCL-Hancock, unsplit, in primitive variables, with one Riemann problem per face and step. Axes that hold a
+//! single cell are not part of a problem: the same text is compiled for one, two and three axes.
+//!
+//! Read in this order:
+//!
+//! 1. [`state`]: the gas, one cell, a field
+//! 2. [`limiter`]: slopes; [`riemann`]: the flux through a face; [`drag`]: resistance of the obstacles, at any stiffness;
+//!    [`boundary`]: the sides of the domain
+//! 3. [`porosity`]: open fractions made ready: jumps, walls, small cells
+//! 4. `kernel`: one slab of one step, row by row
+//! 5. [`step`]: the problem, one slab of one step; [`step_report`]: what a step did; [`fallback`]: the whole step, and what happens to
+//!    unphysical states
+//!
+//! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
+//! new field into slabs and advance them side by side.
+//!
+//! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 14 and 16.
+
+pub mod boundary;
+pub mod drag;
+pub mod fallback;
+mod kernel;
+pub mod limiter;
+pub mod porosity;
+pub mod riemann;
+pub mod state;
+pub mod step;
+pub mod step_report;
+
+pub use boundary::Boundary;
+pub use drag::Drag;
+pub use limiter::Limiter;
+pub use porosity::clusters::Clusters;
+pub use porosity::fractions::{Mesh, Porosity, mark};
+pub use riemann::Riemann;
+pub use state::{Conserved, Fields, FieldsMut, Gas, Primitive};
+pub use step::{Error, PressureForm, Problem, Scheme};
+pub use step_report::Report;

@@ -1,0 +1,129 @@
+//! The six sides of the domain, each a ghost state that meets the Riemann solver.
+//!
+//! In the frame of the side: normal velocity first, positive out of the domain.
+//! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., sec. 6.3; the invariants are those
+//! of simple waves, sec. 3.1.
+
+use crate::flow::state::{Gas, Primitive, rotate, rotate_back};
+use crate::number::real::Real;
+
+/// What stands outside one side of the domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Boundary<R, const D: usize> {
+    /// The opposite side; must stand on both.
+    Periodic,
+    /// A wall without friction.
+    Wall,
+    /// The same state as inside: waves leave, steady flow drifts.
+    ZeroGradient,
+    /// A given state; the Riemann solver lets waves leave and the state enter.
+    FarField(Primitive<R, D>),
+    /// Gas of a given velocity and density enters. The pressure is that of a far field which the caller lets follow the flow
+    /// with [`Boundary::relaxed`], so the velocity is met over a few crossings and waves still leave.
+    Inlet(Primitive<R, D>),
+    /// Gas leaves against a given pressure; a supersonic stream does not feel it.
+    Outlet {
+        /// Static pressure outside.
+        pressure: R,
+    },
+    /// Gas enters from rest: entropy and total enthalpy are given, the wave that leaves comes from inside.
+    Reservoir {
+        /// Stagnation density.
+        density: R,
+        /// Stagnation pressure.
+        pressure: R,
+    },
+}
+
+impl<R: Real, const D: usize> Boundary<R, D> {
+    /// The ghost state beside an inner state, both in the frame of axis `d`; `low` is the low side of the axis. Periodic
+    /// sides have no ghost of their own: the inner state comes back.
+    pub(crate) fn ghost(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
+        let outward = |f: &dyn Fn(Primitive<R, D>) -> Primitive<R, D>| {
+            let turn = |mut w: Primitive<R, D>| {
+                if low {
+                    w.velocity[0] = -w.velocity[0];
+                }
+                w
+            };
+            turn(f(turn(*inner)))
+        };
+        match self {
+            Boundary::Periodic | Boundary::ZeroGradient => *inner,
+            Boundary::FarField(outer) | Boundary::Inlet(outer) => {
+                Primitive { velocity: rotate(outer.velocity, d), ..*outer }
+            }
+            Boundary::Wall => {
+                let mut w = *inner;
+                w.velocity[0] = -w.velocity[0];
+                w
+            }
+            Boundary::Outlet { pressure } => outward(&|w| outlet(w, *pressure, gas)),
+            Boundary::Reservoir { density, pressure } => outward(&|w| reservoir(w, *density, *pressure, gas)),
+        }
+    }
+
+    /// The same for a state that is not turned.
+    pub(crate) fn ghost_cell(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
+        let turned = Primitive { velocity: rotate(inner.velocity, d), ..*inner };
+        let ghost = self.ghost(&turned, d, low, gas);
+        Primitive { velocity: rotate_back(ghost.velocity, d), ..ghost }
+    }
+
+    /// An inlet whose pressure has followed the flow for one step, so that the velocity just inside tends to the wanted one.
+    ///
+    /// `velocity` is the mean normal velocity inside, out of the domain negative (that is, counted in the direction of the
+    /// wanted velocity); `share` = dt over the time in which the difference should vanish. Other sides come back unchanged.
+    pub fn relaxed(self, d: usize, velocity: R, sound_speed: R, share: R) -> Self {
+        let Boundary::Inlet(mut w) = self else { return self };
+        let impedance = w.density * sound_speed;
+        w.pressure += share * impedance * (w.velocity[d].abs() - velocity);
+        Boundary::Inlet(w)
+    }
+}
+
+/// The state that a simple wave from outside makes of `w` when it brings the pressure to `pressure`.
+fn outlet<R: Real, const D: usize>(w: Primitive<R, D>, pressure: R, gas: Gas<R>) -> Primitive<R, D> {
+    let c = gas.sound_speed(&w);
+    let v = w.velocity[0];
+    if !(v < c) || pressure == w.pressure {
+        return w;
+    }
+    let gamma = gas.gamma();
+    let density = w.density * (pressure / w.pressure).pow(R::ONE / gamma);
+    let mut velocity = w.velocity;
+    velocity[0] = match gas {
+        Gas::Isothermal { .. } => v + c * (w.density / density).ln(),
+        _ => v + R::TWO / (gamma - R::ONE) * (c - (gamma * pressure / density).sqrt()),
+    };
+    Primitive { density, velocity, pressure }
+}
+
+/// The state of the stream from a reservoir that keeps the invariant v + 2c/(gamma − 1) of the wave leaving `w`.
+fn reservoir<R: Real, const D: usize>(w: Primitive<R, D>, density0: R, pressure0: R, gas: Gas<R>) -> Primitive<R, D> {
+    let c = gas.sound_speed(&w);
+    let v = w.velocity[0];
+    let gamma = gas.gamma();
+    let c0_sq = gamma * pressure0 / density0;
+    let (entering, t_power, t) = if let Gas::Isothermal { .. } = gas {
+        // c ln(rho0/rho) = s²/2c and -s + c ln rho = v + c ln rho_in, s the speed of entry.
+        let j = v / c + (w.density / density0).ln();
+        let s = c * ((R::ONE - R::TWO * j).sqrt() - R::ONE);
+        (s, (-(R::HALF * s * s) / c0_sq).exp(), R::ONE)
+    } else {
+        let m = gamma - R::ONE;
+        let j = v + R::TWO * c / m;
+        // c² + m/2 (2c/m − j)² = c0², the larger root.
+        let b = R::ONE + R::TWO / m;
+        let root = j * j - b * (R::HALF * m * j * j - c0_sq);
+        let c = (j + root.sqrt()) / b;
+        let t = c * c / c0_sq;
+        (R::TWO * c / m - j, t.pow(R::ONE / m), t)
+    };
+    if !(entering > R::ZERO) {
+        return outlet(w, pressure0, gas);
+    }
+    let mut velocity = [R::ZERO; D];
+    velocity[0] = -entering;
+    Primitive { density: density0 * t_power, velocity, pressure: pressure0 * (t_power * t) }
+}

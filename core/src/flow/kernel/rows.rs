@@ -1,0 +1,522 @@
+//! The steps of the scheme for one row of cells along axis 0.
+//!
+//! Every function is one loop without branches over contiguous slices, so that compilers turn it into vector code.
+//! A *block* holds several variables of one row one after the other, each `n` long:
+//!
+//! - state block: density, velocity (D), pressure; D + 2 variables
+//! - face state block: the same and the reference pressure of the cell at that face; D + 3
+//! - flux block: mass, momentum (normal as the left cell sees it, then tangential in cyclic order), energy, normal momentum as
+//!   the right cell sees it; D + 3
+//! - change block: density, momentum, energy; D + 2
+//!
+//! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., sec. 14.4 (MUSCL-Hancock) and 16.5.
+
+use crate::flow::limiter::Slope;
+use crate::flow::riemann::{FaceGas, Solver};
+use crate::flow::state::{Fields, Gas, Primitive, each, sum};
+use crate::number::real::Real;
+
+/// Variable `v` of a block of variables `n` long.
+#[inline(always)]
+pub(crate) fn var<R>(block: &[R], v: usize, n: usize) -> &[R] {
+    &block[v * n..][..n]
+}
+
+/// The variables of a state block.
+#[inline(always)]
+fn state<R, const D: usize>(block: &[R], n: usize) -> (&[R], [&[R]; D], &[R]) {
+    (var(block, 0, n), core::array::from_fn(|c| var(block, 1 + c, n)), var(block, D + 1, n))
+}
+
+/// The first D + 2 variables of a block, and what follows.
+type Variables<'b, R, const D: usize> = (&'b mut [R], [&'b mut [R]; D], &'b mut [R], &'b mut [R]);
+
+/// The variables of a block to be written, D + 2 of them in the order of a state block, and what follows.
+#[inline(always)]
+fn split_mut<R, const D: usize>(block: &mut [R], n: usize) -> Variables<'_, R, D> {
+    let (first, mut rest) = block.split_at_mut(n);
+    let middle = core::array::from_fn(|_| {
+        let (a, b) = core::mem::take(&mut rest).split_at_mut(n);
+        rest = b;
+        a
+    });
+    let (last, rest) = rest.split_at_mut(n);
+    (first, middle, last, rest)
+}
+
+/// Primitive variables of the cells from `start` on, into a padded state block (`n` = cells + 2).
+pub(crate) fn primitives<R: Real, const D: usize>(
+    gas: Gas<R>,
+    old: &Fields<'_, R, D>,
+    start: usize,
+    block: &mut [R],
+    n: usize,
+) {
+    let cells = n - 2;
+    let (rho, u, p, _) = split_mut::<R, D>(block, n);
+    let (rho, p) = (&mut rho[1..][..cells], &mut p[1..][..cells]);
+    let u = u.map(|s| &mut s[1..][..cells]);
+    let density = &old.density[start..][..cells];
+    let momentum = old.momentum.map(|m| &m[start..][..cells]);
+    match gas {
+        Gas::Ideal { gamma } => {
+            let energy = &old.energy[start..][..cells];
+            for i in 0..cells {
+                let inv = R::ONE / density[i];
+                let kinetic = R::HALF * sum::<R, D>(each(|c| momentum[c][i] * (momentum[c][i] * inv)));
+                rho[i] = density[i];
+                for c in 0..D {
+                    u[c][i] = momentum[c][i] * inv;
+                }
+                p[i] = (gamma - R::ONE) * (energy[i] - kinetic);
+            }
+        }
+        _ => {
+            for i in 0..cells {
+                let inv = R::ONE / density[i];
+                rho[i] = density[i];
+                for c in 0..D {
+                    u[c][i] = momentum[c][i] * inv;
+                }
+                p[i] = gas.pressure(density[i], R::ZERO);
+            }
+        }
+    }
+}
+
+/// Values of one variable in the cells below, here and above along an axis.
+pub(crate) type Three<'a, R> = (&'a [R], &'a [R], &'a [R]);
+
+/// How differences along an axis become slopes.
+pub(crate) trait Differences<R> {
+    /// Own width over the distance of the centres, below and above.
+    fn scale(&self, i: usize) -> (R, R);
+    /// Half the weight of a column of unit density between the centres, below and above; `None` without gravity along the axis.
+    fn half_weight(&self, i: usize) -> Option<(R, R)>;
+}
+
+/// Differences of a variable to the cell below and to the cell above, scaled to the width of the cell.
+#[inline(always)]
+fn differences_of<R: Real>((low, here, high): Three<'_, R>, i: usize, axis: &impl Differences<R>) -> (R, R) {
+    let (a, b) = axis.scale(i);
+    (a * (here[i] - low[i]), b * (high[i] - here[i]))
+}
+
+/// The same of the pressure, less what hydrostatic balance asks for.
+#[inline(always)]
+fn pressure_differences<R: Real>(
+    (low, here, high): Three<'_, R>,
+    rho: Three<'_, R>,
+    i: usize,
+    axis: &impl Differences<R>,
+) -> (R, R) {
+    let Some(weight) = axis.half_weight(i) else { return differences_of((low, here, high), i, axis) };
+    let (a, b) = axis.scale(i);
+    let below = (here[i] - low[i]) - (rho.0[i] + rho.1[i]) * weight.0;
+    let above = (high[i] - here[i]) - (rho.1[i] + rho.2[i]) * weight.1;
+    (a * below, b * above)
+}
+
+/// Slopes of all variables of a row along one axis. `values` gives a variable of the state block.
+///
+/// With the `compliance` 1/c² of each cell, the density's slope is that of a sound wave, dp/c², and a slope of the rest, which is
+/// the entropy wave; without it each variable is limited by itself.
+pub(crate) fn slopes<'a, R: Real, S: Slope, const D: usize>(
+    values: impl Fn(usize) -> Three<'a, R>,
+    axis: &impl Differences<R>,
+    compliance: Option<&[R]>,
+    out: &mut [R],
+    n: usize,
+) {
+    for v in 1..=D {
+        one_slope::<R, S>(values(v), axis, &mut out[v * n..][..n]);
+    }
+    let (p, rho) = (fit(values(D + 1), n), fit(values(0), n));
+    let (out_rho, rest) = out.split_at_mut(n);
+    let out_p = &mut rest[D * n..][..n];
+    let Some(compliance) = compliance else {
+        for i in 0..n {
+            let (a, b) = pressure_differences(p, rho, i, axis);
+            out_p[i] = S::slope(a, b);
+        }
+        return one_slope::<R, S>(rho, axis, out_rho);
+    };
+    let compliance = &compliance[..n];
+    for i in 0..n {
+        let (rho_a, rho_b) = differences_of(rho, i, axis);
+        let (p_a, p_b) = pressure_differences(p, rho, i, axis);
+        let pressure = S::slope(p_a, p_b);
+        let entropy = S::entropy_slope(rho_a - p_a * compliance[i], rho_b - p_b * compliance[i]);
+        out_p[i] = pressure;
+        out_rho[i] = pressure * compliance[i] + entropy;
+    }
+}
+
+/// Slopes of one variable.
+fn one_slope<R: Real, S: Slope>(values: Three<'_, R>, axis: &impl Differences<R>, out: &mut [R]) {
+    let n = out.len();
+    let values = fit(values, n);
+    for i in 0..n {
+        let (a, b) = differences_of(values, i, axis);
+        out[i] = S::slope(a, b);
+    }
+}
+
+/// One length for all, so that the loops need no checks.
+#[inline(always)]
+fn fit<R>((a, b, c): Three<'_, R>, n: usize) -> Three<'_, R> {
+    (&a[..n], &b[..n], &c[..n])
+}
+
+/// 1/c² of each cell of a row.
+pub(crate) fn compliances<R: Real>(rho: &[R], p: &[R], gamma: R, out: &mut [R]) {
+    let n = out.len();
+    let (rho, p) = (&rho[..n], &p[..n]);
+    for i in 0..n {
+        out[i] = rho[i] / (gamma * p[i]);
+    }
+}
+
+/// Scale of the differences along one axis in the half step.
+#[derive(Clone, Copy)]
+pub(crate) enum Rate<'a, R> {
+    /// ½ dt / dx, the same for all cells of the row.
+    One(R),
+    /// One value per cell.
+    Row(&'a [R]),
+}
+
+/// The state at the half step: W − ½ dt Σ A_d ∂W/∂x_d, and, in a porous medium, the change of the open area along each axis,
+/// `widening[d]` = ½ dt Δbeta_d / (beta_v dx_d). `weight[d]` = g_d dx_d acts on the deviation from hydrostatic balance.
+///
+/// `here` is a padded state block.
+pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
+    here: &[R],
+    padded: usize,
+    slope: &[&[R]; D],
+    rate: &[Rate<'_, R>; D],
+    widening: &[&[R]; D],
+    weight: Option<&[&[R]; D]>,
+    gamma: R,
+    out: &mut [R],
+) {
+    let n = padded - 2;
+    let (rho, u, p) = state::<R, D>(here, padded);
+    let (rho, p, u) = (&rho[1..][..n], &p[1..][..n], u.map(|s| &s[1..][..n]));
+    let (out_rho, out_u, out_p, _) = split_mut::<R, D>(out, n);
+    let s_rho: [&[R]; D] = core::array::from_fn(|d| var(slope[d], 0, n));
+    let s_u: [[&[R]; D]; D] = core::array::from_fn(|d| core::array::from_fn(|c| var(slope[d], 1 + c, n)));
+    let s_p: [&[R]; D] = core::array::from_fn(|d| var(slope[d], D + 1, n));
+    let rows: [&[R]; D] = rate.map(|r| match r {
+        Rate::One(_) => &rho[..n],
+        Rate::Row(r) => &r[..n],
+    });
+    let ones: [R; D] = rate.map(|r| match r {
+        Rate::One(r) => r,
+        Rate::Row(_) => R::ZERO,
+    });
+    let is_row: [bool; D] = rate.map(|r| matches!(r, Rate::Row(_)));
+    let widening = if POROUS { widening.map(|w| &w[..n]) } else { rows };
+    let no_weight = rows;
+    let weighted = weight.is_some();
+    let weight = weight.map_or(no_weight, |w| w.map(|s| &s[..n]));
+    // Axis 0 always comes as a row; the others only in a porous medium.
+    debug_assert!(is_row[0] && (0..D).all(|d| is_row[d] == (POROUS || d == 0)));
+    for i in 0..n {
+        let velocity: [R; D] = each(|c| u[c][i]);
+        let inv_rho = R::ONE / rho[i];
+        let stiff = gamma * p[i];
+        let scale: [R; D] = each(|d| if POROUS || d == 0 { rows[d][i] } else { ones[d] });
+        let wide: [R; D] = each(|d| if POROUS { widening[d][i] * velocity[d] } else { R::ZERO });
+        let d_rho: [R; D] = each(|d| {
+            let t = scale[d] * (velocity[d] * s_rho[d][i] + rho[i] * s_u[d][d][i]);
+            if POROUS { t + wide[d] * rho[i] } else { t }
+        });
+        out_rho[i] = rho[i] - sum::<R, D>(d_rho);
+        for c in 0..D {
+            let d_u: [R; D] = each(|d| {
+                let advection = velocity[d] * s_u[d][c][i];
+                scale[d] * if d == c { advection + s_p[d][i] * inv_rho } else { advection }
+            });
+            out_u[c][i] = velocity[c] - sum::<R, D>(d_u);
+        }
+        let d_p: [R; D] = each(|d| {
+            let t = scale[d] * (velocity[d] * s_p[d][i] + stiff * s_u[d][d][i]);
+            if POROUS { t + wide[d] * stiff } else { t }
+        });
+        out_p[i] = p[i] - sum::<R, D>(d_p);
+    }
+    if weighted {
+        for i in 0..n {
+            let d_p: [R; D] = each(|d| {
+                let scale = if POROUS || d == 0 { rows[d][i] } else { ones[d] };
+                scale * (u[d][i] * (rho[i] * weight[d][i]))
+            });
+            out_p[i] -= sum::<R, D>(d_p);
+        }
+    }
+}
+
+/// Whether any face state of the row lies outside the physical set.
+pub(crate) fn leaves_physical_set<R: Real, const D: usize>(half: &[R], slope: &[&[R]; D], n: usize) -> bool {
+    let (rho, p) = (var(half, 0, n), var(half, D + 1, n));
+    let s_rho: [&[R]; D] = core::array::from_fn(|d| var(slope[d], 0, n));
+    let s_p: [&[R]; D] = core::array::from_fn(|d| var(slope[d], D + 1, n));
+    let mut bad = 0u64;
+    for i in 0..n {
+        for d in 0..D {
+            let least_rho = rho[i] - R::HALF * s_rho[d][i].abs();
+            let least_p = p[i] - R::HALF * s_p[d][i].abs();
+            bad |= u64::from(!((least_rho > R::ZERO) & (least_p > R::ZERO)));
+        }
+    }
+    bad != 0
+}
+
+/// States on the high (`SIDE` = 1) or low (−1) face of each cell, and the pressure on the walls inside the cell there.
+/// `weight` = g dx tilts both along the hydrostatic gradient. The velocity is turned into the frame of axis `d`.
+pub(crate) fn face_states<R: Real, const D: usize>(
+    high: bool,
+    d: usize,
+    half: &[R],
+    slope: &[R],
+    n: usize,
+    weight: Option<&[R]>,
+    out: &mut [R],
+    stride: usize,
+    offset: usize,
+) {
+    let sign = if high { R::HALF } else { -R::HALF };
+    let turned = |v: usize| if v == 0 || v == D + 1 { v } else { 1 + (v - 1 + D - d) % D };
+    for v in 0..D + 2 {
+        let (h, s) = (var(half, v, n), var(slope, v, n));
+        let o = &mut out[turned(v) * stride + offset..][..n];
+        for i in 0..n {
+            o[i] = h[i] + sign * s[i];
+        }
+    }
+    out[(D + 2) * stride + offset..][..n].copy_from_slice(var(half, D + 1, n));
+    if let Some(weight) = weight {
+        let rho = var(half, 0, n);
+        for v in [D + 1, D + 2] {
+            let o = &mut out[v * stride + offset..][..n];
+            for i in 0..n {
+                let tilt = R::HALF * weight[i] * rho[i];
+                o[i] = if high { o[i] + tilt } else { o[i] - tilt };
+            }
+        }
+    }
+}
+
+/// How porosity enters a face.
+#[derive(Clone, Copy)]
+pub(crate) enum Openings<'a, R> {
+    /// No porosity: nothing is read.
+    None,
+    /// `beta_f p` on faces and the cell's pressure on the walls inside.
+    Geometric(&'a [R]),
+    /// The paper's −beta_v grad p: face, `beta_v` on the left, `beta_v` on the right.
+    Paper(&'a [R], &'a [R], &'a [R]),
+}
+
+/// Fluxes through a row of faces of axis `d`, from face state blocks `m` long in the frame of the axis.
+pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool>(
+    left: &[R],
+    right: &[R],
+    openings: Openings<'_, R>,
+    gas: &FaceGas<R>,
+    out: &mut [R],
+    m: usize,
+) {
+    match openings {
+        Openings::None => face_loop::<R, S, D, ENERGY, 0>(left, right, [&[]; 3], gas, out, m),
+        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, 1>(left, right, [b; 3], gas, out, m),
+        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, 2>(left, right, [b, l, r], gas, out, m),
+    }
+}
+
+/// `FORM`: 0 plain, 1 geometric, 2 paper.
+#[inline(always)]
+fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM: u8>(
+    left: &[R],
+    right: &[R],
+    openings: [&[R]; 3],
+    gas: &FaceGas<R>,
+    out: &mut [R],
+    m: usize,
+) {
+    let (l_rho, l_u, l_p) = state::<R, D>(left, m);
+    let (r_rho, r_u, r_p) = state::<R, D>(right, m);
+    let (l_wall, r_wall) = (var(left, D + 2, m), var(right, D + 2, m));
+    let (mass, momentum, energy, rest) = split_mut::<R, D>(out, m);
+    let other = &mut rest[..m];
+    let [face, vol_l, vol_r] = if FORM == 0 { [l_rho; 3] } else { openings.map(|b| &b[..m]) };
+    for i in 0..m {
+        let l = Primitive { density: l_rho[i], velocity: each(|c| l_u[c][i]), pressure: l_p[i] };
+        let r = Primitive { density: r_rho[i], velocity: each(|c| r_u[c][i]), pressure: r_p[i] };
+        let f = S::flux::<R, D, ENERGY>(&l, &r, gas);
+        let (mut to_left, mut to_right) = (f.momentum[0] - l_wall[i], f.momentum[0] - r_wall[i]);
+        let b = face[i];
+        let open = |x: R| if FORM == 0 { x } else { b * x };
+        to_left = open(to_left);
+        to_right = open(to_right);
+        if FORM == 2 {
+            to_left += (vol_l[i] - b) * (f.pressure - l_wall[i]);
+            to_right += (vol_r[i] - b) * (f.pressure - r_wall[i]);
+        }
+        mass[i] = open(f.mass);
+        momentum[0][i] = to_left;
+        other[i] = to_right;
+        for c in 1..D {
+            momentum[c][i] = open(f.momentum[c]);
+        }
+        if ENERGY {
+            energy[i] = open(f.energy);
+        }
+    }
+}
+
+/// What each cell of a row loses through its two faces of axis `d`, divided by its width there.
+///
+/// `low` and `high` give a variable of the flux block at the cells' two faces; `inv_width` and `half_weight` = ½ g dx per cell.
+pub(crate) fn differences<'a, R: Real, const D: usize, const ENERGY: bool>(
+    d: usize,
+    low: impl Fn(usize) -> &'a [R],
+    high: impl Fn(usize) -> &'a [R],
+    inv_width: impl Fn(usize) -> R,
+    half_weight: Option<&[R]>,
+    out: &mut [R],
+    n: usize,
+) {
+    let difference = |a: &[R], b: &[R], o: &mut [R]| {
+        let (a, b, o) = (&a[..n], &b[..n], &mut o[..n]);
+        for i in 0..n {
+            o[i] = (b[i] - a[i]) * inv_width(i);
+        }
+    };
+    difference(low(0), high(0), &mut out[..n]);
+    for c in 0..D {
+        let v = 1 + (c + d) % D;
+        let from = if c == 0 { low(D + 2) } else { low(1 + c) };
+        difference(from, high(1 + c), &mut out[v * n..]);
+    }
+    if ENERGY {
+        difference(low(D + 1), high(D + 1), &mut out[(D + 1) * n..]);
+        if let Some(weight) = half_weight {
+            // Work of gravity on the mass that passes: the sum over cells telescopes to the potential energy.
+            let (a, b, o) = (low(0), high(0), &mut out[(D + 1) * n..][..n]);
+            for i in 0..n {
+                o[i] -= weight[i] * (a[i] + b[i]) * inv_width(i);
+            }
+        }
+    }
+}
+
+/// The cells after the step: U − dt/beta_v Σ_d changes_d. `scale` holds dt/beta_v per cell in a porous medium.
+pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool>(
+    old: &Fields<'_, R, D>,
+    from: usize,
+    change: &[&[R]; D],
+    scale: Option<&[R]>,
+    dt: R,
+    new: &mut crate::flow::state::FieldsMut<'_, R, D>,
+    to: usize,
+    n: usize,
+) {
+    let one = |old: &[R], v: usize, new: &mut [R]| {
+        let (old, new) = (&old[from..][..n], &mut new[to..][..n]);
+        let parts: [&[R]; D] = change.map(|b| var(b, v, n));
+        match scale {
+            None => {
+                for i in 0..n {
+                    new[i] = old[i] - dt * sum::<R, D>(each(|d| parts[d][i]));
+                }
+            }
+            Some(scale) => {
+                let scale = &scale[..n];
+                for i in 0..n {
+                    new[i] = old[i] - scale[i] * sum::<R, D>(each(|d| parts[d][i]));
+                }
+            }
+        }
+    };
+    one(old.density, 0, new.density);
+    for c in 0..D {
+        one(old.momentum[c], 1 + c, new.momentum[c]);
+    }
+    if ENERGY {
+        one(old.energy, D + 1, new.energy);
+    }
+}
+
+/// Signal rate Σ_d open_d (|u_d| + c)/dx_d of each cell of a row of new states into `rate`; tells whether any state is
+/// unphysical. `open[d]` = max face / beta_v per cell in a porous medium.
+pub(crate) fn signal_rates<R: Real, const D: usize, const POROUS: bool>(
+    gas: Gas<R>,
+    new: &Fields<'_, R, D>,
+    from: usize,
+    inv_width: impl Fn(usize, usize) -> R,
+    open: &[&[R]; D],
+    rate: &mut [R],
+) -> bool {
+    let n = rate.len();
+    let density = &new.density[from..][..n];
+    let momentum = new.momentum.map(|m| &m[from..][..n]);
+    let gamma = gas.gamma();
+    let open: [&[R]; D] = if POROUS { open.map(|o| &o[..n]) } else { [density; D] };
+    let speeds = |i: usize, inv: R, c: R| {
+        sum::<R, D>(each(|d| {
+            let t = ((momentum[d][i] * inv).abs() + c) * inv_width(d, i);
+            if POROUS { t * open[d][i] } else { t }
+        }))
+    };
+    let mut bad = 0u64;
+    if let Gas::Ideal { .. } = gas {
+        let energy = &new.energy[from..][..n];
+        for i in 0..n {
+            let inv = R::ONE / density[i];
+            let kinetic = R::HALF * sum::<R, D>(each(|c| momentum[c][i] * (momentum[c][i] * inv)));
+            let p = (gamma - R::ONE) * (energy[i] - kinetic);
+            let r = speeds(i, inv, (gamma * p * inv).sqrt());
+            bad |= u64::from(!((density[i] > R::ZERO) & (p > R::ZERO) & (r < R::INFINITY)));
+            rate[i] = r;
+        }
+    } else {
+        for i in 0..n {
+            let inv = R::ONE / density[i];
+            let p = gas.pressure(density[i], R::ZERO);
+            let r = speeds(i, inv, (gamma * p * inv).sqrt());
+            bad |= u64::from(!((density[i] > R::ZERO) & (p > R::ZERO) & (r < R::INFINITY)));
+            rate[i] = r;
+        }
+    }
+    bad != 0
+}
+
+/// The largest value of a row; NaN is passed over.
+pub(crate) fn largest<R: Real>(row: &[R]) -> R {
+    const LANES: usize = 16;
+    let mut lanes = [R::ZERO; LANES];
+    let mut chunks = row.chunks_exact(LANES);
+    for chunk in &mut chunks {
+        for i in 0..LANES {
+            lanes[i] = R::larger(chunk[i], lanes[i]);
+        }
+    }
+    let tail = chunks.remainder().iter().fold(R::ZERO, |m, &x| R::larger(x, m));
+    lanes.iter().fold(tail, |m, &x| R::larger(x, m))
+}
+
+/// The face state at index `i` of a block `m` long, in the frame of its axis.
+pub(crate) fn face_state<R: Real, const D: usize>(block: &[R], m: usize, i: usize) -> Primitive<R, D> {
+    Primitive { density: block[i], velocity: each(|c| block[(1 + c) * m + i]), pressure: block[(D + 1) * m + i] }
+}
+
+/// Writes a state into a state or face state block.
+pub(crate) fn put_state<R: Real, const D: usize>(block: &mut [R], m: usize, i: usize, w: &Primitive<R, D>) {
+    block[i] = w.density;
+    for c in 0..D {
+        block[(1 + c) * m + i] = w.velocity[c];
+    }
+    block[(D + 1) * m + i] = w.pressure;
+}

@@ -1,0 +1,172 @@
+//! The scratch of a sweep, cut from one slice: a window of layers, the buffers of one row, and what rows leave behind for the
+//! faces above them.
+
+use crate::flow::kernel::long_line;
+use crate::flow::porosity::fractions::Mesh;
+use crate::number::real::Real;
+use core::ops::Range;
+
+/// Hands out pieces of one slice.
+struct Arena<'s, R>(&'s mut [R]);
+
+impl<'s, R: Real> Arena<'s, R> {
+    fn take(&mut self, n: usize) -> &'s mut [R] {
+        let (piece, rest) = core::mem::take(&mut self.0).split_at_mut(n);
+        self.0 = rest;
+        piece
+    }
+
+    fn axes<const D: usize>(&mut self, n: usize) -> [&'s mut [R]; D] {
+        core::array::from_fn(|_| self.take(n))
+    }
+}
+
+/// Rows that a tile of a 3D mesh holds beyond its own on each side.
+pub(in crate::flow) const ROWS_BESIDE: usize = 2;
+/// Cells of a layer of a tile: what a sweep keeps of them, about 300 bytes a cell, should fit a core's own cache.
+const TILE: usize = 4096;
+/// Rows of a tile at least; two more are reconstructed.
+const LEAST_ROWS: usize = 16;
+
+/// Number of tiles of about equal size for layers of so many rows of `n` cells.
+fn tiles(n: usize, rows: usize) -> usize {
+    rows.div_ceil(LEAST_ROWS.max(TILE / n.max(1))).max(1)
+}
+
+/// Sizes of the pieces of scratch.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct Sizes {
+    /// Cells along a row, with ghosts, and faces.
+    pub n: usize,
+    pub padded: usize,
+    pub m: usize,
+    /// Rows of a tile at most, and with those beside it.
+    pub rows: usize,
+    pub rows_padded: usize,
+    /// Layers of the window.
+    pub layers: usize,
+}
+
+impl Sizes {
+    pub fn new<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> Self {
+        let cells = mesh.cells();
+        let n = if long_line::in_pieces::<D>(cells[0]) { long_line::PIECE } else { cells[0] };
+        let rows = if D == 3 { cells[1].div_ceil(tiles(n, cells[1])) } else { 1 };
+        Sizes {
+            n,
+            padded: n + 2,
+            m: n + 1,
+            rows,
+            rows_padded: if D == 3 { rows + 2 * ROWS_BESIDE } else { 1 },
+            layers: if D == 1 { 1 } else { 3 },
+        }
+    }
+
+    /// The tiles of a mesh, by their rows.
+    pub fn tiles<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> impl Iterator<Item = Range<usize>> {
+        let cells = mesh.cells();
+        let (count, rows) = if D == 3 { (tiles(cells[0], cells[1]), cells[1]) } else { (1, 1) };
+        (0..count).map(move |k| rows * k / count..rows * (k + 1) / count)
+    }
+
+    pub fn total<const D: usize>(&self) -> usize {
+        let v = D + 2;
+        let f = D + 3;
+        let window = self.layers * self.rows_padded * v * self.padded;
+        let row = (D + 1) * v * self.n + 3 * f * self.m;
+        let (middle, last) = self.lagged::<D>();
+        let lagged = 2 * f * self.n * (middle + last);
+        let changes = (0..D).map(|d| self.change_rows::<D>(d) * v * self.n).sum::<usize>();
+        let metric = (4 * D + 5) * self.n + 2 * self.m;
+        window + row + lagged + changes + metric
+    }
+
+    /// Rows whose changes along axis `d` are kept: those of a layer, until the layer above has come. Along the last axis they are
+    /// used at once.
+    fn change_rows<const D: usize>(&self, d: usize) -> usize {
+        if d == D - 1 { 1 } else { self.rows }
+    }
+
+    /// Rows of face states and fluxes to be kept for the faces above them: along axis 1 of a 3D mesh, and along the last axis.
+    fn lagged<const D: usize>(&self) -> (usize, usize) {
+        match D {
+            1 => (0, 0),
+            2 => (0, 1),
+            _ => (1, self.rows),
+        }
+    }
+}
+
+/// Buffers of a sweep.
+pub(in crate::flow) struct Work<'s, R, const D: usize> {
+    pub window: &'s mut [R],
+    pub slope: [&'s mut [R]; D],
+    pub half: &'s mut [R],
+    pub left: &'s mut [R],
+    pub right: &'s mut [R],
+    pub flux: &'s mut [R],
+    /// What the row below left for the faces along axis 1 of a 3D mesh.
+    pub middle: Lag<'s, R>,
+    /// What the rows of the layer below left for the faces along the last axis.
+    pub last: Lag<'s, R>,
+    pub change: [&'s mut [R]; D],
+    pub metric: Metric<'s, R, D>,
+}
+
+/// High face states of rows below, and the fluxes through the faces under them.
+#[derive(Default)]
+pub(in crate::flow) struct Lag<'s, R> {
+    pub state: &'s mut [R],
+    pub flux: &'s mut [R],
+}
+
+/// Row buffers of cell metrics.
+pub(in crate::flow) struct Metric<'s, R, const D: usize> {
+    pub inv_width: &'s mut [R],
+    pub rate: [&'s mut [R]; D],
+    pub widening: [&'s mut [R]; D],
+    pub weight: [&'s mut [R]; D],
+    pub open: [&'s mut [R]; D],
+    /// 1/c².
+    pub compliance: &'s mut [R],
+    pub scale: &'s mut [R],
+    pub signal: &'s mut [R],
+    pub spare: &'s mut [R],
+    pub vol_left: &'s mut [R],
+    pub vol_right: &'s mut [R],
+}
+
+impl<'s, R: Real, const D: usize> Work<'s, R, D> {
+    /// Cuts the scratch, which holds [`Sizes::total`] scalars.
+    pub fn new(s: Sizes, scratch: &'s mut [R]) -> Self {
+        let (v, f) = (D + 2, D + 3);
+        let mut arena = Arena(scratch);
+        let (middle, last) = s.lagged::<D>();
+        let mut lag = |rows: usize| Lag { state: arena.take(rows * f * s.n), flux: arena.take(rows * f * s.n) };
+        let (middle, last) = (lag(middle), lag(last));
+        Work {
+            middle,
+            last,
+            window: arena.take(s.layers * s.rows_padded * v * s.padded),
+            slope: arena.axes(v * s.n),
+            half: arena.take(v * s.n),
+            left: arena.take(f * s.m),
+            right: arena.take(f * s.m),
+            flux: arena.take(f * s.m),
+            change: core::array::from_fn(|d| arena.take(s.change_rows::<D>(d) * v * s.n)),
+            metric: Metric {
+                inv_width: arena.take(s.n),
+                rate: arena.axes(s.n),
+                widening: arena.axes(s.n),
+                weight: arena.axes(s.n),
+                open: arena.axes(s.n),
+                compliance: arena.take(s.n),
+                scale: arena.take(s.n),
+                signal: arena.take(s.n),
+                spare: arena.take(s.n),
+                vol_left: arena.take(s.m),
+                vol_right: arena.take(s.m),
+            },
+        }
+    }
+}

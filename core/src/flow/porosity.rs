@@ -1,0 +1,14 @@
+//! The porous space of the flow: open fractions of cells and faces, and what follows from them before the first step.
+//!
+//! - [`fractions`]: mesh and open fractions as the caller's slices
+//! - [`flags`]: one byte per cell: jumps, walls, small and sealed cells
+//! - `areas`: open areas along one axis at the cells of a row
+//! - [`throat`], `jump`: fluxes where the porosity jumps
+//! - [`clusters`]: small cells that share one state with a neighbour
+
+pub(crate) mod areas;
+pub mod clusters;
+pub mod flags;
+pub mod fractions;
+pub(crate) mod jump;
+pub mod throat;

@@ -1,0 +1,144 @@
+//! Open areas along one axis, at the cells of a row: face by face, of the duct that a cell is, and of the throat between two.
+//!
+//! The row runs along axis 0; the faces may belong to any axis.
+
+use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low, is};
+use crate::flow::porosity::fractions::Medium;
+use crate::flow::porosity::throat::throat_area;
+use crate::number::real::Real;
+
+/// The faces of one axis beside the cells of a row; cells count from the first of the row.
+pub(crate) struct Ducts<'a, R> {
+    axis: usize,
+    /// All faces of the axis; that of the lowest side of the first cell; and how far apart the two faces of a cell are.
+    open: &'a [R],
+    low: usize,
+    stride: usize,
+    /// Index of the first cell along the axis, how much the next one adds to it, and where it ends.
+    place: usize,
+    step: usize,
+    cells: usize,
+    periodic: bool,
+    volume: &'a [R],
+    marks: &'a [u8],
+}
+
+impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
+    /// The faces of axis `d` beside the row of cells from `at` on. `at[d]` may be one past the end: then only the low faces count.
+    pub fn ducts(&self, d: usize, at: [usize; D], periodic: bool) -> Ducts<'a, R> {
+        let start = self.mesh.index(at);
+        Ducts {
+            axis: d,
+            open: self.porosity.faces[d],
+            low: self.mesh.face(d, at),
+            stride: self.mesh.face_stride(d),
+            place: at[d],
+            step: usize::from(d == 0),
+            cells: self.mesh.cells()[d],
+            periodic,
+            volume: self.porosity.volume.get(start..).unwrap_or_default(),
+            marks: self.porosity.marks.get(start..).unwrap_or_default(),
+        }
+    }
+}
+
+impl<'a, R: Real> Ducts<'a, R> {
+    /// Open fractions of the low and of the high faces of the first `n` cells.
+    pub fn rows(&self, n: usize) -> (&'a [R], &'a [R]) {
+        (&self.open[self.low..][..n], &self.open[self.low + self.stride..][..n])
+    }
+
+    /// Open fraction of the low face of a cell.
+    #[inline(always)]
+    pub fn face(&self, i: usize) -> R {
+        self.open[self.low + i]
+    }
+
+    /// Open fractions of the low and high face of a cell.
+    #[inline(always)]
+    pub fn openings(&self, i: usize) -> (R, R) {
+        let f = self.low + i;
+        (self.open[f], self.open[f + self.stride])
+    }
+
+    /// Directional duct area of a cell: the larger of its two faces. Not `beta_v`: a cell of tiny volume behind open faces
+    /// is a thin slice, not a narrow duct.
+    #[inline(always)]
+    pub fn duct(&self, i: usize) -> R {
+        let (a, b) = self.openings(i);
+        R::larger(a, b)
+    }
+
+    /// The two duct areas at the low (or high) face of a cell. Beyond the domain stands the cell on the other side if the axis is
+    /// periodic, else a copy of the inner cell.
+    #[inline(always)]
+    pub fn beside(&self, i: usize, high: bool) -> (R, R) {
+        let (s, n, k) = (self.stride, self.cells, self.place + self.step * i + usize::from(high));
+        let face = self.low + i + if high { s } else { 0 };
+        let around = if self.periodic { (n - 1) * s } else { 0 };
+        // Low faces of both cells.
+        let below = if k > 0 { face - s } else { face + around };
+        let above = if k < n { face } else { face - s - around };
+        let duct = |f: usize| R::larger(self.open[f], self.open[f + s]);
+        (duct(below), duct(above))
+    }
+
+    /// Open area of a cell that is not sealed, and of the wall that a closed face is to its gas: the duct goes on up to it. A
+    /// cell between two walls is as wide as its open volume.
+    pub fn width(&self, i: usize) -> R {
+        R::larger(self.duct(i), self.volume[i])
+    }
+
+    /// Area of the wall that a closed face is to the gas in a cell; a sealed one feels none.
+    pub fn wall(&self, i: usize) -> R {
+        if is(self.marks[i], SEALED) { R::ZERO } else { self.width(i) }
+    }
+
+    /// `beta_v` of a cell.
+    #[inline(always)]
+    pub fn volume(&self, i: usize) -> R {
+        self.volume[i]
+    }
+
+    /// A cell is marked small.
+    #[inline(always)]
+    pub fn is_small(&self, i: usize) -> bool {
+        is(self.marks[i], SMALL)
+    }
+
+    /// The low or high face of a cell is a jump or a wall.
+    #[inline(always)]
+    pub fn breaks(&self, i: usize, high: bool) -> bool {
+        self.marks[i] & if high { break_high(self.axis) } else { break_low(self.axis) } != 0
+    }
+
+    /// An area for the low or high face of a cell: its open fraction, at a jump as told, at a wall that of the wall.
+    #[inline(always)]
+    fn area(&self, i: usize, high: bool, at_jump: impl Fn(R) -> R) -> R {
+        let open = self.face(if high { i + self.stride } else { i });
+        let breaks = self.breaks(i, high);
+        if breaks & !(open > R::ZERO) {
+            return self.wall(i);
+        }
+        // Found in any case: a selection costs less than a wrong guess.
+        let jump = at_jump(open);
+        if breaks { jump } else { open }
+    }
+
+    /// Areas with which a duct meets the low and high face of its cell: at a jump it goes on behind the face.
+    #[inline(always)]
+    pub fn sections(&self, i: usize) -> (R, R) {
+        let duct = |_| self.duct(i);
+        (self.area(i, false, duct), self.area(i, true, duct))
+    }
+
+    /// Areas that the flux acts on at the low and high face of a cell: at a jump that of the throat.
+    #[inline(always)]
+    pub fn passages(&self, i: usize) -> (R, R) {
+        let throat = |high: bool| {
+            let (left, right) = self.beside(i, high);
+            move |open: R| throat_area(left, open, right)
+        };
+        (self.area(i, false, throat(false)), self.area(i, true, throat(true)))
+    }
+}

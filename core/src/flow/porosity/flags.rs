@@ -1,0 +1,91 @@
+//! One byte of marks per cell: at which faces the porosity breaks, and what kind of cell it is.
+
+/// The two bits that say what kind of cell it is; none for a plain one.
+pub const KIND: u8 = 3 << 6;
+/// Kind of a cell with no open face: nothing happens there.
+pub const SEALED: u8 = 1 << 6;
+/// Kind of a cell whose own reconstruction stays first order: less open volume than [`crate::flow::porosity::fractions::SMALL_SHARE`] of its largest face.
+pub const SMALL: u8 = 2 << 6;
+
+/// Whether a mark is of a kind.
+#[inline(always)]
+pub const fn is(mark: u8, kind: u8) -> bool {
+    mark & KIND == kind
+}
+
+/// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall.
+#[inline(always)]
+pub const fn break_low(d: usize) -> u8 {
+    1 << (2 * d)
+}
+
+/// Mark of a break at the high face of axis `d`.
+#[inline(always)]
+pub const fn break_high(d: usize) -> u8 {
+    2 << (2 * d)
+}
+
+/// Whether any of the marks holds any of `bits`.
+pub(crate) fn any_marked(marks: &[u8], bits: u8) -> bool {
+    marks.iter().fold(0, |a, b| a | b) & bits != 0
+}
+
+/// The places of the marks that hold any of `bits`, in order.
+pub(crate) fn marked(marks: &[u8], bits: u8) -> Marked<'_> {
+    // Most rows hold none: one pass without branches tells.
+    Marked { marks: if any_marked(marks, bits) { marks } else { &[] }, bits, next: 0, rest: 0 }
+}
+
+/// Iterator of [`marked`]. Marks are looked at 64 at a time: what a processor guesses is only where the last one stands.
+pub(crate) struct Marked<'a> {
+    /// Marks not yet looked at, and the place of the first of them.
+    marks: &'a [u8],
+    next: usize,
+    bits: u8,
+    /// One bit for each of the marks before `next` that is still to come.
+    rest: u64,
+}
+
+/// Marks looked at together.
+const TOGETHER: usize = u64::BITS as usize;
+
+impl Iterator for Marked<'_> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        while self.rest == 0 {
+            if self.marks.is_empty() {
+                return None;
+            }
+            let (marks, after) = self.marks.split_at(self.marks.len().min(TOGETHER));
+            self.marks = after;
+            let mut bytes = marks.chunks_exact(8);
+            for (i, eight) in (&mut bytes).enumerate() {
+                self.rest |= bit_of_each(core::array::from_fn(|b| eight[b]), self.bits) << (8 * i);
+            }
+            let last = bytes.remainder();
+            let tail = core::array::from_fn(|b| last.get(b).copied().unwrap_or(0));
+            if !last.is_empty() {
+                self.rest |= bit_of_each(tail, self.bits) << (marks.len() - last.len());
+            }
+            self.next += TOGETHER;
+        }
+        let place = self.rest.trailing_zeros() as usize;
+        self.rest &= self.rest - 1;
+        Some(self.next - TOGETHER + place)
+    }
+}
+
+/// One bit for each of eight marks: whether it holds any of `bits`.
+#[inline(always)]
+fn bit_of_each(marks: [u8; 8], bits: u8) -> u64 {
+    const LOWEST: u64 = u64::from_le_bytes([1; 8]);
+    // Bit i from byte i, all meeting in the highest byte.
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let mut held = u64::from_le_bytes(marks) & u64::from_le_bytes([bits; 8]);
+    held |= held >> 4;
+    held |= held >> 2;
+    held |= held >> 1;
+    (held & LOWEST).wrapping_mul(GATHER) >> 56
+}

@@ -1,0 +1,205 @@
+//! Fluxes through faces where the open area jumps, several side by side.
+//!
+//! Both states are carried to the throat ([`crate::flow::porosity::throat`]). Strong waves meet there in one Riemann problem; weak ones pass by the
+//! laws of sound at a change of area; what lies between takes a share of both. What each cell loses in momentum follows from
+//! its own side of the stationary wave, so the two cells lose different normal momentum.
+
+use crate::flow::porosity::throat::{AtThroat, ThroatGas, throat_area};
+use crate::flow::riemann::{FaceGas, Flux, Solver};
+use crate::flow::state::{Primitive, each};
+use crate::number::real::Real;
+
+/// Open faces at which the porosity jumps, one per lane: what lies on the left and right of them.
+pub(in crate::flow) struct JumpFaces<R, const D: usize, const L: usize> {
+    /// States, normal velocity first.
+    pub states: [Primitive<[R; L], D>; 2],
+    /// Duct areas.
+    pub ducts: [[R; L]; 2],
+    /// Open area of the face.
+    pub face: [R; L],
+    /// Pressures that act on the walls inside each cell at this face.
+    pub references: [[R; L]; 2],
+    /// 1; or 0 where a step went wrong: there the Riemann problem in the throat, however weak the waves.
+    pub calm: [R; L],
+}
+
+/// What passes a jump face, areas included. One face, or one per lane.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct JumpFlux<R, const D: usize> {
+    /// Mass and energy per time.
+    pub mass: R,
+    pub energy: R,
+    /// Tangential momentum, in the places from 1 on.
+    pub momentum: [R; D],
+    /// Normal momentum that each cell loses (left) or gains (right), less its duct area times its reference pressure.
+    pub normal: [R; 2],
+}
+
+/// One lane, whose states have been carried to the throat.
+struct Carried<R, const D: usize> {
+    cell: [Primitive<R, D>; 2],
+    throat: [Primitive<R, D>; 2],
+    /// Areas of the throat, of the ducts, and of the streams that pass.
+    to: R,
+    ducts: [R; 2],
+    passing: [R; 2],
+    references: [R; 2],
+    /// Force on the walls beside a stream that chokes, less that of the reference pressure.
+    walls: [R; 2],
+}
+
+/// The fluxes through several jump faces.
+pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
+    faces: &JumpFaces<R, D, L>,
+    gas: &FaceGas<R>,
+    throat: &ThroatGas<R>,
+) -> JumpFlux<[R; L], D> {
+    let [left, right] = &faces.ducts;
+    let to: [R; L] = each(|i| throat_area(left[i], faces.face[i], right[i]));
+    let side = |s: usize| throat.carry_all(&faces.states[s], &faces.ducts[s], &to);
+    let at = [side(0), side(1)];
+    let (walls, calm) = chokes(faces, &at, throat);
+    let none = [R::ZERO; L];
+    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
+    for i in 0..L {
+        let lane = Carried {
+            cell: [faces.states[0].lane(i), faces.states[1].lane(i)],
+            throat: [at[0].state.lane(i), at[1].state.lane(i)],
+            to: to[i],
+            ducts: [left[i], right[i]],
+            passing: [at[0].passing[i], at[1].passing[i]],
+            references: [faces.references[0][i], faces.references[1][i]],
+            walls: [walls[0][i], walls[1][i]],
+        };
+        let (weak, strong) = (acoustic(&lane, gas), riemann::<R, S, D>(&lane, gas));
+        let share = calm[i] * weakness(weak.mass / to[i], &lane.throat, gas);
+        let flux = weak.blend(&strong, share);
+        out.mass[i] = flux.mass;
+        out.energy[i] = flux.energy;
+        for c in 1..D {
+            out.momentum[c][i] = flux.momentum[c];
+        }
+        for s in 0..2 {
+            out.normal[s][i] = flux.normal[s];
+        }
+    }
+    out
+}
+
+/// The forces on the walls beside streams that choke, and 1 where weak waves may pass: in calm, and where nothing chokes.
+fn chokes<R: Real, const D: usize, const L: usize>(
+    faces: &JumpFaces<R, D, L>,
+    at: &[AtThroat<[R; L], D>; 2],
+    throat: &ThroatGas<R>,
+) -> ([[R; L]; 2], [R; L]) {
+    let (mut walls, mut calm) = ([[R::ZERO; L]; 2], faces.calm);
+    for s in 0..2 {
+        for i in 0..L {
+            let blocked = faces.ducts[s][i] - at[s].passing[i];
+            if blocked > R::ZERO {
+                let w = faces.states[s].lane(i);
+                let into_wall = if s == 0 { w.velocity[0] } else { -w.velocity[0] };
+                let force = throat.wall_pressure(w.density, w.pressure, into_wall) - faces.references[s][i];
+                walls[s][i] = blocked * force;
+                calm[i] = R::ZERO;
+            }
+        }
+    }
+    (walls, calm)
+}
+
+/// The Riemann problem in the throat.
+#[inline(always)]
+fn riemann<R: Real, S: Solver, const D: usize>(face: &Carried<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
+    let to = face.to;
+    let f: Flux<R, D> = S::flux::<R, D, true>(&face.throat[0], &face.throat[1], gas);
+    let through = to * f.momentum[0];
+    // Impulse rho u² + p on the throat side, and in the cell relative to the reference pressure.
+    let normal = |s: usize| {
+        let (w, t) = (&face.cell[s], &face.throat[s]);
+        let at_throat = through - to * (t.density * t.velocity[0] * t.velocity[0] + t.pressure);
+        let stream = face.passing[s] * relative_impulse(w, face.references[s]);
+        at_throat + (stream + face.walls[s])
+    };
+    JumpFlux {
+        mass: to * f.mass,
+        energy: to * f.energy,
+        momentum: each(|c| to * f.momentum[c]),
+        normal: [normal(0), normal(1)],
+    }
+}
+
+/// ρu² + p of a state, less a reference pressure.
+#[inline(always)]
+fn relative_impulse<R: Real, const D: usize>(w: &Primitive<R, D>, reference: R) -> R {
+    w.density * w.velocity[0] * w.velocity[0] + (w.pressure - reference)
+}
+
+/// Up to half this strength (Mach number in the throat, or jump of its pressure as a share) waves count as weak, from all of it
+/// on as strong.
+const STRONG: f64 = 0.6;
+
+/// How far the waves at a jump are weak: 1 if sound, 0 if a shock arrives, or if `mass_flux` per area of the throat, that of weak
+/// waves, is more than it would take.
+#[inline(always)]
+fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2], gas: &FaceGas<R>) -> R {
+    let mach = |w: &Primitive<R, D>| {
+        R::larger((w.density * w.velocity[0]).abs(), mass_flux.abs()) / (w.density * gas.sound_speed(w))
+    };
+    let step = (l.pressure - r.pressure).abs() / R::smaller(l.pressure, r.pressure);
+    let strength = R::larger(R::larger(mach(l), mach(r)), step);
+    let share = R::TWO - strength * R::from_f64(2.0 / STRONG);
+    R::smaller(R::larger(share, R::ZERO), R::ONE)
+}
+
+/// The fluxes of weak waves at a change of area: one sound wave into each duct, the stationary wave between them. A Riemann
+/// problem in the throat instead, as for strong waves, gives sound at a contraction energy that it does not have, and noise
+/// would grow between two of them.
+///
+/// Both sides have the mass flux Q in common and differ from their cells by the outgoing wave: the pressure by ∓c (Q − Q_K)/a, the
+/// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
+/// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
+#[inline(always)]
+fn acoustic<R: Real, const D: usize>(face: &Carried<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
+    let [l, r] = &face.cell;
+    let (c_l, c_r) = (gas.sound_speed(l), gas.sound_speed(r));
+    let mass = |s: usize| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]);
+    let (mass_l, mass_r) = (mass(0), mass(1));
+    // Stiffnesses c/a of the ducts, times both areas.
+    let (stiff_l, stiff_r) = (c_l * face.ducts[1], c_r * face.ducts[0]);
+    let drive = face.ducts[0] * face.ducts[1] * (face.throat[0].pressure - face.throat[1].pressure);
+    let common = ((stiff_l * mass_l + stiff_r * mass_r) + drive) / (stiff_l + stiff_r);
+    let own = |s: usize, wave: R, change: R| {
+        let (w, duct) = (&face.cell[s], face.ducts[s]);
+        let enthalpy = (duct * gas.enthalpy(w) + wave * change) / (duct * w.density);
+        (duct * relative_impulse(w, face.references[s]) + (w.velocity[0] + wave) * change, common * enthalpy)
+    };
+    let ((left, energy_l), (right, energy_r)) = (own(0, -c_l, common - mass_l), own(1, c_r, common - mass_r));
+    let from_left = common >= R::ZERO;
+    let pick = |a: R, b: R| core::hint::select_unpredictable(from_left, a, b);
+    JumpFlux {
+        mass: common,
+        energy: pick(energy_l, energy_r),
+        momentum: each(|c| common * pick(l.velocity[c], r.velocity[c])),
+        normal: [left, right],
+    }
+}
+
+impl<R: Real, const D: usize> JumpFlux<R, D> {
+    /// A share of this flux and the rest of another; 0 and 1 give one of them alone.
+    #[inline(always)]
+    fn blend(&self, other: &Self, share: R) -> Self {
+        let rest = R::ONE - share;
+        let mix = |a: R, b: R| {
+            let both = share * a + rest * b;
+            let some = if rest > R::ZERO { both } else { a };
+            if share > R::ZERO { some } else { b }
+        };
+        JumpFlux {
+            mass: mix(self.mass, other.mass),
+            energy: mix(self.energy, other.energy),
+            momentum: each(|c| mix(self.momentum[c], other.momentum[c])),
+            normal: [mix(self.normal[0], other.normal[0]), mix(self.normal[1], other.normal[1])],
+        }
+    }
+}

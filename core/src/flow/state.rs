@@ -1,0 +1,265 @@
+//! Gas, and the state of one cell in its two forms.
+//!
+//! The velocity has as many components as the problem has live dimensions: nothing is stored for a dead one.
+//! Every gas here obeys rho a² = gamma p (isothermal: gamma = 1), so waves and slopes need one text for all three;
+//! the gases differ in where the pressure comes from.
+
+use crate::number::real::Real;
+
+/// One value per axis or lane. As [`core::array::from_fn`], by a loop that compilers unroll before they look for vectors: with the
+/// other they do so or not by how a program is put together.
+#[inline(always)]
+pub(crate) fn each<R: Real, const N: usize>(f: impl Fn(usize) -> R) -> [R; N] {
+    let mut values = [R::ZERO; N];
+    for i in 0..N {
+        values[i] = f(i);
+    }
+    values
+}
+
+/// Sum of one term per axis, the same bits in any order of the axes: extremes first, then the middle one.
+#[inline(always)]
+pub(crate) fn sum<R: Real, const D: usize>(t: [R; D]) -> R {
+    if D == 1 {
+        t[0]
+    } else if D == 2 {
+        t[0] + t[1]
+    } else {
+        let (low, high) = (R::smaller(t[0], t[1]), R::larger(t[0], t[1]));
+        let middle = R::larger(low, R::smaller(high, t[2]));
+        (R::smaller(low, t[2]) + R::larger(high, t[2])) + middle
+    }
+}
+
+/// The components of a vector as seen from axis `d`: the normal one first, then the others in cyclic order.
+#[inline(always)]
+pub(crate) fn rotate<T: Copy, const D: usize>(v: [T; D], d: usize) -> [T; D] {
+    core::array::from_fn(|c| v[(c + d) % D])
+}
+
+/// The inverse of [`rotate`].
+#[inline(always)]
+pub(crate) fn rotate_back<T: Copy, const D: usize>(v: [T; D], d: usize) -> [T; D] {
+    core::array::from_fn(|c| v[(c + D - d) % D])
+}
+
+/// Pore averages as the Riemann solver sees them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Primitive<R, const D: usize> {
+    /// Mass per open volume.
+    pub density: R,
+    /// Velocity in the pores.
+    pub velocity: [R; D],
+    /// Pressure.
+    pub pressure: R,
+}
+
+impl<R: Copy, const D: usize, const L: usize> Primitive<[R; L], D> {
+    /// One of several states side by side.
+    #[inline(always)]
+    pub(crate) fn lane(&self, i: usize) -> Primitive<R, D> {
+        let velocity = core::array::from_fn(|c| self.velocity[c][i]);
+        Primitive { density: self.density[i], velocity, pressure: self.pressure[i] }
+    }
+
+    /// Writes one of them.
+    #[inline(always)]
+    pub(crate) fn set_lane(&mut self, i: usize, w: &Primitive<R, D>) {
+        self.density[i] = w.density;
+        for c in 0..D {
+            self.velocity[c][i] = w.velocity[c];
+        }
+        self.pressure[i] = w.pressure;
+    }
+}
+
+/// Pore averages that the equations conserve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserved<R, const D: usize> {
+    /// Mass per open volume.
+    pub density: R,
+    /// Momentum per open volume.
+    pub momentum: [R; D],
+    /// Total energy per open volume; 0 for a barotropic gas.
+    pub energy: R,
+}
+
+/// Where the pressure comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gas<R> {
+    /// p = (gamma − 1) rho e, with an energy equation.
+    Ideal {
+        /// Ratio of specific heats, above 1.
+        gamma: R,
+    },
+    /// p = c² rho, mass and momentum only.
+    Isothermal {
+        /// The speed of sound c.
+        sound_speed: R,
+    },
+    /// p = p0 (rho/rho0)^gamma, mass and momentum only.
+    Isentropic {
+        /// Ratio of specific heats, above 1.
+        gamma: R,
+        /// Density rho0 of the reference state.
+        density: R,
+        /// Pressure p0 of the reference state.
+        pressure: R,
+    },
+}
+
+impl<R: Real> Gas<R> {
+    /// The gas carries an energy equation.
+    #[inline(always)]
+    pub fn has_energy(self) -> bool {
+        matches!(self, Gas::Ideal { .. })
+    }
+
+    /// rho a² / p.
+    #[inline(always)]
+    pub fn gamma(self) -> R {
+        match self {
+            Gas::Ideal { gamma } | Gas::Isentropic { gamma, .. } => gamma,
+            Gas::Isothermal { .. } => R::ONE,
+        }
+    }
+
+    /// Pressure of a barotropic gas; of an ideal gas from its internal energy per volume.
+    #[inline(always)]
+    pub fn pressure(self, density: R, internal: R) -> R {
+        match self {
+            Gas::Ideal { gamma } => (gamma - R::ONE) * internal,
+            Gas::Isothermal { sound_speed } => sound_speed * sound_speed * density,
+            // NaN for a negative density, which the caller's check for positive states finds.
+            Gas::Isentropic { gamma, density: rho0, pressure: p0 } => p0 * (density / rho0).pow(gamma),
+        }
+    }
+
+    /// Speed of sound.
+    #[inline(always)]
+    pub fn sound_speed<const D: usize>(self, w: &Primitive<R, D>) -> R {
+        (self.gamma() * w.pressure / w.density).sqrt()
+    }
+
+    /// Density of a barotropic gas at a pressure; `None` for an ideal gas, which has two degrees of freedom.
+    pub fn density(self, pressure: R) -> Option<R> {
+        match self {
+            Gas::Ideal { .. } => None,
+            Gas::Isothermal { sound_speed } => Some(pressure / (sound_speed * sound_speed)),
+            Gas::Isentropic { gamma, density, pressure: p0 } => Some(density * (pressure / p0).pow(R::ONE / gamma)),
+        }
+    }
+
+    /// The primitive form of a cell.
+    #[inline(always)]
+    pub fn primitive<const D: usize>(self, u: &Conserved<R, D>) -> Primitive<R, D> {
+        let velocity = u.momentum.map(|m| m / u.density);
+        let kinetic = R::HALF * sum::<R, D>(core::array::from_fn(|c| u.momentum[c] * velocity[c]));
+        Primitive { density: u.density, velocity, pressure: self.pressure(u.density, u.energy - kinetic) }
+    }
+
+    /// The conserved form of a state; a barotropic gas ignores the pressure.
+    #[inline(always)]
+    pub fn conserved<const D: usize>(self, w: &Primitive<R, D>) -> Conserved<R, D> {
+        let momentum = w.velocity.map(|v| w.density * v);
+        let energy = match self {
+            Gas::Ideal { gamma } => {
+                let kinetic = R::HALF * sum::<R, D>(core::array::from_fn(|c| momentum[c] * w.velocity[c]));
+                w.pressure / (gamma - R::ONE) + kinetic
+            }
+            _ => R::ZERO,
+        };
+        Conserved { density: w.density, momentum, energy }
+    }
+}
+
+/// A field of conserved variables: one slice per variable, x fastest.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields<'a, R, const D: usize> {
+    /// Mass per open volume.
+    pub density: &'a [R],
+    /// Momentum per open volume.
+    pub momentum: [&'a [R]; D],
+    /// Total energy per open volume; empty for a barotropic gas.
+    pub energy: &'a [R],
+}
+
+impl<R: Real, const D: usize> Fields<'_, R, D> {
+    /// The cell at a flat index.
+    #[inline(always)]
+    pub fn get(&self, cell: usize) -> Conserved<R, D> {
+        Conserved {
+            density: self.density[cell],
+            momentum: self.momentum.map(|m| m[cell]),
+            energy: self.energy.get(cell).copied().unwrap_or(R::ZERO),
+        }
+    }
+}
+
+/// The same, to be written.
+#[derive(Debug)]
+pub struct FieldsMut<'a, R, const D: usize> {
+    /// Mass per open volume.
+    pub density: &'a mut [R],
+    /// Momentum per open volume.
+    pub momentum: [&'a mut [R]; D],
+    /// Total energy per open volume; empty for a barotropic gas.
+    pub energy: &'a mut [R],
+}
+
+impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
+    /// A shorter loan of the same field.
+    pub fn reborrow(&mut self) -> FieldsMut<'_, R, D> {
+        FieldsMut {
+            density: &mut *self.density,
+            momentum: self.momentum.each_mut().map(|m| &mut **m),
+            energy: &mut *self.energy,
+        }
+    }
+
+    /// The same field, to be read.
+    pub fn as_fields(&self) -> Fields<'_, R, D> {
+        Fields { density: self.density, momentum: self.momentum.each_ref().map(|m| &**m), energy: self.energy }
+    }
+
+    /// Cells before `cell`, and the rest: how a caller cuts a field into slabs for its threads.
+    pub fn split_at(self, cell: usize) -> (Self, Self) {
+        let (d0, d1) = self.density.split_at_mut(cell);
+        let at = if self.energy.is_empty() { 0 } else { cell };
+        let (e0, e1) = self.energy.split_at_mut(at);
+        let mut low = [const { None }; D];
+        let mut high = [const { None }; D];
+        for (c, m) in self.momentum.into_iter().enumerate() {
+            let (a, b) = m.split_at_mut(cell);
+            low[c] = Some(a);
+            high[c] = Some(b);
+        }
+        let part = |a: [Option<&'a mut [R]>; D]| a.map(|s| s.unwrap_or_default());
+        (
+            FieldsMut { density: d0, momentum: part(low), energy: e0 },
+            FieldsMut { density: d1, momentum: part(high), energy: e1 },
+        )
+    }
+
+    /// The cell at a flat index.
+    #[inline(always)]
+    pub fn get(&self, cell: usize) -> Conserved<R, D> {
+        Conserved {
+            density: self.density[cell],
+            momentum: core::array::from_fn(|c| self.momentum[c][cell]),
+            energy: self.energy.get(cell).copied().unwrap_or(R::ZERO),
+        }
+    }
+
+    /// Writes the cell at a flat index.
+    #[inline(always)]
+    pub fn set(&mut self, cell: usize, u: &Conserved<R, D>) {
+        self.density[cell] = u.density;
+        for c in 0..D {
+            self.momentum[c][cell] = u.momentum[c];
+        }
+        if let Some(e) = self.energy.get_mut(cell) {
+            *e = u.energy;
+        }
+    }
+}

@@ -1,0 +1,424 @@
+//! From the closed triangulated surface of a body to solid fractions of cells, x faces and y faces, a layer at a time.
+//!
+//! Along a line in +x the indicator χ of a solid jumps by −sign(n_x) wherever the line meets the surface (n points out
+//! of the solid). Hence, summing over the pieces of surface in a row of cells,
+//!
+//! ```text
+//! solid area of an x face   A = −Σ ∫ n_x dA                              over the pieces left of the face
+//! solid volume of a cell    V = A(low face) dx − ∫ n_x (x_hi − x) dA     over the pieces in the cell
+//! ```
+//!
+//! and likewise along y for y faces; z faces are the matter of [`crate::surface::z_faces`]. There are no inside tests; non-convex
+//! bodies, cavities and plates far thinner than a cell need nothing special, and every row must return to zero at its
+//! end, which tells holes in the surface. After J. Manson and S. Schaefer, *Wavelet Rasterization*, Computer Graphics
+//! Forum 30 (2011), who integrate the same way.
+//!
+//! **Walls.** A point of a face is open only if both one-sided limits are open. So a piece of surface lying in the plane
+//! of a face counts before the face where the solid begins and after it where the solid ends: the face is blocked in both
+//! cases.
+
+use crate::grid::fields::{Layer, ShapeMismatch, at_least, count, count_face, noise};
+use crate::grid::{Grid, Located};
+use crate::number::real::{Real, Vector};
+use crate::surface::clip::{Polygon, split};
+
+/// What is wrong with a body's surface in one layer; zero, but for rounding, if it is closed and does not cross itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Defects<R> {
+    /// The largest amount by which a row failed to return to zero, as a fraction of a face.
+    pub leak: R,
+    /// The largest amount by which the body's own share of a cell left 0..1.
+    pub winding: R,
+}
+
+impl<R: Real> Defects<R> {
+    /// The worse of both, each by itself.
+    #[must_use]
+    pub fn worst(self, other: Self) -> Self {
+        Defects { leak: self.leak.max(other.leak), winding: self.winding.max(other.winding) }
+    }
+}
+
+/// Caller's memory for the sums of one body in one layer.
+#[derive(Debug)]
+pub struct Scratch<'a, R> {
+    pub(crate) reals: &'a mut [R],
+}
+
+impl<'a, R: Real> Scratch<'a, R> {
+    /// Number of scalars that serve any body on a grid.
+    #[must_use]
+    pub fn needed(grid: &Grid<R>) -> usize {
+        let [nx, ny, _] = grid.cells();
+        (nx + 2) * ny + nx * ny + nx * (ny + 2)
+    }
+
+    /// Use a buffer of at least [`Scratch::needed`] scalars; what it holds does not matter.
+    ///
+    /// # Errors
+    /// [`ShapeMismatch`] if it is too short.
+    pub fn new(grid: &Grid<R>, reals: &'a mut [R]) -> Result<Self, ShapeMismatch> {
+        at_least(Self::needed(grid), reals.len())?;
+        Ok(Scratch { reals })
+    }
+}
+
+/// The cells `i0..i0+ni` × `j0..j0+nj` of a layer that a body reaches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Window {
+    pub i0: usize,
+    pub ni: usize,
+    pub j0: usize,
+    pub nj: usize,
+}
+
+impl Window {
+    /// Around some triangles; none if they do not reach the grid. Touching its outer planes is reaching.
+    pub fn around<R: Real, V: Vector<Scalar = R>>(grid: &Grid<R>, triangles: &[[V; 3]], ids: &[u32]) -> Option<Self> {
+        let (mut lo, mut hi) = (V::splat(R::INFINITY), V::splat(-R::INFINITY));
+        for corner in ids.iter().filter_map(|&id| triangles.get(id as usize)).flatten() {
+            (lo, hi) = (lo.min(*corner), hi.max(*corner));
+        }
+        let (i0, ni) = Self::span(grid, 0, lo.x(), hi.x())?;
+        let (j0, nj) = Self::span(grid, 1, lo.y(), hi.y())?;
+        Some(Window { i0, ni, j0, nj })
+    }
+
+    fn span<R: Real>(grid: &Grid<R>, axis: usize, lo: R, hi: R) -> Option<(usize, usize)> {
+        let edges = grid.edges(axis);
+        let last = edges.len() - 1;
+        let reaches = lo <= edges[last] && hi >= edges[0];
+        let cell = |v| match grid.locate(axis, v) {
+            Located::Below => 0,
+            Located::Cell(i) => i,
+            Located::Above => last - 1,
+        };
+        reaches.then(|| (cell(lo), cell(hi) - cell(lo) + 1))
+    }
+}
+
+/// One axis of a window: its cells are numbered from 0; −1 is the outside below the grid, `count` the outside above.
+///
+/// Coordinates are relative to `origin`. Of a triangle that hardly extends along the axis, corners cut at other planes would
+/// lose the digits that tell where it crosses this axis' planes; seen from its own corner it keeps them.
+#[derive(Clone, Copy)]
+pub(crate) struct Axis<'a, R> {
+    edges: &'a [R],
+    first: usize,
+    pub count: isize,
+    pub origin: R,
+}
+
+impl<'a, R: Real> Axis<'a, R> {
+    pub fn new(edges: &'a [R], first: usize, count: usize) -> Self {
+        Axis { edges, first, count: count as isize, origin: R::ZERO }
+    }
+
+    /// The cell that holds a coordinate; a coordinate on an edge belongs to the cell above.
+    #[inline(always)]
+    pub fn cell(&self, value: R) -> isize {
+        let mut cell = match crate::grid::locate(self.edges, value + self.origin) {
+            Located::Below => -1,
+            // A cut may place a corner a rounding error outside the window.
+            Located::Cell(i) => (i as isize - self.first as isize).clamp(0, self.count),
+            Located::Above => self.count,
+        };
+        if self.origin != R::ZERO {
+            // The sum above may have been rounded across an edge.
+            cell += isize::from(value >= self.upper(cell));
+            cell -= isize::from(cell >= 0 && value < self.upper(cell - 1));
+        }
+        cell
+    }
+
+    /// The upper edge of a cell; infinite for the outside above.
+    #[inline(always)]
+    pub fn upper(&self, cell: isize) -> R {
+        let index = self.first as isize + cell + 1;
+        self.edges.get(index as usize).map_or(R::INFINITY, |&e| e - self.origin)
+    }
+
+    /// Is `value` the lower edge of a cell?
+    #[inline(always)]
+    pub fn opens(&self, cell: isize, value: R) -> bool {
+        cell >= 0 && self.edges.get((self.first as isize + cell) as usize).is_some_and(|&e| e - self.origin == value)
+    }
+
+    /// Is this a cell of the window?
+    #[inline(always)]
+    pub fn holds(&self, cell: isize) -> bool {
+        cell >= 0 && cell < self.count
+    }
+}
+
+/// Polygons in the works.
+#[derive(Default)]
+struct Buffers<R: Real> {
+    /// What is still to be spread over rows.
+    slab: Polygon<R>,
+    /// What is still to be spread over the cells of a row.
+    row: Polygon<R>,
+    /// The share of one cell.
+    cell: Polygon<R>,
+    spare: Polygon<R>,
+}
+
+/// Add one body to layer `k`: its cells, x faces and y faces (z faces: [`crate::surface::z_faces::add_section`]).
+///
+/// `ids` lists at least those of the body's triangles that reach into the slab `z[k]..z[k+1]`. Corners are in the grid's
+/// frame and unit, counter-clockwise seen from outside. Returns what the sums say about the surface.
+pub fn add_body<R: Real, V: Vector<Scalar = R>>(
+    grid: &Grid<R>,
+    k: usize,
+    triangles: &[[V; 3]],
+    ids: &[u32],
+    scratch: &mut Scratch<R>,
+    layer: &mut Layer<R>,
+) -> Defects<R> {
+    let none = Defects { leak: R::ZERO, winding: R::ZERO };
+    let Some(window) = Window::around(grid, triangles, ids) else { return none };
+    let [lo, hi] = [grid.edges(2)[k], grid.edges(2)[k + 1]];
+    let mut sums = Sums::new(grid, window, scratch, layer);
+    let mut b = Buffers::default();
+    for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
+        let mut corners = triangle.map(Vector::to_array);
+        sums.x.origin = take_origin(&mut corners, 0);
+        sums.y.origin = take_origin(&mut corners, 1);
+        if slab_part(&corners, lo, hi, &mut b.slab, &mut b.spare) {
+            sums.scatter(&mut b);
+        }
+    }
+    let defects = sums.x_faces_and_cells(hi - lo);
+    defects.worst(Defects { leak: sums.y_faces(hi - lo), ..none })
+}
+
+/// If a triangle's extent along `axis` is below this share of its coordinates, it gets an origin of its own.
+const FLAT: f64 = 1.0 / 1024.0;
+
+/// The origin that a triangle is best seen from along an axis, subtracted from its corners (exactly, by Sterbenz' lemma).
+#[inline(always)]
+fn take_origin<R: Real>(corners: &mut [[R; 3]; 3], axis: usize) -> R {
+    let [a, b, c] = corners.map(|p| p[axis]);
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    if max == min || max - min > R::from_f64(FLAT) * min.abs() {
+        return R::ZERO;
+    }
+    corners.iter_mut().for_each(|p| p[axis] -= min);
+    min
+}
+
+/// The part of a triangle in the open slab `lo..hi`; false if there is none. Level triangles on `lo` or `hi` are outside.
+#[inline(always)]
+fn slab_part<R: Real>(corners: &[[R; 3]; 3], lo: R, hi: R, slab: &mut Polygon<R>, spare: &mut Polygon<R>) -> bool {
+    let [a, b, c] = corners.map(|p| p[2]);
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    if !(min < hi && max > lo) {
+        return false;
+    }
+    *slab = Polygon::new(corners);
+    if min < lo {
+        let whole = *slab;
+        split(&whole, 2, lo, spare, slab);
+    }
+    if max > hi {
+        let whole = *slab;
+        split(&whole, 2, hi, slab, spare);
+    }
+    true
+}
+
+/// Running sums of one body over its window of one layer.
+struct Sums<'s, 'g, 'l, R> {
+    window: Window,
+    grid: &'s Grid<'g, R>,
+    x: Axis<'g, R>,
+    y: Axis<'g, R>,
+    /// ∫ n_x dA by row and slot: slot 0 is left of the grid, slot c + 1 is cell c, slot ni + 1 is right of the grid.
+    flux_x: &'s mut [R],
+    /// 6 ∫ n_x (x_hi − x) dA by row and cell.
+    moment: &'s mut [R],
+    /// ∫ n_y dA by slot along y and by column.
+    flux_y: &'s mut [R],
+    layer: &'s mut Layer<'l, R>,
+}
+
+impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
+    fn new(grid: &'s Grid<'g, R>, window: Window, scratch: &'s mut Scratch<R>, layer: &'s mut Layer<'l, R>) -> Self {
+        let Window { i0, ni, j0, nj } = window;
+        let (flux_x, rest) = scratch.reals.split_at_mut((ni + 2) * nj);
+        let (moment, rest) = rest.split_at_mut(ni * nj);
+        let (flux_y, _) = rest.split_at_mut(ni * (nj + 2));
+        for sums in [&mut *flux_x, &mut *moment, &mut *flux_y] {
+            sums.fill(R::ZERO);
+        }
+        let (x, y) = (Axis::new(grid.edges(0), i0, ni), Axis::new(grid.edges(1), j0, nj));
+        Sums { window, grid, x, y, flux_x, moment, flux_y, layer }
+    }
+
+    /// Spread `b.slab` over rows.
+    #[inline]
+    fn scatter(&mut self, b: &mut Buffers<R>) {
+        let (min, max) = b.slab.extent(1);
+        let mut row = self.y.cell(min);
+        if min == max && self.y.opens(row, min) {
+            let begins = b.slab.doubled_area()[1] < R::ZERO;
+            b.row = b.slab;
+            return self.scatter_row(if begins { row - 1 } else { row }, Some(row), b);
+        }
+        while row < self.y.count && max > self.y.upper(row) {
+            split(&b.slab, 1, self.y.upper(row), &mut b.row, &mut b.spare);
+            core::mem::swap(&mut b.slab, &mut b.spare);
+            self.scatter_row(row, None, b);
+            row += 1;
+        }
+        core::mem::swap(&mut b.slab, &mut b.row);
+        self.scatter_row(row, None, b);
+    }
+
+    /// Spread `b.row` over the cells of a row. `wall` is the y face in whose plane it lies, if it does.
+    #[inline]
+    fn scatter_row(&mut self, row: isize, wall: Option<isize>, b: &mut Buffers<R>) {
+        if b.row.is_empty() {
+            return;
+        }
+        let (min, max) = b.row.extent(0);
+        let mut c = self.x.cell(min);
+        if min == max && self.x.opens(c, min) {
+            return self.wall_x(row, c, &b.row);
+        }
+        while c < self.x.count && max > self.x.upper(c) {
+            split(&b.row, 0, self.x.upper(c), &mut b.cell, &mut b.spare);
+            core::mem::swap(&mut b.row, &mut b.spare);
+            self.add(row, c, wall, &b.cell);
+            c += 1;
+        }
+        self.add(row, c, wall, &b.row);
+    }
+
+    /// Add a piece in the plane of the x face below cell `c`.
+    fn wall_x(&mut self, row: isize, c: isize, piece: &Polygon<R>) {
+        let Window { i0, j0, .. } = self.window;
+        if self.y.holds(row) {
+            let nx = self.grid.cells()[0];
+            self.layer.marks.x[(j0 + row as usize) * (nx + 1) + i0 + c as usize] = 1;
+        }
+        let begins = piece.doubled_area()[0] < R::ZERO;
+        self.integrate(row, if begins { c - 1 } else { c }, piece);
+    }
+
+    /// Add a piece that lies in one cell, or in the y face `wall`.
+    #[inline(always)]
+    fn add(&mut self, row: isize, c: isize, wall: Option<isize>, piece: &Polygon<R>) {
+        if piece.is_empty() {
+            return;
+        }
+        let Window { i0, j0, .. } = self.window;
+        if self.x.holds(c) {
+            let nx = self.grid.cells()[0];
+            let at = |j: isize| (j0 as isize + j) as usize * nx + i0 + c as usize;
+            match wall {
+                Some(face) => self.layer.marks.y[at(face)] = 1,
+                None if self.y.holds(row) => self.layer.marks.cell[at(row)] = 1,
+                None => {}
+            }
+        }
+        self.integrate(row, c, piece);
+    }
+
+    /// Add the integrals over a piece, fanned from its first corner so that only differences enter.
+    #[inline(always)]
+    fn integrate(&mut self, row: isize, c: isize, piece: &Polygon<R>) {
+        let [o, first, others @ ..] = piece.corners() else { return };
+        let (ni, inside) = (self.window.ni, self.x.holds(c));
+        let reach = if inside { (self.x.upper(c) - o[0]) * R::from_f64(3.0) } else { R::ZERO };
+        let (mut nx, mut ny, mut moment) = (R::ZERO, R::ZERO, R::ZERO);
+        let mut a = crate::surface::clip::sub(*first, *o);
+        for p in others {
+            let b = crate::surface::clip::sub(*p, *o);
+            let ax = a[1] * b[2] - a[2] * b[1];
+            nx += ax;
+            ny += a[2] * b[0] - a[0] * b[2];
+            moment += ax * (reach - (a[0] + b[0]));
+            a = b;
+        }
+        if self.y.holds(row) {
+            self.flux_x[row as usize * (ni + 2) + (c + 1) as usize] += nx * R::HALF;
+            if inside {
+                self.moment[row as usize * ni + c as usize] += moment;
+            }
+        }
+        if inside {
+            self.flux_y[(row + 1) as usize * ni + c as usize] += ny * R::HALF;
+        }
+    }
+
+    /// Fractions of x faces and cells from the sums along x. `dz` is the layer's height.
+    fn x_faces_and_cells(&mut self, dz: R) -> Defects<R> {
+        let Window { i0, ni, j0, nj } = self.window;
+        let (nx, x, y) = (self.grid.cells()[0], self.grid.edges(0), self.grid.edges(1));
+        let sixth = R::ONE / R::from_f64(6.0);
+        let mut defects = Defects { leak: R::ZERO, winding: R::ZERO };
+        for row in 0..nj {
+            let j = j0 + row;
+            let flux = &self.flux_x[row * (ni + 2)..][..ni + 2];
+            let moment = &self.moment[row * ni..][..ni];
+            let to_fraction = R::ONE / ((y[j + 1] - y[j]) * dz);
+            let faces = j * (nx + 1) + i0;
+            let cells = j * nx + i0;
+            let Layer { lower, sum, marks } = &mut *self.layer;
+            let walls = &marks.x[faces..][..ni + 1];
+            let (face_lower, face_sum) = (&mut lower.x[faces..][..ni + 1], &mut sum.x[faces..][..ni + 1]);
+            let (cell_lower, cell_sum) = (&mut lower.cell[cells..][..ni], &mut sum.cell[cells..][..ni]);
+            let cut = &marks.cell[cells..][..ni];
+            let mut area = -flux[0];
+            for c in 0..ni {
+                let face = area * to_fraction;
+                let whole = walls[c] == 0 && (cut[c] == 0 || (c > 0 && cut[c - 1] == 0));
+                count_face(face, whole, &mut face_lower[c], &mut face_sum[c]);
+                area -= flux[c + 1];
+                let share = face - moment[c] * (sixth * to_fraction) / (x[i0 + c + 1] - x[i0 + c]);
+                let surface = flux[c + 1] != R::ZERO || moment[c] != R::ZERO;
+                if cut[c] == 0 {
+                    // Nothing but walls: after them the cell is open or closed as a whole.
+                    if share > R::HALF {
+                        count(R::ONE, &mut cell_lower[c], &mut cell_sum[c]);
+                    }
+                } else if surface || share > noise::<R>() {
+                    defects.winding = defects.winding.max(share - R::ONE).max(-share);
+                    count(share, &mut cell_lower[c], &mut cell_sum[c]);
+                }
+            }
+            let whole = walls[ni] == 0 && cut[ni - 1] == 0;
+            count_face(area * to_fraction, whole, &mut face_lower[ni], &mut face_sum[ni]);
+            defects.leak = defects.leak.max(((area - flux[ni + 1]) * to_fraction).abs());
+        }
+        defects
+    }
+
+    /// Fractions of y faces from the sums along y.
+    fn y_faces(&mut self, dz: R) -> R {
+        let Window { i0, ni, j0, nj } = self.window;
+        let (nx, x) = (self.grid.cells()[0], self.grid.edges(0));
+        let mut leak = R::ZERO;
+        for row in 0..=nj {
+            let (flux, above) = self.flux_y[row * ni..][..2 * ni].split_at_mut(ni);
+            if flux.iter().all(|&f| f == R::ZERO) {
+                continue;
+            }
+            let faces = (j0 + row) * nx + i0;
+            let Layer { lower, sum, marks } = &mut *self.layer;
+            let (lower, sum, walls) = (&mut lower.y[faces..][..ni], &mut sum.y[faces..][..ni], &marks.y[faces..][..ni]);
+            let uncut = |row: usize, c: usize| marks.cell[(j0 + row) * nx + i0 + c] == 0;
+            for c in 0..ni {
+                let to_fraction = R::ONE / ((x[i0 + c + 1] - x[i0 + c]) * dz);
+                let whole = walls[c] == 0 && ((row < nj && uncut(row, c)) || (row > 0 && uncut(row - 1, c)));
+                count_face(-flux[c] * to_fraction, whole, &mut lower[c], &mut sum[c]);
+                above[c] += flux[c];
+                if row == nj {
+                    leak = leak.max((above[c] * to_fraction).abs());
+                }
+            }
+        }
+        leak
+    }
+}

@@ -1,0 +1,193 @@
+//! Cutting convex polygons by planes.
+//!
+//! A crossing is always computed from the lower end of the edge, so two polygons that share an edge get bitwise the same
+//! point: a closed surface stays closed whatever it is cut by.
+
+use crate::number::real::Real;
+
+/// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is room for the cuts by
+/// other bodies' planes in one cell. A full polygon is halved before the next cut.
+pub const MAX_CORNERS: usize = 16;
+
+/// A convex polygon in space; fewer than three corners means empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Polygon<R> {
+    len: usize,
+    corners: [[R; 3]; MAX_CORNERS],
+}
+
+impl<R: Real> Default for Polygon<R> {
+    fn default() -> Self {
+        Polygon { len: 0, corners: [[R::ZERO; 3]; MAX_CORNERS] }
+    }
+}
+
+impl<R: Real> Polygon<R> {
+    /// A polygon with the given corners (at most [`MAX_CORNERS`]; the rest is dropped).
+    #[must_use]
+    pub fn new(corners: &[[R; 3]]) -> Self {
+        let mut p = Self::default();
+        p.set(corners);
+        p
+    }
+
+    /// Take the given corners instead (at most [`MAX_CORNERS`]; the rest is dropped).
+    #[inline(always)]
+    pub fn set(&mut self, corners: &[[R; 3]]) {
+        self.clear();
+        for &c in corners {
+            self.push(c);
+        }
+    }
+
+    /// Take the corners of another polygon, and only those.
+    #[inline(always)]
+    pub fn assign(&mut self, other: &Self) {
+        self.set(other.corners());
+    }
+
+    /// The corners in order.
+    #[must_use]
+    #[inline(always)]
+    pub fn corners(&self) -> &[[R; 3]] {
+        // `len` never exceeds the capacity; `min` lets the compiler see it.
+        &self.corners[..self.len.min(MAX_CORNERS)]
+    }
+
+    /// No area: fewer than three corners.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.len < 3
+    }
+
+    /// Add a corner; false if there is no room.
+    #[inline(always)]
+    pub fn push(&mut self, corner: [R; 3]) -> bool {
+        let room = self.len < MAX_CORNERS;
+        if room {
+            self.corners[self.len] = corner;
+            self.len += 1;
+        }
+        room
+    }
+
+    /// No corners any more.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Lowest and highest coordinate along an axis.
+    #[must_use]
+    #[inline(always)]
+    pub fn extent(&self, axis: usize) -> (R, R) {
+        let (mut lo, mut hi) = (R::INFINITY, -R::INFINITY);
+        for c in self.corners() {
+            lo = c[axis].smaller(lo);
+            hi = c[axis].larger(hi);
+        }
+        (lo, hi)
+    }
+
+    /// Two polygons that make up this one, each with fewer corners if it has more than four.
+    #[must_use]
+    pub fn halves(&self) -> [Self; 2] {
+        let c = self.corners();
+        let middle = c.len() / 2;
+        let mut halves = [Self::default(), Self::default()];
+        for (n, &corner) in c.iter().enumerate() {
+            if n <= middle {
+                halves[0].push(corner);
+            }
+            if n >= middle || n == 0 {
+                halves[1].push(corner);
+            }
+        }
+        halves
+    }
+
+    /// No room for another corner.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.len >= MAX_CORNERS
+    }
+
+    /// Twice the area vector (its direction by the right-hand rule).
+    #[must_use]
+    pub fn doubled_area(&self) -> [R; 3] {
+        let mut sum = [R::ZERO; 3];
+        let c = self.corners();
+        for t in 2..c.len() {
+            let n = cross(sub(c[t - 1], c[0]), sub(c[t], c[0]));
+            sum = [sum[0] + n[0], sum[1] + n[1], sum[2] + n[2]];
+        }
+        sum
+    }
+}
+
+#[inline(always)]
+pub(crate) fn sub<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+pub(crate) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The point of the edge `a`–`b` at coordinate `at` of `axis`, which lies strictly between both ends.
+#[inline(always)]
+pub fn crossing<R: Real>(a: [R; 3], b: [R; 3], axis: usize, at: R) -> [R; 3] {
+    let (lo, hi) = if a[axis] < b[axis] { (a, b) } else { (b, a) };
+    let t = (at - lo[axis]) / (hi[axis] - lo[axis]);
+    let mut p = [lo[0] + (hi[0] - lo[0]) * t, lo[1] + (hi[1] - lo[1]) * t, lo[2] + (hi[2] - lo[2]) * t];
+    p[axis] = at;
+    p
+}
+
+/// Split a polygon at coordinate `at` of `axis` into the parts below and above. Corners on the plane go to both.
+#[inline]
+pub fn split<R: Real>(whole: &Polygon<R>, axis: usize, at: R, below: &mut Polygon<R>, above: &mut Polygon<R>) {
+    below.clear();
+    above.clear();
+    let corners = whole.corners();
+    let Some(&(mut a)) = corners.last() else { return };
+    for &b in corners {
+        if (a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at) {
+            let p = crossing(a, b, axis, at);
+            below.push(p);
+            above.push(p);
+        }
+        if b[axis] <= at {
+            below.push(b);
+        }
+        if b[axis] >= at {
+            above.push(b);
+        }
+        a = b;
+    }
+}
+
+/// The part of a polygon above coordinate `at` of `axis`, or below; corners on the plane belong to it. The same points as [`split`] finds.
+#[inline]
+pub fn keep<R: Real>(whole: &Polygon<R>, axis: usize, at: R, above: bool, kept: &mut Polygon<R>) {
+    kept.clear();
+    let corners = whole.corners();
+    let Some(&(mut a)) = corners.last() else { return };
+    for &b in corners {
+        if (a[axis] < at && b[axis] > at) || (a[axis] > at && b[axis] < at) {
+            kept.push(crossing(a, b, axis, at));
+        }
+        if b[axis] == at || (b[axis] > at) == above {
+            kept.push(b);
+        }
+        a = b;
+    }
+}

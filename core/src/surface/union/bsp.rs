@@ -1,0 +1,227 @@
+//! The binary space partition of a cell by the surface of one body.
+
+use super::NoProof::{self, Doubt, Full};
+use super::piece::{Piece, Place, Plane, cut};
+use crate::number::real::Real;
+
+/// Where a branch of a tree leads.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Branch {
+    #[default]
+    Open,
+    Solid,
+    Node(u32),
+}
+
+/// A plane that divides a part of the cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Node<R: Real> {
+    pub(super) plane: Plane<R>,
+    pub(super) positive: Branch,
+    pub(super) negative: Branch,
+}
+
+/// A list of pieces still to be made a subtree.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Task {
+    first: usize,
+    end: usize,
+    parent: Option<(u32, bool)>,
+}
+
+/// Memory in which a tree grows.
+pub(super) struct Soil<'a, R: Real> {
+    pub shards: &'a mut [Piece<R>],
+    pub order: &'a mut [u32],
+    pub tasks: &'a mut [Task],
+    pub nodes: &'a mut [Node<R>],
+    /// So many nodes there are.
+    pub node_count: &'a mut usize,
+}
+
+/// Build the tree of a body, which has surface in the cell: the largest piece divides, the others go to its sides.
+pub(super) fn grow<R: Real>(pieces: &[Piece<R>], soil: Soil<R>, thickness: R) -> Result<Branch, NoProof> {
+    let Soil { shards, order, tasks, nodes, node_count } = soil;
+    let mut growing = Growing { pieces, shards, used: 0, thickness };
+    let all = order.get_mut(..pieces.len()).ok_or(Full)?;
+    let mut largest = Largest::among(0);
+    for (id, (place, piece)) in all.iter_mut().zip(pieces).enumerate() {
+        *place = id as u32;
+        largest.see(piece.area, id);
+    }
+    all.swap(0, largest.at);
+    *tasks.first_mut().ok_or(Full)? = Task { first: 0, end: pieces.len(), parent: None };
+    let (mut open_tasks, root) = (1, *node_count as u32);
+    while open_tasks > 0 {
+        open_tasks -= 1;
+        let Task { first, end, parent } = tasks[open_tasks];
+        let number = *node_count as u32;
+        *nodes.get_mut(*node_count).ok_or(Full)? =
+            Node { plane: growing.piece(order[first]).plane, positive: Branch::Open, negative: Branch::Solid };
+        *node_count += 1;
+        if let Some((node, positive)) = parent {
+            let node = &mut nodes[node as usize];
+            *(if positive { &mut node.positive } else { &mut node.negative }) = Branch::Node(number);
+        }
+        let (middle, end) = growing.divide(order, first, end)?;
+        for (first, end, positive) in [(first, middle, false), (middle, end, true)] {
+            if end > first {
+                *tasks.get_mut(open_tasks).ok_or(Full)? = Task { first, end, parent: Some((number, positive)) };
+                open_tasks += 1;
+            }
+        }
+    }
+    Ok(Branch::Node(root))
+}
+
+/// The place of the piece of largest area, the first of equals.
+#[derive(Clone, Copy)]
+struct Largest<R> {
+    area: R,
+    at: usize,
+}
+
+impl<R: Real> Largest<R> {
+    fn among(at: usize) -> Self {
+        Largest { area: R::ZERO, at }
+    }
+
+    #[inline(always)]
+    fn see(&mut self, area: R, at: usize) {
+        if area > self.area {
+            *self = Largest { area, at };
+        }
+    }
+}
+
+/// Numbers of pieces while they are sorted by a plane: those behind it take the places already read, those before it gather
+/// above the end.
+struct Sorted<'a, R> {
+    order: &'a mut [u32],
+    behind: usize,
+    before: usize,
+    largest: [Largest<R>; 2],
+}
+
+impl<'a, R: Real> Sorted<'a, R> {
+    fn new(order: &'a mut [u32], first: usize, end: usize) -> Self {
+        Sorted { order, behind: first, before: end, largest: [Largest::among(first), Largest::among(end)] }
+    }
+
+    /// Put a piece that was at place `p`, or a part of it, behind.
+    #[inline(always)]
+    fn behind(&mut self, id: u32, area: R, p: usize) -> Result<(), NoProof> {
+        // The second half of a full polygon may need room that is not yet free.
+        if self.behind > p {
+            return Err(Full);
+        }
+        self.order[self.behind] = id;
+        self.largest[0].see(area, self.behind);
+        self.behind += 1;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn before(&mut self, id: u32, area: R) -> Result<(), NoProof> {
+        *self.order.get_mut(self.before).ok_or(Full)? = id;
+        self.largest[1].see(area, self.before);
+        self.before += 1;
+        Ok(())
+    }
+
+    /// Move both lists together, behind the plane from `first`, the largest first in each; returns where they end.
+    fn finish(self, first: usize, end: usize) -> (usize, usize) {
+        let Sorted { order, behind, before, largest } = self;
+        if behind > first {
+            order.swap(first, largest[0].at);
+        }
+        if before > end {
+            order.swap(end, largest[1].at);
+        }
+        order.copy_within(end..before, behind);
+        (behind, behind + before - end)
+    }
+}
+
+/// The pieces of a body while its tree grows, by number: first those of the cell, then the parts of those that were cut.
+struct Growing<'a, R: Real> {
+    pieces: &'a [Piece<R>],
+    shards: &'a mut [Piece<R>],
+    /// So many shards there are.
+    used: usize,
+    thickness: R,
+}
+
+impl<R: Real> Growing<'_, R> {
+    #[inline(always)]
+    fn piece(&self, id: u32) -> &Piece<R> {
+        piece(self.pieces, self.shards, id)
+    }
+
+    /// Sort the pieces after `order[first]`, the divider, by the sides of its plane: `first..a` behind, `a..b` before, the largest
+    /// first in each; returns `(a, b)`. Pieces in the plane are dropped, pieces across are cut.
+    fn divide(&mut self, order: &mut [u32], first: usize, end: usize) -> Result<(usize, usize), NoProof> {
+        let divider = order[first];
+        let plane = self.piece(divider).plane;
+        let mut sorted = Sorted::new(order, first, end);
+        for p in first + 1..end {
+            let id = sorted.order[p];
+            let piece = self.piece(id);
+            match piece.place(&plane, self.thickness) {
+                // Solid thinner than rounding: which side of the plane holds it cannot be told.
+                Place::On if piece.backs(self.piece(divider), self.thickness) => return Err(Doubt),
+                Place::On => {}
+                Place::Negative => sorted.behind(id, piece.area, p)?,
+                Place::Positive => sorted.before(id, piece.area)?,
+                Place::Across if piece.polygon.is_full() => {
+                    for half in self.halve(id)? {
+                        self.cut(half, &plane, p, &mut sorted)?;
+                    }
+                }
+                Place::Across => self.cut(id, &plane, p, &mut sorted)?,
+            }
+        }
+        Ok(sorted.finish(first, end))
+    }
+
+    /// Sort the parts of a piece that is not full, at place `p`; parts without area are dropped.
+    fn cut(&mut self, id: u32, plane: &Plane<R>, p: usize, sorted: &mut Sorted<R>) -> Result<(), NoProof> {
+        let (whole, [negative, positive], numbers) = self.two_shards(id)?;
+        cut(&whole.polygon, plane, &mut negative.polygon, &mut positive.polygon);
+        negative.become_part_of(whole);
+        positive.become_part_of(whole);
+        if negative.area > R::ZERO {
+            sorted.behind(numbers[0], negative.area, p)?;
+        }
+        if positive.area > R::ZERO {
+            sorted.before(numbers[1], positive.area)?;
+        }
+        Ok(())
+    }
+
+    /// The two halves of a piece with too many corners to be cut.
+    fn halve(&mut self, id: u32) -> Result<[u32; 2], NoProof> {
+        let (whole, shards, numbers) = self.two_shards(id)?;
+        for (shard, half) in shards.iter_mut().zip(whole.polygon.halves()) {
+            shard.polygon = half;
+            shard.become_part_of(whole);
+        }
+        Ok(numbers)
+    }
+
+    /// A piece, two new shards, and their numbers.
+    #[expect(clippy::type_complexity, reason = "a name would say no more")]
+    fn two_shards(&mut self, id: u32) -> Result<(&Piece<R>, &mut [Piece<R>; 2], [u32; 2]), NoProof> {
+        let (made, free) = self.shards.split_at_mut(self.used);
+        let two = free.first_chunk_mut().ok_or(Full)?;
+        let number = (self.pieces.len() + self.used) as u32;
+        self.used += 2;
+        Ok((piece(self.pieces, made, id), two, [number, number + 1]))
+    }
+}
+
+#[inline(always)]
+fn piece<'a, R: Real>(pieces: &'a [Piece<R>], shards: &'a [Piece<R>], id: u32) -> &'a Piece<R> {
+    let id = id as usize;
+    pieces.get(id).unwrap_or_else(|| &shards[id - pieces.len()])
+}

@@ -1,0 +1,146 @@
+//! Polygons on their way down the trees of a cell.
+
+use super::NoProof::{self, Doubt, Full};
+use super::bsp::{Branch, Node};
+use super::piece::{Ball, DOUBT, Place, cut, place, span};
+use crate::number::real::Real;
+use crate::surface::clip::{Polygon, dot};
+
+/// Fragments smaller than this, in faces of the cell, cannot do harm.
+const SLIVER: f64 = 1e-9;
+
+/// A body in the cell: its pieces, its tree, and the side from which walls of a face see it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Part {
+    pub(super) first: usize,
+    pub(super) end: usize,
+    pub(super) root: Branch,
+    pub(super) below: bool,
+}
+
+/// A polygon on its way down the trees.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fragment<R: Real> {
+    polygon: Polygon<R>,
+    /// Around the polygon that it is a part of.
+    ball: Ball<R>,
+    part: usize,
+    branch: Branch,
+    /// Coincident planes are taken towards the inner side of the polygon, not the outer one.
+    inward: bool,
+    /// It met a coincident plane of the same orientation.
+    twin: bool,
+}
+
+/// How a polygon goes down.
+#[derive(Clone, Copy)]
+pub(super) struct Way<R> {
+    /// Where it lies in a plane of a tree, it follows this direction.
+    pub toward: [R; 3],
+    /// The body whose tree it does not meet.
+    pub own: Option<usize>,
+    /// Bodies marked `below` take the opposite direction.
+    pub both_sides: bool,
+}
+
+/// The trees of a cell and the fragments under way, a stack.
+pub(super) struct Descent<'a, R: Real> {
+    pub nodes: &'a [Node<R>],
+    pub parts: &'a [Part],
+    pub fragments: &'a mut [Fragment<R>],
+    pub spare: Polygon<R>,
+    pub thickness: R,
+}
+
+impl<R: Real> Descent<'_, R> {
+    /// Send a polygon down all trees but its own; hand what ends in no solid leaf to `keep`.
+    pub fn send(
+        &mut self,
+        polygon: &Polygon<R>,
+        ball: Ball<R>,
+        way: Way<R>,
+        mut keep: impl FnMut(&Polygon<R>),
+    ) -> Result<(), NoProof> {
+        let parts = self.parts;
+        let enter = |f: &mut Fragment<R>, part: usize| {
+            f.part = if Some(part) == way.own { part + 1 } else { part };
+            f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
+            (f.inward, f.twin) = (false, false);
+        };
+        let first = self.fragments.first_mut().ok_or(Full)?;
+        first.polygon.assign(polygon);
+        first.ball = ball;
+        enter(first, 0);
+        let mut waiting: usize = 1;
+        while let Some(top) = waiting.checked_sub(1) {
+            let f = &mut self.fragments[top];
+            let Some(part) = parts.get(f.part) else {
+                keep(&f.polygon);
+                waiting = top;
+                continue;
+            };
+            let node = match f.branch {
+                Branch::Solid => {
+                    waiting = top;
+                    continue;
+                }
+                Branch::Open if f.twin && !f.inward && way.own.is_some_and(|own| f.part < own) => {
+                    (f.inward, f.branch) = (true, part.root);
+                    continue;
+                }
+                Branch::Open => {
+                    enter(f, f.part + 1);
+                    continue;
+                }
+                Branch::Node(n) => &self.nodes[n as usize],
+            };
+            match f.place(node, self.thickness)? {
+                Place::Positive => f.branch = node.positive,
+                Place::Negative => f.branch = node.negative,
+                Place::On => {
+                    let along = dot(node.plane.normal, way.toward) > R::ZERO;
+                    f.twin |= along;
+                    let positive = along != (f.inward || (way.both_sides && part.below));
+                    f.branch = if positive { node.positive } else { node.negative };
+                }
+                Place::Across => {
+                    self.cut(top, node)?;
+                    waiting += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Replace the fragment at `top` by its two parts, what lies behind the plane of a node on top; a full one by its halves.
+    fn cut(&mut self, top: usize, node: &Node<R>) -> Result<(), NoProof> {
+        let [f, next] = self.fragments.get_mut(top..).and_then(|f| f.first_chunk_mut()).ok_or(Full)?;
+        let Fragment { polygon: _, ball, part, branch, inward, twin } = *f;
+        (next.ball, next.part, next.branch, next.inward, next.twin) = (ball, part, branch, inward, twin);
+        if f.polygon.is_full() {
+            [next.polygon, f.polygon] = f.polygon.halves();
+        } else {
+            cut(&f.polygon, &node.plane, &mut next.polygon, &mut self.spare);
+            f.polygon.assign(&self.spare);
+            (next.branch, f.branch) = (node.negative, node.positive);
+        }
+        Ok(())
+    }
+}
+
+impl<R: Real> Fragment<R> {
+    #[inline(always)]
+    fn place(&self, node: &Node<R>, thickness: R) -> Result<Place, NoProof> {
+        let doubt = thickness * R::from_f64(DOUBT);
+        if let Some(place) = self.ball.place(&node.plane, doubt) {
+            return Ok(place);
+        }
+        let span = span(&self.polygon, &node.plane);
+        let found = place(span, thickness);
+        // Not quite one plane, not clearly two: another piece of the same faces may be judged otherwise.
+        let unsure = found != Place::On
+            && place(span, doubt) == Place::On
+            && self.polygon.doubled_area().iter().any(|a| a.abs() > R::from_f64(SLIVER));
+        if unsure { Err(Doubt) } else { Ok(found) }
+    }
+}

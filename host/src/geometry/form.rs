@@ -1,0 +1,64 @@
+//! Convex bodies known by formula, in their place: what the recursion by GJK works on.
+
+use glam::DVec3;
+use std::sync::Arc;
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
+use voidage_core::convex::support::{Support, Transformed};
+use voidage_core::number::aabb::Aabb;
+
+/// A convex body in its place, in metres.
+#[derive(Debug, Clone)]
+pub enum Form {
+    /// A ball.
+    Sphere(Sphere<DVec3>),
+    /// An ellipsoid about the origin, turned and moved.
+    Ellipsoid(Transformed<Ellipsoid<DVec3>>),
+    /// A box along the axes.
+    Box(Aabb<DVec3>),
+    /// A cylinder with flat ends.
+    Cylinder(Cylinder<DVec3>),
+    /// A segment with a radius.
+    Capsule(Capsule<DVec3>),
+    /// A cone with a flat base.
+    Cone(Cone<DVec3>),
+    /// The convex hull of its corners; boxes that are turned, too.
+    Hull(Arc<[DVec3]>),
+}
+
+impl Form {
+    /// Lowest and highest corner of a box around it; rounding has been added.
+    #[must_use]
+    pub fn bounds(&self) -> [DVec3; 2] {
+        match self {
+            Form::Sphere(s) => around(s),
+            Form::Ellipsoid(s) => around(s),
+            Form::Box(s) => [s.min, s.max],
+            Form::Cylinder(s) => around(s),
+            Form::Capsule(s) => around(s),
+            Form::Cone(s) => around(s),
+            Form::Hull(corners) => around(&Hull::new(corners)),
+        }
+    }
+
+    /// Bounded by planes: its triangles are the body itself, and the sums over its surface are exact.
+    #[must_use]
+    pub fn is_polytope(&self) -> bool {
+        matches!(self, Form::Box(_) | Form::Hull(_))
+    }
+}
+
+/// Roundings of [`Support::support`] that slack does not count, in ε of the extent.
+const SUPPORT_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The box around a body, from its six outermost points.
+fn around(body: &impl Support<Vector = DVec3>) -> [DVec3; 2] {
+    let margin = if body.slack() > 0.0 || body.radius() > 0.0 {
+        body.radius() + body.slack() + SUPPORT_ROUNDING * body.extent()
+    } else {
+        0.0
+    };
+    let reach = |sign: f64| {
+        DVec3::from_array([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| body.farthest(axis * sign).point.dot(axis)))
+    };
+    [reach(-1.0) - margin, reach(1.0) + margin]
+}

@@ -1,0 +1,12 @@
+//! From triangles as they come to closed shells: welded, oriented, split, freed of copies, capped, resolved where they cross themselves, nested.
+
+pub mod copies;
+pub mod crossing;
+pub mod edges;
+pub mod join;
+pub mod nesting;
+pub mod rims;
+pub mod sets;
+pub mod shells;
+pub mod tree;
+pub mod weld;

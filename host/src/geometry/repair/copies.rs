@@ -1,0 +1,209 @@
+//! Surface that is there more than once: repeated triangles, repeated shells, and the backs of double-sided surfaces.
+
+use crate::geometry::repair::edges::{EdgeUses, balance, key};
+use crate::geometry::repair::nesting::signed_volume;
+use crate::geometry::repair::rims::rims;
+use crate::geometry::repair::sets::Sets;
+use crate::geometry::repair::shells::Shell;
+use crate::geometry::repair::weld::{Indexed, edges_of};
+use glam::DVec3;
+use rustc_hash::FxHashMap as HashMap;
+
+/// A triangle's corners from the lowest on: equal for equal triangles of one orientation.
+fn from_lowest(t: [u32; 3]) -> [u32; 3] {
+    let lowest = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+    [t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]]
+}
+
+/// Drop repeated triangles, by clusters that share edges, where that leaves the surface no more open than before; a repeat
+/// that closes another part stays. Returns the number dropped.
+pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
+    let mut first: HashMap<[u32; 3], u32> = HashMap::default();
+    first.reserve(mesh.triangles.len());
+    let mut repeats = Vec::new();
+    for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
+        if *first.entry(from_lowest(t)).or_insert(n as u32) != n as u32 {
+            repeats.push(n as u32);
+        }
+    }
+    if repeats.is_empty() {
+        return 0;
+    }
+    let edges = EdgeUses::new(mesh, alive);
+    let mut dropped = 0;
+    for cluster in clusters(mesh, &repeats) {
+        let mut change: HashMap<u64, i64> = HashMap::default();
+        for &n in &cluster {
+            for [a, b] in edges_of(mesh.triangles[n as usize]) {
+                *change.entry(key(a, b)).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+        let (mut before, mut after) = (0, 0);
+        for (edge, less) in change {
+            let up = balance(edges.of(edge));
+            before += up.abs();
+            after += (up - less).abs();
+        }
+        if after <= before {
+            cluster.iter().for_each(|&n| alive[n as usize] = false);
+            dropped += cluster.len();
+        }
+    }
+    dropped
+}
+
+/// Groups of some triangles connected through edges.
+fn clusters(mesh: &Indexed, members: &[u32]) -> Vec<Vec<u32>> {
+    let mut sets = Sets::new(members.len());
+    let mut owner: HashMap<u64, usize> = HashMap::default();
+    for (m, &n) in members.iter().enumerate() {
+        for [a, b] in edges_of(mesh.triangles[n as usize]) {
+            let other = *owner.entry(key(a, b)).or_insert(m);
+            sets.join(m, other);
+        }
+    }
+    let mut groups: HashMap<usize, Vec<u32>> = HashMap::default();
+    for (m, &n) in members.iter().enumerate() {
+        groups.entry(sets.find(m)).or_default().push(n);
+    }
+    let mut groups: Vec<_> = groups.into_values().collect();
+    groups.sort();
+    groups
+}
+
+/// The triangle seen from behind, corners from the lowest on.
+fn back([a, b, c]: [u32; 3]) -> [u32; 3] {
+    from_lowest([a, c, b])
+}
+
+/// A surface with rims is a body with holes if their caps are below this share of its area, else a sheet. It matters where both its
+/// sides are there: of a body one side is enough, a sheet has two.
+const HOLES: f64 = 0.1;
+
+/// What a shell is to the others.
+#[derive(Debug)]
+struct Seen {
+    /// It is closed, or but for holes.
+    closes: bool,
+    volume: f64,
+}
+
+impl Seen {
+    fn new(mesh: &Indexed, shell: &Shell) -> Self {
+        let corners = |&n: &u32| mesh.triangles[n as usize].map(|v| mesh.points[v as usize]);
+        let mut triangles: Vec<[DVec3; 3]> = shell.triangles.iter().map(corners).collect();
+        let whole = area(&triangles);
+        let mut open = 0.0;
+        for rim in rims(&shell.boundary).iter().filter(|rim| !rim.cancels(&mesh.points)) {
+            let cap = rim.cap(&mesh.points);
+            open += area(&cap);
+            triangles.extend(cap);
+        }
+        let volume = signed_volume(&triangles, triangles.first().map_or(DVec3::ZERO, |t| t[0]));
+        Seen { closes: open <= HOLES * whole, volume }
+    }
+}
+
+/// Area of some triangles.
+fn area(triangles: &[[DVec3; 3]]) -> f64 {
+    triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
+}
+
+/// Shells that say nothing that others do not.
+#[derive(Debug, Default)]
+pub struct Redundant {
+    /// One entry a shell.
+    pub shells: Vec<bool>,
+    /// Triangles of those that repeat others.
+    pub repeated: usize,
+    /// Triangles of those that are the backs of others.
+    pub doubled: usize,
+}
+
+/// Which shells repeat others, or are the backs of double-sided surfaces. A closed surface and its own reverse are that surface, once:
+///
+/// - a shell of negative volume is redundant if each of its triangles is the back of one of closed shells of positive volume;
+/// - an open one, if each of its triangles or their backs belong to closed shells;
+/// - any, if all its triangles belong to one closed shell of as many triangles.
+#[must_use]
+pub fn redundant(mesh: &Indexed, shells: &[Shell]) -> Redundant {
+    let mut found = Redundant { shells: vec![false; shells.len()], ..Redundant::default() };
+    let owners = twins(mesh, shells);
+    if owners.is_empty() {
+        return found;
+    }
+    let corners = |n: u32| from_lowest(mesh.triangles[n as usize]);
+    let others = |key: [u32; 3], own: usize| {
+        let owners = owners.get(&key).map_or(&[][..], |o| o);
+        owners.iter().copied().filter(move |&s| s != own)
+    };
+    let shared =
+        |s: usize, n: u32| others(corners(n), s).next().is_some() || others(back(corners(n)), s).next().is_some();
+    let candidates: Vec<usize> =
+        (0..shells.len()).filter(|&s| shells[s].triangles.iter().all(|&n| shared(s, n))).collect();
+    let mut seen: HashMap<usize, Seen> = HashMap::default();
+    for &s in &candidates {
+        let of_shell = shells[s].triangles.iter();
+        let beside = of_shell.flat_map(|&n| others(corners(n), s).chain(others(back(corners(n)), s)));
+        for s in beside.chain([s]) {
+            seen.entry(s).or_insert_with(|| Seen::new(mesh, &shells[s]));
+        }
+    }
+    for kind in [Kind::Back, Kind::Open, Kind::Same] {
+        for &s in &candidates {
+            // Where parts overlap it is not known whose triangles they are.
+            if !matches!(kind, Kind::Same) && shells[s].guessed {
+                continue;
+            }
+            let kept = |o: &usize| !found.shells[*o] && seen[o].closes;
+            let own = &shells[s].triangles;
+            let has_back = |&n: &u32| others(back(corners(n)), s).any(|o| kept(&o) && seen[&o].volume > 0.0);
+            let has_any = |&n: &u32| others(corners(n), s).chain(others(back(corners(n)), s)).any(|o| kept(&o));
+            let holds = |o: usize| {
+                let same = |&n: &u32| others(corners(n), s).any(|p| p == o);
+                shells[o].triangles.len() == own.len() && own.iter().all(same)
+            };
+            let redundant = !found.shells[s]
+                && match kind {
+                    Kind::Back => seen[&s].closes && seen[&s].volume < 0.0 && own.iter().all(has_back),
+                    Kind::Open => !seen[&s].closes && own.iter().all(has_any),
+                    Kind::Same => own.first().is_some_and(|&n| others(corners(n), s).any(|o| kept(&o) && holds(o))),
+                };
+            if redundant {
+                let repeats = own.iter().filter(|&&n| others(corners(n), s).any(|o| kept(&o))).count();
+                found.repeated += repeats;
+                found.doubled += own.len() - repeats;
+                found.shells[s] = true;
+            }
+        }
+    }
+    found
+}
+
+/// How a shell may be redundant.
+#[derive(Clone, Copy)]
+enum Kind {
+    Back,
+    Open,
+    Same,
+}
+
+/// The shells to which triangles belong that are there more than once, whichever way round; by corners from the lowest on.
+fn twins(mesh: &Indexed, shells: &[Shell]) -> HashMap<[u32; 3], Vec<usize>> {
+    let sorted = |n: u32| {
+        let mut corners = mesh.triangles[n as usize];
+        corners.sort_unstable();
+        corners
+    };
+    let members = || shells.iter().enumerate().flat_map(|(s, shell)| shell.triangles.iter().map(move |&n| (s, n)));
+    let mut all: Vec<[u32; 3]> = members().map(|(_, n)| sorted(n)).collect();
+    all.sort_unstable();
+    let twice: rustc_hash::FxHashSet<[u32; 3]> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
+    let mut owners: HashMap<[u32; 3], Vec<usize>> = HashMap::default();
+    if !twice.is_empty() {
+        for (s, n) in members().filter(|&(_, n)| twice.contains(&sorted(n))) {
+            owners.entry(from_lowest(mesh.triangles[n as usize])).or_default().push(s);
+        }
+    }
+    owners
+}

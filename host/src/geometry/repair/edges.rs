@@ -1,0 +1,75 @@
+//! Which triangles use which edges.
+
+use crate::geometry::repair::weld::{Indexed, edges_of};
+
+/// One triangle's use of an edge: the triangle and whether it runs from the lower to the higher vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Use {
+    /// The triangle's number.
+    pub triangle: u32,
+    /// It runs from the lower vertex to the higher one.
+    pub up: bool,
+}
+
+/// Uses of edges, sorted by edge and then by triangle.
+#[derive(Debug)]
+pub struct EdgeUses(Vec<(u64, Use)>);
+
+/// An edge: its lower vertex, then its higher one.
+pub fn key(a: u32, b: u32) -> u64 {
+    u64::from(a.min(b)) << 32 | u64::from(a.max(b))
+}
+
+impl EdgeUses {
+    /// Of the triangles that are `alive`.
+    #[must_use]
+    pub fn new(mesh: &Indexed, alive: &[bool]) -> Self {
+        let mut uses = Vec::with_capacity(mesh.triangles.len() * 3);
+        for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
+            uses.extend(edges_of(t).map(|[a, b]| (key(a, b), Use { triangle: n as u32, up: a < b })));
+        }
+        uses.sort_unstable_by_key(|&(edge, u)| (edge, u.triangle, u.up));
+        EdgeUses(uses)
+    }
+
+    /// The uses of each edge in turn.
+    pub fn each(&self) -> impl Iterator<Item = &[(u64, Use)]> {
+        self.0.chunk_by(|a, b| a.0 == b.0)
+    }
+
+    /// Turn all uses by some triangles.
+    pub fn turn(&mut self, turned: impl Fn(u32) -> bool) {
+        self.0.iter_mut().for_each(|(_, u)| u.up ^= turned(u.triangle));
+    }
+
+    /// The uses of one edge.
+    #[must_use]
+    pub fn of(&self, edge: u64) -> &[(u64, Use)] {
+        let first = self.0.partition_point(|u| u.0 < edge);
+        let count = self.0[first..].partition_point(|u| u.0 == edge);
+        &self.0[first..first + count]
+    }
+}
+
+/// How many more times an edge is run upwards than downwards.
+pub fn balance(uses: &[(u64, Use)]) -> i64 {
+    uses.iter().map(|(_, u)| if u.up { 1 } else { -1 }).sum()
+}
+
+/// Sum of the imbalances of all edges of a mesh: 0 if every edge is run as often one way as the other.
+#[must_use]
+pub fn unmatched_edges(mesh: &Indexed, alive: &[bool]) -> u64 {
+    EdgeUses::new(mesh, alive).each().map(|uses| balance(uses).unsigned_abs()).sum()
+}
+
+/// The points on edges that are not run as often one way as the other.
+#[must_use]
+pub fn unmatched_points(mesh: &Indexed, alive: &[bool]) -> Vec<bool> {
+    let mut unmatched = vec![false; mesh.points.len()];
+    for uses in EdgeUses::new(mesh, alive).each().filter(|uses| balance(uses) != 0) {
+        for v in [uses[0].0 >> 32, uses[0].0 & 0xffff_ffff] {
+            unmatched[v as usize] = true;
+        }
+    }
+    unmatched
+}

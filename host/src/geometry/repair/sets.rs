@@ -1,0 +1,29 @@
+//! Things in groups that grow together.
+
+/// Disjoint sets with path halving.
+#[derive(Debug)]
+pub struct Sets(Vec<usize>);
+
+impl Sets {
+    /// `n` sets of one element each.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        Sets((0..n).collect())
+    }
+
+    /// The representative of an element's set: its lowest element.
+    pub fn find(&mut self, mut a: usize) -> usize {
+        while self.0[a] != a {
+            self.0[a] = self.0[self.0[a]];
+            a = self.0[a];
+        }
+        a
+    }
+
+    /// Make two sets one.
+    pub fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        let (low, high) = (a.min(b), a.max(b));
+        self.0[high] = low;
+    }
+}
