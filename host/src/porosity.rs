@@ -3,27 +3,26 @@
 //! A layer of cells depends on no other, and what a thread writes depends only on the layer: the bits are the same for
 //! any number of threads.
 
-mod bins;
 pub mod convex;
 mod fields;
 mod layers;
 mod levels;
 pub mod snap;
-mod unions;
 
 use crate::bodies::Bodies;
 pub use crate::values::Values;
-use bins::Bins;
 use clap::ValueEnum;
 use convex::Roads;
 pub use fields::FieldSet;
 use glam::DVec3;
-use layers::{Summary, Target, Worker};
+use layers::{Summary, Target, Workers};
 pub use levels::levels;
 use rayon::prelude::*;
 use serde::Serialize;
 use voidage_core::grid::Grid;
 use voidage_core::subdivide;
+use voidage_core::surface::bins::{Body, Group};
+use voidage_core::surface::layer::{self, Layers};
 
 /// How volumes are found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -89,6 +88,13 @@ impl Options {
     /// Where between its bounds a value lies: in the middle; by the paper's rule at the solid end.
     fn solid_end(&self) -> f64 {
         if self.leaf == Leaf::Solid { 1.0 } else { 0.5 }
+    }
+}
+
+impl From<Options> for layer::Options<f64> {
+    fn from(options: Options) -> Self {
+        let Options { tol, depth, areas, .. } = options;
+        layer::Options { tol, depth, areas, solid_end: options.solid_end() }
     }
 }
 
@@ -164,7 +170,7 @@ pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
     // Of several levels, one joins the others, and one is remembered for the next.
     let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(3);
-    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + layers::memory_of_a_thread(grid)
 }
 
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.
@@ -234,25 +240,29 @@ fn union(
 ) -> Union {
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
     let convex = roads.road(triangles, options, counts);
-    let bins = Bins::new(grid, bodies, triangles, |body| counts(body) && roads.by_surface(body));
+    let (surfaces, broken) = surfaces(bodies, triangles, |body| counts(body) && roads.by_surface(body));
+    let needed = Layers::needed(grid, &surfaces);
+    let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
+    let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
+    let workers = Workers::new();
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
-    let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
+    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
         .into_par_iter()
         .enumerate()
-        .map_init(
-            || Worker::new(grid, options),
-            |worker, (k, mut target)| {
-                let same = last.filter(|last| !last.may_change(grid, bodies, level, k));
-                let summary = match same {
-                    Some(last) => last.copy_layer(k, &mut target),
-                    None => worker.layer(grid, &bins, &convex, k, target),
-                };
-                layer_done();
-                summary
-            },
-        )
+        .map(|(k, mut target)| {
+            let same = last.filter(|last| !last.may_change(grid, bodies, level, k));
+            let summary = match same {
+                Some(last) => last.copy_layer(k, &mut target),
+                None => workers.layer(grid, &layers, &convex, k, target),
+            };
+            layer_done();
+            summary
+        })
         .collect();
+    if let Some(first) = summaries.first_mut() {
+        first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
+    }
     let total = summaries.iter().fold(Summary::default(), Summary::join);
     let porosity = Porosity {
         beta,
@@ -268,6 +278,25 @@ fn union(
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
     };
     Union { level, porosity, layers: summaries }
+}
+
+/// The surfaces of all bodies, and which of them are broken. Without triangles are those that are not `wanted`, and those with a
+/// coordinate that is no number, which some scale or turn has made too large: of these nothing can be said.
+fn surfaces<'a>(
+    bodies: &Bodies,
+    triangles: &'a [[DVec3; 3]],
+    wanted: impl Fn(usize) -> bool,
+) -> (Vec<Body<'a, DVec3>>, Vec<usize>) {
+    let mut broken = Vec::new();
+    let surface = |(number, body): (usize, &crate::bodies::Body)| {
+        let mut own = if wanted(number) { &triangles[body.triangles.clone()] } else { &[] };
+        if !own.iter().flatten().all(|p| p.is_finite()) {
+            broken.push(number);
+            own = &[];
+        }
+        if body.sheet { Body::sheet(own) } else { Body::new(own) }
+    };
+    (bodies.bodies.iter().enumerate().map(surface).collect(), broken)
 }
 
 /// Where each layer writes.
@@ -286,7 +315,6 @@ fn worst_leaks(bodies: usize, summaries: &[Summary]) -> Vec<Leak> {
     let mut worst: Vec<Option<Leak>> = vec![None; bodies];
     for (layer, summary) in summaries.iter().enumerate() {
         for &(body, fraction) in &summary.leaks {
-            let body = body as usize;
             if worst[body].is_none_or(|l| l.fraction < fraction) {
                 worst[body] = Some(Leak { body, fraction, layer });
             }
