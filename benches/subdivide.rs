@@ -6,8 +6,8 @@
 
 use std::f64::consts::PI;
 use std::time::Instant;
-use voidage::bodies::Bodies;
-use voidage::bodies::form::Form;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{Leaf, Method, Options, Porosity, porosity};
 use voidage_tests::solids::{formulas, scene, sixteen_balls, sixteen_spheres, volume};

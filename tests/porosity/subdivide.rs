@@ -4,16 +4,16 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use voidage::bodies::Bodies;
-use voidage::bodies::form::Form;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::convex::chord::Convex;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere};
 use voidage_core::convex::support::Transformed;
+use voidage_core::grid::bounds::Bounds;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::subdivide::chord_bounds::Bounds;
 use voidage_core::subdivide::place::{Body, Tally};
 use voidage_core::subdivide::{Candidate, Leaf as Rest, MAX_DEPTH, MAX_RANGES, Memory, Range, Rule, Waiting, share};
 use voidage_tests::convex::{Part, bounds_hold_the_union, run};
@@ -163,8 +163,7 @@ fn a_million_cells_hold_closed_forms_and_finer_cells() {
         let mut gaps = 0.0;
         for sample in 0..10_000 {
             let n = cut[random.below(cut.len())];
-            let (lo, hi) = grid.cell_box([n % 100, n / 100 % 100, n / 10_000]);
-            let cell = Aabb { min: DVec3::from_array(lo), max: DVec3::from_array(hi) };
+            let cell = grid.cell_box([n % 100, n / 100 % 100, n / 10_000]).expect("a cell");
             let own = [1.0 - upper.v[n], 1.0 - lower.v[n]];
             let finer = match &form {
                 Form::Sphere(s) => finer(*s, &cell),

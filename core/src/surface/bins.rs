@@ -9,22 +9,22 @@ use core::ops::Range;
 
 /// The surface of a body: triangles, counter-clockwise seen from outside, in the frame and unit of the grid.
 #[derive(Clone, Copy, Debug)]
-pub struct Body<'a, V> {
+pub struct Surface<'a, V> {
     triangles: &'a [[V; 3]],
     sheet: bool,
 }
 
-impl<'a, V> Body<'a, V> {
+impl<'a, V> Surface<'a, V> {
     /// A body with volume; its surface should be closed.
     #[must_use]
     pub const fn new(triangles: &'a [[V; 3]]) -> Self {
-        Body { triangles, sheet: false }
+        Surface { triangles, sheet: false }
     }
 
     /// A sheet without volume, both sides of it given as triangles: it blocks the faces in whose plane it lies.
     #[must_use]
     pub const fn sheet(triangles: &'a [[V; 3]]) -> Self {
-        Body { triangles, sheet: true }
+        Surface { triangles, sheet: true }
     }
 
     /// Its triangles.
@@ -110,7 +110,7 @@ impl core::error::Error for BinsError {}
 /// Triangles sorted by layer, and by body within a layer, both ascending.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bins<'a, V> {
-    bodies: &'a [Body<'a, V>],
+    bodies: &'a [Surface<'a, V>],
     /// The first group of each layer, and the end of the last.
     layers: &'a [u32],
     groups: &'a [Group<V>],
@@ -122,7 +122,7 @@ pub(super) type Rest<'a, V> = (&'a mut [u32], &'a mut [Group<V>]);
 
 impl<'a, V: Vector> Bins<'a, V> {
     /// Memory for [`Bins::new`].
-    pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Body<V>]) -> BinsNeeded {
+    pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Surface<V>]) -> BinsNeeded {
         let layers = grid.cells()[2];
         let (mut ids, mut groups) = (0, 0);
         for body in bodies {
@@ -142,7 +142,7 @@ impl<'a, V: Vector> Bins<'a, V> {
     /// Sort the triangles of all bodies.
     pub fn new(
         grid: &Grid<V::Scalar>,
-        bodies: &'a [Body<'a, V>],
+        bodies: &'a [Surface<'a, V>],
         numbers: &'a mut [u32],
         groups: &'a mut [Group<V>],
     ) -> Result<Self, BinsError> {
@@ -150,7 +150,7 @@ impl<'a, V: Vector> Bins<'a, V> {
         if bodies.len() > most || bodies.iter().any(|b| b.triangles.len() > most) {
             return Err(BinsError::TooMany);
         }
-        for (body, Body { triangles, .. }) in bodies.iter().enumerate() {
+        for (body, Surface { triangles, .. }) in bodies.iter().enumerate() {
             let broken = triangles.iter().position(|t| !t.iter().all(|p| p.is_finite()));
             if let Some(triangle) = broken {
                 return Err(BinsError::NotFinite { body, triangle });
@@ -189,7 +189,7 @@ impl<'a, V: Vector> Bins<'a, V> {
         Bins::sort(grid, self.bodies, merged, numbers, groups)
     }
 
-    /// Body and number of the triangles of layer `k` that may count in a box: bodies that reach it, and of these what does not lie
+    /// Surface and number of the triangles of layer `k` that may count in a box: bodies that reach it, and of these what does not lie
     /// wholly beyond its upper x or y side. Rows and columns begin outside, so what lies towards lower x or y counts too.
     fn reaching(&self, k: usize, cell: Aabb<V>) -> impl Iterator<Item = (u32, u32)> + Clone + use<'a, V> {
         let bins = *self;
@@ -206,7 +206,7 @@ impl<'a, V: Vector> Bins<'a, V> {
     /// Sort some triangles, given as body and number in ascending order; hands back the memory left over.
     fn sort(
         grid: &Grid<V::Scalar>,
-        bodies: &'a [Body<'a, V>],
+        bodies: &'a [Surface<'a, V>],
         members: impl Iterator<Item = (u32, u32)> + Clone,
         numbers: &'a mut [u32],
         groups: &'a mut [Group<V>],
@@ -233,7 +233,7 @@ impl<'a, V: Vector> Bins<'a, V> {
         };
         cursor.copy_from_slice(layers.get(..count).unwrap_or_default());
         for (body, t) in members {
-            let Some(Body { triangles, sheet }) = bodies.get(body as usize).copied() else { continue };
+            let Some(Surface { triangles, sheet }) = bodies.get(body as usize).copied() else { continue };
             let Some(triangle) = triangles.get(t as usize) else { continue };
             for k in layer_span(grid, triangle) {
                 let (Some(at), Some(cursor), Some(&first)) = (next.get_mut(k), cursor.get_mut(k), layers.get(k)) else {

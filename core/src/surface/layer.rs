@@ -5,13 +5,13 @@
 //! cells, and where a union has no proof the cell is divided, each part a layer of its own in what is left of the caller's memory. If
 //! depth or memory is spent, what remains are bounds, and [`LayerReport::max_gap`] says how wide.
 //!
-//! A layer needs no result of another, so threads may share [`Layers`]; each has a [`Memory`] of its own.
+//! A layer needs no result of another, so threads may share [`Layers`]; each has a [`LayerMemory`] of its own.
 
 use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Fields, Layer, ShapeMismatch, at_least, exactly};
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::{Bins, BinsError, BinsNeeded, Body, Group};
+use crate::surface::bins::{Bins, BinsError, BinsNeeded, Group, Surface};
 use crate::surface::cell_unions::{self, OtherBodies, Parts, Room, Shared, Site};
 use crate::surface::cells::{Defects, Scratch, SurfaceError, add_body};
 use crate::surface::union::UnionMemory;
@@ -22,7 +22,7 @@ use core::ops::Range;
 
 /// What to compute and how far to refine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options<R> {
+pub struct LayerOptions<R> {
     /// Where a union has no proof, divide the cell until its bounds are this close.
     pub tol: R,
     /// How often such a cell may be divided by 2 along each axis.
@@ -33,16 +33,16 @@ pub struct Options<R> {
     pub solid_end: R,
 }
 
-impl<R: Real> Default for Options<R> {
+impl<R: Real> Default for LayerOptions<R> {
     /// Bounds as close as 10⁻⁴, at most 6 divisions, faces, values in the middle of their bounds.
     fn default() -> Self {
-        Options { tol: R::from_f64(1e-4), depth: 6, areas: true, solid_end: R::HALF }
+        LayerOptions { tol: R::from_f64(1e-4), depth: 6, areas: true, solid_end: R::HALF }
     }
 }
 
 /// Cells of a layer by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CellCounts {
+pub struct CellKinds {
     /// No solid.
     pub open: usize,
     /// Partly solid, or with surface inside.
@@ -57,7 +57,7 @@ pub struct CellCounts {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LayerReport<R> {
     /// Cells by kind.
-    pub cells: CellCounts,
+    pub cells: CellKinds,
     /// Solid volume, in the unit of the grid.
     pub solid_volume: R,
     /// Largest distance of the bounds of any cell or face.
@@ -193,7 +193,7 @@ const PART_REALS: usize = 2 * PART_FIELDS + 2 * 4 + 4 + 2 * 4;
 
 /// A thread's memory for layers, cut from the caller's slices.
 #[derive(Debug)]
-pub struct Memory<'a, V: Vector> {
+pub struct LayerMemory<'a, V: Vector> {
     cells: [usize; 2],
     /// Sums of shares; all zero between two layers.
     sum: &'a mut [V::Scalar],
@@ -208,7 +208,7 @@ pub struct Memory<'a, V: Vector> {
     union: UnionMemory<'a, V::Scalar>,
 }
 
-impl<'a, V: Vector> Memory<'a, V> {
+impl<'a, V: Vector> LayerMemory<'a, V> {
     /// The least lengths: enough for bodies that share no cells.
     #[must_use]
     pub fn needed(grid: &Grid<V::Scalar>) -> MemoryNeeded {
@@ -239,7 +239,7 @@ impl<'a, V: Vector> Memory<'a, V> {
         let short = ShapeMismatch { expected: fields, found: flags.len() };
         let (has_surface, flags) = flags.split_at_mut_checked(fields).ok_or(short)?;
         sum.fill(V::Scalar::ZERO);
-        Ok(Memory { cells: [nx, ny], sum, spare, scratch, has_surface, reals, flags, numbers, groups, union })
+        Ok(LayerMemory { cells: [nx, ny], sum, spare, scratch, has_surface, reals, flags, numbers, groups, union })
     }
 }
 
@@ -248,13 +248,13 @@ impl<'a, V: Vector> Memory<'a, V> {
 pub struct Layers<'a, V: Vector> {
     grid: Grid<'a, V::Scalar>,
     bins: Bins<'a, V>,
-    options: Options<V::Scalar>,
+    options: LayerOptions<V::Scalar>,
 }
 
 impl<'a, V: Vector> Layers<'a, V> {
-    /// Memory for [`Layers::new`].
+    /// LayerMemory for [`Layers::new`].
     #[must_use]
-    pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Body<V>]) -> BinsNeeded {
+    pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Surface<V>]) -> BinsNeeded {
         Bins::needed(grid, bodies)
     }
 
@@ -264,8 +264,8 @@ impl<'a, V: Vector> Layers<'a, V> {
     /// [`BinsError`]: a coordinate that is no number, memory that is too small.
     pub fn new(
         grid: &Grid<'a, V::Scalar>,
-        bodies: &'a [Body<'a, V>],
-        options: Options<V::Scalar>,
+        bodies: &'a [Surface<'a, V>],
+        options: LayerOptions<V::Scalar>,
         numbers: &'a mut [u32],
         groups: &'a mut [Group<V>],
     ) -> Result<Self, BinsError> {
@@ -284,7 +284,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         }
         let levels = 3 * self.options.depth as usize + 1;
         let each = 3_usize.saturating_mul(levels);
-        let least = Memory::<V>::needed(&self.grid);
+        let least = LayerMemory::<V>::needed(&self.grid);
         MemoryNeeded {
             reals: least.reals + levels * PART_REALS,
             flags: least.flags + levels * PART_FIELDS,
@@ -309,7 +309,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         k: usize,
         beta: LayerSlices<V::Scalar>,
         bounds: Option<[LayerSlices<V::Scalar>; 2]>,
-        memory: &mut Memory<V>,
+        memory: &mut LayerMemory<V>,
     ) -> Result<LayerReport<V::Scalar>, LayerError> {
         for field in [&mut *beta.cell, beta.x, beta.y, beta.z] {
             field.fill(V::Scalar::ZERO);
@@ -327,14 +327,14 @@ impl<'a, V: Vector> Layers<'a, V> {
         k: usize,
         beta: LayerSlices<V::Scalar>,
         mut bounds: Option<[LayerSlices<V::Scalar>; 2]>,
-        memory: &mut Memory<V>,
+        memory: &mut LayerMemory<V>,
         others: &mut O,
         each_body: impl FnMut(usize, Defects<V::Scalar>),
     ) -> Result<LayerReport<V::Scalar>, LayerError> {
         self.check(k, &beta, bounds.as_ref(), memory)?;
         let LayerSlices { cell, x, y, z, top } = beta;
-        let Options { tol, depth, areas, solid_end } = self.options;
-        let Memory { sum, spare, scratch, has_surface, reals, flags, numbers, groups, union, .. } = memory;
+        let LayerOptions { tol, depth, areas, solid_end } = self.options;
+        let LayerMemory { sum, spare, scratch, has_surface, reals, flags, numbers, groups, union, .. } = memory;
         let mut shared = Shared { tol, others, union: union.reborrow(), parts };
         let site = Site { grid: &self.grid, bins: &self.bins, k, halvings: depth.saturating_mul(3), areas };
         let mut room = Room { reals, flags, numbers, groups };
@@ -372,7 +372,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         k: usize,
         beta: &LayerSlices<V::Scalar>,
         bounds: Option<&[LayerSlices<V::Scalar>; 2]>,
-        memory: &Memory<V>,
+        memory: &LayerMemory<V>,
     ) -> Result<(), LayerError> {
         let [nx, ny, layers] = self.grid.cells();
         if k >= layers {

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
 use voidage_core::subdivide::place::Tally;
 use voidage_core::surface::bins::Group;
-use voidage_core::surface::layer::{self, LayerReport, Layers, Memory, MemoryNeeded};
+use voidage_core::surface::layer::{CellKinds, LayerMemory, LayerReport, Layers, MemoryNeeded};
 use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 
 /// Rows that miss zero by more than this fraction of a face leak.
@@ -38,7 +38,7 @@ pub struct Summary {
 
 impl Summary {
     fn new(report: LayerReport<f64>, tally: Tally, leaks: Vec<(usize, f64)>) -> Self {
-        let layer::CellCounts { open, cut, closed, ambiguous } = report.cells;
+        let CellKinds { open, cut, closed, ambiguous } = report.cells;
         Summary {
             cells: CellCounts { open, cut, closed, ambiguous },
             volume: report.solid_volume,
@@ -84,7 +84,7 @@ pub struct Target<'a> {
 /// Bytes of memory that one layer's sums take.
 #[must_use]
 pub fn memory_of_a_thread(grid: &Grid<f64>) -> usize {
-    size_of::<f64>().saturating_mul(Memory::<DVec3>::needed(grid).reals)
+    size_of::<f64>().saturating_mul(LayerMemory::<DVec3>::needed(grid).reals)
 }
 
 /// One worker for each thread of the current pool, made when the thread gets its first layer.
@@ -146,7 +146,7 @@ impl Worker {
         }
         let Worker { reals, flags, numbers, groups, union, lists, .. } = self;
         let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
-        let mut memory = Memory::new(grid, reals, flags, numbers, groups, union).expect(FITS);
+        let mut memory = LayerMemory::new(grid, reals, flags, numbers, groups, union).expect(FITS);
         let mut others = road.with(lists);
         let mut leaks = Vec::new();
         let note_leak = |body, defects: voidage_core::surface::cells::Defects<f64>| {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{ascii, binary, facets, is_box, is_refused, is_sound, names, stl};
 use glam::DVec3;
-use voidage::input::from_bytes;
+use voidage::geometry::read::from_bytes;
 
 #[test]
 fn ascii_coordinates_are_doubles() {
