@@ -231,27 +231,22 @@ impl<'a, V: Vector> Bins<'a, V> {
         ) else {
             return Err(BinsError::Memory { needed });
         };
-        cursor.copy_from_slice(layers.get(..count).unwrap_or_default());
+        cursor.iter_mut().zip(&*layers).for_each(|(cursor, first)| *cursor = *first);
         for (body, t) in members {
             let Some(Surface { triangles, sheet }) = bodies.get(body as usize).copied() else { continue };
             let Some(triangle) = triangles.get(t as usize) else { continue };
+            let around = Aabb::around(triangle);
             for k in layer_span(grid, triangle) {
                 let (Some(at), Some(cursor), Some(&first)) = (next.get_mut(k), cursor.get_mut(k), layers.get(k)) else {
                     continue;
                 };
-                let open = (*cursor > first).then(|| groups.get(*cursor as usize - 1)).flatten();
-                if open.is_none_or(|g| g.body != body) {
-                    if let Some(group) = groups.get_mut(*cursor as usize) {
-                        *group = Group { body, first: *at, end: *at, bounds: Aabb::empty(), sheet };
-                    }
-                    *cursor += 1;
-                }
-                if let (Some(id), Some(group)) = (ids.get_mut(*at as usize), groups.get_mut(*cursor as usize - 1)) {
+                let new = Group { body, first: *at, end: *at, bounds: Aabb::empty(), sheet };
+                let group = last_group(groups, first, cursor, new);
+                if let (Some(id), Some(group)) = (ids.get_mut(*at as usize), group) {
                     *id = t;
                     *at += 1;
                     group.end = *at;
-                    group.bounds =
-                        triangle.iter().fold(group.bounds, |b, &p| Aabb { min: b.min.min(p), max: b.max.max(p) });
+                    group.bounds = group.bounds.union(around);
                 }
             }
         }
@@ -323,6 +318,21 @@ fn count_entries(
         }
     }
     Ok(())
+}
+
+/// The last group of a layer whose groups begin at `first` and end at `cursor`: a new one, unless it is of the same body.
+fn last_group<'g, V>(
+    groups: &'g mut [Group<V>],
+    first: u32,
+    cursor: &mut u32,
+    new: Group<V>,
+) -> Option<&'g mut Group<V>> {
+    let same = *cursor > first && groups.get(*cursor as usize - 1).is_some_and(|g| g.body == new.body);
+    if !same {
+        *groups.get_mut(*cursor as usize)? = new;
+        *cursor += 1;
+    }
+    groups.get_mut(*cursor as usize - 1)
 }
 
 /// The layers whose closed slab a triangle touches; one beyond the grid's outer planes counts for none.

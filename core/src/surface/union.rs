@@ -85,6 +85,47 @@ impl<R: Real> UnionMemory<'_, R> {
     }
 }
 
+/// Memory for the unions of cells with up to `N` pieces in one value, which may stand on the stack, in a static or in a box.
+#[derive(Clone, Debug)]
+pub struct UnionBuffers<R: Real, const N: usize> {
+    pieces: [Piece<R>; N],
+    split_pieces: [[Piece<R>; 4]; N],
+    order: [[u32; 4]; N],
+    nodes: [[Node<R>; 4]; N],
+    parts: [Part; N],
+    fragments: [Fragment<R>; N],
+    pending: [PendingNode; N],
+}
+
+impl<R: Real, const N: usize> Default for UnionBuffers<R, N> {
+    fn default() -> Self {
+        UnionBuffers {
+            pieces: [Piece::default(); N],
+            split_pieces: [[Piece::default(); 4]; N],
+            order: [[0; 4]; N],
+            nodes: [[Node::default(); 4]; N],
+            parts: [Part::default(); N],
+            fragments: [Fragment::default(); N],
+            pending: [PendingNode::default(); N],
+        }
+    }
+}
+
+impl<R: Real, const N: usize> UnionBuffers<R, N> {
+    /// Its slices.
+    pub fn memory(&mut self) -> UnionMemory<'_, R> {
+        UnionMemory {
+            pieces: &mut self.pieces,
+            split_pieces: self.split_pieces.as_flattened_mut(),
+            order: self.order.as_flattened_mut(),
+            nodes: self.nodes.as_flattened_mut(),
+            parts: &mut self.parts,
+            fragments: &mut self.fragments,
+            pending: &mut self.pending,
+        }
+    }
+}
+
 /// Why there is no union: divide the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoProof {

@@ -249,9 +249,9 @@ impl<'a> Road<'a> {
         self.bodies.is_empty()
     }
 
-    /// The bodies and a thread's memory for them, as a layer of the core takes them.
-    pub fn with<'r>(&'r self, lists: &'r mut Lists) -> RoadWithLists<'r, 'a> {
-        RoadWithLists { road: self, lists, tally: Tally::default() }
+    /// The bodies and a thread's memory for them, as the layers of a grid in the core take them.
+    pub fn with<'r>(&'r self, grid: &'r Grid<'r, f64>, lists: &'r mut Lists) -> RoadWithLists<'r, 'a> {
+        RoadWithLists { road: self, grid, lists, tally: Tally::default() }
     }
 
     /// Work with what lies between two z planes of the grid: the bodies that do, and of surfaces the triangles.
@@ -324,12 +324,14 @@ impl<'a> Road<'a> {
 #[derive(Debug)]
 pub struct RoadWithLists<'r, 'a> {
     road: &'r Road<'a>,
+    /// The whole grid, not that of a divided cell.
+    grid: &'r Grid<'r, f64>,
     lists: &'r mut Lists,
     tally: Tally,
 }
 
 impl RoadWithLists<'_, '_> {
-    /// How often GJK was asked for shares of cells and faces.
+    /// How often GJK was asked for shares of the cells and faces of the whole grid.
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.tally
@@ -351,7 +353,9 @@ impl RoadWithLists<'_, '_> {
             };
             wanted.iter().map(place).fold(Tally::default(), joined)
         });
-        self.tally = joined(self.tally, found);
+        if grid.cells() == self.grid.cells() && grid.bounds() == self.grid.bounds() {
+            self.tally = joined(self.tally, found);
+        }
     }
 }
 

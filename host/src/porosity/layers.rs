@@ -147,7 +147,7 @@ impl Worker {
         let Worker { reals, flags, numbers, groups, union, lists, .. } = self;
         let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
         let mut memory = LayerMemory::new(grid, reals, flags, numbers, groups, union).expect(FITS);
-        let mut others = road.with(lists);
+        let mut others = road.with(grid, lists);
         let mut leaks = Vec::new();
         let note_leak = |body, defects: voidage_core::surface::cells::Defects<f64>| {
             if !(defects.leak <= LEAK) {
