@@ -141,6 +141,22 @@ fn each_type_has_a_name_of_its_own() {
     assert!(found.is_empty(), "names that are used twice:\n{found}");
 }
 
+/// The harness of the core is off, as there is nothing in it.
+#[test]
+fn the_core_has_no_tests_that_never_run() {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core");
+    assert!(std::fs::read_to_string(manifest.join("Cargo.toml")).expect("a manifest").contains("[lib]\ntest = false"));
+    let mut waiting = vec![manifest.join("src")];
+    while let Some(path) = waiting.pop() {
+        if path.is_dir() {
+            waiting.extend(std::fs::read_dir(&path).expect("a directory").map(|e| e.expect("an entry").path()));
+        } else {
+            let text = std::fs::read_to_string(&path).expect("a source");
+            assert!(!text.contains("#[test]"), "{}: a test that never runs", path.display());
+        }
+    }
+}
+
 /// A module by its path from the root of its package; that of `lib.rs` is empty.
 type Module = Vec<String>;
 
