@@ -11,7 +11,7 @@ const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivi
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 10] = [
+const CIRCLES: [(&[&str], &str); 8] = [
     (
         &[
             "core/convex/exact.rs",
@@ -40,14 +40,6 @@ const CIRCLES: [(&[&str], &str); 10] = [
     (
         &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
         "union.rs is the door and defines the pieces that its parts sort",
-    ),
-    (
-        &["host/command/solve/inlet.rs", "host/command/solve/setup.rs", "host/command/solve/state.rs"],
-        "names of the axes stand with the setup",
-    ),
-    (
-        &["host/command/solve/report.rs", "host/command/solve/run.rs"],
-        "a run writes its report, which tells of its work",
     ),
     (
         &["host/geometry/repair/shells.rs", "host/geometry/repair/weld.rs"],
