@@ -78,11 +78,11 @@ impl<'a, R: Real> Grid<'a, R> {
                 return Err(GridError::NotFinite { axis, index });
             }
             let mut smallest = R::INFINITY;
-            for (index, pair) in e.windows(2).enumerate() {
-                if pair[1] <= pair[0] {
-                    return Err(GridError::NotIncreasing { axis, index: index + 1 });
+            for (index, (&lo, &hi)) in (1..).zip(e.iter().zip(e.iter().skip(1))) {
+                if hi <= lo {
+                    return Err(GridError::NotIncreasing { axis, index });
                 }
-                smallest = smallest.min(pair[1] - pair[0]);
+                smallest = smallest.min(hi - lo);
             }
             finest *= smallest;
             whole *= last - first;
@@ -191,19 +191,20 @@ pub enum Located {
 
 /// Find the cell of a coordinate in a list of edges: a guess for equal spacing, then bisection.
 pub(crate) fn locate<R: Real>(edges: &[R], value: R) -> Located {
-    let last = edges.len() - 1;
-    if value < edges[0] {
+    let [first, .., end] = edges else { return Located::Above };
+    if value < *first {
         return Located::Below;
     }
-    if !(value < edges[last]) {
+    if !(value < *end) {
         return Located::Above;
     }
-    let share = (value - edges[0]) / (edges[last] - edges[0]);
+    let last = edges.len() - 1;
+    let share = (value - *first) / (*end - *first);
     let guess = ((share * R::from_usize(last)).to_f64() as usize).min(last - 1);
     for i in [guess, guess.saturating_sub(1), (guess + 1).min(last - 1)] {
-        if edges[i] <= value && value < edges[i + 1] {
+        if edges.get(i).is_some_and(|&lo| lo <= value) && edges.get(i + 1).is_some_and(|&hi| value < hi) {
             return Located::Cell(i);
         }
     }
-    Located::Cell(edges.partition_point(|&e| e <= value) - 1)
+    Located::Cell(edges.partition_point(|&e| e <= value).saturating_sub(1))
 }

@@ -186,6 +186,9 @@ pub struct MemoryNeeded {
     pub groups: usize,
 }
 
+/// A cell is not halved more often along an axis: its middle would be one of its ends.
+const MOST_HALVINGS: u32 = f64::MANTISSA_DIGITS;
+
 /// Scalars and flags that a level of division takes: a layer of 2 × 2 cells, and the sums of one body.
 const PART_FIELDS: usize = 4 * 4 + 2 + 2;
 /// Scalars of a level: lower bounds, sums, and scratch.
@@ -252,7 +255,7 @@ pub struct Layers<'a, V: Vector> {
 }
 
 impl<'a, V: Vector> Layers<'a, V> {
-    /// LayerMemory for [`Layers::new`].
+    /// Memory for [`Layers::new`].
     #[must_use]
     pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Surface<V>]) -> BinsNeeded {
         Bins::needed(grid, bodies)
@@ -282,8 +285,8 @@ impl<'a, V: Vector> Layers<'a, V> {
             let (a, b) = (self.bins.count(k), self.bins.count(k + 1));
             (numbers, groups) = (numbers.max(a.numbers + b.numbers), groups.max(a.groups + b.groups));
         }
-        let levels = 3 * self.options.depth as usize + 1;
-        let each = 3_usize.saturating_mul(levels);
+        let levels = 3 * self.options.depth.min(MOST_HALVINGS) as usize + 1;
+        let each = 3 * levels;
         let least = LayerMemory::<V>::needed(&self.grid);
         MemoryNeeded {
             reals: least.reals + levels * PART_REALS,
@@ -336,7 +339,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         let LayerOptions { tol, depth, areas, solid_end } = self.options;
         let LayerMemory { sum, spare, scratch, has_surface, reals, flags, numbers, groups, union, .. } = memory;
         let mut shared = Shared { tol, others, union: union.reborrow(), parts };
-        let site = Site { grid: &self.grid, bins: &self.bins, k, halvings: depth.saturating_mul(3), areas };
+        let site = Site { grid: &self.grid, bins: &self.bins, k, halvings: 3 * depth.min(MOST_HALVINGS), areas };
         let mut room = Room { reals, flags, numbers, groups };
         let mut layer = Layer {
             lower: Fields::within(&self.grid, spare)?,
@@ -400,10 +403,11 @@ fn solid_bounds<V: Vector, O: OtherBodies<V>>(
     let mut report = LayerReport::default();
     let groups = site.bins.groups(site.k);
     for group in groups {
-        if let Ok(defects) = add_group(site, group, layer, scratch) {
-            report.defects = report.defects.worst(defects);
-            each_body(group.body as usize, defects);
-        }
+        // All that could be refused has been checked; if it were not, the body would be told as broken.
+        let broken = Defects { leak: V::Scalar::INFINITY, winding: V::Scalar::INFINITY };
+        let defects = add_group(site, group, layer, scratch).unwrap_or(broken);
+        report.defects = report.defects.worst(defects);
+        each_body(group.body as usize, defects);
     }
     shared.others.add(site.grid, site.k, site.areas, layer);
     if groups.len() > usize::from(shared.others.is_empty()) {
