@@ -138,7 +138,7 @@ impl<'a, R: Real> Overlap<'a, R> {
     ) -> Result<(), NoProof> {
         let first = self.piece_count;
         let mut filling = R::ZERO;
-        let mut scratch = [Polygon::default(); 2];
+        let mut scratch = [Polygon::default(), Polygon::default()];
         for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
             let triangle = triangle.map(Vector::to_array);
             if !reaches(&triangle, lo, hi) {
