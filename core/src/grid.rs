@@ -4,6 +4,7 @@
 //! with x fastest: cell `(k*ny + j)*nx + i`, as Fortran `a(nx,ny,nz)` and VTK. A face field is one longer along its own
 //! axis: x faces `(k*ny + j)*(nx+1) + i`, y faces `(k*(ny+1) + j)*nx + i`, z faces `(k*ny + j)*nx + i`.
 
+pub mod cell_range;
 pub mod fields;
 
 use crate::number::real::Real;

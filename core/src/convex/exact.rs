@@ -1,10 +1,10 @@
 //! The exact second stage for bodies given by vertices: disjoint, touching or overlapping, with nothing left open.
 //!
-//! The same search as in [`crate::convex::gjk`], in exact integers (see [`integer`]): every sign is right, each round comes strictly nearer to the
+//! The same search as in [`crate::convex::gjk`], in exact integers: every sign is right, each round comes strictly nearer to the
 //! origin, so it ends. Where the nearest point is the origin itself, on a face, an edge or a vertex of the simplex, the question is whether
 //! the difference has points on both sides of every plane through that face, edge or vertex; this is answered by turning a plane about it.
 //!
-//! [`integer`] holds the numbers, `lattice` brings coordinates to them, `simplex` has the signs, `search` finds the nearest point, `touch`
+//! `integer` holds the numbers, `lattice` brings coordinates to them, `simplex` has the signs, `search` finds the nearest point, `touch`
 //! looks around the origin, `distance` rounds what was found.
 //!
 //! Signs are of degree 4 at most in the coordinates. Integers are used and not floating-point expansions because a product of expansions is
@@ -16,16 +16,16 @@ use crate::convex::gjk::{Intersection, intersect};
 use crate::convex::shape::Vertices;
 
 mod distance;
-pub mod integer;
+mod integer;
 mod lattice;
 mod search;
 mod simplex;
 mod touch;
 
-pub use distance::{Nearest, distance};
+pub use distance::{ExactDistance, distance};
 use integer::{DEGREE_1, DEGREE_2, DEGREE_3, DEGREE_4, Int, Vec3, cross, dot, is_zero};
-use lattice::{Difference, Lattice, direction};
-use search::Pair;
+use lattice::{CoordinateLattice, ExactDifference, direction};
+use search::LatticePair;
 
 type V1 = Vec3<DEGREE_1>;
 type V2 = Vec3<DEGREE_2>;
@@ -43,12 +43,12 @@ pub enum Contact {
 }
 
 /// How two bodies lie, with the proof.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Relation {
     /// No point is shared: the axis separates strictly.
-    Disjoint(Axis),
+    Disjoint(ExactAxis),
     /// Some point is shared: the axis separates all the rest.
-    Touching(Axis),
+    Touching(ExactAxis),
     /// Interiors meet: these points surround the origin.
     Overlapping(Surround),
 }
@@ -70,9 +70,9 @@ pub struct NotFinite;
 
 /// A direction from the first body to the second, exact.
 #[derive(Clone, Copy, Debug)]
-pub struct Axis(V3);
+pub struct ExactAxis(V3);
 
-impl Axis {
+impl ExactAxis {
     /// The nearest direction in floating point, its largest component between 1 and 2.
     pub fn to_array(&self) -> [f64; 3] {
         direction(&self.0)
@@ -88,7 +88,7 @@ impl Axis {
         if is_zero(&self.0) {
             return Ok(Ordering::Less);
         }
-        let lattice = Lattice::new(a, b)?;
+        let lattice = CoordinateLattice::new(a, b)?;
         let mut least: Option<(Int<DEGREE_4>, Int<DEGREE_4>)> = None;
         let along = |p: A::Vector| dot::<DEGREE_3, DEGREE_1, DEGREE_4>(&self.0, &lattice.point(p));
         for i in 0..a.count() {
@@ -109,25 +109,28 @@ impl Axis {
     }
 }
 
-/// Up to six pairs of vertices whose differences surround the origin: no plane through it has them all on one closed side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Pairs of vertices whose differences surround the origin: no plane through it has them all on one closed side.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Surround {
-    pairs: [(u32, u32); 6],
-    count: usize,
+    pairs: heapless::Vec<(u32, u32), SURROUNDING>,
 }
 
+/// Most points that are needed to surround the origin: two along each axis of some base of space (Steinitz).
+const SURROUNDING: usize = 6;
+
 impl Surround {
-    fn of(points: &[&Difference]) -> Self {
-        let mut pairs = [(0, 0); 6];
-        for (to, p) in pairs.iter_mut().zip(points) {
-            *to = p.pair;
+    fn of(points: &[&ExactDifference]) -> Self {
+        let mut pairs = heapless::Vec::new();
+        for p in points {
+            let pushed = pairs.push(p.pair).is_ok();
+            debug_assert!(pushed, "each search ends with at most six points");
         }
-        Surround { pairs, count: points.len().min(6) }
+        Surround { pairs }
     }
 
-    /// Indices of a vertex of the first body and one of the second.
+    /// Indices of a vertex of the first body and one of the second, for each difference.
     pub fn pairs(&self) -> &[(u32, u32)] {
-        self.pairs.get(..self.count).unwrap_or(&[])
+        &self.pairs
     }
 
     /// Whether the differences do surround the origin: they span space, and no plane through the origin and two of them has all others on
@@ -137,9 +140,12 @@ impl Surround {
         A: Vertices,
         B: Vertices<Vector = A::Vector>,
     {
-        let lattice = Lattice::new(a, b)?;
-        let w = self.pairs.map(|pair| lattice.difference(a, b, pair).w);
-        let w = w.get(..self.count).unwrap_or(&[]);
+        let lattice = CoordinateLattice::new(a, b)?;
+        let mut w = heapless::Vec::<V1, SURROUNDING>::new();
+        for &pair in &self.pairs {
+            // As many as there are pairs.
+            let _ = w.push(lattice.difference(a, b, pair).w);
+        }
         let mut spans = false;
         for (i, p) in w.iter().enumerate() {
             for q in w.iter().skip(i + 1) {
@@ -148,7 +154,7 @@ impl Surround {
                     continue;
                 }
                 let (mut below, mut above) = (false, false);
-                for r in w {
+                for r in &w {
                     let side: Int<DEGREE_3> = dot(&normal, r);
                     below |= side.is_negative();
                     above |= side.is_positive();
@@ -167,13 +173,13 @@ impl Surround {
 ///
 /// ```
 /// use glam::DVec3;
-/// use voidage_core::{number::aabb::Aabb, convex::exact::{Contact, settle}, convex::shape::Triangle};
+/// use voidage_core::{number::aabb::Aabb, convex::exact::{Contact, contact}, convex::shape::Triangle};
 ///
 /// let cell = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
 /// let (a, b, c) = (DVec3::new(1.0, 0.2, 0.2), DVec3::new(1.0, 0.8, 0.2), DVec3::new(1.5, 0.2, 0.9));
-/// assert_eq!(settle(&cell, &Triangle { a, b, c }, None), Ok(Contact::Touching));
+/// assert_eq!(contact(&cell, &Triangle { a, b, c }, None), Ok(Contact::Touching));
 /// ```
-pub fn settle<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Contact, NotFinite>
+pub fn contact<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Contact, NotFinite>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
@@ -191,14 +197,14 @@ where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
 {
-    let pair = Pair { a, b, lattice: Lattice::new(a, b)? };
+    let pair = LatticePair { a, b, lattice: CoordinateLattice::new(a, b)? };
     let search = pair.search(hint, true);
     if !is_zero(&search.direction) {
-        return Ok(Relation::Disjoint(Axis(search.direction)));
+        return Ok(Relation::Disjoint(ExactAxis(search.direction)));
     }
-    let points = search.simplex.points();
+    let points = search.simplex.as_slice();
     Ok(match search.weak {
-        Some(axis) => Relation::Touching(Axis(axis)),
+        Some(axis) => Relation::Touching(ExactAxis(axis)),
         None => match points {
             [a, b, c, d] => Relation::Overlapping(Surround::of(&[a, b, c, d])),
             [a, b, c] => pair.about_face(a, b, c),

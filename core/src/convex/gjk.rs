@@ -7,14 +7,14 @@
 //! Reference: E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast procedure for computing the distance between complex objects in
 //! three-dimensional space", *IEEE J. Robotics and Automation* 4 (1988).
 
-use crate::convex::simplex::{Side, Simplex, side};
+use crate::convex::simplex::{OriginSide, Simplex, side};
 use crate::convex::support::{ScalarOf, Support, lengthened};
 use crate::number::real::{Real, Vector};
 
 mod distance;
 mod pair;
 pub use distance::{Distance, distance};
-use pair::{Pair, Scale, scale};
+use pair::{BodyPair, Scale, scale};
 
 /// What [`intersect`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub enum Intersection<V: Vector> {
     /// The bodies share an interior point.
     Overlapping {
         /// Why.
-        proof: Overlap<V>,
+        proof: OverlapProof<V>,
     },
     /// Neither could be proved with the arithmetic at hand.
     Undecided {
@@ -40,7 +40,7 @@ pub enum Intersection<V: Vector> {
 
 /// A proof that two bodies overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Overlap<V: Vector> {
+pub enum OverlapProof<V: Vector> {
     /// Four pairs of points: [`Simplex::holds_origin`].
     Inside(Simplex<V>),
     /// For rounded bodies: a point of each core, closer together than the sum of the radii. See [`within_radii`].
@@ -94,15 +94,15 @@ where
 {
     let extent = a.extent() + b.extent();
     match scale(extent) {
-        Scale::Keep => decide(&Pair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE), hint),
-        Scale::Multiply(factor) => intersect_scaled(&Pair::new(a, b, extent, factor), hint),
+        Scale::Keep => decide(&BodyPair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE), hint),
+        Scale::Multiply(factor) => intersect_scaled(&BodyPair::new(a, b, extent, factor), hint),
         Scale::Refuse(reason) => Intersection::Undecided { reason, axis: A::Vector::ZERO },
     }
 }
 
 #[cold]
 #[inline(never)]
-fn intersect_scaled<A, B>(pair: &Pair<A, B, ScalarOf<A>, true>, hint: Option<A::Vector>) -> Intersection<A::Vector>
+fn intersect_scaled<A, B>(pair: &BodyPair<A, B, ScalarOf<A>, true>, hint: Option<A::Vector>) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
@@ -112,7 +112,7 @@ where
 
 #[inline(always)]
 fn decide<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     hint: Option<A::Vector>,
 ) -> Intersection<A::Vector>
 where
@@ -153,7 +153,7 @@ fn leaning<V: Vector>(axis: V, round: u32) -> V {
 
 /// Points along an axis and all around it, if they surround the origin: for shallow overlaps of bodies placed symmetrically about the axis.
 fn surround<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     axis: A::Vector,
 ) -> Option<Simplex<A::Vector>>
 where
@@ -171,7 +171,7 @@ where
         (simplex.a[i], simplex.b[i]) = (a.point, b.point);
         w[i] = pair.difference(a.point, b.point);
     }
-    (side(w, pair.slack) == Side::Inside).then_some(simplex)
+    (side(w, pair.slack) == OriginSide::Inside).then_some(simplex)
 }
 
 /// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
@@ -179,7 +179,7 @@ where
 #[cold]
 #[inline(never)]
 fn search_harder<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     axis: A::Vector,
     reason: Reason,
 ) -> Intersection<A::Vector>
@@ -189,7 +189,7 @@ where
 {
     for axis in [pair.seed(None), axis] {
         if let Some(simplex) = surround(pair, axis) {
-            return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
+            return Intersection::Overlapping { proof: OverlapProof::Inside(simplex) };
         }
     }
     let found = search(pair, None, true);
@@ -203,7 +203,7 @@ where
 /// The boolean search; `lean` is for the second try.
 #[inline(always)]
 fn search<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     hint: Option<A::Vector>,
     lean: bool,
 ) -> Intersection<A::Vector>
@@ -285,11 +285,11 @@ where
         let mut outward = None;
         if count == 4 {
             match side(w, pair.slack) {
-                Side::Inside => {
+                OriginSide::Inside => {
                     let simplex = Simplex { a: slot.map(|s| pairs[s & 3].0), b: slot.map(|s| pairs[s & 3].1) };
-                    return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
+                    return Intersection::Overlapping { proof: OverlapProof::Inside(simplex) };
                 }
-                Side::Beyond(dropped) => {
+                OriginSide::Beyond(dropped) => {
                     let behind = match dropped {
                         1 => {
                             slot = [slot[0], slot[2], slot[3], slot[1]];
@@ -355,8 +355,8 @@ where
 {
     let extent = a.extent() + b.extent();
     let gap = match scale(extent) {
-        Scale::Keep => Pair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE).gap(axis),
-        Scale::Multiply(factor) => Pair::<A, B, ScalarOf<A>, true>::new(a, b, extent, factor).gap(axis),
+        Scale::Keep => BodyPair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE).gap(axis),
+        Scale::Multiply(factor) => BodyPair::<A, B, ScalarOf<A>, true>::new(a, b, extent, factor).gap(axis),
         Scale::Refuse(_) => None,
     };
     gap.is_some_and(|gap| gap > Real::ZERO)

@@ -6,8 +6,8 @@
 //! In a box that holds an inner point of the body, only facets whose surface reaches the box matter: from that point a segment to a point
 //! beyond another facet's plane, which stays in the box, leaves the body through one of them.
 
-use crate::convex::chord::{Chord, Convex, Plane, rounding, through_facets};
-use crate::convex::exact::{Contact, settle};
+use crate::convex::chord::{Chord, Chords, FacetPlane, rounding, through_facets};
+use crate::convex::exact::{Contact, contact};
 use crate::convex::shape::Hull;
 use crate::convex::support::{Support, SupportPoint};
 use crate::number::aabb::Aabb;
@@ -17,7 +17,7 @@ use crate::number::real::{Real, Vector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet<V: Vector> {
     /// Its plane.
-    pub plane: Plane<V>,
+    pub plane: FacetPlane<V>,
     /// Around the surface in it.
     pub bounds: Aabb<V>,
 }
@@ -25,7 +25,7 @@ pub struct Facet<V: Vector> {
 impl<V: Vector> Facet<V> {
     /// No plane and no surface, to fill memory.
     pub fn none() -> Self {
-        let plane = Plane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
+        let plane = FacetPlane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
         Facet { plane, bounds: Aabb::empty() }
     }
 
@@ -74,7 +74,7 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet
     if triangles.is_empty() || !room.is_finite() {
         return Err(NotConvex::NoBody);
     }
-    let lies_in = |plane: &Plane<V>, corners: &[V; 3]| {
+    let lies_in = |plane: &FacetPlane<V>, corners: &[V; 3]| {
         let limit = if plane.exact { V::Scalar::ZERO } else { room };
         corners.iter().all(|c| (c.dot(plane.normal) - plane.offset).abs() <= limit)
     };
@@ -91,13 +91,13 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet
             facet.join(corners);
             continue;
         }
-        let plane = Plane::new(normal, a);
+        let plane = FacetPlane::new(normal, a);
         let highest = hull.support(plane.normal, 0).point.dot(plane.normal);
-        let plane = Plane { offset: highest, ..plane };
+        let plane = FacetPlane { offset: highest, ..plane };
         if lies_in(&plane, corners) {
             *into.get_mut(count).ok_or(NotConvex::Full)? = Facet { plane, bounds: Aabb::around(corners) };
             count += 1;
-        } else if lies_in(&Plane::new(normal, a), corners) {
+        } else if lies_in(&FacetPlane::new(normal, a), corners) {
             return Err(NotConvex::Beyond { triangle });
         }
     }
@@ -105,7 +105,7 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet
     for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
-        if normal == V::ZERO || !lies_in(&Plane::new(normal, a), corners) {
+        if normal == V::ZERO || !lies_in(&FacetPlane::new(normal, a), corners) {
             let facet = known.iter_mut().find(|f| lies_in(&f.plane, corners));
             facet.ok_or(NotConvex::Unknown { triangle })?.join(corners);
         }
@@ -147,12 +147,12 @@ impl<V: Vector> Support for Polytope<'_, V> {
     }
 }
 
-impl<V: Vector> Convex for Polytope<'_, V> {
-    fn facets(&self) -> usize {
+impl<V: Vector> Chords for Polytope<'_, V> {
+    fn facet_count(&self) -> usize {
         self.facets.len()
     }
     #[inline(always)]
-    fn facet(&self, index: usize) -> Plane<V> {
+    fn facet(&self, index: usize) -> FacetPlane<V> {
         self.facets.get(index).map_or(Facet::none().plane, |f| f.plane)
     }
     #[inline(always)]
@@ -173,7 +173,7 @@ impl<V: Vector> Convex for Polytope<'_, V> {
     fn bounds(&self) -> Aabb<V> {
         self.bounds
     }
-    fn settled(&self, cell: &Aabb<V>) -> Option<Contact> {
-        settle(cell, &self.hull, None).ok()
+    fn exact_contact(&self, cell: &Aabb<V>) -> Option<Contact> {
+        contact(cell, &self.hull, None).ok()
     }
 }

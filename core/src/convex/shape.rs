@@ -11,11 +11,12 @@ mod adjacency;
 mod curved;
 mod hull;
 mod plane;
+mod scan;
 pub use adjacency::Adjacency;
+pub(crate) use curved::{AxisFrame, normalized};
 pub use curved::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
-pub(crate) use curved::{Frame, normalized};
 pub use hull::Hull;
-pub use plane::Plane;
+pub use plane::FacetPlane;
 
 /// A body that is the hull of finitely many points, each exactly representable.
 pub trait Vertices: Support {

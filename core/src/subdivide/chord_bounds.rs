@@ -1,7 +1,7 @@
 //! Certified bounds of the volume that a convex body has of a box, or the area of a face, from chords.
 //!
 //! Over the base of a box stand columns; lines through them leave the body at a height `h`, a concave function wherever they meet it, and
-//! enter it at a convex one. What fills the box is `h` kept within it. Over a rectangle of the base, with values `h_i` at the corners
+//! enter it at a convex one. What fills the box is `h` clamped to it. Over a rectangle of the base, with values `h_i` at the corners
 //! and `m` in the middle:
 //!
 //! - the triangles through the corners lie below `h`: they are spanned by inner points;
@@ -9,11 +9,11 @@
 //! - where neither leaves the box, the mean of `h` lies between the mean of the `h_i` and `m`, which is the mean of the body's support
 //!   plane there (the inequality of Hermite and Hadamard).
 //!
-//! All are of second order, and piecewise linear functions kept within limits are integrated exactly.
+//! All are of second order, and piecewise linear functions clamped to limits are integrated exactly.
 //!
 //! A face is the same with one dimension less.
 
-use crate::convex::chord::{Convex, rounding};
+use crate::convex::chord::{Chords, rounding};
 use crate::convex::support::ScalarOf;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
@@ -62,19 +62,19 @@ const SUM_ROUNDINGS: f64 = 256.0;
 
 impl<R: Real> Columns<R> {
     /// Bounds of the share of `cell` that `body` fills; `near` lists the facets that matter in it.
-    pub fn measure<B>(&self, body: &B, cell: &Aabb<B::Vector>, near: &[u32]) -> Bounds<R>
+    pub fn share_bounds<B>(&self, body: &B, cell: &Aabb<B::Vector>, near: &[u32]) -> Bounds<R>
     where
-        B: Convex,
+        B: Chords,
         B::Vector: Vector<Scalar = R>,
     {
-        let view = View::new(body, cell, near);
-        let first = (0..3).filter(|&axis| view.hi[axis] > view.lo[axis]).map(|axis| (axis, view.along(axis, 1)));
+        let place = BoxInBody::new(body, cell, near);
+        let first = (0..3).filter(|&axis| place.hi[axis] > place.lo[axis]).map(|axis| (axis, place.along(axis, 1)));
         let closest = first.reduce(|a, b| if b.1.gap() < a.1.gap() { b } else { a });
         let Some((axis, mut best)) = closest else { return Bounds::UNKNOWN };
         let mut parts = 1;
         while best.gap() > self.enough && parts < self.parts.min(MAX_PARTS) {
             let finer_parts = if parts == 1 { 2 } else { self.wanted(best.gap(), parts) };
-            let finer = view.along(axis, finer_parts);
+            let finer = place.along(axis, finer_parts);
             // What a smooth surface would gain, with room for its rim.
             let gain = R::from_usize(parts * parts) / R::from_usize(finer_parts * finer_parts);
             let smooth = finer.gap() <= best.gap() * gain.sqrt().max(gain * R::TWO);
@@ -95,7 +95,7 @@ impl<R: Real> Columns<R> {
 }
 
 /// A body in a box.
-struct View<'a, B: Convex> {
+struct BoxInBody<'a, B: Chords> {
     body: &'a B,
     near: &'a [u32],
     lo: [ScalarOf<B>; 3],
@@ -109,21 +109,25 @@ struct View<'a, B: Convex> {
 /// How far a line fills a box, from either end: from the lower side up to where it leaves the body, and from the upper side down to
 /// where it enters it. Beyond the box both go on.
 #[derive(Clone, Copy)]
-struct Heights<R> {
+struct ChordHeights<R> {
     up: R,
     down: R,
 }
 
-impl<'a, B: Convex> View<'a, B> {
+impl<'a, B: Chords> BoxInBody<'a, B> {
     fn new(body: &'a B, cell: &Aabb<B::Vector>, near: &'a [u32]) -> Self {
         let bounds = body.bounds();
         let [lo, hi] = [cell.min.to_array(), cell.max.to_array()];
-        View { body, near, lo, hi, min: bounds.min.to_array(), max: bounds.max.to_array(), grow: rounding(body) }
+        BoxInBody { body, near, lo, hi, min: bounds.min.to_array(), max: bounds.max.to_array(), grow: rounding(body) }
     }
 
     /// The heights over a point of the base, of the body grown or shrunk; none where the line may miss it.
     #[inline(always)]
-    fn heights<const AXIS: usize>(&self, [u, v]: [ScalarOf<B>; 2], grow: ScalarOf<B>) -> Option<Heights<ScalarOf<B>>> {
+    fn heights<const AXIS: usize>(
+        &self,
+        [u, v]: [ScalarOf<B>; 2],
+        grow: ScalarOf<B>,
+    ) -> Option<ChordHeights<ScalarOf<B>>> {
         let (zero, one) = (Real::ZERO, Real::ONE);
         let (origin, direction) = match AXIS {
             0 => ([zero, u, v], [one, zero, zero]),
@@ -133,7 +137,7 @@ impl<'a, B: Convex> View<'a, B> {
         let chord = self.body.chord(Vector::from_array(origin), Vector::from_array(direction), grow, self.near)?;
         // NaN tells nothing.
         let known = chord[0] <= chord[1];
-        known.then(|| Heights { up: chord[1] - self.lo[AXIS], down: self.hi[AXIS] - chord[0] })
+        known.then(|| ChordHeights { up: chord[1] - self.lo[AXIS], down: self.hi[AXIS] - chord[0] })
     }
 
     /// The bounds from columns along `axis`, the base divided into `parts` by `parts`.
@@ -148,7 +152,7 @@ impl<'a, B: Convex> View<'a, B> {
     fn columns<const AXIS: usize>(&self, parts: usize) -> Bounds<ScalarOf<B>> {
         type R<B> = ScalarOf<B>;
         let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
-        let (u, v) = (Side::new(self, (AXIS + 1) % 3, parts), Side::new(self, (AXIS + 2) % 3, parts));
+        let (u, v) = (BaseAxis::new(self, (AXIS + 1) % 3, parts), BaseAxis::new(self, (AXIS + 2) % 3, parts));
         let (Some(u), Some(v)) = (u, v) else { return Bounds::OPEN };
         let full = self.hi[AXIS] - self.lo[AXIS];
         let inner = |i: usize, j: usize| self.heights::<AXIS>([u.at[i], v.at[j]], -self.grow);
@@ -170,7 +174,7 @@ impl<'a, B: Convex> View<'a, B> {
             for i in 0..u.parts {
                 let corners = [below[i], below[i + 1], above[i], above[i + 1]];
                 let middle = || self.heights::<AXIS>([u.middle(i), middle], self.grow);
-                let [low, high] = filled(corners, middle, full);
+                let [low, high] = mean_fill(corners, middle, full);
                 row_lower += low;
                 row_upper += high;
                 all = all && low == full;
@@ -185,7 +189,7 @@ impl<'a, B: Convex> View<'a, B> {
         }
         let share = u.share * v.share / (full * R::<B>::from_usize(u.parts * v.parts));
         let relative = R::<B>::EPSILON * R::<B>::from_f64(SUM_ROUNDINGS);
-        // Heights are differences of coordinates.
+        // ChordHeights are differences of coordinates.
         let room = relative + self.grow / full;
         let lower = if all { u.share * v.share } else { lower * share * (one - relative) - room };
         let whole = all && u.share == one && v.share == one;
@@ -196,16 +200,20 @@ impl<'a, B: Convex> View<'a, B> {
 
 /// Bounds of the mean filling over a rectangle, from its corners and, if need be, its middle.
 #[inline(always)]
-fn filled<R: Real>(corners: [Option<Heights<R>>; 4], middle: impl FnOnce() -> Option<Heights<R>>, full: R) -> [R; 2] {
-    let [Some(a), Some(b), Some(c), Some(d)] = corners else { return partly(corners, full) };
+fn mean_fill<R: Real>(
+    corners: [Option<ChordHeights<R>>; 4],
+    middle: impl FnOnce() -> Option<ChordHeights<R>>,
+    full: R,
+) -> [R; 2] {
+    let [Some(a), Some(b), Some(c), Some(d)] = corners else { return partial_fill(corners, full) };
     let (up, down) = ([a.up, b.up, c.up, d.up], [a.down, b.down, c.down, d.down]);
     let (up_full, down_full) = (all_above(up, full), all_above(down, full));
     if up_full && down_full {
         return [full, full];
     }
     let Some(m) = middle() else { return [R::ZERO, full] };
-    let up = if up_full { [full, full] } else { kept(up, m.up, full) };
-    let down = if down_full { [full, full] } else { kept(down, m.down, full) };
+    let up = if up_full { [full, full] } else { clamped_mean(up, m.up, full) };
+    let down = if down_full { [full, full] } else { clamped_mean(down, m.down, full) };
     [(up[0] + (down[0] - full)).max(R::ZERO), (up[1] + (down[1] - full)).max(R::ZERO)]
 }
 
@@ -214,9 +222,9 @@ fn all_above<R: Real>(h: [R; 4], limit: R) -> bool {
     h[0] >= limit && h[1] >= limit && h[2] >= limit && h[3] >= limit
 }
 
-/// Bounds of the mean of a concave function kept within `0..=full`, from its values at the corners and in the middle.
+/// Bounds of the mean of a concave function clamped to `0..=full`, from its values at the corners and in the middle.
 #[inline(always)]
-fn kept<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
+fn clamped_mean<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
     let least = h[0].min(h[1]).min(h[2].min(h[3]));
     let most = middle + middle - least;
     if most <= R::ZERO {
@@ -225,18 +233,18 @@ fn kept<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
         [(h[0] + h[1] + (h[2] + h[3])) * R::from_f64(0.25), middle]
     } else {
         let over = h.map(|h| middle + middle - h);
-        [over_triangles(h, full), over_triangles(over, full)]
+        [mean_over_triangles(h, full), mean_over_triangles(over, full)]
     }
 }
 
-/// The mean over a square of the two triangles through its corners, kept within `0..=full`.
-fn over_triangles<R: Real>([a, b, c, d]: [R; 4], full: R) -> R {
-    let triangle = |x: R, y: R, z: R| positive(x, y, z) - positive(x - full, y - full, z - full);
+/// The mean over a square of the two triangles through its corners, clamped to `0..=full`.
+fn mean_over_triangles<R: Real>([a, b, c, d]: [R; 4], full: R) -> R {
+    let triangle = |x: R, y: R, z: R| mean_positive_part(x, y, z) - mean_positive_part(x - full, y - full, z - full);
     ((triangle(a, b, c) + triangle(d, b, c)) * R::HALF).max(R::ZERO).min(full)
 }
 
 /// The mean over a triangle of the positive part of a linear function with these values at the corners.
-fn positive<R: Real>(x: R, y: R, z: R) -> R {
+fn mean_positive_part<R: Real>(x: R, y: R, z: R) -> R {
     let (low, high) = (x.min(y).min(z), x.max(y).max(z));
     let middle = x.min(y).max(x.max(y).min(z));
     let third = R::from_f64(1.0 / 3.0);
@@ -255,9 +263,9 @@ fn positive<R: Real>(x: R, y: R, z: R) -> R {
 
 /// Where a column may miss the body: three corners make half the rectangle.
 #[cold]
-fn partly<R: Real>(corners: [Option<Heights<R>>; 4], full: R) -> [R; 2] {
+fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> [R; 2] {
     // Within the box and the body both are concave; below zero there is nothing inside.
-    let depth = |h: Heights<R>| h.up.min(full) + h.down.min(full) - full;
+    let depth = |h: ChordHeights<R>| h.up.min(full) + h.down.min(full) - full;
     let [a, b, c, d] = corners.map(|h| h.map(depth).filter(|&h| h >= R::ZERO));
     let third = |x: Option<R>, y: Option<R>, z: Option<R>| Some((x? + y? + z?) * R::from_f64(1.0 / 6.0));
     let half = third(a, b, c).or(third(b, d, a)).or(third(c, a, d)).or(third(d, b, c));
@@ -265,7 +273,7 @@ fn partly<R: Real>(corners: [Option<Heights<R>>; 4], full: R) -> [R; 2] {
 }
 
 /// A side of the base, as far as the body reaches it.
-struct Side<R> {
+struct BaseAxis<R> {
     /// Where its parts begin and end.
     at: [R; MAX_PARTS + 1],
     /// Length as a share of the cell's.
@@ -275,27 +283,27 @@ struct Side<R> {
     flat: bool,
 }
 
-impl<R: Real> Side<R> {
+impl<R: Real> BaseAxis<R> {
     /// None if the body does not reach it.
     #[inline(always)]
-    fn new<B>(view: &View<B>, axis: usize, parts: usize) -> Option<Self>
+    fn new<B>(place: &BoxInBody<B>, axis: usize, parts: usize) -> Option<Self>
     where
-        B: Convex,
+        B: Chords,
         B::Vector: Vector<Scalar = R>,
     {
-        let (lo, hi) = (view.lo[axis].max(view.min[axis]), view.hi[axis].min(view.max[axis]));
+        let (lo, hi) = (place.lo[axis].max(place.min[axis]), place.hi[axis].min(place.max[axis]));
         if !(lo <= hi) {
             return None;
         }
-        if view.lo[axis] == view.hi[axis] {
-            return Some(Side { at: [lo; MAX_PARTS + 1], share: R::ONE, parts: 1, flat: true });
+        if place.lo[axis] == place.hi[axis] {
+            return Some(BaseAxis { at: [lo; MAX_PARTS + 1], share: R::ONE, parts: 1, flat: true });
         }
-        let (share, parts) = ((hi - lo) / (view.hi[axis] - view.lo[axis]), parts.min(MAX_PARTS));
+        let (share, parts) = ((hi - lo) / (place.hi[axis] - place.lo[axis]), parts.min(MAX_PARTS));
         let mut at = [hi; MAX_PARTS + 1];
         for i in 0..parts {
             at[i] = lo + (hi - lo) * (R::from_usize(i) / R::from_usize(parts));
         }
-        (share > R::ZERO).then_some(Side { at, share, parts, flat: false })
+        (share > R::ZERO).then_some(BaseAxis { at, share, parts, flat: false })
     }
 
     #[inline(always)]

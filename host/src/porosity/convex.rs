@@ -13,12 +13,13 @@ use voidage_core::convex::polytope::{Facet, Polytope, facets};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::convex::support::Transformed;
 use voidage_core::grid::Grid;
+use voidage_core::grid::cell_range::{CellRange, Target};
 use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
-use voidage_core::subdivide::chord_bounds::{Bounds, Columns};
-use voidage_core::subdivide::mesh::{Mesh, slab};
-use voidage_core::subdivide::place::{self, Near, Occupancy, Seen, Tally, Trace};
-use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
+use voidage_core::subdivide::{
+    self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, PlaneDistances, QueryCount,
+    Subdividable, SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
+};
 
 /// A body in its place, convex but for the last kind.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +37,7 @@ pub enum Convex<'a> {
     /// A hull and its facets.
     Polytope(Polytope<'a, DVec3>),
     /// A closed surface.
-    Mesh(Mesh<'a, DVec3>),
+    Mesh(ClosedSurface<'a, DVec3>),
 }
 
 /// The same expression for the shape of any kind.
@@ -54,29 +55,29 @@ macro_rules! of_shape {
     };
 }
 
-impl place::Body for Convex<'_> {
+impl Subdividable for Convex<'_> {
     type Vector = DVec3;
     fn bounds(&self) -> Aabb<DVec3> {
-        of_shape!(self, s => place::Body::bounds(s))
+        of_shape!(self, s => Subdividable::bounds(s))
     }
-    fn facets(&self) -> usize {
-        of_shape!(self, s => place::Body::facets(s))
+    fn facet_count(&self) -> usize {
+        of_shape!(self, s => Subdividable::facet_count(s))
     }
-    fn place(
+    fn occupancy(
         &self,
         cell: &Aabb<DVec3>,
         near: &[u32],
-        keep: &mut Near,
-        trace: &mut Trace<DVec3>,
-        tally: &mut Tally,
+        active: &mut ActiveFacets,
+        warm: &mut WarmStart<DVec3>,
+        count: &mut QueryCount,
     ) -> Occupancy {
-        of_shape!(self, s => s.place(cell, near, keep, trace, tally))
+        of_shape!(self, s => s.occupancy(cell, near, active, warm, count))
     }
-    fn planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<Seen<f64>> {
-        of_shape!(self, s => s.planes(cell, near))
+    fn local_planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<(LocalPlanes<f64>, PlaneDistances<f64>)> {
+        of_shape!(self, s => s.local_planes(cell, near))
     }
-    fn measure(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
-        of_shape!(self, s => place::Body::measure(s, cell, near, columns))
+    fn share_bounds(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
+        of_shape!(self, s => s.share_bounds(cell, near, columns))
     }
 }
 
@@ -156,7 +157,7 @@ impl Known {
     fn body<'a>(&'a self, triangles: &'a [[DVec3; 3]]) -> Convex<'a> {
         match self {
             Known::Round(body) => *body,
-            Known::Closed(run) => Convex::Mesh(Mesh::new(&triangles[run.clone()])),
+            Known::Closed(run) => Convex::Mesh(ClosedSurface::new(&triangles[run.clone()])),
             Known::Faceted(f) => Convex::Polytope(Polytope::new(Hull::new(&f.vertices), &f.facets)),
         }
     }
@@ -206,7 +207,7 @@ fn is_closed(triangles: &[[DVec3; 3]]) -> bool {
 #[derive(Debug)]
 pub struct Road<'a> {
     bodies: Vec<(Aabb<DVec3>, Convex<'a>)>,
-    rule: Rule<f64>,
+    rule: SubdivisionRule<f64>,
     areas: bool,
 }
 
@@ -221,12 +222,12 @@ pub struct Lists {
 
 impl Lists {
     /// Enough for some bodies at once; as much for the same bodies whatever was there before, so that the bits are the same.
-    fn memory(&mut self, bodies: &[Convex]) -> Memory<'_, DVec3> {
-        let facets: usize = bodies.iter().map(place::Body::facets).sum();
+    fn memory(&mut self, bodies: &[Convex]) -> SubdivisionMemory<'_, DVec3> {
+        let facets: usize = bodies.iter().map(Subdividable::facet_count).sum();
         let (candidates, facets) = (8 * bodies.len() + 1024, 8 * facets + (1 << 14));
         self.candidates.resize(self.candidates.len().max(candidates), Candidate::default());
         self.facets.resize(self.facets.len().max(facets), 0);
-        Memory { candidates: &mut self.candidates[..candidates], facets: &mut self.facets[..facets] }
+        SubdivisionMemory { candidates: &mut self.candidates[..candidates], facets: &mut self.facets[..facets] }
     }
 }
 
@@ -237,8 +238,8 @@ impl<'a> Road<'a> {
     /// Some bodies.
     #[must_use]
     pub fn new(bodies: Vec<Convex<'a>>, options: Options) -> Self {
-        let rule = Rule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
-        let bodies = bodies.into_iter().map(|b| (place::Body::bounds(&b), b)).collect();
+        let rule = SubdivisionRule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
+        let bodies = bodies.into_iter().map(|b| (Subdividable::bounds(&b), b)).collect();
         Road { bodies, rule, areas: options.areas }
     }
 
@@ -254,28 +255,28 @@ impl<'a> Road<'a> {
     }
 
     /// Add the bodies to layer `k`: its cells, x and y faces, and the z faces below.
-    pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
+    pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> QueryCount {
         let nx = grid.cells()[0];
         let Layer { lower, sum, .. } = layer;
-        let mut wanted = vec![(Places::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
+        let mut wanted = vec![(Target::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
         if self.areas {
-            wanted.push((Places::Faces(0), nx + 1, lower.x, sum.x));
-            wanted.push((Places::Faces(1), nx, lower.y, sum.y));
-            wanted.push((Places::Faces(2), nx, lower.z, sum.z));
+            wanted.push((Target::Faces(0), nx + 1, lower.x, sum.x));
+            wanted.push((Target::Faces(1), nx, lower.y, sum.y));
+            wanted.push((Target::Faces(2), nx, lower.z, sum.z));
         }
         self.between(grid, [k, k + 1], lists, |road, lists| {
             let fields = wanted.into_iter();
             fields
-                .map(|(places, row, lower, sum)| road.places(grid, places, k, lists, row, lower, sum))
-                .fold(Tally::default(), joined)
+                .map(|(target, row, lower, sum)| road.places(grid, target, k, lists, row, lower, sum))
+                .fold(QueryCount::default(), ops::Add::add)
         })
     }
 
     /// Add the bodies to the z faces in plane `k`, held in `layer.…z`.
-    pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
+    pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> QueryCount {
         let nx = grid.cells()[0];
         self.between(grid, [k, k], lists, |road, lists| {
-            road.places(grid, Places::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
+            road.places(grid, Target::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
         })
     }
 
@@ -307,8 +308,8 @@ impl<'a> Road<'a> {
             .collect();
         let part = |(bounds, body, run): (Aabb<DVec3>, Convex<'a>, ops::Range<usize>)| match body {
             Convex::Mesh(_) => {
-                let mesh = Mesh::new(&triangles[run]);
-                (place::Body::bounds(&mesh), Convex::Mesh(mesh))
+                let mesh = ClosedSurface::new(&triangles[run]);
+                (Subdividable::bounds(&mesh), Convex::Mesh(mesh))
             }
             _ => (bounds, body),
         };
@@ -320,20 +321,20 @@ impl<'a> Road<'a> {
     fn places(
         &self,
         grid: &Grid<f64>,
-        places: Places,
+        target: Target,
         k: usize,
         lists: &mut Lists,
         row: usize,
         lower: &mut [f64],
         sum: &mut [f64],
-    ) -> Tally {
-        let only = Range { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
-        let touched = |bounds: &Aabb<DVec3>| Range::touched(grid, places, bounds).common(only);
+    ) -> QueryCount {
+        let only = CellRange { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
+        let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, target, bounds).intersection(only);
         let reaching = self.bodies.iter().map(|(bounds, body)| (touched(bounds), *body));
         let (ranges, bodies): (Vec<_>, Vec<_>) = reaching.filter(|(range, _)| !range.is_empty()).unzip();
-        let Some(range) = ranges.into_iter().reduce(around) else { return Tally::default() };
+        let Some(range) = ranges.into_iter().reduce(CellRange::union) else { return QueryCount::default() };
         let mut memory = lists.memory(&bodies);
-        let fill = |range: Range, bounds: Bounds<f64>| {
+        let fill = |range: CellRange, bounds: Bounds<f64>| {
             for j in range.lo[1]..range.hi[1] {
                 for at in (range.lo[0]..range.hi[0]).map(|i| j as usize * row + i as usize) {
                     lower[at] = lower[at].max(bounds.lower);
@@ -341,7 +342,7 @@ impl<'a> Road<'a> {
                 }
             }
         };
-        subdivide(grid, places, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
+        subdivide(grid, target, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
     }
 
     /// May a body reach a cell or its sides?
@@ -352,24 +353,12 @@ impl<'a> Road<'a> {
         let cell = Aabb { min: lo - room, max: hi + room };
         let near = self.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
         let bodies: Vec<_> = near.map(|(_, body)| *body).collect();
-        let rule = Rule { leaf: voidage_core::subdivide::Leaf::Half, depth: 0, tol: 1.0 };
+        let rule = SubdivisionRule { leaf: subdivide::LeafRule::Half, depth: 0, tol: 1.0 };
         !bodies.is_empty()
-            && share(&cell, &bodies, rule, &mut lists.memory(&bodies), &mut Tally::default()).expect(FITS)
+            && share(&cell, &bodies, rule, &mut lists.memory(&bodies), &mut QueryCount::default()).expect(FITS)
                 != Bounds::OPEN
     }
 }
 
 /// What is so near a cell counts as reaching its sides, in cells.
 const ROOM: f64 = 1.0 / 1024.0;
-
-/// The smallest range around both.
-fn around(a: Range, b: Range) -> Range {
-    let both = |f: fn(u32, u32) -> u32, p: [u32; 3], q: [u32; 3]| [f(p[0], q[0]), f(p[1], q[1]), f(p[2], q[2])];
-    Range { lo: both(u32::min, a.lo, b.lo), hi: both(u32::max, a.hi, b.hi) }
-}
-
-/// Both counts.
-#[must_use]
-pub fn joined(a: Tally, b: Tally) -> Tally {
-    Tally { queries: a.queries + b.queries, undecided: a.undecided + b.undecided }
-}

@@ -1,13 +1,13 @@
 //! One layer of cells after the other, in one thread's memory.
 
 use super::bins::Bins;
-use super::convex::{Lists, Road, joined};
+use super::convex::{Lists, Road};
 use super::fields::Slices;
 use super::unions::Unions;
 use super::{CellCounts, Options};
 use voidage_core::grid::Grid;
 use voidage_core::grid::fields::{Fields, Layer};
-use voidage_core::subdivide::place::Tally;
+use voidage_core::subdivide::QueryCount;
 use voidage_core::surface::cells::{Scratch, add_body};
 use voidage_core::surface::z_faces::{Side, add_section};
 
@@ -31,7 +31,7 @@ pub struct Summary {
     /// By how much a body's share left 0..1.
     pub winding: f64,
     /// Queries of GJK.
-    pub tally: Tally,
+    pub tally: QueryCount,
     /// Body and residual of rows that leak.
     pub leaks: Vec<(u32, f64)>,
 }
@@ -40,7 +40,7 @@ impl Summary {
     /// The same without the work, for a layer that is copied.
     #[must_use]
     pub fn copied(&self) -> Self {
-        Summary { divided: 0, tally: Tally::default(), ..self.clone() }
+        Summary { divided: 0, tally: QueryCount::default(), ..self.clone() }
     }
 
     /// Join totals in the order of layers, so that sums keep their bits for any number of threads.
@@ -54,7 +54,7 @@ impl Summary {
         self.max_gap = self.max_gap.max(other.max_gap);
         self.divided += other.divided;
         self.winding = self.winding.max(other.winding);
-        self.tally = joined(self.tally, other.tally);
+        self.tally = self.tally + other.tally;
         self
     }
 }
@@ -180,7 +180,7 @@ impl Worker {
         for (_, ids) in bins.layer(k) {
             add_section(grid, k + 1, Side::Below, bins.triangles(), ids, &mut scratch, &mut layer);
         }
-        out.tally = joined(out.tally, convex.add_top(grid, k + 1, &mut self.lists, &mut layer));
+        out.tally = out.tally + convex.add_top(grid, k + 1, &mut self.lists, &mut layer);
         self.unions.resolve_top(grid, bins, convex, k, &mut layer);
         settle(layer.lower.z, layer.sum.z, low, high, self.options.solid_end(), out);
         beta.copy_from_slice(layer.lower.z);

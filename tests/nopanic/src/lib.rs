@@ -39,7 +39,7 @@ fn exactly<A: Vertices, B: Vertices<Vector = A::Vector>>(a: &A, b: &B, hint: A::
         Err(exact::NotFinite) => 4,
     };
     let far = exact::distance(a, b, Some(hint)).map_or(0, |nearest| nearest.distance as u32);
-    proof ^ far << 4 ^ u32::from(exact::settle(a, b, None).is_ok())
+    proof ^ far << 4 ^ u32::from(exact::contact(a, b, None).is_ok())
 }
 
 fn inside<S: Contains>(body: &S, cell: &Aabb<S::Vector>) -> u32 {

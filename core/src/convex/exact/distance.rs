@@ -1,15 +1,15 @@
 //! The exact distance, rounded at the end.
 
 use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, cross, dot, is_zero, minus};
-use super::lattice::{Lattice, one, times_power};
-use super::search::Pair;
+use super::lattice::{CoordinateLattice, one, times_power};
+use super::search::LatticePair;
 use super::{NotFinite, V1, V2};
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
 
 /// An exact distance, rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct ExactDistance {
     /// The distance, to a relative error of 16 ε or a step of the subnormal numbers; 0 exactly if a point is shared.
     pub distance: f64,
     /// The nearest point of the first body, to rounding.
@@ -20,14 +20,14 @@ pub struct Nearest {
 
 /// The distance of two bodies, from exact signs and exact products: right to the last digits however the vertices lie. A distance beyond
 /// the largest number is infinite.
-pub fn distance<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Nearest, NotFinite>
+pub fn distance<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<ExactDistance, NotFinite>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
 {
-    let pair = Pair { a, b, lattice: Lattice::new(a, b)? };
+    let pair = LatticePair { a, b, lattice: CoordinateLattice::new(a, b)? };
     let search = pair.search(hint, false);
-    let points = search.simplex.points();
+    let points = search.simplex.as_slice();
     let (sq, weights) = match points {
         [p] => (Ratio::new(dot::<_, _, DEGREE_4>(&p.w, &p.w), one()), [one(), Int::ZERO, Int::ZERO]),
         [p, q] => {
@@ -54,7 +54,8 @@ where
     let total: f64 = weights.iter().sum();
     // No gap is so small that it may pass for a shared point.
     let least = if is_zero(&search.direction) { 0.0 } else { f64::from_bits(1) };
-    let mut nearest = Nearest { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
+    let mut nearest =
+        ExactDistance { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
     for (p, weight) in points.iter().zip(weights) {
         let (i, j) = p.pair;
         let (u, v) = (a.vertex(i as usize).to_array(), b.vertex(j as usize).to_array());

@@ -7,7 +7,7 @@ use crate::number::real::{Real, Vector};
 
 /// The unit in which all coordinates of a query are integers.
 #[derive(Clone, Copy)]
-pub(super) struct Lattice {
+pub(super) struct CoordinateLattice {
     /// Its exponent.
     pub(super) unit: i32,
     /// Exponent of the largest coordinate.
@@ -24,9 +24,9 @@ pub(super) fn parts(x: f64) -> (bool, u64, i32) {
     (x.is_sign_negative(), m >> zeros, e + zeros as i32)
 }
 
-impl Lattice {
+impl CoordinateLattice {
     pub(super) fn new<A: Vertices, B: Vertices<Vector = A::Vector>>(a: &A, b: &B) -> Result<Self, NotFinite> {
-        let mut lattice = Lattice { unit: i32::MAX, top: i32::MIN };
+        let mut lattice = CoordinateLattice { unit: i32::MAX, top: i32::MIN };
         if a.count() == 0 || b.count() == 0 {
             return Err(NotFinite);
         }
@@ -51,7 +51,7 @@ impl Lattice {
             include(b.vertex(j))?;
         }
         if lattice.unit > lattice.top {
-            lattice = Lattice { unit: 0, top: 0 };
+            lattice = CoordinateLattice { unit: 0, top: 0 };
         }
         Ok(lattice)
     }
@@ -68,15 +68,15 @@ impl Lattice {
         a: &A,
         b: &B,
         pair: (u32, u32),
-    ) -> Difference {
+    ) -> ExactDifference {
         let w = minus(&self.point(b.vertex(pair.1 as usize)), &self.point(a.vertex(pair.0 as usize)));
-        Difference { pair, w }
+        ExactDifference { pair, w }
     }
 }
 
 /// A point `b - a` of the difference.
 #[derive(Clone, Copy)]
-pub(super) struct Difference {
+pub(super) struct ExactDifference {
     pub(super) pair: (u32, u32),
     pub(super) w: V1,
 }

@@ -4,7 +4,7 @@ use core::cmp::Ordering;
 
 use super::V3;
 use super::integer::{DEGREE_4, Int, dot, is_zero, minus, negated};
-use super::lattice::{Difference, Lattice, direction, exponent, parts, times_power};
+use super::lattice::{CoordinateLattice, ExactDifference, direction, exponent, parts, times_power};
 use super::simplex::{Points, nearest};
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
@@ -20,17 +20,17 @@ pub(super) struct Search {
 }
 
 /// Two bodies on their lattice.
-pub(super) struct Pair<'a, A, B> {
+pub(super) struct LatticePair<'a, A, B> {
     pub(super) a: &'a A,
     pub(super) b: &'a B,
-    pub(super) lattice: Lattice,
+    pub(super) lattice: CoordinateLattice,
 }
 
 /// Rounding of a scalar product of a rounded direction and a vertex, in units of ε |d|₁ (largest coordinate): three roundings of the product,
 /// two of the direction; twice, as two of them are compared; the rest is room.
 const FILTER_ROUNDINGS: f64 = 16.0;
 
-impl<A, B> Pair<'_, A, B>
+impl<A, B> LatticePair<'_, A, B>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
@@ -79,7 +79,7 @@ where
     }
 
     /// The point of the difference that lies lowest along a direction.
-    pub(super) fn lowest(&self, d: &V3) -> Difference {
+    pub(super) fn lowest(&self, d: &V3) -> ExactDifference {
         let pair = (self.farthest(self.a, d), self.farthest(self.b, &negated(d)));
         self.lattice.difference(self.a, self.b, pair)
     }
@@ -98,7 +98,7 @@ where
             }
             _ => self.lattice.difference(self.a, self.b, (0, 0)),
         };
-        let mut simplex = Points { items: [first; 4], count: 1 };
+        let mut simplex: Points = Points::from_array([first]);
         let mut weak = None;
         loop {
             let (kept, direction) = nearest(&simplex);
@@ -113,12 +113,11 @@ where
                 Ordering::Equal => weak = Some(direction),
                 _ => {}
             }
-            let start = simplex.items[0].w;
-            let progress: Int<DEGREE_4> = dot(&direction, &minus(&new.w, &start));
-            if !progress.is_negative() {
+            let nearer = |p: &ExactDifference| dot::<_, _, DEGREE_4>(&direction, &minus(&new.w, &p.w)).is_negative();
+            // A simplex of four points holds the origin, so that there always is room.
+            if !simplex.first().is_some_and(nearer) || simplex.push(new).is_err() {
                 return Search { simplex, direction, weak };
             }
-            simplex.push(new);
         }
     }
 }

@@ -3,9 +3,9 @@
 //! Each round yields two bounds. The support plane across `v` is a lower bound, the simplex point `v` itself an upper one; rounding widens
 //! both. Their difference is the duality gap: how far the stated distance can be from the truth.
 
-use super::pair::{Pair, Scale, scale};
-use super::{Intersection, Overlap, Reason, across, search, within_radii};
-use crate::convex::simplex::{Nearest, Side, Simplex, nearest, side};
+use super::pair::{BodyPair, Scale, scale};
+use super::{Intersection, OverlapProof, Reason, across, search, within_radii};
+use crate::convex::simplex::{NearestPoint, OriginSide, Simplex, nearest, side};
 use crate::convex::support::{ScalarOf, Support, lengthened};
 use crate::number::real::{Real, Vector};
 
@@ -30,7 +30,7 @@ pub enum Distance<V: Vector> {
     /// The bodies share an interior point.
     Overlapping {
         /// Why.
-        proof: Overlap<V>,
+        proof: OverlapProof<V>,
     },
     /// Neither could be proved: the bodies touch, or nearly so, or cannot be computed with.
     Undecided {
@@ -76,21 +76,23 @@ where
 {
     let extent = a.extent() + b.extent();
     match scale(extent) {
-        Scale::Keep => measure(&Pair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE), hint),
-        Scale::Multiply(factor) => measure(&Pair::<A, B, ScalarOf<A>, true>::new(a, b, extent, factor), hint),
+        Scale::Keep => distance_scaled(&BodyPair::<A, B, ScalarOf<A>, false>::new(a, b, extent, Real::ONE), hint),
+        Scale::Multiply(factor) => {
+            distance_scaled(&BodyPair::<A, B, ScalarOf<A>, true>::new(a, b, extent, factor), hint)
+        }
         Scale::Refuse(reason) => Distance::Undecided { lower: Real::ZERO, upper: Real::INFINITY, reason },
     }
 }
 
-fn measure<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+fn distance_scaled<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     hint: Option<A::Vector>,
 ) -> Distance<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    // Overlap is quickly seen, and else the axis that shows the gap leads the walk.
+    // OverlapProof is quickly seen, and else the axis that shows the gap leads the walk.
     let mut hint = hint;
     if !(A::ROUNDED || B::ROUNDED) {
         match search(pair, hint, false) {
@@ -99,20 +101,20 @@ where
             Intersection::Undecided { .. } => {}
         }
     }
-    let mut found = walk(pair, hint, Goal::Distance);
+    let mut found = closest_point(pair, hint, Goal::Distance);
     if found.inside.is_none() && !(found.lower > Real::ZERO) {
         // Near the origin a symmetry may keep it on the simplex's rim: the boolean knows a way round that.
-        if let Intersection::Overlapping { proof: Overlap::Inside(simplex) } = search(pair, None, true) {
+        if let Intersection::Overlapping { proof: OverlapProof::Inside(simplex) } = search(pair, None, true) {
             found.inside = Some(simplex);
         }
     }
-    stated(pair, &found)
+    into_distance(pair, &found)
 }
 
 /// A walk's result in the words of the caller: radii taken off, scale undone.
-fn stated<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
-    found: &Walk<A::Vector>,
+fn into_distance<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+    found: &Closest<A::Vector>,
 ) -> Distance<A::Vector>
 where
     A: Support,
@@ -123,10 +125,10 @@ where
     let relative = S::<A>::from_f64(4.0) * S::<A>::EPSILON;
     let radii = pair.radii();
     if let Some(simplex) = found.inside {
-        return Distance::Overlapping { proof: Overlap::Inside(simplex) };
+        return Distance::Overlapping { proof: OverlapProof::Inside(simplex) };
     }
     if radii > zero && found.upper < radii * (one - relative) {
-        return Distance::Overlapping { proof: Overlap::Within { a: found.a, b: found.b } };
+        return Distance::Overlapping { proof: OverlapProof::Within { a: found.a, b: found.b } };
     }
     // Bounds move outwards with each rounding, also that of a result below the normal numbers.
     let below = |x: S<A>| pair.unscaled(x - x.abs() * relative);
@@ -151,17 +153,17 @@ where
 
 /// The boolean for rounded bodies: the cores' distance against the sum of the radii, stopping as soon as that is decided.
 pub(super) fn intersect_rounded<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     hint: Option<A::Vector>,
 ) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    let found = walk(pair, hint, Goal::Compare(pair.radii()));
+    let found = closest_point(pair, hint, Goal::Compare(pair.radii()));
     let relative = ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON;
     if let Some(simplex) = found.inside {
-        return Intersection::Overlapping { proof: Overlap::Inside(simplex) };
+        return Intersection::Overlapping { proof: OverlapProof::Inside(simplex) };
     }
     if found.lower > pair.radii() * (ScalarOf::<A>::ONE + relative) {
         return Intersection::Apart { axis: found.axis };
@@ -169,7 +171,7 @@ where
     let (a, b) = pair.bodies();
     let error = ScalarOf::<A>::from_f64(4.0) * ScalarOf::<A>::EPSILON * (a.extent() + b.extent());
     if within_radii(found.a, found.b, a.radius() + b.radius(), a.slack().max(b.slack()) + error) {
-        return Intersection::Overlapping { proof: Overlap::Within { a: found.a, b: found.b } };
+        return Intersection::Overlapping { proof: OverlapProof::Within { a: found.a, b: found.b } };
     }
     Intersection::Undecided { reason: found.reason, axis: found.axis }
 }
@@ -184,12 +186,12 @@ enum Goal<R> {
 }
 
 /// Where a walk ended. Lengths are those of the cores, scaled; points are not.
-struct Walk<V: Vector> {
+struct Closest<V: Vector> {
     /// The core's overlap, if proved.
     inside: Option<Simplex<V>>,
     lower: V::Scalar,
     upper: V::Scalar,
-    /// Nearest point of the difference.
+    /// NearestPoint point of the difference.
     v: V,
     /// The direction that gave the lower bound.
     axis: V,
@@ -198,11 +200,11 @@ struct Walk<V: Vector> {
     reason: Reason,
 }
 
-fn walk<A, B, const SCALED: bool>(
-    pair: &Pair<A, B, ScalarOf<A>, SCALED>,
+fn closest_point<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     hint: Option<A::Vector>,
     goal: Goal<ScalarOf<A>>,
-) -> Walk<A::Vector>
+) -> Closest<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
@@ -224,7 +226,7 @@ where
     let mut stalled = 0;
     // The nearest point so far: weights, and the points they belong to.
     let mut witnesses = [(zero, (origin, origin)); 3];
-    let mut best = Walk {
+    let mut best = Closest {
         inside: None,
         lower: zero,
         upper: S::<A>::INFINITY,
@@ -277,11 +279,11 @@ where
         w = [new, w[0], w[1], w[2]];
         slot = [free, slot[0], slot[1], slot[2]];
         count = (count + 1).min(4);
-        if count == 4 && side(w, pair.slack) == Side::Inside {
+        if count == 4 && side(w, pair.slack) == OriginSide::Inside {
             best.inside = Some(Simplex { a: slot.map(|s| pairs[s & 3].0), b: slot.map(|s| pairs[s & 3].1) });
             return best;
         }
-        let Nearest { point: v, weights, count: kept, order } = nearest(w, count);
+        let NearestPoint { point: v, weights, count: kept, order } = nearest(w, count);
         w = order.map(|i| w[i & 3]);
         slot = order.map(|i| slot[i & 3]);
         count = kept;

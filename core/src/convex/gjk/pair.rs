@@ -29,7 +29,7 @@ pub(super) fn scale<R: Real>(extent: R) -> Scale<R> {
 }
 
 /// Two bodies. Lengths and differences come in units of `1 / factor`, which is 1 unless `SCALED`.
-pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
+pub(super) struct BodyPair<'a, A, B, R, const SCALED: bool> {
     a: &'a A,
     b: &'a B,
     factor: R,
@@ -39,7 +39,7 @@ pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
     pub slack: R,
 }
 
-impl<'a, A, B, V, const SCALED: bool> Pair<'a, A, B, V::Scalar, SCALED>
+impl<'a, A, B, V, const SCALED: bool> BodyPair<'a, A, B, V::Scalar, SCALED>
 where
     V: Vector,
     A: Support<Vector = V>,
@@ -50,9 +50,9 @@ where
         let factor = if SCALED { factor } else { V::Scalar::ONE };
         let slack = a.slack() + b.slack();
         if SCALED {
-            Pair { a, b, factor, extent: extent * factor, slack: slack * factor }
+            BodyPair { a, b, factor, extent: extent * factor, slack: slack * factor }
         } else {
-            Pair { a, b, factor, extent, slack }
+            BodyPair { a, b, factor, extent, slack }
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Sphere and capsule are a point and a segment with a radius, which is taken off exactly; the others round, and say by how much.
 
-use super::{Plane, Point, Segment, only};
+use super::{FacetPlane, Point, Segment, only};
 use crate::convex::support::{Rounded, Support, SupportPoint, magnitude};
 use crate::number::real::{Real, Vector};
 
@@ -115,7 +115,7 @@ impl<V: Vector> Support for Ellipsoid<V> {
 
 /// A centre, an axis and two vectors across it: what cylinder and cone have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frame<V: Vector> {
+pub(crate) struct AxisFrame<V: Vector> {
     pub base: V,
     pub top: V,
     axis: V,
@@ -123,10 +123,10 @@ pub(crate) struct Frame<V: Vector> {
     pub radius: V::Scalar,
     pub height: V::Scalar,
     /// Across the axis through base and top.
-    pub ends: [Plane<V>; 2],
+    pub ends: [FacetPlane<V>; 2],
 }
 
-impl<V: Vector> Frame<V> {
+impl<V: Vector> AxisFrame<V> {
     pub fn new(base: V, top: V, radius: V::Scalar) -> Self {
         let axis = top - base;
         let unit = normalized(axis);
@@ -141,8 +141,8 @@ impl<V: Vector> Frame<V> {
             V::new(zero, zero, one)
         };
         let u = normalized(unit.cross(other));
-        let ends = [Plane::new(base - top, base), Plane::new(axis, top)];
-        Frame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
+        let ends = [FacetPlane::new(base - top, base), FacetPlane::new(axis, top)];
+        AxisFrame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
     }
 
     /// From the axis to the point of the circle farthest along a direction.
@@ -168,12 +168,12 @@ impl<V: Vector> Frame<V> {
 
 /// A cylinder with flat ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cylinder<V: Vector>(pub(crate) Frame<V>);
+pub struct Cylinder<V: Vector>(pub(crate) AxisFrame<V>);
 
 impl<V: Vector> Cylinder<V> {
     /// Between the centres of its ends. With both in one place it is that point.
     pub fn new(from: V, to: V, radius: V::Scalar) -> Self {
-        Cylinder(Frame::new(from, to, radius))
+        Cylinder(AxisFrame::new(from, to, radius))
     }
 }
 
@@ -201,12 +201,12 @@ impl<V: Vector> Support for Cylinder<V> {
 
 /// A cone with a flat base.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone<V: Vector>(pub(crate) Frame<V>);
+pub struct Cone<V: Vector>(pub(crate) AxisFrame<V>);
 
 impl<V: Vector> Cone<V> {
     /// From the centre and radius of its base to its apex. With both in one place it is that point.
     pub fn new(base: V, apex: V, radius: V::Scalar) -> Self {
-        Cone(Frame::new(base, apex, radius))
+        Cone(AxisFrame::new(base, apex, radius))
     }
 }
 
