@@ -9,7 +9,7 @@
 use crate::convex::chord::{Chord, Chords, FacetPlane, rounding, through_facets};
 use crate::convex::exact::{Contact, contact};
 use crate::convex::shape::Hull;
-use crate::convex::support::{Support, SupportPoint};
+use crate::convex::support::{Support, delegate_support};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
@@ -128,23 +128,7 @@ impl<'a, V: Vector> Polytope<'a, V> {
 }
 
 impl<V: Vector> Support for Polytope<'_, V> {
-    type Vector = V;
-    #[inline(always)]
-    fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
-        self.hull.support(direction, start)
-    }
-    #[inline(always)]
-    fn farther(&self, direction: V, found: u32) -> Option<SupportPoint<V>> {
-        self.hull.farther(direction, found)
-    }
-    #[inline(always)]
-    fn center(&self) -> V {
-        self.hull.center()
-    }
-    #[inline(always)]
-    fn extent(&self) -> V::Scalar {
-        self.hull.extent()
-    }
+    delegate_support!(self, V => self.hull);
 }
 
 impl<V: Vector> Chords for Polytope<'_, V> {

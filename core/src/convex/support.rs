@@ -64,33 +64,42 @@ pub trait Support {
     }
 }
 
+/// The methods of [`Support`] for a body that wraps another one: `delegate_support!(self, V => self.inner)` inside its `impl`.
+/// [`Support::ROUNDED`] is not forwarded.
+macro_rules! delegate_support {
+    ($self:ident, $vector:ty => $inner:expr) => {
+        type Vector = $vector;
+        #[inline(always)]
+        fn support(&$self, direction: $vector, start: u32) -> $crate::convex::support::SupportPoint<$vector> {
+            $inner.support(direction, start)
+        }
+        #[inline(always)]
+        fn farther(&$self, direction: $vector, found: u32) -> Option<$crate::convex::support::SupportPoint<$vector>> {
+            $inner.farther(direction, found)
+        }
+        #[inline(always)]
+        fn center(&$self) -> $vector {
+            $inner.center()
+        }
+        #[inline(always)]
+        fn extent(&$self) -> <$vector as $crate::number::real::Vector>::Scalar {
+            $inner.extent()
+        }
+        #[inline(always)]
+        fn radius(&$self) -> <$vector as $crate::number::real::Vector>::Scalar {
+            $inner.radius()
+        }
+        #[inline(always)]
+        fn slack(&$self) -> <$vector as $crate::number::real::Vector>::Scalar {
+            $inner.slack()
+        }
+    };
+}
+pub(crate) use delegate_support;
+
 impl<S: Support> Support for &S {
-    type Vector = S::Vector;
     const ROUNDED: bool = S::ROUNDED;
-    #[inline(always)]
-    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        (**self).support(direction, start)
-    }
-    #[inline(always)]
-    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
-        (**self).farther(direction, found)
-    }
-    #[inline(always)]
-    fn center(&self) -> S::Vector {
-        (**self).center()
-    }
-    #[inline(always)]
-    fn extent(&self) -> ScalarOf<S> {
-        (**self).extent()
-    }
-    #[inline(always)]
-    fn radius(&self) -> ScalarOf<S> {
-        (**self).radius()
-    }
-    #[inline(always)]
-    fn slack(&self) -> ScalarOf<S> {
-        (**self).slack()
-    }
+    delegate_support!(self, S::Vector => (**self));
 }
 
 /// Largest absolute component; NaN if any component is NaN or infinite.

@@ -15,6 +15,8 @@ pub struct LocalPlanes<R> {
     pub(super) whole: [R; MAX_PLANES],
     /// Bound of the rounding of a distance from a plane.
     pub(super) margin: R,
+    /// The distances of the middle of the box itself.
+    pub(super) distances: PlaneDistances<R>,
 }
 
 /// The signed distances of the middle of a box, or of a part of it, from the planes of [`LocalPlanes`].

@@ -9,7 +9,7 @@
 //! Reference: D. Sunday, "Inclusion of a point in a polygon", 2001, for winding numbers; here along segments in space.
 
 use super::chord_bounds::{Bounds, Columns};
-use super::local_planes::{LocalPlanes, PlaneDistances};
+use super::local_planes::LocalPlanes;
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use super::place::Subdividable;
 use crate::convex::chord::rounded;
@@ -183,7 +183,7 @@ impl<V: Vector> Subdividable for ClosedSurface<'_, V> {
         }
     }
 
-    fn local_planes(&self, _: &Aabb<V>, _: &[u32]) -> Option<(LocalPlanes<V::Scalar>, PlaneDistances<V::Scalar>)> {
+    fn local_planes(&self, _: &Aabb<V>, _: &[u32]) -> Option<LocalPlanes<V::Scalar>> {
         None
     }
 

@@ -39,13 +39,9 @@ pub trait Subdividable {
         count: &mut QueryCount,
     ) -> Occupancy;
 
-    /// The planes of the facets `near`, relative to `cell`, and the distances of its middle from them. None unless the body is a polytope, the
+    /// The planes of the facets `near`, relative to `cell`. None unless the body is a polytope, the
     /// facets are at most [`MAX_PLANES`] and none of their planes is exact.
-    fn local_planes(
-        &self,
-        cell: &Aabb<Self::Vector>,
-        near: &[u32],
-    ) -> Option<(LocalPlanes<BodyScalar<Self>>, PlaneDistances<BodyScalar<Self>>)>;
+    fn local_planes(&self, cell: &Aabb<Self::Vector>, near: &[u32]) -> Option<LocalPlanes<BodyScalar<Self>>>;
 
     /// Bounds of the share of `cell` that is solid. `near` lists the facets that cut it, as [`Subdividable::occupancy`] found them.
     fn share_bounds(
@@ -117,18 +113,14 @@ impl<B: Chords> Subdividable for B {
         ask(self, cell, &mut warm.vector, count)
     }
 
-    fn local_planes(
-        &self,
-        cell: &Aabb<B::Vector>,
-        near: &[u32],
-    ) -> Option<(LocalPlanes<ScalarOf<B>>, PlaneDistances<ScalarOf<B>>)> {
+    fn local_planes(&self, cell: &Aabb<B::Vector>, near: &[u32]) -> Option<LocalPlanes<ScalarOf<B>>> {
         if !self.is_polytope() || near.len() > MAX_PLANES {
             return None;
         }
         let zero: ScalarOf<B> = Real::ZERO;
         let margin = margin_of(self, cell);
-        let mut planes = LocalPlanes { reach: [[zero; 3]; MAX_PLANES], whole: [zero; MAX_PLANES], margin };
-        let mut distances = PlaneDistances { middle: [zero; MAX_PLANES], cut: 0 };
+        let distances = PlaneDistances { middle: [zero; MAX_PLANES], cut: 0 };
+        let mut planes = LocalPlanes { reach: [[zero; 3]; MAX_PLANES], whole: [zero; MAX_PLANES], margin, distances };
         for (n, &id) in near.iter().enumerate().take(MAX_PLANES) {
             let plane = self.facet(id as usize);
             // Whether a face lies in an exact plane must be seen exactly.
@@ -138,10 +130,10 @@ impl<B: Chords> Subdividable for B {
             let (normal, size) = (plane.normal.to_array(), cell.size().to_array());
             planes.reach[n] = [0, 1, 2].map(|axis| normal[axis] * size[axis] * Real::HALF);
             planes.whole[n] = plane.normal.abs().dot(cell.size()) * Real::HALF;
-            distances.middle[n] = cell.center().dot(plane.normal) - plane.offset;
-            distances.cut |= 1 << n;
+            planes.distances.middle[n] = cell.center().dot(plane.normal) - plane.offset;
+            planes.distances.cut |= 1 << n;
         }
-        Some((planes, distances))
+        Some(planes)
     }
 
     #[inline]

@@ -270,7 +270,8 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
         let candidate = candidates.get(list.first)?;
         let near = facets.get(candidate.first as usize..candidate.end as usize)?;
         let body = self.bodies.get(candidate.body as usize)?;
-        let (planes, distances) = body.local_planes(cell, near)?;
+        let planes = body.local_planes(cell, near)?;
+        let distances = planes.distances;
         let mut parts = PolytopeParts { body, near, planes, flat: flat_axes(cell), count: &mut self.count };
         Some(parts.share(cell, &distances, levels, Real::HALF))
     }

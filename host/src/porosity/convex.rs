@@ -17,8 +17,8 @@ use voidage_core::grid::cell_range::{CellRange, Target};
 use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::subdivide::{
-    self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, PlaneDistances, QueryCount,
-    Subdividable, SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
+    self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, QueryCount, Subdividable,
+    SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
 };
 
 /// A body in its place, convex but for the last kind.
@@ -73,7 +73,7 @@ impl Subdividable for Convex<'_> {
     ) -> Occupancy {
         of_shape!(self, s => s.occupancy(cell, near, active, warm, count))
     }
-    fn local_planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<(LocalPlanes<f64>, PlaneDistances<f64>)> {
+    fn local_planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<LocalPlanes<f64>> {
         of_shape!(self, s => s.local_planes(cell, near))
     }
     fn share_bounds(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {

@@ -46,9 +46,9 @@ where
         _ => (Ratio { m: 0.0, e: 0 }, [one(), Int::ZERO, Int::ZERO]),
     };
     // Only the ratios of the weights count.
-    let top = weights.iter().filter(|w| !w.is_zero()).map(|w| w.to_float().1).max().unwrap_or(0);
+    let top = weights.iter().filter(|w| !w.is_zero()).map(|w| w.as_float().1).max().unwrap_or(0);
     let weights = weights.map(|w| {
-        let (m, e) = w.to_float();
+        let (m, e) = w.as_float();
         times_power(m, e - top)
     });
     let total: f64 = weights.iter().sum();
@@ -75,12 +75,12 @@ struct Ratio {
 
 impl Ratio {
     fn new(numerator: Int<DEGREE_4>, denominator: Int<DEGREE_4>) -> Self {
-        let ((m, e), (n, f)) = (numerator.to_float(), denominator.to_float());
+        let ((m, e), (n, f)) = (numerator.as_float(), denominator.as_float());
         Ratio { m: m / n, e: e - f }
     }
 
     fn square_over(root: Int<DEGREE_3>, denominator: Int<DEGREE_4>) -> Self {
-        let ((m, e), (n, f)) = (root.to_float(), denominator.to_float());
+        let ((m, e), (n, f)) = (root.as_float(), denominator.as_float());
         Ratio { m: m * m / n, e: 2 * e - f }
     }
 

@@ -163,7 +163,7 @@ impl<const N: usize> Int<N> {
     }
 
     /// As `m · 2^e` with 1 ≤ |m| < 2, to a relative error of 2⁻⁵²; zero is `(0, 0)`.
-    pub fn to_float(&self) -> (f64, i32) {
+    pub fn as_float(&self) -> (f64, i32) {
         let (mut high, mut low) = (0, 0);
         for &word in self.words.iter().take(self.len) {
             (high, low) = (word, high);

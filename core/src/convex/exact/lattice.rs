@@ -96,7 +96,7 @@ pub(super) fn times_power(m: f64, e: i32) -> f64 {
 
 /// Rounded to floating point, the largest component between 1 and 2; each to a relative error of 2⁻⁵², or below 2⁻⁹⁹⁹.
 pub(super) fn direction<const N: usize>(d: &Vec3<N>) -> [f64; 3] {
-    let parts = [d[0].to_float(), d[1].to_float(), d[2].to_float()];
+    let parts = [d[0].as_float(), d[1].as_float(), d[2].as_float()];
     let top = parts.iter().filter(|p| p.0 != 0.0).map(|p| p.1).max().unwrap_or(0);
     parts.map(|(m, e)| if e - top > -1000 { times_power(m, e - top) } else { 0.0 })
 }

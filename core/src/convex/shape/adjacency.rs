@@ -94,7 +94,7 @@ impl Sector {
         if !all_listed {
             found.candidates.clear();
         }
-        while found.candidates.len() % 4 != 0 && found.candidates.push(found.start).is_ok() {}
+        while !found.candidates.len().is_multiple_of(4) && found.candidates.push(found.start).is_ok() {}
         found
     }
 

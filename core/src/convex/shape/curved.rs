@@ -3,7 +3,7 @@
 //! Sphere and capsule are a point and a segment with a radius, which is taken off exactly; the others round, and say by how much.
 
 use super::{FacetPlane, Point, Segment, only};
-use crate::convex::support::{Rounded, Support, SupportPoint, magnitude};
+use crate::convex::support::{Rounded, Support, SupportPoint, delegate_support, magnitude};
 use crate::number::real::{Real, Vector};
 
 /// A ball: a point with a radius.
@@ -40,32 +40,15 @@ impl<V: Vector> Capsule<V> {
     }
 }
 
-macro_rules! support_of_rounded {
-    ($shape:ident) => {
-        impl<V: Vector> Support for $shape<V> {
-            type Vector = V;
-            const ROUNDED: bool = true;
-            #[inline(always)]
-            fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
-                self.rounded().support(direction, start)
-            }
-            #[inline(always)]
-            fn center(&self) -> V {
-                self.rounded().center()
-            }
-            #[inline(always)]
-            fn extent(&self) -> V::Scalar {
-                self.rounded().extent()
-            }
-            #[inline(always)]
-            fn radius(&self) -> V::Scalar {
-                self.radius
-            }
-        }
-    };
+impl<V: Vector> Support for Sphere<V> {
+    const ROUNDED: bool = true;
+    delegate_support!(self, V => self.rounded());
 }
-support_of_rounded!(Sphere);
-support_of_rounded!(Capsule);
+
+impl<V: Vector> Support for Capsule<V> {
+    const ROUNDED: bool = true;
+    delegate_support!(self, V => self.rounded());
+}
 
 /// `v` by its length; zero for zero. Components of any size.
 pub(crate) fn normalized<V: Vector>(v: V) -> V {
@@ -130,17 +113,7 @@ impl<V: Vector> AxisFrame<V> {
     pub fn new(base: V, top: V, radius: V::Scalar) -> Self {
         let axis = top - base;
         let unit = normalized(axis);
-        let [x, y, z] = unit.abs().to_array();
-        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-        // The coordinate axis least along ours.
-        let other = if x <= y && x <= z {
-            V::new(one, zero, zero)
-        } else if y <= z {
-            V::new(zero, one, zero)
-        } else {
-            V::new(zero, zero, one)
-        };
-        let u = normalized(unit.cross(other));
+        let u = normalized(unit.cross(unit.least_axis()));
         let ends = [FacetPlane::new(base - top, base), FacetPlane::new(axis, top)];
         AxisFrame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
     }
