@@ -5,9 +5,9 @@
 
 use std::path::Path;
 use std::time::Instant;
-use voidage::bodies::Bodies;
-use voidage::grid::{Edges, Source, edges};
-use voidage::input;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::read;
+use voidage::grid::{Edges, GridSpec, edges};
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_tests::solids::{scene, sixteen_spheres};
 use voidage_tests::truth::{Truth, fixture, shared};
@@ -22,7 +22,7 @@ fn main() {
     let skid = read(&fixture("cad_skid.stl"));
     let truth = Truth::read(&fixture("cad_skid.stl.npz"));
     case("cad_skid", &skid, &truth.edges(), Some(&truth));
-    let fine = edges(&Source::Cells([400, 260, 220], None), skid.bounds(), &mut Vec::new()).expect("a grid");
+    let fine = edges(&GridSpec::Cells([400, 260, 220], None), skid.bounds(), &mut Vec::new()).expect("a grid");
     case("cad_skid, fine", &skid, &fine, None);
     match shared("corpus") {
         Some(corpus) => {
@@ -36,7 +36,7 @@ fn main() {
 
 fn read(path: &Path) -> Bodies {
     let mut bodies = Bodies::default();
-    bodies.add(&input::read(path).expect("a mesh"), 1.0).expect("bodies");
+    bodies.add(&read::read(path).expect("a mesh"), 1.0).expect("bodies");
     bodies
 }
 

@@ -1,6 +1,6 @@
 //! Corners of the input: tiny cells, blocked space, hardly any cells, states that are none.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Error, Gas, Primitive};
 use voidage_tests::euler::property::Source;
 use voidage_tests::euler::{Riemann, State};

@@ -10,7 +10,8 @@ mod others;
 use std::path::Path;
 
 use voidage::error::Result;
-use voidage::input::{Mesh, from_bytes};
+use voidage::geometry::mesh::Mesh;
+use voidage::geometry::read::from_bytes;
 
 /// Corners of the box that the fixtures hold: 2 × 1 × 1, volume 2.
 const CORNERS: [[&str; 3]; 8] = [
@@ -87,7 +88,7 @@ fn is_sound(mesh: &Mesh) {
     }
     assert_eq!(next, mesh.triangles.len());
     assert!(!mesh.triangles.is_empty());
-    let file = mesh.path.display().to_string();
+    let file = mesh.name.clone();
     assert!(mesh.warnings.iter().all(|warning| warning.starts_with(&file) && !warning.contains('\n')));
 }
 

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use super::{Dir, indices, porosity, uniform};
-use voidage::output::canvas::{Canvas, INK, WHITE};
-use voidage::output::colour::{ColourMap, NO_VALUE};
-use voidage::output::figure::Figure;
-use voidage::output::heatmap::{Area, Axis, Heatmap};
-use voidage::output::png;
+use voidage::picture::canvas::{Canvas, INK, WHITE};
+use voidage::picture::colour::{ColourMap, NO_VALUE};
+use voidage::picture::figure::Figure;
+use voidage::picture::heatmap::{Area, EdgeAxis, Heatmap};
+use voidage::picture::png;
 
 fn decoded(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
     let mut reader = ::png::Decoder::new(std::io::BufReader::new(fs::File::open(path).unwrap())).read_info().unwrap();
@@ -24,7 +24,7 @@ fn a_heatmap_puts_each_cell_where_its_edges_are() {
     let (across, up) = ([10.0, 11.0, 14.0], [0.0, 2.0, 3.0]); // 1 : 3 and 2 : 1
     let map = ColourMap::sequential();
     let value = |a: usize, b: usize| if (a, b) == (1, 1) { f64::NAN } else { 0.25 + 0.25 * (a + 2 * b) as f64 };
-    let axis = |edges| Axis { name: "x", unit: "m", edges };
+    let axis = |edges| EdgeAxis { name: "x", unit: "m", edges };
     let area = Area { x: 100, y: 50, width: 400, height: 300 };
     let mut canvas = Canvas::new(600, 500);
     let range = [0.0, 1.0];
@@ -183,7 +183,7 @@ fn each_panel_shows_its_own_slice() {
 
 #[test]
 fn turned_text_reads_upwards() {
-    use voidage::output::canvas::Style;
+    use voidage::picture::canvas::Style;
     let mut canvas = Canvas::new(100, 100);
     canvas.text(50.5, 50.5, "L", Style { height: 20.0, turned: true, ..Style::default() });
     let [stem, foot, right, below] = [(34, 50), (50, 43), (58, 50), (50, 58)].map(|(x, y)| canvas.get(x, y) != WHITE);
@@ -192,7 +192,7 @@ fn turned_text_reads_upwards() {
 
 #[test]
 fn text_stays_inside_its_measure() {
-    use voidage::output::canvas::{Style, text_width};
+    use voidage::picture::canvas::{Style, text_width};
     for text in ["beta_v = 0.25", "x [m]", "WMwm|#@", "é→漢"] {
         let mut canvas = Canvas::new(400, 60);
         let (left, base) = (50.0, 40.0);

@@ -1,0 +1,250 @@
+//! Three slices of a cell field in one picture: the plan (x, y) and two elevations (x, z) and (y, z).
+//!
+//! All panels have the same scale, chosen with the arrangement that uses the sheet best: in a row, in an L (the lower
+//! left elevation under the plan, as on an engineering drawing), or in a column for long domains. Only what would be
+//! too small to see is enlarged, and an axis drawn out of proportion says so. An axis of one cell has nothing to show:
+//! then the one panel across it fills the sheet.
+
+mod layout;
+
+use std::path::Path;
+
+use super::canvas::{Canvas, Colour, GREY, INK, Style, text_width};
+use super::colour::ColourMap;
+use super::heatmap::{Area, EdgeAxis, Heatmap, NORMAL, SMALL, pointer, triangle};
+use super::ticks::{number, number_to, ticks};
+use crate::error::{Error, Result};
+use layout::{BAR, Layout, Panel, Rooms};
+
+/// Marks where the other slices lie.
+const MARK: Colour = [214, 84, 32];
+/// Height of the figure's title.
+const TITLE: f64 = 14.0;
+/// Free border of the sheet.
+const BORDER: usize = 18;
+/// Pixels for the title and the note.
+const HEAD: usize = 64;
+
+/// Explains the pointers.
+const LEGEND: &str = "where the other slices are";
+
+/// Names of the axes.
+const NAMES: [&str; 3] = ["x", "y", "z"];
+
+/// What the figure shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Figure<'a> {
+    /// First line.
+    pub title: &'a str,
+    /// Second line, smaller.
+    pub note: &'a str,
+    /// Cell edges along x, y, z.
+    pub edges: [&'a [f64]; 3],
+    /// Unit of the edges; may be empty.
+    pub unit: &'a str,
+    /// One value for each cell, x fastest.
+    pub values: &'a [f64],
+    /// Index of the cells shown by the slice across x, y and z.
+    pub at: [usize; 3],
+    /// Written over the colour bar: name and unit of the values.
+    pub name: &'a str,
+    /// Values at the ends of the colour bar.
+    pub range: [f64; 2],
+    /// Words beside the ends of the bar; may be empty.
+    pub ends: [&'a str; 2],
+    /// The colours.
+    pub map: &'a ColourMap,
+}
+
+impl Figure<'_> {
+    /// Draws and writes a PNG file.
+    ///
+    /// # Errors
+    /// A length that does not fit the grid, a slice outside, edges that do not ascend, or as [`super::atomically`].
+    pub fn write(&self, path: &Path) -> Result<()> {
+        self.draw().map_err(|reason| Error::file(path, reason))?.write(path)
+    }
+
+    /// Draws.
+    ///
+    /// # Errors
+    /// The reason, if a length does not fit the grid, a slice is outside, or edges do not ascend.
+    pub fn draw(&self) -> std::result::Result<Canvas, String> {
+        Figure { range: usable(self.range), ..*self }.draw_usable()
+    }
+
+    fn draw_usable(&self) -> std::result::Result<Canvas, String> {
+        let cells = self.check()?;
+        let lengths = self.edges.map(|e| e[e.len() - 1] - e[0]);
+        let rooms = Rooms {
+            left: &|axis, height| self.axis(axis).room_left(height),
+            title: &|panel| text_width(&self.panel_title(panel), NORMAL).ceil() as usize,
+            bar: self.bar_room(),
+        };
+        let layout = Layout::best(lengths, cells, &rooms);
+        let note = text_width(self.note, SMALL) + legend_width();
+        let head = text_width(self.title, TITLE).max(note).min(layout::WIDTH as f64);
+        let (width, height) = layout.size;
+        let mut canvas = Canvas::new(width.max(head.ceil() as usize) + 2 * BORDER, HEAD + height + BORDER);
+        let pointers = layout.panels.len() > 1;
+        self.head(&mut canvas, pointers);
+        for panel in &layout.panels {
+            self.panel(&mut canvas, panel, pointers);
+        }
+        self.bar(&mut canvas, shifted(layout.bar));
+        Ok(canvas)
+    }
+
+    fn check(&self) -> std::result::Result<[usize; 3], String> {
+        for (edges, name) in self.edges.iter().zip(NAMES) {
+            let ascending = edges.windows(2).all(|w| w[0] < w[1]);
+            let finite = edges.len() > 1 && (edges[edges.len() - 1] - edges[0]).is_finite();
+            if !(ascending && finite) {
+                return Err(format!("the edges along {name} do not ascend"));
+            }
+        }
+        let cells = self.edges.map(|e| e.len() - 1);
+        let [nx, ny, nz] = cells;
+        if self.values.len() != nx * ny * nz {
+            return Err(format!("{} values do not fill {nx} x {ny} x {nz} cells", self.values.len()));
+        }
+        if self.at.iter().zip(cells).any(|(at, n)| *at >= n) {
+            return Err(format!("the slices {:?} are not all within {nx} x {ny} x {nz} cells", self.at));
+        }
+        Ok(cells)
+    }
+
+    fn axis(&self, axis: usize) -> EdgeAxis<'_> {
+        EdgeAxis { name: NAMES[axis], unit: self.unit, edges: self.edges[axis] }
+    }
+
+    /// Centre of the cells that the slice across an axis shows.
+    fn position(&self, axis: usize) -> f64 {
+        let (edges, at) = (self.edges[axis], self.at[axis]);
+        f64::midpoint(edges[at], edges[at + 1])
+    }
+
+    /// Width of those cells.
+    fn cell_size(&self, axis: usize) -> f64 {
+        let (edges, at) = (self.edges[axis], self.at[axis]);
+        edges[at + 1] - edges[at]
+    }
+
+    fn head(&self, canvas: &mut Canvas, pointers: bool) {
+        let room = (canvas.size().0 - 2 * BORDER) as f64;
+        let x = BORDER as f64;
+        let style = Style { height: TITLE, up: 1.0, ..Style::default() };
+        canvas.text(x, 16.0, &shortened(self.title, TITLE, room), style);
+        let style = Style { height: SMALL, up: 1.0, colour: GREY, ..style };
+        let legend = if pointers { legend_width() } else { 0.0 };
+        let note = shortened(self.note, SMALL, room - legend);
+        canvas.text(x, 42.0, &note, style);
+        if pointers {
+            let x = x + text_width(&note, SMALL) + legend - text_width(LEGEND, SMALL);
+            triangle(canvas, x as usize - 10, 50, true, MARK);
+            canvas.text(x, 42.0, LEGEND, style);
+        }
+    }
+
+    fn panel(&self, canvas: &mut Canvas, panel: &Panel, pointers: bool) {
+        let [nx, ny] = [self.edges[0].len() - 1, self.edges[1].len() - 1];
+        let [a, b] = panel.axes();
+        let strides = [1, nx, nx * ny];
+        let start = self.at[panel.normal] * strides[panel.normal];
+        let value = |i: usize, j: usize| self.values[start + i * strides[a] + j * strides[b]];
+        let title = self.panel_title(panel);
+        let (across, up) = (self.axis(a), self.axis(b));
+        let area = shifted(panel.area);
+        Heatmap { across, up, value: &value, range: self.range, map: self.map, title: &title }.draw(canvas, area);
+        if pointers {
+            pointer(canvas, area, &across, self.position(a), true, MARK);
+            pointer(canvas, area, &up, self.position(b), false, MARK);
+        }
+    }
+
+    fn panel_title(&self, panel: &Panel) -> String {
+        let axis = panel.normal;
+        let mut index = [":", ":", ":"].map(str::to_owned);
+        index[axis] = self.at[axis].to_string();
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let place = format!(
+            "{} = {}{unit}   [{}]",
+            NAMES[axis],
+            number_to(self.position(axis), self.cell_size(axis) / 100.0),
+            index.join(", ")
+        );
+        match panel.stretched {
+            Some((axis, factor)) => format!("{place}   {} drawn × {}", NAMES[axis], number(rounded(factor))),
+            None => place,
+        }
+    }
+
+    /// Pixels right of the bar, for its numbers, words and name.
+    fn bar_room(&self) -> usize {
+        let marks = ticks(self.range[0], self.range[1], 5);
+        let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
+        let words = self.ends.iter().map(|w| text_width(w, SMALL)).fold(0.0, f64::max);
+        let beside = 10.0 + widest + if words > 0.0 { words + 8.0 } else { 0.0 };
+        beside.max(text_width(self.name, NORMAL) - BAR as f64).ceil() as usize + 8
+    }
+
+    fn bar(&self, canvas: &mut Canvas, area: Area) {
+        for y in 0..area.height {
+            let share = (area.height - 1 - y) as f64 / (area.height - 1).max(1) as f64;
+            canvas.rect(area.x, area.y + y, area.width, 1, self.map.colour(share));
+        }
+        canvas.frame(area.x, area.y, area.width, area.height, INK);
+        let [low, high] = self.range;
+        let marks = ticks(low, high, (area.height / 45).clamp(1, 5));
+        let right = (area.x + area.width) as f64;
+        let style = Style { height: SMALL, up: 0.5, ..Style::default() };
+        let row = |v: f64| (area.y + area.height - 1) as f64 - (v - low) / (high - low) * (area.height - 1) as f64;
+        for (v, label) in marks.at.iter().zip(&marks.labels) {
+            canvas.rect(area.x + area.width, row(*v).round() as usize, 5, 1, INK);
+            canvas.text(right + 10.0, row(*v).round() + 0.5, label, style);
+        }
+        let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
+        for (v, word) in [low, high].into_iter().zip(self.ends) {
+            canvas.text(right + 18.0 + widest, row(v) + 0.5, word, Style { colour: GREY, ..style });
+        }
+        let name = if marks.power == 0 { self.name.to_owned() } else { format!("{} / 1e{}", self.name, marks.power) };
+        canvas.text(area.x as f64, area.y as f64 - 14.0, &name, Style { height: NORMAL, ..Style::default() });
+    }
+}
+
+/// The pointers' explanation with its own pointer.
+fn legend_width() -> f64 {
+    28.0 + text_width(LEGEND, SMALL)
+}
+
+/// A range that has a width: a uniform field lies in the middle of its colours.
+fn usable([low, high]: [f64; 2]) -> [f64; 2] {
+    match () {
+        () if (high - low).is_finite() && low < high => [low, high],
+        () if low.is_finite() && low == high => [low - low.abs().max(1.0) / 2.0, low + low.abs().max(1.0) / 2.0],
+        () => [0.0, 1.0],
+    }
+}
+
+/// From the layout's corner to the sheet's.
+fn shifted(area: Area) -> Area {
+    Area { x: area.x + BORDER, y: area.y + HEAD, ..area }
+}
+
+/// To two digits.
+fn rounded(factor: f64) -> f64 {
+    let unit = 10f64.powf(factor.log10().floor() - 1.0);
+    (factor / unit).round() * unit
+}
+
+/// Keeps what fits, and says that something is missing.
+fn shortened(text: &str, height: f64, room: f64) -> String {
+    if text_width(text, height) <= room {
+        return text.to_owned();
+    }
+    let mut short: Vec<char> = text.chars().collect();
+    while !short.is_empty() && text_width(&(short.iter().collect::<String>() + "..."), height) > room {
+        short.truncate(short.len() * 19 / 20);
+    }
+    short.into_iter().collect::<String>() + "..."
+}
