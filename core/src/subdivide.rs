@@ -40,12 +40,14 @@
 //!
 //! 1. `chord_bounds`: bounds of a convex body's share of a box, from chords
 //! 2. `range_stack`: the explicit stack of ranges
-//! 3. `occupancy`: open, cut or closed, and what a query hands on
-//! 4. `local_planes`: a polytope's planes near a box
-//! 5. `place`: how a box lies to a convex body
-//! 6. `mesh`: the same for a closed surface
-//! 7. `parts`: the parts of a box
-//! 8. `subdivision`: the walk
+//! 3. `rule`: when to stop
+//! 4. `occupancy`: open, cut or closed, and what a query hands on
+//! 5. `memory`: the lists of bodies and facets
+//! 6. `local_planes`: a polytope's planes near a box
+//! 7. `place`: how a box lies to a convex body
+//! 8. `mesh`: the same for a closed surface
+//! 9. `parts`: the parts of a box
+//! 10. `subdivision`: the walk
 
 use crate::grid::Grid;
 use crate::grid::cell_range::{CellRange, Target};
@@ -54,73 +56,23 @@ use subdivision::{Filtered, Subdivision};
 
 mod chord_bounds;
 mod local_planes;
+mod memory;
 mod mesh;
 mod occupancy;
 mod parts;
 mod place;
 mod range_stack;
+mod rule;
 mod subdivision;
 
 pub use chord_bounds::{Bounds, Columns, MAX_PARTS};
 pub use local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
+pub use memory::{Candidate, SubdivisionMemory, TooLittleMemory};
 pub use mesh::{ClosedSurface, slab};
 pub use occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 pub use place::{BodyScalar, Subdividable};
 pub use range_stack::{MAX_RANGES, RangeStack};
-pub use subdivision::Candidate;
-
-/// What becomes of a part that is still cut when the depth is spent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LeafRule {
-    /// Its bounds are 0 and 1. The paper takes the upper one.
-    Solid,
-    /// Its bounds are 0 and 1. Their mean is the value.
-    Half,
-    /// Its bounds are measured, by chords and support planes.
-    Plane,
-}
-
-/// When to stop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SubdivisionRule<R> {
-    /// What becomes of the smallest parts.
-    pub leaf: LeafRule,
-    /// How often a cell may be halved along each axis; above [`MAX_DEPTH`] it counts as that.
-    pub depth: u32,
-    /// With [`LeafRule::Plane`]: a cell or face whose bounds are this close is not divided further. A share, 0 to 1; NaN and numbers below 0
-    /// divide down to `depth`.
-    pub tol: R,
-}
-
-/// Deepest subdivision of a cell: 2¹⁶ parts along each side.
-pub const MAX_DEPTH: u32 = 16;
-
-/// The caller's memory for the lists, used as stacks; contents do not matter. Where it is full a part keeps the longer list of its parent,
-/// which costs work, not truth. It must hold one list of all bodies and their facets ([`TooLittleMemory`]).
-#[derive(Debug)]
-pub struct SubdivisionMemory<'a, V> {
-    /// Bodies: a multiple of their number, say 64 times.
-    pub candidates: &'a mut [Candidate<V>],
-    /// Facets: all of them, and as much again.
-    pub facets: &'a mut [u32],
-}
-
-/// The caller's memory does not hold one list of all bodies and their facets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooLittleMemory {
-    /// Least length of `candidates`.
-    pub candidates: usize,
-    /// Least length of `facets`.
-    pub facets: usize,
-}
-
-impl core::fmt::Display for TooLittleMemory {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(f, "memory for {} candidates and {} facets is needed", self.candidates, self.facets)
-    }
-}
-
-impl core::error::Error for TooLittleMemory {}
+pub use rule::{LeafRule, MAX_DEPTH, SubdivisionRule};
 
 /// Finds the solid share of the cells or faces of `range`, and hands what is not open to `fill`, each cell once at most: ranges all closed, or
 /// single cells or faces with bounds. What of `range` lies outside the grid is left out.

@@ -7,8 +7,8 @@
 
 use crate::convex::exact::{Contact, contact};
 pub use crate::convex::shape::FacetPlane;
-use crate::convex::shape::{AxisFrame, Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere, normalized};
-use crate::convex::support::{ScalarOf, Support, Transformed};
+use crate::convex::shape::{AxisFrame, Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere};
+use crate::convex::support::{ScalarOf, Support, Transformed, normalized};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 

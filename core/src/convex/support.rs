@@ -19,6 +19,12 @@ pub struct SupportPoint<V> {
     pub index: u32,
 }
 
+/// The point of a body that has no numbered vertices.
+#[inline(always)]
+pub(crate) fn only<V>(point: V) -> SupportPoint<V> {
+    SupportPoint { point, index: 0 }
+}
+
 /// A convex body: a core, given by its support mapping, thickened by a radius.
 ///
 /// For any finite direction `d` that is not zero, with `p` the point of the core that [`Support::farthest`] returns:
@@ -275,4 +281,14 @@ pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
     let direction = if subnormal { direction * (V::Scalar::ONE / V::Scalar::EPSILON) } else { direction };
     let unit = direction.norm_max().binade();
     if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
+}
+
+/// A vector divided by its length, whatever its size; zero for zero and for vectors that are not finite.
+pub(crate) fn normalized<V: Vector>(v: V) -> V {
+    let unit = v.norm_max().binade();
+    if !(unit > V::Scalar::ZERO) || !unit.is_finite() {
+        return V::ZERO;
+    }
+    let v = v * (V::Scalar::ONE / unit);
+    v * (V::Scalar::ONE / v.dot(v).sqrt())
 }

@@ -3,33 +3,17 @@
 use heapless::Vec;
 
 use super::chord_bounds::{Bounds, Columns, MAX_PARTS};
+use super::memory::{Candidate, CandidateList, SubdivisionMemory, TooLittleMemory};
 use super::mesh::slab;
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use super::parts::{PolytopeParts, flat_axes, part_of};
 use super::place::{BodyScalar, Subdividable};
 use super::range_stack::RangeStack;
-use super::{LeafRule, MAX_DEPTH, SubdivisionMemory, SubdivisionRule, TooLittleMemory};
+use super::rule::{LeafRule, MAX_DEPTH, SubdivisionRule};
 use crate::grid::Grid;
 use crate::grid::cell_range::{CellRange, Target};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-
-/// A body that cuts a box: its number, what is known of it there, and where its active facets are listed.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Candidate<V> {
-    body: u32,
-    first: u32,
-    end: u32,
-    warm: WarmStart<V>,
-}
-
-/// A list of candidates, `first..end` of the caller's memory. `facets_end` is where the memory of facets is free.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct CandidateList {
-    first: usize,
-    end: usize,
-    facets_end: usize,
-}
 
 /// Most boxes that are being divided at once: one a level, from the cell itself at level 0 to the parents of the smallest parts.
 const MAX_BOXES: usize = MAX_DEPTH as usize;

@@ -1,9 +1,8 @@
 //! The exact distance, rounded at the end.
 
-use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, cross, dot, is_zero, minus};
-use super::lattice::{CoordinateLattice, one, times_power};
+use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, V1, V2, cross, dot, is_zero, minus};
+use super::lattice::{CoordinateLattice, NotFinite, one, times_power};
 use super::search::LatticePair;
-use super::{NotFinite, V1, V2};
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
 

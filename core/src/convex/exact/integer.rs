@@ -28,6 +28,13 @@ pub struct Int<const N: usize> {
 /// Three such integers.
 pub type Vec3<const N: usize> = [Int<N>; 3];
 
+/// A vector of degree 1: a difference of vertices.
+pub type V1 = Vec3<DEGREE_1>;
+/// A vector of degree 2: a product of differences.
+pub type V2 = Vec3<DEGREE_2>;
+/// A vector of degree 3: a direction.
+pub type V3 = Vec3<DEGREE_3>;
+
 impl<const N: usize> Int<N> {
     /// 0.
     pub const ZERO: Self = Int { negative: false, len: 0, words: [0; N] };

@@ -1,9 +1,20 @@
 //! From floating point to integers and back: the unit of a query, and directions back.
 
-use super::integer::{Int, Vec3, minus};
-use super::{NotFinite, V1};
+use super::integer::{Int, V1, Vec3, minus};
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
+
+/// A vertex is NaN or infinite, or there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotFinite;
+
+impl core::fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("a body has no vertices, or one that is not finite")
+    }
+}
+
+impl core::error::Error for NotFinite {}
 
 /// The unit in which all coordinates of a query are integers.
 #[derive(Clone, Copy)]

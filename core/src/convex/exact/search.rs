@@ -2,8 +2,7 @@
 
 use core::cmp::Ordering;
 
-use super::V3;
-use super::integer::{DEGREE_4, Int, dot, is_zero, minus, negated};
+use super::integer::{DEGREE_4, Int, V3, dot, is_zero, minus, negated};
 use super::lattice::{CoordinateLattice, ExactDifference, direction, exponent, parts, times_power};
 use super::simplex::{Points, nearest};
 use crate::convex::shape::Vertices;

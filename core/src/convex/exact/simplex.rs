@@ -4,9 +4,8 @@ use core::cmp::Ordering;
 
 use heapless::Vec;
 
-use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, cross, dot, minus, negated, resized};
+use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, V1, V2, V3, cross, dot, minus, negated, resized};
 use super::lattice::ExactDifference;
-use super::{V1, V2, V3};
 
 /// Up to four points of the difference: a simplex, or the edges of a cone.
 pub(super) type Points = Vec<ExactDifference, 4>;

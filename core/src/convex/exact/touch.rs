@@ -2,11 +2,11 @@
 
 use core::cmp::Ordering;
 
-use super::integer::{DEGREE_4, Int, cross, dot, is_zero, minus, negated, resized};
+use super::integer::{DEGREE_4, Int, V1, V2, V3, cross, dot, is_zero, minus, negated, resized};
 use super::lattice::{ExactDifference, one};
+use super::relation::{ExactAxis, Relation, Surround};
 use super::search::LatticePair;
 use super::simplex::{Points, nearest_in_cone, turn};
-use super::{ExactAxis, Relation, Surround, V1, V2, V3};
 use crate::convex::shape::Vertices;
 
 impl<A, B> LatticePair<'_, A, B>
@@ -28,12 +28,12 @@ where
     fn both_sides(&self, d: &V3) -> Result<(ExactDifference, ExactDifference), ExactAxis> {
         let low = self.lowest(d);
         if !dot::<_, _, DEGREE_4>(d, &low.w).is_negative() {
-            return Err(ExactAxis(*d));
+            return Err(ExactAxis::new(*d));
         }
         let opposite = negated(d);
         let high = self.lowest(&opposite);
         if !dot::<_, _, DEGREE_4>(&opposite, &high.w).is_negative() {
-            return Err(ExactAxis(opposite));
+            return Err(ExactAxis::new(opposite));
         }
         Ok((low, high))
     }
@@ -60,7 +60,7 @@ where
             let inward = negated(&resized(&outward));
             let new = self.lowest(&inward);
             if !dot::<_, _, DEGREE_4>(&inward, &new.w).is_negative() {
-                return Relation::Touching(ExactAxis(inward));
+                return Relation::Touching(ExactAxis::new(inward));
             }
             if turn(&e, &first.w, &new.w) == Ordering::Less {
                 return Relation::Overlapping(Surround::of(&[p, q, &first, &last, &new]));
@@ -86,17 +86,17 @@ where
                     [p] => self.about_edge(&anchor, p),
                     [p, q] => self.about_face(&anchor, p, q),
                     [p, q, r] => Relation::Overlapping(Surround::of(&[&anchor, p, q, r])),
-                    _ => Relation::Touching(ExactAxis(axis)),
+                    _ => Relation::Touching(ExactAxis::new(axis)),
                 };
             }
             let down = negated(&residual);
             let new = self.lowest(&down);
             if !dot::<_, _, DEGREE_4>(&down, &new.w).is_negative() {
-                return Relation::Touching(ExactAxis(down));
+                return Relation::Touching(ExactAxis::new(down));
             }
             // The part that is kept has three edges at most, so that there always is room.
             if cone.push(new).is_err() {
-                return Relation::Touching(ExactAxis(down));
+                return Relation::Touching(ExactAxis::new(down));
             }
         }
     }

@@ -6,8 +6,8 @@
 
 use heapless::Vec;
 
-use super::magnitude;
 use super::scan::scan;
+use crate::convex::support::magnitude;
 use crate::number::real::{Real, Vector};
 
 /// Which vertices of a hull share an edge, and which can be farthest.

@@ -2,8 +2,9 @@
 //!
 //! Sphere and capsule are a point and a segment with a radius, which is taken off exactly; the others round, and say by how much.
 
-use super::{FacetPlane, Point, Segment, only};
-use crate::convex::support::{Rounded, Support, SupportPoint, delegate_support, magnitude};
+use super::flat::{Point, Segment};
+use super::plane::FacetPlane;
+use crate::convex::support::{Rounded, Support, SupportPoint, delegate_support, magnitude, normalized, only};
 use crate::number::real::{Real, Vector};
 
 /// A ball: a point with a radius.
@@ -48,16 +49,6 @@ impl<V: Vector> Support for Sphere<V> {
 impl<V: Vector> Support for Capsule<V> {
     const ROUNDED: bool = true;
     delegate_support!(self, V => self.rounded());
-}
-
-/// `v` by its length; zero for zero. Components of any size.
-pub(crate) fn normalized<V: Vector>(v: V) -> V {
-    let unit = v.norm_max().binade();
-    if !(unit > V::Scalar::ZERO) || !unit.is_finite() {
-        return V::ZERO;
-    }
-    let v = v * (V::Scalar::ONE / unit);
-    v * (V::Scalar::ONE / v.dot(v).sqrt())
 }
 
 /// An ellipsoid with axes along x, y and z; see [`crate::convex::support::Transformed`] for others.

@@ -1,9 +1,9 @@
 //! The convex hull of some points, by all of them or by those that can be farthest.
 
 use super::adjacency::Adjacency;
+use super::flat::Vertices;
 use super::scan::{farthest, scan};
-use super::{Vertices, magnitude};
-use crate::convex::support::{ScalarOf, Support, SupportPoint};
+use crate::convex::support::{ScalarOf, Support, SupportPoint, magnitude};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 

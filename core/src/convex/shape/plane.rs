@@ -1,7 +1,6 @@
 //! Flat parts of surfaces.
 
-use super::normalized;
-use crate::convex::support::Support;
+use crate::convex::support::{Support, normalized};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
