@@ -44,8 +44,9 @@ pub struct Polytope<'a, V: Vector> {
 
 /// Why some triangles are not the surface of a convex body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NotConvex {
-    /// No triangles, or a coordinate is not finite.
+    /// No triangles, no volume, or a coordinate is not finite.
     NoBody,
     /// The slice for the facets is too short.
     Full,
@@ -60,6 +61,21 @@ pub enum NotConvex {
         triangle: usize,
     },
 }
+
+impl core::fmt::Display for NotConvex {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            NotConvex::NoBody => f.write_str("no body: no triangles, no volume, or a coordinate that is not finite"),
+            NotConvex::Full => f.write_str("the slice for the facets is too short"),
+            NotConvex::Beyond { triangle } => write!(f, "a vertex lies beyond the plane of triangle {triangle}"),
+            NotConvex::Unknown { triangle } => {
+                write!(f, "triangle {triangle} is too thin, and lies in no plane of the others")
+            }
+        }
+    }
+}
+
+impl core::error::Error for NotConvex {}
 
 /// Finds the planes of a closed surface's triangles, outward, and certifies that the body is convex. Writes the facets into the slice and
 /// returns their number, not more than that of the triangles. `vertices` holds all corners, each at least once. Takes time in proportion to

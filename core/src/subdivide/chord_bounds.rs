@@ -1,17 +1,15 @@
-//! Certified bounds of the volume that a convex body has of a box, or the area of a face, from chords.
+//! Certified bounds of a convex body's share of a box's volume, or of a face's area, from chords.
 //!
-//! Over the base of a box stand columns; lines through them leave the body at a height `h`, a concave function wherever they meet it, and
-//! enter it at a convex one. What fills the box is `h` clamped to it. Over a rectangle of the base, with values `h_i` at the corners
-//! and `m` in the middle:
+//! The base of the box, one of its sides, is divided into rectangles, and a column stands on each. The line up from a point `p` of the base
+//! leaves the body at a height `h(p)`, which is a concave function of `p` wherever the line meets the body, and enters it at a convex one. The
+//! body fills a column up to the mean of `h`, clamped to the box. Over a rectangle with values `h_i` at its corners and `m` in its middle:
 //!
-//! - the triangles through the corners lie below `h`: they are spanned by inner points;
-//! - `h(p) <= 2 m - h(p')` for the opposite point `p'`, so the triangles turned over about `m` lie above it;
-//! - where neither leaves the box, the mean of `h` lies between the mean of the `h_i` and `m`, which is the mean of the body's support
-//!   plane there (the inequality of Hermite and Hadamard).
+//! - `h` is not below the two triangles through its values at the corners, as they are spanned by points of the body;
+//! - `h(p) <= 2 m - h(p')`, where `p'` is opposite to `p` about the middle; so it is not above those triangles turned over about `m`;
+//! - where neither leaves the box, the mean of `h` lies between the mean of the `h_i` and `m` (the inequality of Hermite and Hadamard).
 //!
-//! All are of second order, and piecewise linear functions clamped to limits are integrated exactly.
-//!
-//! A face is the same with one dimension less.
+//! The gap between these bounds is of second order in the size of the rectangle. Means of piecewise linear functions, clamped, are exact.
+//! A face is measured the same way with one dimension less.
 
 use crate::convex::chord::{Chords, rounding};
 use crate::convex::support::ScalarOf;
@@ -45,7 +43,7 @@ impl<R: Real> Bounds<R> {
 /// How finely to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Columns<R> {
-    /// Stop when the bounds are this close.
+    /// Bounds this close will do, as a share.
     pub enough: R,
     /// Divide each side of the base into this many parts at most; not more than [`MAX_PARTS`].
     pub parts: usize,
@@ -54,7 +52,7 @@ pub struct Columns<R> {
 /// Most parts of a side: beyond, dividing the box is better, as only part of it is hard.
 pub const MAX_PARTS: usize = 32;
 
-/// More parts than theory asks for, as a factor: the next division should be the last.
+/// How many more parts are made than the gap so far asks for, as a factor, so that the next division is the last.
 const MARGIN: f64 = 1.08;
 
 /// Rounding of the sums over columns, in units of ε: two rows of [`MAX_PARTS`] additions and some products.
@@ -87,7 +85,8 @@ impl<R: Real> Columns<R> {
         best
     }
 
-    /// So many parts will do if the surface is smooth, judging by the gap of some.
+    /// How many parts a side needs for bounds that are close enough, if the gap shrinks with their square as for a smooth surface; `gap` is that of
+    /// `parts`.
     fn wanted(&self, gap: R, parts: usize) -> usize {
         let wanted = (gap / self.enough).sqrt() * R::from_usize(parts) * R::from_f64(MARGIN);
         (wanted.to_f64() as usize + 1).max(parts + 1 + parts / 8).min(self.parts.min(MAX_PARTS))
@@ -106,8 +105,8 @@ struct BoxInBody<'a, B: Chords> {
     grow: ScalarOf<B>,
 }
 
-/// How far a line fills a box, from either end: from the lower side up to where it leaves the body, and from the upper side down to
-/// where it enters it. Beyond the box both go on.
+/// Where a line through a box along one of its axes leaves the body, as a height above the box's lower side, and where it enters the body, as a
+/// depth below the upper side. Both may be beyond the box.
 #[derive(Clone, Copy)]
 struct ChordHeights<R> {
     up: R,
@@ -121,7 +120,7 @@ impl<'a, B: Chords> BoxInBody<'a, B> {
         BoxInBody { body, near, lo, hi, min: bounds.min.to_array(), max: bounds.max.to_array(), grow: rounding(body) }
     }
 
-    /// The heights over a point of the base, of the body grown or shrunk; none where the line may miss it.
+    /// The heights of the line over a point of the base, for the body grown by `grow`; none where the line may miss it.
     #[inline(always)]
     fn heights<const AXIS: usize>(
         &self,
@@ -149,56 +148,89 @@ impl<'a, B: Chords> BoxInBody<'a, B> {
         }
     }
 
+    /// The heights over a row of points: those of `u` at the same `v`, of the body shrunk.
+    #[inline(always)]
+    fn fill_row<const AXIS: usize>(&self, u: &BaseAxis<ScalarOf<B>>, v: ScalarOf<B>, row: &mut HeightRow<ScalarOf<B>>) {
+        for (to, &at) in row.iter_mut().zip(&u.at).take(u.parts + 1) {
+            *to = self.heights::<AXIS>([at, v], -self.grow);
+        }
+    }
+
+    /// [`BoxInBody::along`] for an axis known when the program is built.
     fn columns<const AXIS: usize>(&self, parts: usize) -> Bounds<ScalarOf<B>> {
-        type R<B> = ScalarOf<B>;
-        let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
+        let (zero, half) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::HALF);
         let (u, v) = (BaseAxis::new(self, (AXIS + 1) % 3, parts), BaseAxis::new(self, (AXIS + 2) % 3, parts));
         let (Some(u), Some(v)) = (u, v) else { return Bounds::OPEN };
         let full = self.hi[AXIS] - self.lo[AXIS];
-        let inner = |i: usize, j: usize| self.heights::<AXIS>([u.at[i], v.at[j]], -self.grow);
         let mut rows = [[None; MAX_PARTS + 1]; 2];
-        let (mut lower, mut upper, mut all, mut none) = (zero, zero, true, true);
-        for i in 0..=u.parts {
-            rows[0][i] = inner(i, 0);
-        }
-        for j in 0..v.parts {
-            let (mut row_lower, mut row_upper, middle) = (zero, zero, v.middle(j));
-            let [below, above] = &mut rows;
+        let [below, above] = &mut rows;
+        let (mut below, mut above) = (below, above);
+        self.fill_row::<AXIS>(&u, v.at[0], below);
+        let mut sum = ColumnSum { lower: zero, upper: zero, all: true, none: true };
+        for ends in v.at.windows(2).take(v.parts) {
+            let &[v_low, v_high] = ends else { continue };
             if v.flat {
                 *above = *below;
             } else {
-                for i in 0..=u.parts {
-                    above[i] = inner(i, j + 1);
-                }
+                self.fill_row::<AXIS>(&u, v_high, above);
             }
-            for i in 0..u.parts {
-                let corners = [below[i], below[i + 1], above[i], above[i + 1]];
-                let middle = || self.heights::<AXIS>([u.middle(i), middle], self.grow);
-                let [low, high] = mean_fill(corners, middle, full);
+            let (mut row_lower, mut row_upper, v_middle) = (zero, zero, (v_low + v_high) * half);
+            let squares = below.windows(2).zip(above.windows(2)).zip(u.at.windows(2)).take(u.parts);
+            for square in squares {
+                let ((&[a, b], &[c, d]), &[u_low, u_high]) = square else { continue };
+                let middle = || self.heights::<AXIS>([(u_low + u_high) * half, v_middle], self.grow);
+                let [low, high] = mean_fill([a, b, c, d], middle, full);
                 row_lower += low;
                 row_upper += high;
-                all = all && low == full;
-                none = none && high == zero;
+                sum.all = sum.all && low == full;
+                sum.none = sum.none && high == zero;
             }
-            lower += row_lower;
-            upper += row_upper;
-            rows.swap(0, 1);
+            sum.lower += row_lower;
+            sum.upper += row_upper;
+            core::mem::swap(&mut below, &mut above);
         }
-        if none {
+        self.share_of(&sum, [&u, &v], full)
+    }
+
+    /// The sum over all columns, of height `full`, as a share of the box; wider by its rounding.
+    #[inline(always)]
+    fn share_of(
+        &self,
+        sum: &ColumnSum<ScalarOf<B>>,
+        [u, v]: [&BaseAxis<ScalarOf<B>>; 2],
+        full: ScalarOf<B>,
+    ) -> Bounds<ScalarOf<B>> {
+        type R<B> = ScalarOf<B>;
+        let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
+        if sum.none {
             return Bounds::OPEN;
         }
         let share = u.share * v.share / (full * R::<B>::from_usize(u.parts * v.parts));
         let relative = R::<B>::EPSILON * R::<B>::from_f64(SUM_ROUNDINGS);
-        // ChordHeights are differences of coordinates.
+        // Heights are differences of coordinates.
         let room = relative + self.grow / full;
-        let lower = if all { u.share * v.share } else { lower * share * (one - relative) - room };
-        let whole = all && u.share == one && v.share == one;
+        let lower = if sum.all { u.share * v.share } else { sum.lower * share * (one - relative) - room };
+        let whole = sum.all && u.share == one && v.share == one;
         let lower = if whole { one } else { (lower - relative).max(zero) };
-        Bounds { lower, upper: (upper * share * (one + relative) + room).min(one) }
+        Bounds { lower, upper: (sum.upper * share * (one + relative) + room).min(one) }
     }
 }
 
-/// Bounds of the mean filling over a rectangle, from its corners and, if need be, its middle.
+/// Heights over the points of a row; none where a line may miss the body.
+type HeightRow<R> = [Option<ChordHeights<R>>; MAX_PARTS + 1];
+
+/// Sums over columns, each a mean height.
+struct ColumnSum<R> {
+    lower: R,
+    upper: R,
+    /// All columns are full.
+    all: bool,
+    /// No column has anything.
+    none: bool,
+}
+
+/// Bounds of the mean height to which the body fills the columns on a rectangle, from the lines at its corners and, if need be, in its middle.
+/// `full` is the height of the box.
 #[inline(always)]
 fn mean_fill<R: Real>(
     corners: [Option<ChordHeights<R>>; 4],
@@ -261,7 +293,7 @@ fn mean_positive_part<R: Real>(x: R, y: R, z: R) -> R {
     }
 }
 
-/// Where a column may miss the body: three corners make half the rectangle.
+/// [`mean_fill`] where a line at a corner may miss the body: any three corners that do not are half the rectangle.
 #[cold]
 fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> [R; 2] {
     // Within the box and the body both are concave; below zero there is nothing inside.
@@ -272,9 +304,9 @@ fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> [R; 
     [half.unwrap_or(R::ZERO), full]
 }
 
-/// A side of the base, as far as the body reaches it.
+/// A side of the base, as far as the body reaches along it, divided into parts.
 struct BaseAxis<R> {
-    /// Where its parts begin and end.
+    /// Where its parts begin and end; as many as there are parts, and one.
     at: [R; MAX_PARTS + 1],
     /// Length as a share of the cell's.
     share: R,
@@ -304,10 +336,5 @@ impl<R: Real> BaseAxis<R> {
             at[i] = lo + (hi - lo) * (R::from_usize(i) / R::from_usize(parts));
         }
         (share > R::ZERO).then_some(BaseAxis { at, share, parts, flat: false })
-    }
-
-    #[inline(always)]
-    fn middle(&self, i: usize) -> R {
-        (self.at[i] + self.at[i + 1]) * R::HALF
     }
 }

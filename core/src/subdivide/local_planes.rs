@@ -59,7 +59,10 @@ impl<R: Real> LocalPlanes<R> {
     #[inline(always)]
     fn share_an_inner_point(&self, part: &PlaneDistances<R>, scale: R) -> bool {
         let cutting = || (0..MAX_PLANES).filter(|n| part.cut >> n & 1 == 1);
-        let sum = cutting().fold([R::ZERO; 3], |s, n| [0, 1, 2].map(|axis| s[axis] + self.reach[n][axis]));
+        let sum = cutting().fold([R::ZERO; 3], |[sx, sy, sz], n| {
+            let [x, y, z] = self.reach[n];
+            [sx + x, sy + y, sz + z]
+        });
         let inward = sum.map(|s| -scale.copysign(s));
         cutting().all(|n| {
             let [x, y, z] = self.reach[n];

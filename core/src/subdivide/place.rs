@@ -127,8 +127,8 @@ impl<B: Chords> Subdividable for B {
             if plane.exact {
                 return None;
             }
-            let (normal, size) = (plane.normal.to_array(), cell.size().to_array());
-            planes.reach[n] = [0, 1, 2].map(|axis| normal[axis] * size[axis] * Real::HALF);
+            let ([nx, ny, nz], [sx, sy, sz]) = (plane.normal.to_array(), cell.size().to_array());
+            planes.reach[n] = [nx * sx * Real::HALF, ny * sy * Real::HALF, nz * sz * Real::HALF];
             planes.whole[n] = plane.normal.abs().dot(cell.size()) * Real::HALF;
             planes.distances.middle[n] = cell.center().dot(plane.normal) - plane.offset;
             planes.distances.cut |= 1 << n;
