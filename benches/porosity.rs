@@ -24,13 +24,10 @@ fn main() {
     case("cad_skid", &skid, &truth.edges(), Some(&truth));
     let fine = edges(&GridSpec::Cells([400, 260, 220], None), skid.bounds(), &mut Vec::new()).expect("a grid");
     case("cad_skid, fine", &skid, &fine, None);
-    match shared("corpus") {
-        Some(corpus) => {
-            let huldra = read(&corpus.join("meshes/huldra_psup_region.stl"));
-            let truth = Truth::read(&corpus.join("ground_truth/huldra_psup_region.stl.npz"));
-            case("huldra_psup_region", &huldra, &truth.edges(), Some(&truth));
-        }
-        None => println!("huldra_psup_region: skipped, the shared corpus is absent"),
+    if let Some(corpus) = shared("corpus") {
+        let huldra = read(&corpus.join("meshes/huldra_psup_region.stl"));
+        let truth = Truth::read(&corpus.join("ground_truth/huldra_psup_region.stl.npz"));
+        case("huldra_psup_region", &huldra, &truth.edges(), Some(&truth));
     }
 }
 

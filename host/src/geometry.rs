@@ -1,6 +1,6 @@
 //! Geometry: triangles of files and solids by formula, put in order until they are bodies that can be measured.
 //!
-//! In reading order: [`unit`], [`mesh`], [`read`]; [`form`], [`single`], [`repair`], [`bodies`]; [`scene`].
+//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`single`], [`repair`], [`bodies`]; `scene`.
 
 pub mod bodies;
 pub mod form;

@@ -1,4 +1,4 @@
-//! Grids as the user gives them: edges, a number of cells, or a spacing; or a [`file`].
+//! Grids as the user gives them: edges, a number of cells, or a spacing; or a file, see `file`.
 
 #[cfg(feature = "scene")]
 pub mod file;

@@ -60,7 +60,7 @@ impl Figure<'_> {
     /// Draws and writes a PNG file.
     ///
     /// # Errors
-    /// A length that does not fit the grid, a slice outside, edges that do not ascend, or as [`super::atomically`].
+    /// A length that does not fit the grid, a slice outside, edges that do not ascend, or as [`crate::files::atomically`].
     pub fn write(&self, path: &Path) -> Result<()> {
         self.draw().map_err(|reason| Error::file(path, reason))?.write(path)
     }

@@ -9,6 +9,12 @@ use crate::grid::file::{self, GridTable};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
+/// Names of the axes.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Names of the velocities along them.
+pub const VELOCITIES: [&str; 3] = ["u", "v", "w"];
+
 /// A whole case.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,10 +1,10 @@
 //! `voidage solve`: case → setup → steps → files.
 
-use super::case::{CaseFile, Format, OutputKeys};
+use super::case::{CaseFile, Format, OutputKeys, VELOCITIES};
 use super::checkpoint::{self, Fingerprint, Journal};
 use super::frames::{self, Pictures, Snapshot, cell_at, create};
-use super::report::Report;
-use super::setup::{Setup, VELOCITIES, live_axes, setup};
+use super::report::{Done, Report};
+use super::setup::{Setup, live_axes, setup};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
@@ -130,15 +130,6 @@ impl Limits {
 
 /// Frames of a run: more is a slip of the pen.
 const MOST_FRAMES: f64 = 1e6;
-
-/// Work of this session.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Done {
-    /// Steps.
-    pub steps: usize,
-    /// Seconds of stepping, output aside.
-    pub seconds: f64,
-}
 
 /// A run in progress.
 struct Run<'a, const D: usize> {
