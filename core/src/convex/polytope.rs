@@ -85,7 +85,7 @@ impl core::error::Error for NotConvex {}
 /// [`NotConvex`] tells the first triangle that contradicts.
 pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet<V>]) -> Result<usize, NotConvex> {
     let hull = Hull::new(vertices);
-    // What is said later of points inside all facets has roundings of its own.
+    // A quarter of `rounding`: the subdivision spends the rest when it tests points against these planes.
     let room = rounding(&hull) * V::Scalar::from_f64(0.25);
     if triangles.is_empty() || !room.is_finite() {
         return Err(NotConvex::NoBody);

@@ -105,8 +105,8 @@ struct BoxInBody<'a, B: Chords> {
     grow: ScalarOf<B>,
 }
 
-/// Where a line through a box along one of its axes leaves the body, as a height above the box's lower side, and where it enters the body, as a
-/// depth below the upper side. Both may be beyond the box.
+/// Where a line along an axis of the box `lo..hi` passes the body: `up` = exit − lo, `down` = hi − entry, not clamped. With L = hi − lo the length
+/// inside both is min(up, L) + min(down, L) − L, at least 0.
 #[derive(Clone, Copy)]
 struct ChordHeights<R> {
     up: R,

@@ -27,7 +27,7 @@ impl core::ops::Add for QueryCount {
     }
 }
 
-/// What a box hands to its parts, so that their query need not start from nothing.
+/// The warm start of a query for a part of a box: what the query for the box found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WarmStart<V> {
     /// For a convex body: a direction that separated a neighbour from it, or zero. For a surface: a point in the box.

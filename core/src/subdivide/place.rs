@@ -87,7 +87,7 @@ impl<B: Chords> Subdividable for B {
             let plane = self.facet(id as usize);
             let [low, high] = plane.range(cell);
             let margin = if plane.exact { Real::ZERO } else { margin };
-            // A face in the plane of a facet lies beyond nothing.
+            // A face that lies in the facet's plane has low = high = 0 and is blocked: `low >= margin` alone must not open it.
             if low >= margin && high > margin {
                 return Occupancy::Open;
             }

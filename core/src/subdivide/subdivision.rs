@@ -260,7 +260,7 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
         Some(parts.share(cell, &distances, levels, Real::HALF))
     }
 
-    /// Bounds made wider by what rounding does to the planes between parts and to the sums.
+    /// Bounds widened by the rounding of the planes between parts (one of the coordinates a level) and of the weighted sum.
     fn widened(&self, bounds: Bounds<BodyScalar<B>>, cell: &Aabb<B::Vector>) -> Bounds<BodyScalar<B>> {
         type R<B> = BodyScalar<B>;
         let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
@@ -280,9 +280,9 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
     }
 }
 
-/// How far the bounds of a part at some level may be apart, as a share of the part, so that those of the cell are at most `tol` apart. Of the
-/// `rows` parts that a side has, a surface cuts about `rows` (of a face) or `rows²` (of a cell): each may have its share of the tolerance,
-/// with a factor of 4 in reserve below the cell itself.
+/// How far the bounds of a part at some level may be apart, as a share of the part, so that those of the cell are at most `tol` apart. A smooth
+/// surface cuts about `rows²` of a cell's `rows³` parts (of a face `rows` of `rows²`); each of them may use up its share of the tolerance, and
+/// below the cell itself a quarter of that.
 fn allowance<R: Real>(tol: R, level: u32, parts: usize) -> R {
     let rows = R::from_usize(1 << level.min(MAX_DEPTH));
     let on_surface = if parts == 8 { rows * rows } else { rows };

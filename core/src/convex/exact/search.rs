@@ -83,8 +83,9 @@ where
         self.lattice.difference(self.a, self.b, pair)
     }
 
-    /// Towards the nearest point. With `any` the search ends at the first axis that separates strictly.
-    pub(super) fn search(&self, hint: Option<A::Vector>, any: bool) -> Search {
+    /// GJK in exact arithmetic: each round replaces the simplex by a strictly nearer one, so it ends. `hint` is a direction from the first body to
+    /// the second. With `stop_when_separated` it returns at the first strictly separating axis, else at the nearest point.
+    pub(super) fn search(&self, hint: Option<A::Vector>, stop_when_separated: bool) -> Search {
         let first = match hint {
             Some(hint) if hint.is_finite() => {
                 let d = hint.to_array().map(|x| {
@@ -108,7 +109,7 @@ where
             let new = self.lowest(&direction);
             let along: Int<DEGREE_4> = dot(&direction, &new.w);
             match along.sign() {
-                Ordering::Greater if any => return Search { simplex, direction, weak },
+                Ordering::Greater if stop_when_separated => return Search { simplex, direction, weak },
                 Ordering::Equal => weak = Some(direction),
                 _ => {}
             }

@@ -105,7 +105,7 @@ where
         if SCALED { length * self.factor } else { length }
     }
 
-    /// A scaled length as it is.
+    /// A scaled length in the unit of the bodies.
     #[inline(always)]
     pub fn unscaled(&self, length: V::Scalar) -> V::Scalar {
         if SCALED { length * (V::Scalar::ONE / self.factor) } else { length }
@@ -118,7 +118,8 @@ where
         V::new(part(a.x(), b.x()), part(a.y(), b.y()), part(a.z(), b.z()))
     }
 
-    /// As long as the points are small, and the reverse, so that products with them neither overflow nor underflow.
+    /// `direction` times a power of two of about `factor`, clamped to the scalar's range: then `d·p` is of order one for points of size `1 / factor`,
+    /// and neither overflows nor underflows. The direction itself unless `SCALED`.
     #[inline(always)]
     fn fitted(&self, direction: V) -> V {
         let one = V::Scalar::ONE;
@@ -148,7 +149,7 @@ where
         Probe { a, b, w: self.difference(a.point, b.point) }
     }
 
-    /// A first direction from `a` to `b`: never zero, always finite.
+    /// The first direction of a search, from `a` to `b`: the hint, or along the centres; never zero, always finite.
     #[inline(always)]
     pub fn seed(&self, hint: Option<V>) -> V {
         let direction = match hint {
@@ -160,7 +161,7 @@ where
         if usual { direction } else { unusual_seed(direction) }
     }
 
-    /// The bodies.
+    /// The two bodies.
     pub fn bodies(&self) -> (&'a A, &'a B) {
         (self.a, self.b)
     }
