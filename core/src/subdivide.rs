@@ -11,7 +11,7 @@
 //! ```
 //! use glam::DVec3;
 //! use voidage_core::convex::shape::Sphere;
-//! use voidage_core::grid::{Grid, cell_range::{CellRange, Target}};
+//! use voidage_core::grid::{Grid, cell_range::{CellRange, RangeKind}};
 //! use voidage_core::subdivide::{Candidate, LeafRule, SubdivisionMemory, SubdivisionRule, subdivide};
 //!
 //! let edges = [0.0, 1.0, 2.0];
@@ -22,7 +22,7 @@
 //! let mut memory = SubdivisionMemory { candidates: &mut candidates, facets: &mut facets };
 //!
 //! let mut solid = [0.0; 8];
-//! subdivide(&grid, Target::Cells, CellRange::all(&grid, Target::Cells), &balls, rule, &mut memory, |range, share| {
+//! subdivide(&grid, RangeKind::Cells, CellRange::all(&grid, RangeKind::Cells), &balls, rule, &mut memory, |range, share| {
 //!     for k in range.lo[2]..range.hi[2] {
 //!         for j in range.lo[1]..range.hi[1] {
 //!             for i in range.lo[0]..range.hi[0] {
@@ -50,7 +50,7 @@
 //! 10. `subdivision`: the walk
 
 use crate::grid::Grid;
-use crate::grid::cell_range::{CellRange, Target};
+use crate::grid::cell_range::{CellRange, RangeKind};
 use crate::number::aabb::Aabb;
 use subdivision::{Filtered, Subdivision};
 
@@ -81,7 +81,7 @@ pub use rule::{LeafRule, MAX_DEPTH, SubdivisionRule};
 /// [`TooLittleMemory`] if the memory does not hold a list of all bodies.
 pub fn subdivide<B: Subdividable>(
     grid: &Grid<BodyScalar<B>>,
-    target: Target,
+    kind: RangeKind,
     range: CellRange,
     bodies: &[B],
     rule: SubdivisionRule<BodyScalar<B>>,
@@ -90,9 +90,9 @@ pub fn subdivide<B: Subdividable>(
 ) -> Result<QueryCount, TooLittleMemory> {
     let mut subdivision = Subdivision::new(bodies, rule, memory, QueryCount::default());
     let list = subdivision.all_candidates()?;
-    let range = range.intersection(CellRange::all(grid, target));
+    let range = range.intersection(CellRange::all(grid, kind));
     if !range.is_empty() {
-        subdivision.visit(grid, target, range, list, fill);
+        subdivision.visit(grid, kind, range, list, fill);
     }
     Ok(subdivision.count)
 }

@@ -5,7 +5,7 @@ use core::error::Error;
 use glam::DVec3;
 use voidage_core::convex::shape::Sphere;
 use voidage_core::grid::Grid;
-use voidage_core::grid::cell_range::{CellRange, Target};
+use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::subdivide::{
     Bounds, Candidate, LeafRule, MAX_RANGES, QueryCount, RangeStack, SubdivisionMemory, SubdivisionRule,
@@ -74,25 +74,25 @@ fn ranges_around_boxes_are_cut_to_the_grid() {
     let edges = [0.0, 1.0, 2.0, 3.0];
     let grid = Grid::new(&edges, &edges, &edges).expect("a grid");
     let bounds = Aabb { min: DVec3::new(-5.0, 1.0, 1.5), max: DVec3::new(0.5, 2.0, 9.0) };
-    let cells = CellRange::touching(&grid, Target::Cells, &bounds);
+    let cells = CellRange::touching(&grid, RangeKind::Cells, &bounds);
     assert_eq!(cells, CellRange { lo: [0, 0, 1], hi: [1, 3, 3] }, "a closed box touches the cells beside its sides");
-    let faces = CellRange::touching(&grid, Target::Faces(1), &bounds);
+    let faces = CellRange::touching(&grid, RangeKind::Faces(1), &bounds);
     assert_eq!(faces, CellRange { lo: [0, 1, 1], hi: [1, 3, 3] }, "planes 1 and 2");
     let other = CellRange { lo: [0, 2, 0], hi: [3, 3, 2] };
     assert_eq!(cells.intersection(other), CellRange { lo: [0, 2, 1], hi: [1, 3, 2] });
     assert_eq!(cells.union(other), CellRange { lo: [0; 3], hi: [3; 3] });
     assert!(CellRange { lo: [0, 2, 0], hi: [3, 2, 3] }.is_empty());
-    assert_eq!(CellRange::all(&grid, Target::Faces(2)).hi, [3, 3, 4]);
+    assert_eq!(CellRange::all(&grid, RangeKind::Faces(2)).hi, [3, 3, 4]);
 }
 
-fn solid(range: CellRange, target: Target, rule: SubdivisionRule<f64>) -> Vec<(CellRange, Bounds<f64>)> {
+fn solid(range: CellRange, kind: RangeKind, rule: SubdivisionRule<f64>) -> Vec<(CellRange, Bounds<f64>)> {
     let edges = [0.0, 0.5, 1.0];
     let grid = Grid::new(&edges, &edges, &edges).expect("a grid");
     let ball = [Sphere { center: DVec3::splat(0.5), radius: 0.4 }];
     let (mut candidates, mut facets) = ([Candidate::default(); 32], [0; 4]);
     let mut memory = SubdivisionMemory { candidates: &mut candidates, facets: &mut facets };
     let mut found = Vec::new();
-    subdivide(&grid, target, range, &ball, rule, &mut memory, |range, share| found.push((range, share))).expect("room");
+    subdivide(&grid, kind, range, &ball, rule, &mut memory, |range, share| found.push((range, share))).expect("room");
     found
 }
 
@@ -100,14 +100,14 @@ fn solid(range: CellRange, target: Target, rule: SubdivisionRule<f64>) -> Vec<(C
 fn wrong_calls_are_cut_to_size() {
     let rule = SubdivisionRule { leaf: LeafRule::Plane, depth: 4, tol: 1e-2 };
     let within = CellRange { lo: [0; 3], hi: [2; 3] };
-    let all = solid(within, Target::Cells, rule);
+    let all = solid(within, RangeKind::Cells, rule);
     assert_eq!(all.len(), 8);
     // A range beyond the grid, an axis that there is not, a depth beyond any.
-    assert_eq!(solid(CellRange { lo: [0; 3], hi: [u32::MAX; 3] }, Target::Cells, rule), all);
-    assert_eq!(solid(within, Target::Faces(7), rule), all);
-    assert!(solid(CellRange { lo: [5; 3], hi: [9; 3] }, Target::Cells, rule).is_empty());
+    assert_eq!(solid(CellRange { lo: [0; 3], hi: [u32::MAX; 3] }, RangeKind::Cells, rule), all);
+    assert_eq!(solid(within, RangeKind::Faces(7), rule), all);
+    assert!(solid(CellRange { lo: [5; 3], hi: [9; 3] }, RangeKind::Cells, rule).is_empty());
     let deepest = SubdivisionRule { depth: u32::MAX, tol: 1e-3, ..rule };
-    assert_eq!(solid(within, Target::Cells, deepest).len(), 8);
+    assert_eq!(solid(within, RangeKind::Cells, deepest).len(), 8);
     let truth = 4.0 / 3.0 * core::f64::consts::PI * 0.4_f64.powi(3);
     for (_, share) in all {
         assert!(share.lower <= truth && truth <= share.upper && share.gap() < 1e-2, "{share:?} holds {truth}");

@@ -6,7 +6,7 @@ use crate::number::real::{Real, Vector};
 
 /// What a range counts: cells, or the faces normal to an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
+pub enum RangeKind {
     /// Cells.
     Cells,
     /// Faces normal to axis 0, 1 or 2, for x, y, z. No face is normal to another number: such a range counts cells.
@@ -30,24 +30,24 @@ fn by_axis(f: fn(u32, u32) -> u32, [ax, ay, az]: [u32; 3], [bx, by, bz]: [u32; 3
 impl CellRange {
     /// All cells or faces of a grid.
     #[must_use]
-    pub fn all<R: Real>(grid: &Grid<R>, target: Target) -> Self {
+    pub fn all<R: Real>(grid: &Grid<R>, kind: RangeKind) -> Self {
         let mut hi = grid.cells().map(|cells| u32::try_from(cells).unwrap_or(u32::MAX));
         for (axis, hi) in hi.iter_mut().enumerate() {
-            *hi = hi.saturating_add(u32::from(target == Target::Faces(axis)));
+            *hi = hi.saturating_add(u32::from(kind == RangeKind::Faces(axis)));
         }
         CellRange { lo: [0; 3], hi }
     }
 
     /// The cells or faces of a grid that a closed box touches.
     #[must_use]
-    pub fn touching<V: Vector>(grid: &Grid<V::Scalar>, target: Target, bounds: &Aabb<V>) -> Self {
+    pub fn touching<V: Vector>(grid: &Grid<V::Scalar>, kind: RangeKind, bounds: &Aabb<V>) -> Self {
         let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
         let mut range = CellRange::default();
         for axis in 0..3 {
             let edges = grid.edges(axis);
             let first = edges.partition_point(|&e| e < min[axis]);
             let last = edges.partition_point(|&e| e <= max[axis]);
-            let (lo, hi) = if target == Target::Faces(axis) {
+            let (lo, hi) = if kind == RangeKind::Faces(axis) {
                 (first, last)
             } else {
                 (first.saturating_sub(1), last.min(edges.len().saturating_sub(1)))

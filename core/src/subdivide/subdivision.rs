@@ -11,7 +11,7 @@ use super::place::{BodyScalar, Subdividable};
 use super::range_stack::RangeStack;
 use super::rule::{LeafRule, MAX_DEPTH, SubdivisionRule};
 use crate::grid::Grid;
-use crate::grid::cell_range::{CellRange, Target};
+use crate::grid::cell_range::{CellRange, RangeKind};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
@@ -127,14 +127,14 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
     pub fn visit(
         &mut self,
         grid: &Grid<BodyScalar<B>>,
-        target: Target,
+        kind: RangeKind,
         range: CellRange,
         list: CandidateList,
         mut fill: impl FnMut(CellRange, Bounds<BodyScalar<B>>),
     ) {
         let mut stack = RangeStack::new(range, list);
         while let Some((range, list)) = stack.pop() {
-            let cell = box_of(grid, target, range);
+            let cell = box_of(grid, kind, range);
             match self.filter(&cell, list) {
                 Filtered::Open => {}
                 Filtered::Closed => fill(range, Bounds::CLOSED),
@@ -295,9 +295,9 @@ const OVERHANG: f64 = 1.0 / 1024.0;
 
 /// The box around a range of cells or faces. Around faces of several planes it is a little thicker: a body that only touches the outermost
 /// plane shares no volume with the exact box, and yet may block faces in that plane.
-fn box_of<V: Vector>(grid: &Grid<V::Scalar>, target: Target, range: CellRange) -> Aabb<V> {
+fn box_of<V: Vector>(grid: &Grid<V::Scalar>, kind: RangeKind, range: CellRange) -> Aabb<V> {
     let edge = |axis: usize, index: u32| grid.edges(axis).get(index as usize).copied().unwrap_or(V::Scalar::INFINITY);
-    let normal_to = |axis: usize| target == Target::Faces(axis);
+    let normal_to = |axis: usize| kind == RangeKind::Faces(axis);
     let (mut min, mut max) = ([V::Scalar::ZERO; 3], [V::Scalar::ZERO; 3]);
     for axis in 0..3 {
         min[axis] = edge(axis, range.lo[axis]);

@@ -13,7 +13,7 @@ use voidage_core::convex::polytope::{Facet, Polytope, facets};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::convex::support::Transformed;
 use voidage_core::grid::Grid;
-use voidage_core::grid::cell_range::{CellRange, Target};
+use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::subdivide::{
@@ -258,16 +258,16 @@ impl<'a> Road<'a> {
     pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> QueryCount {
         let nx = grid.cells()[0];
         let Layer { lower, sum, .. } = layer;
-        let mut wanted = vec![(Target::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
+        let mut wanted = vec![(RangeKind::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
         if self.areas {
-            wanted.push((Target::Faces(0), nx + 1, lower.x, sum.x));
-            wanted.push((Target::Faces(1), nx, lower.y, sum.y));
-            wanted.push((Target::Faces(2), nx, lower.z, sum.z));
+            wanted.push((RangeKind::Faces(0), nx + 1, lower.x, sum.x));
+            wanted.push((RangeKind::Faces(1), nx, lower.y, sum.y));
+            wanted.push((RangeKind::Faces(2), nx, lower.z, sum.z));
         }
         self.between(grid, [k, k + 1], lists, |road, lists| {
             let fields = wanted.into_iter();
             fields
-                .map(|(target, row, lower, sum)| road.places(grid, target, k, lists, row, lower, sum))
+                .map(|(kind, row, lower, sum)| road.places(grid, kind, k, lists, row, lower, sum))
                 .fold(QueryCount::default(), ops::Add::add)
         })
     }
@@ -276,7 +276,7 @@ impl<'a> Road<'a> {
     pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> QueryCount {
         let nx = grid.cells()[0];
         self.between(grid, [k, k], lists, |road, lists| {
-            road.places(grid, Target::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
+            road.places(grid, RangeKind::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
         })
     }
 
@@ -321,7 +321,7 @@ impl<'a> Road<'a> {
     fn places(
         &self,
         grid: &Grid<f64>,
-        target: Target,
+        kind: RangeKind,
         k: usize,
         lists: &mut Lists,
         row: usize,
@@ -329,7 +329,7 @@ impl<'a> Road<'a> {
         sum: &mut [f64],
     ) -> QueryCount {
         let only = CellRange { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
-        let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, target, bounds).intersection(only);
+        let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, kind, bounds).intersection(only);
         let reaching = self.bodies.iter().map(|(bounds, body)| (touched(bounds), *body));
         let (ranges, bodies): (Vec<_>, Vec<_>) = reaching.filter(|(range, _)| !range.is_empty()).unzip();
         let Some(range) = ranges.into_iter().reduce(CellRange::union) else { return QueryCount::default() };
@@ -342,7 +342,7 @@ impl<'a> Road<'a> {
                 }
             }
         };
-        subdivide(grid, target, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
+        subdivide(grid, kind, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
     }
 
     /// May a body reach a cell or its sides?

@@ -13,7 +13,7 @@ use voidage_core::convex::shape::{
 };
 use voidage_core::convex::support::{MinkowskiDifference, Rounded, Support, Transformed};
 use voidage_core::convex::{AnyBody, AnyShape, Clearance, chord::Chords, polytope};
-use voidage_core::grid::{Grid, cell_range::{CellRange, Target}};
+use voidage_core::grid::{Grid, cell_range::{CellRange, RangeKind}};
 use voidage_core::subdivide::{self, Candidate, ClosedSurface, LeafRule, Subdividable, SubdivisionMemory, SubdivisionRule};
 
 #[panic_handler]
@@ -71,7 +71,7 @@ fn divided<B: Subdividable>(
     bodies: &[B],
     edges: &[<B::Vector as Vector>::Scalar],
     range: CellRange,
-    target: Target,
+    kind: RangeKind,
     numbers: &[u32],
     memory: &mut SubdivisionMemory<B::Vector>,
 ) -> u32 {
@@ -83,7 +83,7 @@ fn divided<B: Subdividable>(
     };
     let rule = SubdivisionRule { leaf, depth, tol: Real::HALF };
     let mut sum = 0;
-    let found = subdivide::subdivide(&grid, target, range, bodies, rule, memory, |range, share| {
+    let found = subdivide::subdivide(&grid, kind, range, bodies, rule, memory, |range, share| {
         sum ^= range.lo[0] ^ share.upper.to_f64() as u32;
     });
     found.map_or(1, |count| count.queries as u32) ^ sum
@@ -93,18 +93,18 @@ fn divided<B: Subdividable>(
 fn shares<V: Vector>(p: &[V], triangles: &[[V; 3]], edges: &[V::Scalar], numbers: &[u32], r: V::Scalar) -> u32 {
     let (&[i, j, k, l, m, n, axis, ..], &[a, b, ..]) = (numbers, p) else { return 0 };
     let range = CellRange { lo: [i, j, k], hi: [l, m, n] };
-    let target = if axis > 7 { Target::Cells } else { Target::Faces(axis as usize) };
+    let kind = if axis > 7 { RangeKind::Cells } else { RangeKind::Faces(axis as usize) };
     let (mut candidates, mut lists) = ([Candidate::default(); 40], [0; 64]);
     let mut memory = SubdivisionMemory { candidates: &mut candidates, facets: &mut lists };
     let mut facets = [polytope::Facet::none(); 16];
     let count = polytope::facets(p, triangles, &mut facets).unwrap_or(16);
     let body = polytope::Polytope::new(Hull::new(p), facets.get(..count).unwrap_or(&[]));
-    divided(&[ClosedSurface::new(triangles)], edges, range, target, numbers, &mut memory)
-        ^ divided(&[body], edges, range, target, numbers, &mut memory)
-        ^ divided(&[Cone::new(a, b, r)], edges, range, target, numbers, &mut memory)
-        ^ divided(&[Cylinder::new(a, b, r)], edges, range, target, numbers, &mut memory)
-        ^ divided(&[Capsule { from: a, to: b, radius: r }], edges, range, target, numbers, &mut memory)
-        ^ divided(&[Transformed::new(Ellipsoid { center: a, semi_axes: b }, [a, b, a], b, a)], edges, range, target, numbers, &mut memory)
+    divided(&[ClosedSurface::new(triangles)], edges, range, kind, numbers, &mut memory)
+        ^ divided(&[body], edges, range, kind, numbers, &mut memory)
+        ^ divided(&[Cone::new(a, b, r)], edges, range, kind, numbers, &mut memory)
+        ^ divided(&[Cylinder::new(a, b, r)], edges, range, kind, numbers, &mut memory)
+        ^ divided(&[Capsule { from: a, to: b, radius: r }], edges, range, kind, numbers, &mut memory)
+        ^ divided(&[Transformed::new(Ellipsoid { center: a, semi_axes: b }, [a, b, a], b, a)], edges, range, kind, numbers, &mut memory)
         ^ Chords::facet_count(&body) as u32
 }
 
