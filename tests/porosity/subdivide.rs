@@ -200,6 +200,20 @@ fn finer<B: Subdividable<Vector = DVec3>>(body: B, cell: &Aabb<DVec3>) -> Bounds
     share(cell, &[body], rule, &mut Lists::new().memory(), &mut QueryCount::default()).expect("room")
 }
 
+/// No gap at all is wanted: as many columns as there are, counted without wrapping round.
+#[test]
+fn without_a_tolerance_all_columns_are_used() {
+    let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
+    let octant = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
+    let found = |tol: f64| {
+        let rule = Rule { leaf: Rest::Plane, depth: 4, tol };
+        share(&octant, &[ball], rule, &mut Lists::new().memory(), &mut Tally::default()).expect("room")
+    };
+    let (all, some) = (found(0.0), found(1e-2));
+    assert!(all.lower <= PI / 6.0 && PI / 6.0 <= all.upper, "{all:?}");
+    assert!(all.gap() < 1e-3 && all.gap() < some.gap(), "{all:?} and {some:?}");
+}
+
 #[test]
 fn most_boxes_are_placed_without_asking_gjk() {
     // A height or an inner point tells; before, every box beside a curved body was asked.
