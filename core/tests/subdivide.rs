@@ -42,7 +42,7 @@ fn the_stack_of_ranges_is_filled_and_never_exceeded() {
         let mut stack = RangeStack::new(CellRange { lo: [0; 3], hi }, ());
         for _ in 0..1000 {
             let Some((range, ())) = stack.pop() else { break };
-            if next(&mut state) % 3 > 0 {
+            if !next(&mut state).is_multiple_of(3) {
                 stack.push_halves(range, ());
             }
             assert!(stack.len() <= MAX_RANGES);

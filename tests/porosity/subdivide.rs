@@ -206,8 +206,8 @@ fn without_a_tolerance_all_columns_are_used() {
     let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
     let octant = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
     let found = |tol: f64| {
-        let rule = Rule { leaf: Rest::Plane, depth: 4, tol };
-        share(&octant, &[ball], rule, &mut Lists::new().memory(), &mut Tally::default()).expect("room")
+        let rule = SubdivisionRule { leaf: LeafRule::Plane, depth: 4, tol };
+        share(&octant, &[ball], rule, &mut Lists::new().memory(), &mut QueryCount::default()).expect("room")
     };
     let (all, some) = (found(0.0), found(1e-2));
     assert!(all.lower <= PI / 6.0 && PI / 6.0 <= all.upper, "{all:?}");
