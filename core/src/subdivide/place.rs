@@ -217,25 +217,29 @@ fn by_signed_distance<B: Chords>(
     None
 }
 
-/// The edges of a box along one axis, and so all of it, are inside the body.
+/// The four edges of a box along one axis, and so all of it, are inside the body. The axis is x, or y for a face normal to x.
 #[inline(always)]
 fn edges_are_inside<B: Chords>(body: &B, cell: &Aabb<B::Vector>) -> bool {
-    let zero = Real::ZERO;
-    let (size, lo, hi) = (cell.size().to_array(), cell.min.to_array(), cell.max.to_array());
-    let along = usize::from(size[0] == zero);
-    let (u, v) = ((along + 1) % 3, (along + 2) % 3);
-    let mut direction = [zero; 3];
-    direction[along] = Real::ONE;
-    let shrink = -rounding(body);
-    let center = body.center().to_array();
-    // The far corner is the likeliest to be outside.
-    let far = |axis: usize, other: bool| {
-        if (hi[axis] + lo[axis] > center[axis] + center[axis]) != other { hi[axis] } else { lo[axis] }
+    let (zero, one) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::ONE);
+    let along_y = cell.size().x() == zero;
+    // Components along the edges first, then across them; and back.
+    let turned = |v: B::Vector| {
+        let [x, y, z] = v.to_array();
+        if along_y { [y, z, x] } else { [x, y, z] }
     };
-    [(false, false), (false, true), (true, false), (true, true)].into_iter().all(|(other_u, other_v)| {
-        let mut origin = [zero; 3];
-        (origin[u], origin[v]) = (far(u, other_u), far(v, other_v));
-        body.chord(Vector::from_array(origin), Vector::from_array(direction), shrink, &[])
-            .is_some_and(|[t0, t1]| t0 <= lo[along] && t1 >= hi[along])
+    let back = |[along, u, v]: [ScalarOf<B>; 3]| {
+        if along_y { B::Vector::new(v, along, u) } else { B::Vector::new(along, u, v) }
+    };
+    let ([first, u_lo, v_lo], [last, u_hi, v_hi]) = (turned(cell.min), turned(cell.max));
+    let [_, u_center, v_center] = turned(body.center());
+    let shrink = -rounding(body);
+    // The far corner is the likeliest to be outside.
+    let far = |lo: ScalarOf<B>, hi: ScalarOf<B>, center: ScalarOf<B>| {
+        if hi + lo > center + center { [hi, lo] } else { [lo, hi] }
+    };
+    let ([u_far, u_near], [v_far, v_near]) = (far(u_lo, u_hi, u_center), far(v_lo, v_hi, v_center));
+    [(u_far, v_far), (u_far, v_near), (u_near, v_far), (u_near, v_near)].into_iter().all(|(u, v)| {
+        body.chord(back([zero, u, v]), back([one, zero, zero]), shrink, &[])
+            .is_some_and(|[t0, t1]| t0 <= first && t1 >= last)
     })
 }
