@@ -65,7 +65,8 @@ mod range_stack;
 mod rule;
 mod subdivision;
 
-pub use chord_bounds::{Bounds, Columns, MAX_PARTS};
+pub use crate::grid::bounds::Bounds;
+pub use chord_bounds::{Columns, MAX_PARTS};
 pub use local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
 pub use memory::{Candidate, SubdivisionMemory, TooLittleMemory};
 pub use mesh::{ClosedSurface, slab};

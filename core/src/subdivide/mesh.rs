@@ -8,13 +8,14 @@
 //!
 //! Reference: D. Sunday, "Inclusion of a point in a polygon", 2001, for winding numbers; here along segments in space.
 
-use super::chord_bounds::{Bounds, Columns};
+use super::chord_bounds::Columns;
 use super::local_planes::LocalPlanes;
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use super::place::Subdividable;
 use crate::convex::chord::rounded;
 use crate::convex::sat::{BoxTriangle, box_triangle};
 use crate::convex::shape::Triangle;
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 

@@ -1,9 +1,9 @@
 //! The parts of a box: eight of a cell, four of a face, and what a polytope's planes say of them.
 
-use super::chord_bounds::Bounds;
 use super::local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use super::place::{BodyScalar, Subdividable};
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 

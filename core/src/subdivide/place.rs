@@ -3,13 +3,14 @@
 //! A face is a box without thickness. A point of a face is blocked if it is a limit of solid from either side; of one convex body that
 //! is the area of its section with the face's plane, boundary included.
 
-use super::chord_bounds::{Bounds, Columns};
+use super::chord_bounds::Columns;
 use super::local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use crate::convex::chord::{Chords, rounded, rounding};
 use crate::convex::exact::Contact;
 use crate::convex::gjk::{Intersection, intersect};
 use crate::convex::support::{ScalarOf, Support};
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use super::chord_bounds::{Bounds, Columns, MAX_PARTS};
+use super::chord_bounds::{Columns, MAX_PARTS};
 use super::memory::{Candidate, CandidateList, SubdivisionMemory, TooLittleMemory};
 use super::mesh::slab;
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
@@ -11,6 +11,7 @@ use super::place::{BodyScalar, Subdividable};
 use super::range_stack::RangeStack;
 use super::rule::{LeafRule, MAX_DEPTH, SubdivisionRule};
 use crate::grid::Grid;
+use crate::grid::bounds::Bounds;
 use crate::grid::cell_range::{CellRange, RangeKind};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};

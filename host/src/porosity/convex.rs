@@ -20,6 +20,7 @@ use voidage_core::subdivide::{
     self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, QueryCount, Subdividable,
     SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
 };
+use voidage_core::surface::OtherBodies;
 
 /// A body in its place, convex but for the last kind.
 #[derive(Debug, Clone, Copy)]
@@ -208,7 +209,6 @@ fn is_closed(triangles: &[[DVec3; 3]]) -> bool {
 pub struct Road<'a> {
     bodies: Vec<(Aabb<DVec3>, Convex<'a>)>,
     rule: SubdivisionRule<f64>,
-    areas: bool,
 }
 
 /// A thread's memory for subdivision.
@@ -240,12 +240,7 @@ impl<'a> Road<'a> {
     pub fn new(bodies: Vec<Convex<'a>>, options: Options) -> Self {
         let rule = SubdivisionRule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
         let bodies = bodies.into_iter().map(|b| (Subdividable::bounds(&b), b)).collect();
-        Road { bodies, rule, areas: options.areas }
-    }
-
-    /// A box around each body.
-    pub fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
-        self.bodies.iter().map(|(bounds, _)| *bounds)
+        Road { bodies, rule }
     }
 
     /// Holds no body.
@@ -254,30 +249,9 @@ impl<'a> Road<'a> {
         self.bodies.is_empty()
     }
 
-    /// Add the bodies to layer `k`: its cells, x and y faces, and the z faces below.
-    pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> QueryCount {
-        let nx = grid.cells()[0];
-        let Layer { lower, sum, .. } = layer;
-        let mut wanted = vec![(RangeKind::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
-        if self.areas {
-            wanted.push((RangeKind::Faces(0), nx + 1, lower.x, sum.x));
-            wanted.push((RangeKind::Faces(1), nx, lower.y, sum.y));
-            wanted.push((RangeKind::Faces(2), nx, lower.z, sum.z));
-        }
-        self.between(grid, [k, k + 1], lists, |road, lists| {
-            let fields = wanted.into_iter();
-            fields
-                .map(|(kind, row, lower, sum)| road.places(grid, kind, k, lists, row, lower, sum))
-                .fold(QueryCount::default(), ops::Add::add)
-        })
-    }
-
-    /// Add the bodies to the z faces in plane `k`, held in `layer.…z`.
-    pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> QueryCount {
-        let nx = grid.cells()[0];
-        self.between(grid, [k, k], lists, |road, lists| {
-            road.places(grid, RangeKind::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
-        })
+    /// The bodies and a thread's memory for them, as the layers of a grid in the core take them.
+    pub fn with<'r>(&'r self, grid: &'r Grid<'r, f64>, lists: &'r mut Lists) -> RoadWithLists<'r, 'a> {
+        RoadWithLists { road: self, grid, lists, tally: QueryCount::default() }
     }
 
     /// Work with what lies between two z planes of the grid: the bodies that do, and of surfaces the triangles.
@@ -321,7 +295,7 @@ impl<'a> Road<'a> {
     fn places(
         &self,
         grid: &Grid<f64>,
-        kind: RangeKind,
+        places: RangeKind,
         k: usize,
         lists: &mut Lists,
         row: usize,
@@ -329,7 +303,7 @@ impl<'a> Road<'a> {
         sum: &mut [f64],
     ) -> QueryCount {
         let only = CellRange { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
-        let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, kind, bounds).intersection(only);
+        let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, places, bounds).intersection(only);
         let reaching = self.bodies.iter().map(|(bounds, body)| (touched(bounds), *body));
         let (ranges, bodies): (Vec<_>, Vec<_>) = reaching.filter(|(range, _)| !range.is_empty()).unzip();
         let Some(range) = ranges.into_iter().reduce(CellRange::union) else { return QueryCount::default() };
@@ -342,20 +316,75 @@ impl<'a> Road<'a> {
                 }
             }
         };
-        subdivide(grid, kind, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
+        subdivide(grid, places, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
+    }
+}
+
+/// Bodies and a thread's memory for them.
+#[derive(Debug)]
+pub struct RoadWithLists<'r, 'a> {
+    road: &'r Road<'a>,
+    /// The whole grid, not that of a divided cell.
+    grid: &'r Grid<'r, f64>,
+    lists: &'r mut Lists,
+    tally: QueryCount,
+}
+
+impl RoadWithLists<'_, '_> {
+    /// How often GJK was asked for shares of the cells and faces of the whole grid.
+    #[must_use]
+    pub fn tally(&self) -> QueryCount {
+        self.tally
     }
 
-    /// May a body reach a cell or its sides?
-    #[must_use]
-    pub fn reaches(&self, lo: [f64; 3], hi: [f64; 3], lists: &mut Lists) -> bool {
-        let (lo, hi) = (DVec3::from_array(lo), DVec3::from_array(hi));
-        let room = (hi - lo) * ROOM;
-        let cell = Aabb { min: lo - room, max: hi + room };
-        let near = self.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
+    /// Add to some places of a layer what lies between two z planes.
+    fn add_between(&mut self, grid: &Grid<f64>, planes: [usize; 2], wanted: &[RangeKind], layer: &mut Layer<f64>) {
+        let found = self.road.between(grid, planes, self.lists, |road, lists| {
+            let place = |&places: &RangeKind| {
+                let [row, _, _] = match places {
+                    RangeKind::Cells => grid.cells(),
+                    RangeKind::Faces(axis) => grid.face_shape(axis),
+                };
+                let (lower, sum) = match places {
+                    RangeKind::Cells => layer.cells_mut(),
+                    RangeKind::Faces(axis) => layer.faces_mut(axis),
+                };
+                road.places(grid, places, planes[0], lists, row, lower, sum)
+            };
+            wanted.iter().map(place).fold(QueryCount::default(), ops::Add::add)
+        });
+        if grid.cells() == self.grid.cells() && grid.bounds() == self.grid.bounds() {
+            self.tally = self.tally + found;
+        }
+    }
+}
+
+impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
+    fn is_empty(&self) -> bool {
+        self.road.is_empty()
+    }
+
+    fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
+        self.road.bodies.iter().map(|(bounds, _)| *bounds)
+    }
+
+    fn add(&mut self, grid: &Grid<f64>, k: usize, areas: bool, layer: &mut Layer<f64>) {
+        let all = [RangeKind::Cells, RangeKind::Faces(0), RangeKind::Faces(1), RangeKind::Faces(2)];
+        self.add_between(grid, [k, k + 1], if areas { &all } else { &all[..1] }, layer);
+    }
+
+    fn add_plane(&mut self, grid: &Grid<f64>, plane: usize, layer: &mut Layer<f64>) {
+        self.add_between(grid, [plane, plane], &[RangeKind::Faces(2)], layer);
+    }
+
+    fn reach(&mut self, cell: Aabb<DVec3>) -> bool {
+        let room = cell.size() * ROOM;
+        let cell = Aabb { min: cell.min - room, max: cell.max + room };
+        let near = self.road.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
         let bodies: Vec<_> = near.map(|(_, body)| *body).collect();
         let rule = SubdivisionRule { leaf: subdivide::LeafRule::Half, depth: 0, tol: 1.0 };
         !bodies.is_empty()
-            && share(&cell, &bodies, rule, &mut lists.memory(&bodies), &mut QueryCount::default()).expect(FITS)
+            && share(&cell, &bodies, rule, &mut self.lists.memory(&bodies), &mut QueryCount::default()).expect(FITS)
                 != Bounds::OPEN
     }
 }
