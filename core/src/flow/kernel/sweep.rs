@@ -166,7 +166,7 @@ impl<R: Real, const D: usize> Sweep<'_, R, D> {
     pub(in crate::flow) fn block(&self, l: isize, j: isize) -> Range<usize> {
         let s = self.size;
         let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
-        let row = if D == 3 { (j - self.rows.start as isize) as usize + ROWS_BESIDE } else { 0 };
+        let row = if D == 3 { (j - self.rows.start as isize + ROWS_BESIDE as isize) as usize } else { 0 };
         let len = Self::V * s.padded;
         let start = (slot * s.rows_padded + row) * len;
         start..start + len
