@@ -3,6 +3,7 @@
 mod balance;
 mod convergence;
 mod extremes;
+mod inclined;
 mod invariance;
 mod reference;
 mod stress;

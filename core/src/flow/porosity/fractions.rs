@@ -132,8 +132,38 @@ fn is_wall<R: Real>(width: R, threshold: R) -> bool {
     width > R::from_f64(0.2) * threshold
 }
 
+/// Open fractions of a cell's two faces along an axis that differ by no more than this differ by rounding: of the geometry, of
+/// fractions stored in single precision, or of the scalar. A wall so little inclined that it differs no more counts as aligned
+/// with the grid, at an error of about this share over the Mach number in units of the dynamic pressure.
+fn rounding<R: Real>() -> R {
+    R::larger(R::from_f64(1e-6), R::from_f64(16.0) * R::EPSILON)
+}
+
+impl<R: Real, const D: usize> Medium<'_, R, D> {
+    /// Whether the wall inside a cell is inclined to the grid.
+    ///
+    /// The high open face less the low one, axis by axis, is the area vector of that wall (Gauss). A duct that changes its area
+    /// has one component, along itself; a wall that cuts through the cell at an angle has more. A cell with all its volume open
+    /// holds no wall: what closes its faces lies in their planes.
+    fn holds_inclined_wall(&self, at: [usize; D], periodic: [bool; D]) -> bool {
+        let least = rounding::<R>();
+        if self.porosity.volume[self.mesh.index(at)] >= R::ONE - least {
+            return false;
+        }
+        let differs = |&d: &usize| {
+            let (low, high) = self.ducts(d, at, periodic[d]).openings(0);
+            (high - low).abs() > least
+        };
+        (0..D).filter(differs).count() > 1
+    }
+}
+
 /// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
 /// for no jumps), which cells are small, which are sealed.
+///
+/// Both belong to ducts, layers and walls aligned with the grid. A face beside a cell that an inclined wall cuts is neither: the
+/// area of such a cell's faces changes though no duct does, and the stream runs along the wall, not against the closed face. There
+/// the geometric form is exact for a uniform stream.
 ///
 /// The slices must have the lengths of the mesh; `marks` one byte per cell.
 pub fn mark<R: Real, const D: usize>(
@@ -159,7 +189,9 @@ pub fn mark<R: Real, const D: usize>(
                 let (left, right) = own.beside(0, bit == break_high(d));
                 let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
                 let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
-                if closed || is_jump(left, open, right, threshold) {
+                let inclined = |c: &[usize; D]| medium.holds_inclined_wall(*c, periodic);
+                let breaks = closed || is_jump(left, open, right, threshold);
+                if breaks && !medium.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
                     bits |= bit;
                 }
             }
