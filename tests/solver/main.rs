@@ -7,4 +7,5 @@ mod inclined;
 mod invariance;
 mod reference;
 mod stress;
+mod throat;
 mod walls;
