@@ -1,8 +1,7 @@
-//! The whole step on one thread, and what happens where a new state leaves the physical set: first order around it, at last
-//! a floor.
+//! What happens where a new state leaves the physical set: first order around it, at last a floor.
 
+use crate::flow::problem::Problem;
 use crate::flow::state::{Conserved, Fields, FieldsMut, Gas, sum};
-use crate::flow::step::{Error, Problem};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 
@@ -10,13 +9,6 @@ use crate::number::real::Real;
 pub const FALLBACKS: usize = 4;
 
 impl<R: Real, const D: usize> Problem<'_, R, D> {
-    /// Positive density and pressure, all finite.
-    pub fn is_physical(&self, u: &Conserved<R, D>) -> bool {
-        let w = self.gas.primitive(u);
-        let finite = u.momentum.iter().all(|m| m.is_finite()) && u.density.is_finite() && w.pressure.is_finite();
-        finite && u.density > R::ZERO && w.pressure > R::ZERO
-    }
-
     /// Marks every unphysical cell of a new field and its neighbours for a first-order step; returns how many marks are new.
     pub fn mark_troubled(&self, new: &Fields<'_, R, D>, first_order: &mut [u8]) -> usize {
         let cells = self.mesh.cells();
@@ -81,41 +73,5 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             report.rate = R::larger(self.cell_rate(&floored, cell), report.rate);
         }
         report.unphysical = 0;
-    }
-
-    /// One step on one thread: slab, merging, and, if a state came out unphysical, again with first order around it, at last
-    /// with floors. `marks` is one byte per cell of scratch. A caller with threads does the same with its own slabs.
-    ///
-    /// `old` must be physical; it is untouched, so a caller may repeat a step that had to be floored with a smaller `dt`.
-    pub fn step(
-        &self,
-        old: &Fields<'_, R, D>,
-        new: &mut FieldsMut<'_, R, D>,
-        dt: R,
-        marks: &mut [u8],
-        scratch: &mut [R],
-    ) -> Result<Report<R, D>, Error> {
-        if marks.len() != self.mesh.len() {
-            return Err(Error::ShapeMismatch { expected: self.mesh.len(), found: marks.len() });
-        }
-        let all = 0..self.mesh.cells()[D - 1];
-        let mut report = self.advance_slab(old, new, all.clone(), dt, None, scratch)?;
-        self.merge(old, new, &mut report);
-        if report.unphysical == 0 {
-            return Ok(report);
-        }
-        marks.fill(0);
-        for _ in 0..FALLBACKS {
-            if self.mark_troubled(&new.as_fields(), marks) == 0 {
-                break;
-            }
-            report = self.advance_slab(old, new, all.clone(), dt, Some(marks), scratch)?;
-            self.merge(old, new, &mut report);
-            if report.unphysical == 0 {
-                return Ok(report);
-            }
-        }
-        self.apply_floors(old, new, &mut report);
-        Ok(report)
     }
 }

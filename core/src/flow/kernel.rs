@@ -12,6 +12,7 @@ pub(crate) mod long_line;
 pub(crate) mod reconstruct;
 pub(crate) mod rows;
 pub(crate) mod scratch;
+pub(crate) mod slab;
 pub(crate) mod sweep;
 pub(crate) mod update;
 pub(crate) mod walls_and_jumps;

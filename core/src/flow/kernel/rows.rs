@@ -13,13 +13,41 @@
 
 use crate::flow::limiter::Slope;
 use crate::flow::riemann::{FaceGas, Solver};
-use crate::flow::state::{Fields, Gas, Primitive, each, sum};
+use crate::flow::state::{Fields, FieldsMut, Gas, Primitive, each, sum};
 use crate::number::real::Real;
 
 /// Variable `v` of a block of variables `n` long.
 #[inline(always)]
 pub(crate) fn var<R>(block: &[R], v: usize, n: usize) -> &[R] {
     &block[v * n..][..n]
+}
+
+/// A state block, its variables `n` long.
+#[derive(Clone, Copy)]
+pub(crate) struct StateBlock<'b, R> {
+    pub values: &'b [R],
+    pub n: usize,
+}
+
+/// A flux block to be written, its variables `n` long.
+pub(crate) struct FluxBlock<'b, R> {
+    pub values: &'b mut [R],
+    pub n: usize,
+}
+
+/// Where a row of face states goes: a face state block, its variables `stride` long, from the place `offset` of each on.
+pub(crate) struct Faces<'b, R> {
+    pub block: &'b mut [R],
+    pub stride: usize,
+    pub offset: usize,
+}
+
+/// A row of `n` cells that begins at index `from` of the old field and at `to` of the new one.
+#[derive(Clone, Copy)]
+pub(crate) struct Span {
+    pub from: usize,
+    pub to: usize,
+    pub n: usize,
 }
 
 /// The variables of a state block.
@@ -191,8 +219,7 @@ pub(crate) enum Rate<'a, R> {
 ///
 /// `here` is a padded state block.
 pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
-    here: &[R],
-    padded: usize,
+    here: StateBlock<'_, R>,
     slope: &[&[R]; D],
     rate: &[Rate<'_, R>; D],
     widening: &[&[R]; D],
@@ -200,8 +227,8 @@ pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     gamma: R,
     out: &mut [R],
 ) {
-    let n = padded - 2;
-    let (rho, u, p) = state::<R, D>(here, padded);
+    let n = here.n - 2;
+    let (rho, u, p) = state::<R, D>(here.values, here.n);
     let (rho, p, u) = (&rho[1..][..n], &p[1..][..n], u.map(|s| &s[1..][..n]));
     let (out_rho, out_u, out_p, _) = split_mut::<R, D>(out, n);
     let s_rho: [&[R]; D] = core::array::from_fn(|d| var(slope[d], 0, n));
@@ -282,9 +309,7 @@ pub(crate) fn face_states<R: Real, const D: usize>(
     slope: &[R],
     n: usize,
     weight: Option<&[R]>,
-    out: &mut [R],
-    stride: usize,
-    offset: usize,
+    Faces { block: out, stride, offset }: Faces<'_, R>,
 ) {
     let sign = if high { R::HALF } else { -R::HALF };
     let turned = |v: usize| if v == 0 || v == D + 1 { v } else { 1 + (v - 1 + D - d) % D };
@@ -422,13 +447,11 @@ pub(crate) fn differences<'a, R: Real, const D: usize, const ENERGY: bool>(
 /// The cells after the step: U − dt/beta_v Σ_d changes_d. `scale` holds dt/beta_v per cell in a porous medium.
 pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool>(
     old: &Fields<'_, R, D>,
-    from: usize,
+    new: &mut FieldsMut<'_, R, D>,
+    Span { from, to, n }: Span,
     change: &[&[R]; D],
     scale: Option<&[R]>,
     dt: R,
-    new: &mut crate::flow::state::FieldsMut<'_, R, D>,
-    to: usize,
-    n: usize,
 ) {
     let one = |old: &[R], v: usize, new: &mut [R]| {
         let (old, new) = (&old[from..][..n], &mut new[to..][..n]);
