@@ -1,6 +1,6 @@
 //! Corners of the input: tiny cells, blocked space, hardly any cells, states that are none.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Clusters, Conserved, Error, Gas, Mesh, Primitive, Problem, Report};
 use voidage_tests::euler::property::Source;
 use voidage_tests::euler::{Riemann, State};
