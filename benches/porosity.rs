@@ -5,9 +5,9 @@
 
 use std::path::Path;
 use std::time::Instant;
-use voidage::bodies::Bodies;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::read;
 use voidage::grid::{Edges, Source, edges};
-use voidage::input;
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_tests::solids::{scene, sixteen_spheres};
 use voidage_tests::truth::{Truth, fixture, shared};
@@ -36,7 +36,7 @@ fn main() {
 
 fn read(path: &Path) -> Bodies {
     let mut bodies = Bodies::default();
-    bodies.add(&input::read(path).expect("a mesh"), 1.0).expect("bodies");
+    bodies.add(&read::read(path).expect("a mesh"), 1.0).expect("bodies");
     bodies
 }
 

@@ -1,7 +1,7 @@
 //! Cell updates per second of the PDR Euler kernel, one thread: medians over runs.
 
 use std::time::Instant;
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive};
 
 fn median(mut t: Vec<f64>) -> f64 {

@@ -1,11 +1,13 @@
 //! Time and error of subdivision by GJK: `cargo bench -p voidage-benches --bench subdivide`.
 //!
 //! One line a case: medians of the computation alone on one thread and on two, the solid found against the truth, the largest gap.
+//! Finer tolerances than 1e-4 are left out: the faces that touch a ball need ever smaller parts, and 1e-5 takes hours. Solids by formula
+//! will be measured exactly one day, without subdivision.
 
 use std::f64::consts::PI;
 use std::time::Instant;
-use voidage::bodies::Bodies;
-use voidage::bodies::form::Form;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{Leaf, Method, Options, Porosity, porosity};
 use voidage_tests::solids::{formulas, scene, sixteen_balls, sixteen_spheres, volume};
@@ -26,7 +28,7 @@ fn main() {
     let balls: Vec<Form> = sixteen_balls().into_iter().map(Form::Sphere).collect();
     let truth = 16.0 * 4.0 / 3.0 * PI * 0.11_f64.powi(3);
     case("16 balls, solid, depth 3", &formulas(&balls), &unit, Options { leaf: Leaf::Solid, ..gjk }, truth);
-    for tol in [1e-3, 1e-4, 1e-5] {
+    for tol in [1e-3, 1e-4] {
         let name = format!("16 balls, plane, tol {tol:e}");
         case(&name, &formulas(&balls), &unit, Options { tol, ..Options::default() }, truth);
     }

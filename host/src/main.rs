@@ -2,10 +2,10 @@
 
 use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
-use voidage::cli::{Cli, Command};
+use voidage::command::cli::{Cli, Command};
+use voidage::command::progress::{print, visible};
+use voidage::command::{inspect, interrupt, porosity, solve, study};
 use voidage::error::{Error, Result};
-use voidage::progress::{print, visible};
-use voidage::{inspect, interrupt, run, solve, study};
 
 fn main() -> ExitCode {
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
@@ -13,7 +13,7 @@ fn main() -> ExitCode {
         if interrupt::interrupt() {
             return;
         }
-        voidage::output::discard_unfinished();
+        voidage::files::discard_unfinished();
         std::process::exit(130);
     });
     match execute(Cli::parse().command) {
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
 
 fn execute(command: Command) -> Result<()> {
     match command {
-        Command::Porosity(args) => run::porosity(&args),
+        Command::Porosity(args) => porosity::porosity(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Study(args) => study::study(&args),
         Command::Solve(args) => solve::run::solve(&args),

@@ -8,13 +8,12 @@ pub mod convex;
 mod fields;
 mod layers;
 mod levels;
-mod planes;
+pub mod snap;
 mod unions;
 
-use crate::bodies::Bodies;
-pub use crate::values::Values;
+use crate::geometry::bodies::Bodies;
+pub use crate::huge::HugeVec;
 use bins::Bins;
-use clap::ValueEnum;
 use convex::Roads;
 pub use fields::FieldSet;
 use glam::DVec3;
@@ -26,9 +25,9 @@ use voidage_core::grid::Grid;
 use voidage_core::subdivide;
 
 /// How volumes are found.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision
+    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision.
     #[default]
     Auto,
     /// Sums over the surface: exact for any closed surface of triangles
@@ -38,7 +37,7 @@ pub enum Method {
 }
 
 /// What becomes of the smallest parts of a cell that a body still cuts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Leaf {
     /// Touched counts as solid: the paper's rule, which finds too much
@@ -148,6 +147,8 @@ pub struct Porosity {
     pub divided: usize,
     /// By how much a body's own share of a cell left 0..1: surface that crosses itself.
     pub winding: f64,
+    /// Sheets that block nothing, for they lie in no plane of the grid.
+    pub sheets_off_planes: snap::OffPlanes,
     /// Bodies that went by subdivision, of all.
     pub subdivided: usize,
     /// Queries of GJK.
@@ -179,7 +180,7 @@ pub fn porosity_watched(
     options: Options,
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
-    let moved = planes::into_planes(grid, &bodies.triangles);
+    let moved = snap::into_planes(grid, bodies);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
     let levels = levels(bodies);
     let roads = Roads::choose(bodies, triangles, options);
@@ -189,7 +190,8 @@ pub fn porosity_watched(
         last = (levels.last() != Some(&level)).then(|| found.clone());
         found.porosity
     });
-    levels::join(&levels, unions)
+    let joined = levels::join(&levels, unions);
+    Porosity { sheets_off_planes: snap::sheets_off_planes(grid, bodies, triangles), ..joined }
 }
 
 /// Porosities of the union up to a level, and the totals of its layers.
@@ -259,6 +261,7 @@ fn union(
         max_gap: total.max_gap,
         divided: total.divided,
         winding: total.winding,
+        sheets_off_planes: snap::OffPlanes::default(),
         subdivided: roads.subdivided(),
         gjk: Gjk { queries: total.tally.queries, undecided: total.tally.undecided },
         leaks: worst_leaks(bodies.bodies.len(), &summaries),

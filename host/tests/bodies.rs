@@ -1,8 +1,8 @@
 //! Triangles to bodies: what may be moved, capped and taken for a cavity, wherever the scene lies.
 
 use glam::{DVec3, dvec3};
-use voidage::bodies::Bodies;
-use voidage::input::{Mesh, Solid};
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::{Mesh, Solid};
 
 type Triangle = [DVec3; 3];
 
@@ -18,7 +18,7 @@ fn bodies(parts: &[&[Triangle]]) -> Bodies {
     let triangles = parts.concat();
     let solids = vec![Solid { name: "part".into(), triangles: 0..triangles.len() }];
     let mut bodies = Bodies::default();
-    let mesh = Mesh { path: "test.stl".into(), solids, triangles, warnings: Vec::new() };
+    let mesh = Mesh { path: "test.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() };
     bodies.add(&mesh, 1.0).expect("bodies");
     bodies
 }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use voidage::output::npy;
+use voidage::files::npy;
 
 /// What a case expects, by the words of its manifest.
 struct Case<'a> {

@@ -71,7 +71,7 @@ pub fn solved(at: &Scratch, case: &str, dir: &str, more: &[&str]) -> Output {
 
 /// Values of an array.
 pub fn array(path: &Path) -> Vec<f64> {
-    voidage::output::npy::read(path).expect("an array").1
+    voidage::files::npy::read(path).expect("an array").1
 }
 
 pub fn json(path: &Path) -> serde_json::Value {

@@ -3,7 +3,10 @@
 mod bad_inputs;
 mod inspect;
 mod kit;
+mod outside;
+mod planes;
 mod porosity;
+mod readme;
 mod scene;
 mod solve;
 mod solve_errors;

@@ -2,7 +2,7 @@
 
 use crate::kit::{Scratch, fixture, json, stderr, stdout, voidage};
 use std::fs;
-use voidage::output::npy;
+use voidage::files::npy;
 
 #[test]
 fn a_run_with_everything() {

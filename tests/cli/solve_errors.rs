@@ -2,7 +2,7 @@
 
 use crate::kit::{Scratch, array, solve, solved, stderr};
 use std::fs;
-use voidage::output::npy;
+use voidage::files::npy;
 
 const CASE: &str = r#"
 [grid]

@@ -4,11 +4,11 @@ use crate::kit::{Scratch, stderr, stdout, voidage};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use voidage::cli::TalkArgs;
-use voidage::progress::Progress;
+use voidage::command::cli::TalkArgs;
+use voidage::command::progress::Progress;
 
 fn example(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/study").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/study").join(name)
 }
 
 type Row = BTreeMap<String, String>;
@@ -148,10 +148,10 @@ fn wrong_cases_say_where() {
 #[test]
 fn examples_are_read() {
     for name in ["cube_positions.toml", "shapes.toml", "spheres.toml", "platform.toml"] {
-        let case = voidage::study::case::read(&example(name)).unwrap_or_else(|e| panic!("{e}"));
+        let case = voidage::command::study::case::read(&example(name)).unwrap_or_else(|e| panic!("{e}"));
         for subject in &case.subjects {
             let mut quiet = Progress::new(&TalkArgs { quiet: true, verbose: false });
-            let bodies = voidage::study::measure::bodies(&example(name), subject, &mut quiet);
+            let bodies = voidage::command::study::measure::bodies(&example(name), subject, &mut quiet);
             let bodies = bodies.unwrap_or_else(|e| panic!("{e}"));
             assert!(!bodies.bodies.is_empty() && bodies.warnings.is_empty(), "{:?}", bodies.warnings);
         }

@@ -4,7 +4,7 @@
 //! inclusion and exclusion.
 
 use glam::DVec3;
-use voidage::bodies::Bodies;
+use voidage::geometry::bodies::Bodies;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Leaf, Method, Options, Porosity, porosity};
 

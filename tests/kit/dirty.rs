@@ -2,17 +2,18 @@
 
 use glam::DVec3;
 use std::path::Path;
-use voidage::bodies::Bodies;
 use voidage::error::Error;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::{Mesh, Solid};
+use voidage::geometry::read;
+use voidage::geometry::scene::{self, shape::Shape};
 use voidage::grid::Edges;
-use voidage::input::{self, Mesh, Solid};
 use voidage::porosity::{FieldSet, Leaf, Method, Options, porosity};
-use voidage::scene::{self, shape::Shape};
 
 /// Any bytes, read as a mesh file, give bodies with fractions within 0..1, or an error.
 pub fn any_file_is_measured_or_refused(bytes: &[u8]) {
     for name in ["fuzz.stl", "fuzz.obj"] {
-        if let Ok(mesh) = input::from_bytes(Path::new(name), bytes.to_vec()) {
+        if let Ok(mesh) = read::from_bytes(Path::new(name), bytes.to_vec()) {
             measure(&mesh, 1);
         }
     }
@@ -28,7 +29,7 @@ pub fn any_triangles_are_measured(bytes: &[u8]) {
     let triangles: Vec<_> =
         bytes.chunks_exact(6).take(64).map(|c| [corner(c), corner(&c[2..]), corner(&c[4..])]).collect();
     let solids = vec![Solid { name: String::new(), triangles: 0..triangles.len() }];
-    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, warnings: Vec::new() }, 0);
+    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() }, 0);
 }
 
 /// Any triangles with corners from 2⁻⁶⁴ to 2⁶³ in size are measured within 0..1. A cut of so long an edge is a rounding error
@@ -39,7 +40,7 @@ pub fn any_sizes_are_measured(bytes: &[u8]) {
     let chunks = bytes.chunks_exact(18).take(64);
     let triangles: Vec<_> = chunks.map(|c| [corner(c), corner(&c[6..]), corner(&c[12..])]).collect();
     let solids = vec![Solid { name: String::new(), triangles: 0..triangles.len() }];
-    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, warnings: Vec::new() }, 0);
+    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() }, 0);
 }
 
 /// Measure a mesh on an aligned and on an odd grid.

@@ -2,10 +2,10 @@
 
 use glam::{DMat3, DVec3};
 use std::path::PathBuf;
-use voidage::bodies::form::Form;
-use voidage::bodies::{Bodies, Body};
-use voidage::input::{Mesh, Solid};
-use voidage::scene::hull::Hull;
+use voidage::geometry::bodies::{Bodies, Body};
+use voidage::geometry::form::Form;
+use voidage::geometry::mesh::{Mesh, Solid};
+use voidage::geometry::scene::hull::Hull;
 use voidage_core::convex::shape::Sphere;
 
 /// A triangle: three corners, counter-clockwise from outside.
@@ -108,7 +108,7 @@ fn sixteen_centers() -> impl Iterator<Item = DVec3> {
 /// Volume enclosed by triangles.
 #[must_use]
 pub fn volume(triangles: &[Triangle]) -> f64 {
-    voidage::bodies::nesting::signed_volume(triangles, triangles.first().map_or(DVec3::ZERO, |t| t[0]))
+    voidage::geometry::repair::nesting::signed_volume(triangles, triangles.first().map_or(DVec3::ZERO, |t| t[0]))
 }
 
 /// A scene of closed solids, as if each had been read from a file of its own.
@@ -121,7 +121,7 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
     for (n, triangles) in solids.iter().enumerate() {
         let solids = vec![Solid { name: format!("solid {n}"), triangles: 0..triangles.len() }];
         let path = PathBuf::from(format!("solid-{n}.stl"));
-        let mesh = Mesh { path, solids, triangles: triangles.clone(), warnings: Vec::new() };
+        let mesh = Mesh { path, solids, triangles: triangles.clone(), single_precision: false, warnings: Vec::new() };
         bodies.add(&mesh, 1.0).expect("a solid with an area");
     }
     bodies
@@ -171,6 +171,7 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         name: format!("solid {n}"),
         triangles: 0..0,
         form: Some(form.clone()),
+        single: None,
         porosity: 0.0,
         volume: 0.0,
         bounds: form.bounds(),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
-use voidage::scene::hull::Hull;
+use voidage::geometry::scene::hull::Hull;
 
 /// Six times the signed volume of a tetrahedron with whole coordinates.
 fn volume6([a, b, c]: [DVec3; 3], p: DVec3) -> i64 {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use voidage::grid::Edges;
-use voidage::porosity::{FieldSet, Options, Porosity, Values, porosity};
+use voidage::porosity::{FieldSet, HugeVec, Options, Porosity, porosity};
 use voidage_tests::fields::assert_close;
 use voidage_tests::lattice::Lattice;
 use voidage_tests::random::Random;
@@ -93,7 +93,7 @@ fn back(f: &FieldSet, n: [usize; 3]) -> FieldSet {
                 out.extend((0..c).map(|x| field[(x * b + z) * a + y]));
             }
         }
-        Values::from(out)
+        HugeVec::from(out)
     };
     let [a, b, c] = n;
     FieldSet {

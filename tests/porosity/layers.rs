@@ -6,23 +6,7 @@ use std::path::Path;
 const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivide"];
 
 /// Modules of the host likewise.
-const HOST: [&str; 15] = [
-    "error",
-    "interrupt",
-    "values",
-    "input",
-    "bodies",
-    "grid",
-    "porosity",
-    "output",
-    "cli",
-    "progress",
-    "scene",
-    "run",
-    "inspect",
-    "solve",
-    "study",
-];
+const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 #[test]
 fn modules_import_downwards_only() {
@@ -42,7 +26,7 @@ fn check(source: &str, order: &[&str]) {
                 if name == *module {
                     continue;
                 }
-                assert!(name != "flow", "{module} uses the flow");
+                assert!(name != "flow" || source.ends_with("host/src"), "{module} uses the flow");
                 let below = place(&name).unwrap_or_else(|| panic!("{module} uses {name}, which the list lacks"));
                 assert!(below < at, "{module} uses {name}, which stands above it");
                 checked += 1;

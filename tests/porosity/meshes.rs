@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use voidage::bodies::Bodies;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::read;
 use voidage::grid::Edges;
-use voidage::input;
 use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
@@ -165,7 +165,7 @@ fn the_leaves_err_as_theory_says() {
 #[test]
 fn the_skid_is_held_and_approached() {
     let mut bodies = Bodies::default();
-    bodies.add(&input::read(&fixture("cad_skid.stl")).expect("a mesh"), 1.0).expect("bodies");
+    bodies.add(&read::read(&fixture("cad_skid.stl")).expect("a mesh"), 1.0).expect("bodies");
     let axis = |n: usize, length: f64| (0..=n).map(|i| i as f64 * length / n as f64).collect::<Vec<_>>();
     let edges = Edges([axis(30, 8.4), axis(17, 4.7), axis(13, 3.7)]);
     let exact = exact(&edges, &bodies);

@@ -139,14 +139,14 @@ fn merge(fine: &FieldSet, n: usize) -> FieldSet {
 /// Parts of one file that share corners are bodies of their own: a slab flush inside a box, in named solids.
 #[test]
 fn named_solids_that_share_corners_stay_apart() {
-    use voidage::input::{Mesh, Solid};
+    use voidage::geometry::mesh::{Mesh, Solid};
     use voidage_tests::solids::cuboid;
     let low = DVec3::new(1.25, 0.75, 0.25);
     let mut triangles = cuboid(low, DVec3::new(2.0, 1.25, 1.0));
     triangles.extend(cuboid(low, DVec3::new(2.0, 1.25, 0.5)));
     let solids = [0..12, 12..24].map(|triangles| Solid { name: String::new(), triangles }).to_vec();
-    let mut bodies = voidage::bodies::Bodies::default();
-    let mesh = Mesh { path: "two.stl".into(), solids, triangles, warnings: Vec::new() };
+    let mut bodies = voidage::geometry::bodies::Bodies::default();
+    let mesh = Mesh { path: "two.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() };
     bodies.add(&mesh, 1.0).expect("bodies");
     assert_eq!(bodies.bodies.len(), 2);
     let edges = Edges([vec![0.0, 3.0], vec![0.0, 3.0], vec![0.0, 3.0]]);
@@ -179,8 +179,8 @@ fn nearly_coincident_bodies_are_bounded() {
 /// The skid's caps miss the plane x = 0 by up to 3e-17: its faces are the same on every grid through that plane.
 #[test]
 fn walls_that_miss_a_plane_by_rounding_lie_in_it() {
-    let mesh = voidage::input::read(&voidage_tests::truth::fixture("cad_skid.stl")).expect("a mesh");
-    let mut bodies = voidage::bodies::Bodies::default();
+    let mesh = voidage::geometry::read::read(&voidage_tests::truth::fixture("cad_skid.stl")).expect("a mesh");
+    let mut bodies = voidage::geometry::bodies::Bodies::default();
     bodies.add(&mesh, 1.0).expect("bodies");
     let run = |n: usize| {
         let axis = |length: f64| (0..=n).map(|i| length * i as f64 / n as f64).collect();

@@ -3,10 +3,10 @@
 use glam::{DMat3, DVec3};
 use std::fmt::Write;
 use std::path::Path;
-use voidage::bodies::Bodies;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::scene;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Options, Porosity, porosity};
-use voidage::scene;
 use voidage_tests::fields::assert_close;
 use voidage_tests::random::Random;
 use voidage_tests::solids;

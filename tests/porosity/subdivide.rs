@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use voidage::bodies::Bodies;
-use voidage::bodies::form::Form;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::convex::chord::Convex;

@@ -2,8 +2,8 @@
 //! data and are skipped, loudly, where they are absent.
 
 use std::path::Path;
-use voidage::bodies::Bodies;
-use voidage::input;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::read;
 use voidage::porosity::{Options, porosity};
 use voidage_tests::truth::{Truth, fixture, shared};
 
@@ -15,7 +15,7 @@ const WALL: f64 = 1e-9;
 
 fn check(mesh: &Path, set: &Path) {
     let mut bodies = Bodies::default();
-    bodies.add(&input::read(mesh).expect("a mesh"), 1.0).expect("bodies");
+    bodies.add(&read::read(mesh).expect("a mesh"), 1.0).expect("bodies");
     let truth = Truth::read(set);
     let edges = truth.edges();
     let p = porosity(&edges.grid(None).expect("a grid"), &bodies, Options::default());
@@ -69,7 +69,7 @@ fn all_solids_of_a_file_are_read() {
         println!("SKIPPED: the shared corpus is absent");
         return;
     };
-    let mesh = input::read(&corpus.join("meshes/cad_skid_ascii_multisolid.stl")).expect("a mesh");
+    let mesh = read::read(&corpus.join("meshes/cad_skid_ascii_multisolid.stl")).expect("a mesh");
     assert_eq!(mesh.solids.len(), 89);
     assert_eq!(mesh.triangles.len(), 19660);
     assert_eq!(mesh.solids[0].name, "main_beam");

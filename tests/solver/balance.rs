@@ -1,6 +1,6 @@
 //! Conservation, hydrostatic balance, drag.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive};
 use voidage_tests::euler::property::{Source, porosity};
 

@@ -1,6 +1,6 @@
 //! Convergence: smooth flow, and the flow through porosity jumps that classical forms get wrong.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive};
 use voidage_tests::euler::property::Source;
 

@@ -1,6 +1,6 @@
 //! Walls that are not aligned with the grid: streams along them, a wedge, a cylinder, a turned shock tube.
 
-use voidage::solve::flow::{Flow, Scalar, Treatment};
+use voidage::flow::{Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, PressureForm, Primitive};
 use voidage_core::number::real::Real;
 use voidage_tests::euler::property::Source;

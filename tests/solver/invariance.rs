@@ -1,6 +1,6 @@
 //! The same bits along every axis, mirrored, permuted, over open porosity, for any number of threads, at rest.
 
-use voidage::solve::flow::{Flow, Scalar, Treatment};
+use voidage::flow::{Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
 use voidage_tests::euler::property::{Source, bits, porosity, step_stays_physical};
 

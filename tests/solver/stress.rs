@@ -1,6 +1,6 @@
 //! Long lines, other units, and flows known to trouble shock-capturing schemes.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive, Riemann};
 use voidage_tests::euler::property::{Source, bits, porosity};
 

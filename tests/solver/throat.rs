@@ -1,6 +1,6 @@
 //! Sudden changes of open area at any speed: the stationary wave, and slabs in a fast stream.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::porosity::throat::ThroatGas;
 use voidage_core::flow::{Boundary, Gas, Primitive};
 

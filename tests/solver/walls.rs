@@ -1,6 +1,6 @@
 //! Closed faces are walls: the same to the bit as walls of the domain, and slow gas stagnates at the pressure of theory.
 
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
 use voidage_tests::euler::property::Source;
 

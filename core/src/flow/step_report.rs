@@ -14,6 +14,10 @@ pub struct Report<R, const D: usize> {
     pub first_order: usize,
     /// Cells that had to be set to a floor.
     pub floored: usize,
+    /// The last of them.
+    pub floored_cell: Option<usize>,
+    /// What floors changed in the content of the domain (open volumes included): the sums of the sizes of all changes.
+    pub floor_change: Conserved<R, D>,
     /// What entered the domain during the step through the low and high side of each axis (area times time included).
     pub inflow: [[Conserved<R, D>; 2]; D],
 }
@@ -22,7 +26,15 @@ impl<R: Real, const D: usize> Report<R, D> {
     /// Nothing done.
     pub fn new() -> Self {
         let zero = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
-        Report { rate: R::ZERO, unphysical: 0, first_order: 0, floored: 0, inflow: [[zero; 2]; D] }
+        Report {
+            rate: R::ZERO,
+            unphysical: 0,
+            first_order: 0,
+            floored: 0,
+            floored_cell: None,
+            floor_change: zero,
+            inflow: [[zero; 2]; D],
+        }
     }
 
     /// Joins the report of the next slab.
@@ -32,15 +44,10 @@ impl<R: Real, const D: usize> Report<R, D> {
         self.unphysical += other.unphysical;
         self.first_order += other.first_order;
         self.floored += other.floored;
-        for d in 0..D {
-            for s in 0..2 {
-                let (a, b) = (&mut self.inflow[d][s], &other.inflow[d][s]);
-                a.density += b.density;
-                a.energy += b.energy;
-                for c in 0..D {
-                    a.momentum[c] += b.momentum[c];
-                }
-            }
+        self.floored_cell = other.floored_cell.or(self.floored_cell);
+        self.floor_change.add(&other.floor_change);
+        for (own, other) in self.inflow.iter_mut().flatten().zip(other.inflow.iter().flatten()) {
+            own.add(other);
         }
         self
     }

@@ -1,6 +1,6 @@
 //! Which triangles reach which layer of cells.
 
-use crate::bodies::Bodies;
+use crate::geometry::bodies::Bodies;
 use glam::DVec3;
 use voidage_core::grid::{Grid, Located};
 

@@ -4,8 +4,8 @@
 //! by triangle. Their union enters a layer as one interval a cell and face, beside what the surfaces of other bodies give.
 
 use super::{Leaf, Method, Options};
-use crate::bodies::form::Form;
-use crate::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::form::Form;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 use std::ops;

@@ -1,19 +1,19 @@
 //! A value for every cell and face, whole and by layers.
 
-use crate::values::Values;
+use crate::huge::HugeVec;
 use voidage_core::grid::Grid;
 
 /// A value for every cell and face of a grid, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FieldSet {
     /// Cells, `nx*ny*nz`.
-    pub v: Values,
+    pub v: HugeVec,
     /// x faces, `(nx+1)*ny*nz`.
-    pub x: Values,
+    pub x: HugeVec,
     /// y faces, `nx*(ny+1)*nz`.
-    pub y: Values,
+    pub y: HugeVec,
     /// z faces, `nx*ny*(nz+1)`.
-    pub z: Values,
+    pub z: HugeVec,
 }
 
 /// One layer's share of a field set.
@@ -35,8 +35,8 @@ impl FieldSet {
     /// All zero; without `areas` the face fields are empty.
     #[must_use]
     pub fn new(grid: &Grid<f64>, areas: bool) -> Self {
-        let faces = |axis| Values::zeros(if areas { grid.face_shape(axis).iter().product() } else { 0 });
-        FieldSet { v: Values::zeros(grid.cell_count()), x: faces(0), y: faces(1), z: faces(2) }
+        let faces = |axis| HugeVec::zeros(if areas { grid.face_shape(axis).iter().product() } else { 0 });
+        FieldSet { v: HugeVec::zeros(grid.cell_count()), x: faces(0), y: faces(1), z: faces(2) }
     }
 
     /// The faces normal to an axis.

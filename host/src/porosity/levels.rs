@@ -10,7 +10,7 @@
 
 use super::fields::FieldSet;
 use super::{CellCounts, Porosity};
-use crate::bodies::Bodies;
+use crate::geometry::bodies::Bodies;
 
 /// The porosities that occur among the bodies, in ascending order; without those of bodies that are open altogether. Never empty.
 #[must_use]

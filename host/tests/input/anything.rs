@@ -6,7 +6,7 @@ use super::{ascii, binary, is_sound, obj, wavefront};
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::sample::Index;
-use voidage::input::from_bytes;
+use voidage::geometry::read::from_bytes;
 
 /// Neither panics nor gives an unsound mesh, whatever the name.
 fn is_harmless(bytes: &[u8]) {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{ascii, binary, facets, is_box, is_refused, is_sound, names, stl};
 use glam::DVec3;
-use voidage::input::from_bytes;
+use voidage::geometry::read::from_bytes;
 
 #[test]
 fn ascii_coordinates_are_doubles() {
@@ -124,4 +124,28 @@ fn ascii_cut_short() {
     is_refused(stl("solid"), &["no triangles"]);
     is_refused(stl("solid a\nendsolid a\n"), &["no triangles", "line 2"]);
     is_refused(stl("solid advice: do not mesh by hand.\n".repeat(10)), &["line 2", "`solid`"]);
+}
+
+#[test]
+fn colours_say_nothing_about_the_surface() {
+    let text = ascii();
+    let names_of = |text: String| names(&is_box(stl(text), 0)).join("|");
+    assert_eq!(names_of(text.replacen("solid cube", "solid cube color 0.5 0.25 1", 1)), "cube");
+    assert_eq!(names_of(text.replacen("solid cube\n", "solid cube\ncolor 0.5 0.25 1\n", 1)), "cube");
+    assert_eq!(names_of(text.replace("  facet", "  color 1 0 0\n  facet")), "cube");
+    assert_eq!(names_of(text.replacen("solid cube", "solid COLOR 1 0 0", 1)), "");
+    assert_eq!(names_of(text.replacen("solid cube", "solid no color 1 0", 1)), "no color 1 0");
+    assert_eq!(names_of(text.replacen("cube", "cube color 1 0 0", 1).replace('\n', " ")), "cube");
+    is_refused(stl(text.replacen("solid cube", "solid cube\ncolor red", 1)), &["line 2", "`red`", "not a number"]);
+}
+
+#[test]
+fn ends_in_two_words() {
+    let text =
+        ascii().replace("endloop", "end loop").replace("endfacet", "END facet").replace("endsolid", "end  solid");
+    assert_eq!(names(&is_box(stl(text.clone()), 0)), ["cube"]);
+    assert_eq!(names(&is_box(stl(text.replace('\n', " ")), 0)), ["cube"]);
+    let two = text.clone() + &text.replace("cube", "ball");
+    assert_eq!(names(&stl(two.replace('\n', " ")).unwrap()), ["cube", "ball"]);
+    is_refused(stl(text.replacen("end loop", "end", 1)), &["expected `endloop`", "`end`"]);
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{is_sound, volume};
-use voidage::input::read;
+use voidage::geometry::read::read;
 
 /// Cases whose volume is not the signed volume of the triangles as they stand: it is meant within a domain, or of a union.
 const OTHER_VOLUME: [&str; 2] = ["bin_outside_domain.stl", "asc_multi_solid_overlap.stl"];

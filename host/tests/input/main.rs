@@ -10,7 +10,8 @@ mod others;
 use std::path::Path;
 
 use voidage::error::Result;
-use voidage::input::{Mesh, from_bytes};
+use voidage::geometry::mesh::Mesh;
+use voidage::geometry::read::from_bytes;
 
 /// Corners of the box that the fixtures hold: 2 × 1 × 1, volume 2.
 const CORNERS: [[&str; 3]; 8] = [

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{SIDES, is_box, is_refused, is_sound, names, obj, volume, wavefront};
 use glam::DVec3;
-use voidage::input::from_bytes;
+use voidage::geometry::read::from_bytes;
 
 #[test]
 fn obj_in_other_hands() {

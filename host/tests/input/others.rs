@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{ascii, binary, is_box, is_refused, stl};
-use voidage::input::read;
+use voidage::geometry::read::read;
 
 #[test]
 fn other_formats_are_refused_by_name() {

@@ -6,8 +6,9 @@ use std::process::Command;
 
 use super::Dir;
 use voidage::error::Error;
-use voidage::output::vtr::Vtr;
-use voidage::output::{atomically, discard_unfinished, npy, png, report};
+use voidage::files::vtr::Vtr;
+use voidage::files::{atomically, discard_unfinished, json, npy};
+use voidage::picture::png;
 
 #[test]
 fn a_failing_writer_leaves_the_old_file_and_nothing_else() {
@@ -96,7 +97,7 @@ fn what_cannot_be_written_is_named() {
             npy::write(&path, [1, 1, 1], one),
             grid.write(&path),
             png::slices(&path, "", x, y, z, "m", one),
-            report::json(&path, &1),
+            json::write(&path, &1),
         ] {
             let error = outcome.expect_err(name);
             assert_eq!(error.path.as_deref(), Some(&*path));

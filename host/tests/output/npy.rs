@@ -4,7 +4,7 @@ use std::fs;
 
 use super::{Dir, bits, indices, porosity};
 use voidage::error::Error;
-use voidage::output::npy;
+use voidage::files::npy;
 
 #[test]
 fn npy_bytes_are_those_of_numpy() {

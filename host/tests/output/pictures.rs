@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use super::{Dir, indices, porosity, uniform};
-use voidage::output::canvas::{Canvas, INK, WHITE};
-use voidage::output::colour::{ColourMap, NO_VALUE};
-use voidage::output::figure::Figure;
-use voidage::output::heatmap::{Area, Axis, Heatmap};
-use voidage::output::png;
+use voidage::picture::canvas::{Canvas, INK, WHITE};
+use voidage::picture::colour::{ColourMap, NO_VALUE};
+use voidage::picture::figure::Figure;
+use voidage::picture::heatmap::{Area, Axis, Heatmap};
+use voidage::picture::png;
 
 fn decoded(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
     let mut reader = ::png::Decoder::new(std::io::BufReader::new(fs::File::open(path).unwrap())).read_info().unwrap();
@@ -183,7 +183,7 @@ fn each_panel_shows_its_own_slice() {
 
 #[test]
 fn turned_text_reads_upwards() {
-    use voidage::output::canvas::Style;
+    use voidage::picture::canvas::Style;
     let mut canvas = Canvas::new(100, 100);
     canvas.text(50.5, 50.5, "L", Style { height: 20.0, turned: true, ..Style::default() });
     let [stem, foot, right, below] = [(34, 50), (50, 43), (58, 50), (50, 58)].map(|(x, y)| canvas.get(x, y) != WHITE);
@@ -192,7 +192,7 @@ fn turned_text_reads_upwards() {
 
 #[test]
 fn text_stays_inside_its_measure() {
-    use voidage::output::canvas::{Style, text_width};
+    use voidage::picture::canvas::{Style, text_width};
     for text in ["beta_v = 0.25", "x [m]", "WMwm|#@", "é→漢"] {
         let mut canvas = Canvas::new(400, 60);
         let (left, base) = (50.0, 40.0);

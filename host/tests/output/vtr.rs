@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Cursor;
 
 use super::{Dir, indices, porosity, uniform};
-use voidage::output::vtr::{CellField, Field, Vtr};
+use voidage::files::vtr::{CellField, Field, Vtr};
 
 /// A file as this test understands it: attributes of the XML by plain search, arrays from the appended bytes.
 struct Parsed {

@@ -1,6 +1,6 @@
 //! Properties of the solver, driven by tests, seeded random input and the fuzzer.
 
-use voidage::solve::flow::{Field, Flow, Scalar, Treatment};
+use voidage::flow::{Field, Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
 use voidage_core::number::real::Real;
 

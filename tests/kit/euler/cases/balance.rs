@@ -4,7 +4,7 @@ use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::State;
 use crate::euler::expression::number_after;
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive};
 
 pub(super) fn hydrostatic(case: &Case) -> Outcome {

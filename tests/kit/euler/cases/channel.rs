@@ -3,7 +3,7 @@
 use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::expression::number_after;
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas};
 
 /// Porosity of a box in a channel, exact: open shares of cells and faces. A face in the plane of a side of the box is closed

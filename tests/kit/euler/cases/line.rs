@@ -3,7 +3,7 @@
 use super::{Case, Trouble, Verdict};
 use crate::euler::expression::evaluate;
 use crate::euler::{State, mean};
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas};
 
 /// CFL number of all one-dimensional runs.

@@ -5,7 +5,7 @@ use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::Riemann;
 use crate::euler::expression::number_after;
 use std::collections::BTreeMap;
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Scheme};
 
 pub(super) fn drag(case: &Case) -> Outcome {

@@ -3,7 +3,7 @@
 use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::expression::{evaluate, number_after};
-use voidage::solve::flow::Flow;
+use voidage::flow::Flow;
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Scheme};
 
 pub(super) fn order(case: &Case) -> Outcome {

@@ -4,7 +4,7 @@ use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::expression::{evaluate, number_after, number_before};
 use serde_json::Value;
-use voidage::solve::flow::Flow;
+use voidage::flow::Flow;
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Scheme};
 
 pub(super) fn gresho(case: &Case) -> Outcome {

@@ -4,7 +4,7 @@ use super::line::*;
 use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::State;
 use crate::euler::expression::number_after;
-use voidage::solve::flow::Flow;
+use voidage::flow::Flow;
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Riemann, Scheme};
 
 /// Exponent of the radius in the porous variant of a radial case: dimensions less one.

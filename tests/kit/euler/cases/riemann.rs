@@ -6,7 +6,7 @@ use crate::euler::expression::number_after;
 use crate::euler::{IsothermalRiemann, PorousRiemann, Riemann, State, average_density};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::Gas;
 
 /// Exact solution of a case's Riemann problem as density averages on `n` cells.

@@ -5,7 +5,7 @@ use super::{Case, Outcome, Trouble, Verdict};
 use crate::euler::State;
 use crate::euler::expression::number_after;
 use std::collections::BTreeMap;
-use voidage::solve::flow::{Flow, Treatment};
+use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive};
 
 pub(super) fn slab(case: &Case) -> Outcome {

@@ -1,0 +1,259 @@
+//! What the user typed.
+
+use crate::geometry::unit::Unit;
+use crate::porosity::{Leaf, Method};
+use clap::builder::PossibleValue;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+use std::path::PathBuf;
+
+/// Volume and area porosity of real geometry on structured grids.
+#[derive(Debug, Parser)]
+#[command(name = "voidage", version, about, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compute the porosity of a scene on a grid
+    Porosity(Box<PorosityArgs>),
+    /// Say what is in a file: bodies, closure, orientation, overlaps, units, thin parts
+    Inspect(InspectArgs),
+    /// Error against run time, for scenes, grids and methods of a case file
+    Study(StudyArgs),
+    /// Flow a gas through a porous space, as a case file says
+    Solve(SolveArgs),
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page (roff): `voidage man | man -l -`
+    Man,
+}
+
+impl ValueEnum for Unit {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Unit::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()).help(match self {
+            Unit::M => "Metres",
+            Unit::Mm => "Millimetres",
+            Unit::Cm => "Centimetres",
+            Unit::In => "Inches",
+            Unit::Ft => "Feet",
+        }))
+    }
+}
+
+impl ValueEnum for Method {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Method::Auto, Method::Surface, Method::Gjk]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Method::Auto => {
+                ("auto", "The cheapest for every body: sums over its surface, if it has triangles, else subdivision")
+            }
+            Method::Surface => ("surface", "Sums over the surface: exact for any closed surface of triangles"),
+            Method::Gjk => (
+                "gjk",
+                "Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close",
+            ),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl ValueEnum for Leaf {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Leaf::Solid, Leaf::Half, Leaf::Plane]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Leaf::Solid => ("solid", "Touched counts as solid: the paper's rule, which finds too much"),
+            Leaf::Half => ("half", "Touched counts half"),
+            Leaf::Plane => ("plane", "Bounded by planes and points: certified, of second order"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+/// The scene, shared by all commands.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// STL, OBJ or scene (TOML) files; their bodies form one scene
+    #[arg(required = true, value_name = "SCENE")]
+    pub scene: Vec<PathBuf>,
+    /// Unit of the coordinates of STL and OBJ files (default: m)
+    #[arg(long)]
+    pub unit: Option<Unit>,
+}
+
+/// What goes to the terminal.
+#[derive(Debug, Args)]
+pub struct TalkArgs {
+    /// Only errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Also the time of every stage
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// Arguments of `voidage porosity`.
+#[derive(Debug, Args)]
+pub struct PorosityArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Grid file (TOML or JSON): edges x, y, z; or origin, spacing, cells
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cells", "spacing", "bounds"])]
+    pub grid: Option<PathBuf>,
+    /// Number of cells, such as 99x99x63
+    #[arg(long, value_name = "NXxNYxNZ", value_parser = parse_cells, conflicts_with = "spacing")]
+    pub cells: Option<[usize; 3]>,
+    /// Edge length of cubic cells in metres (default: 1/64 of the longest side of the scene)
+    #[arg(long, value_name = "D", value_parser = parse_spacing, allow_negative_numbers = true)]
+    pub spacing: Option<f64>,
+    /// The grid's box in metres (default: the scene's box and a margin of one cell)
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = parse_bounds, allow_hyphen_values = true)]
+    pub bounds: Option<[DVec3; 2]>,
+    /// How volumes are found
+    #[arg(long, value_enum, default_value_t = Method::Auto)]
+    pub method: Method,
+    /// Where bodies overlap and their union has no proof, divide cells until the bounds are this close
+    #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol, allow_negative_numbers = true)]
+    pub tol: f64,
+    /// How often a cell without a proof may be divided by two (default: 6; 3 with --leaf solid or half)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10), allow_negative_numbers = true)]
+    pub depth: Option<u32>,
+    /// What becomes of parts still cut when a subdivision by GJK ends
+    #[arg(long, value_enum, default_value_t = Leaf::Plane)]
+    pub leaf: Leaf,
+    /// Also certified lower and upper bounds of all fields
+    #[arg(long)]
+    pub bounds_fields: bool,
+    /// Only the volume porosity
+    #[arg(long)]
+    pub no_areas: bool,
+    /// Number of threads (default: all cores)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+    /// Write fields for ParaView (VTK rectilinear grid)
+    #[arg(short, long, value_name = "OUT.vtr")]
+    pub output: Option<PathBuf>,
+    /// Compress the .vtr file (zlib)
+    #[arg(long, requires = "output")]
+    pub compress: bool,
+    /// Write beta_v.npy, beta_x.npy, beta_y.npy, beta_z.npy into this directory
+    #[arg(long, value_name = "DIR")]
+    pub npy: Option<PathBuf>,
+    /// Draw slices of the volume porosity
+    #[arg(long, value_name = "FILE.png")]
+    pub png: Option<PathBuf>,
+    /// Write a report
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage solve`.
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// Case file (TOML): grid, porosity, gas, initial, boundary, drag, gravity, scheme, time, output
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Directory for results and checkpoints (default: the case's name without .toml, here)
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Number of threads (default: all cores)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint in the output directory
+    #[arg(long)]
+    pub resume: bool,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+    /// Write the JSON to a file
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage study`.
+#[derive(Debug, Args)]
+pub struct StudyArgs {
+    /// The case file (TOML): scenes, grids, methods, threads
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Write study.csv, study.md and study.png into this directory (default: print the table)
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+fn numbers<T: std::str::FromStr, const N: usize>(text: &str, separator: char) -> Result<[T; N], String> {
+    let parts: Vec<&str> = text.split(separator).map(str::trim).collect();
+    if parts.len() != N {
+        return Err(format!("needs {N} numbers separated by '{separator}', not {}", parts.len()));
+    }
+    let values: Result<Vec<T>, String> =
+        parts.iter().map(|p| p.parse().map_err(|_| format!("'{p}' is not a number of the right kind"))).collect();
+    values?.try_into().map_err(|_| "wrong count".to_owned())
+}
+
+fn parse_cells(text: &str) -> Result<[usize; 3], String> {
+    let cells: [usize; 3] = numbers(&text.to_lowercase().replace('×', "x"), 'x')?;
+    if cells.contains(&0) { Err("needs at least one cell along each axis".into()) } else { Ok(cells) }
+}
+
+fn parse_spacing(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(d) if d > 0.0 && d.is_finite() => Ok(d),
+        _ => Err("needs a positive length".into()),
+    }
+}
+
+fn parse_tol(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(t) if (0.0..=1.0).contains(&t) => Ok(t),
+        _ => Err("needs a fraction from 0 to 1".into()),
+    }
+}
+
+fn parse_bounds(text: &str) -> Result<[DVec3; 2], String> {
+    let b: [f64; 6] = numbers(text, ',')?;
+    let (lo, hi) = (DVec3::new(b[0], b[1], b[2]), DVec3::new(b[3], b[4], b[5]));
+    if lo.is_finite() && hi.is_finite() && lo.cmplt(hi).all() {
+        Ok([lo, hi])
+    } else {
+        Err("needs finite x0,y0,z0 below x1,y1,z1".into())
+    }
+}

@@ -1,0 +1,58 @@
+//! `voidage porosity`: the stages in order, scene → bodies → grid → porosity → files.
+
+mod files;
+mod report;
+
+use super::cli::PorosityArgs;
+use super::progress::Progress;
+use super::stages::{load, measure, need_surfaces, threads};
+use crate::error::Result;
+use crate::files::json;
+use crate::geometry::bodies::Bodies;
+use crate::grid::{self, Edges, Source};
+use crate::porosity::{Method, Options};
+use report::Report;
+
+/// `voidage porosity`.
+///
+/// # Errors
+/// Anything that keeps it from writing all that was asked for.
+pub fn porosity(args: &PorosityArgs) -> Result<()> {
+    let mut progress = Progress::new(&args.talk);
+    files::check(args)?;
+    threads(args.threads)?.install(|| {
+        let (bodies, own_grid) = load(&args.scene, &mut progress)?;
+        if args.method == Method::Surface {
+            need_surfaces(&bodies)?;
+        }
+        let source = source(args, &bodies, own_grid);
+        let mut remarks = Vec::new();
+        let edges = grid::edges(&source, bodies.bounds(), &mut remarks)?;
+        remarks.into_iter().for_each(|r| progress.warn(r));
+        let depth = args.depth.unwrap_or(args.leaf.depth());
+        let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
+        let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
+        let result = measure(&bodies, &edges, options, &mut progress)?;
+        let report = Report::new(args, &edges, &bodies, &result);
+        files::write(args, &edges, &result, &report, &mut progress)?;
+        report.summary(&progress);
+        if let Some(path) = &args.report {
+            json::write(path, &report.finished(&progress))?;
+        }
+        Ok(())
+    })
+}
+
+/// What was asked for; else the scene's own grid; else cubes that resolve the scene.
+fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
+    match (&args.grid, args.cells, args.spacing, own) {
+        (Some(path), ..) => Source::File(path.clone()),
+        (_, Some(cells), ..) => Source::Cells(cells, args.bounds),
+        (_, _, Some(spacing), _) => Source::Spacing(spacing, args.bounds),
+        (.., Some(edges)) if args.bounds.is_none() => Source::Edges(edges),
+        _ => {
+            let size = args.bounds.or_else(|| bodies.bounds()).map_or(1.0, |[lo, hi]| (hi - lo).max_element());
+            Source::Spacing(if size > 0.0 { size / 64.0 } else { 1.0 }, args.bounds)
+        }
+    }
+}

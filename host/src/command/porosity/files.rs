@@ -1,0 +1,110 @@
+//! The output files of `voidage porosity`: whether they may be written, and what is in them.
+
+use super::report::Report;
+use crate::command::cli::PorosityArgs;
+use crate::command::progress::Progress;
+use crate::error::{Error, Result};
+use crate::files::vtr::{CellField, Field, Vtr};
+use crate::files::{check_target, npy};
+use crate::grid::Edges;
+use crate::picture::png;
+use crate::porosity::Porosity;
+use std::path::{Path, PathBuf};
+
+/// Outputs must have a place, and none may replace a file of the scene, the grid or another output.
+///
+/// # Errors
+/// The first that has none, or would.
+pub(super) fn check(args: &PorosityArgs) -> Result<()> {
+    let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    let arrays = arrays(args);
+    let files = [&args.output, &args.png, &args.report].into_iter().flatten();
+    let outputs: Vec<&Path> = arrays.iter().chain(files).map(|p| p.as_path()).collect();
+    if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
+        return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
+    }
+    for (n, output) in outputs.iter().enumerate() {
+        // The directory of the arrays is made before.
+        let made = args.npy.as_deref().zip(output.parent()).is_some_and(|(made, parent)| made.starts_with(parent));
+        if !made || output.exists() {
+            check_target(output)?;
+        }
+        let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
+        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
+        if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
+            return Err(Error::usage(format!(
+                "{}: an output would replace another file of this run",
+                output.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The arrays that `--npy` writes.
+fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
+    let suffixes: &[&str] = if args.bounds_fields { &["", "_lower", "_upper"] } else { &[""] };
+    let fields: &[&str] = if args.no_areas { &["v"] } else { &["v", "x", "y", "z"] };
+    let names = suffixes.iter().flat_map(|suffix| fields.iter().map(move |field| format!("beta_{field}{suffix}.npy")));
+    args.npy.iter().flat_map(|dir| names.clone().map(|name| dir.join(name))).collect()
+}
+
+/// Write all that was asked for.
+///
+/// # Errors
+/// The first file that cannot be written.
+pub(super) fn write(
+    args: &PorosityArgs,
+    edges: &Edges,
+    result: &Porosity,
+    about: &Report,
+    progress: &mut Progress,
+) -> Result<()> {
+    if let Some(dir) = &args.npy {
+        progress.stage("npy", |_| npy::write_all(dir, &fields(edges, result)))?;
+    }
+    if let Some(path) = &args.output {
+        progress.stage("vtr", |_| write_vtr(path, args.compress, edges, result, about))?;
+    }
+    if let Some(path) = &args.png {
+        let [x, y, z] = &edges.0;
+        let name = |p: &PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
+        progress.stage("png", |_| png::slices(path, &title, x, y, z, "m", &result.beta.v))?;
+    }
+    Ok(())
+}
+
+/// The fields of a result with names: base name, shape, values.
+fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &'a [f64])> {
+    let [nx, ny, nz] = edges.cells();
+    let [lower, upper] = [0, 1].map(|n| result.bounds.as_ref().map(|b| &b[n]));
+    let sets = [("", Some(&result.beta)), ("_lower", lower), ("_upper", upper)];
+    let mut all: Vec<(String, [usize; 3], &[f64])> = Vec::new();
+    for (suffix, set) in sets.into_iter().filter_map(|(suffix, set)| Some((suffix, set?))) {
+        all.push((format!("beta_v{suffix}"), [nx, ny, nz], &set.v));
+        all.push((format!("beta_x{suffix}"), [nx + 1, ny, nz], &set.x));
+        all.push((format!("beta_y{suffix}"), [nx, ny + 1, nz], &set.y));
+        all.push((format!("beta_z{suffix}"), [nx, ny, nz + 1], &set.z));
+    }
+    all.retain(|(_, _, values)| !values.is_empty());
+    all
+}
+
+fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {
+    let [x, y, z] = &edges.0;
+    let all = fields(edges, result);
+    let beta = &result.beta;
+    let mut cell = Vec::new();
+    for (name, _, data) in all.iter().filter(|(name, ..)| name.starts_with("beta_v")) {
+        cell.push(CellField::Values(Field { name, components: 1, data }));
+    }
+    if !beta.x.is_empty() {
+        cell.push(CellField::LowFaces { name: "beta_f", faces: [&beta.x, &beta.y, &beta.z] });
+    }
+    let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
+    let field_data = staggered.map(|(name, _, data)| Field { name, components: 1, data }).collect();
+    let version = format!("voidage {}", about.version);
+    Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }
+        .write(path)
+}

@@ -1,0 +1,122 @@
+//! What a run of `voidage porosity` tells of itself: the JSON of `--report` and the lines on the terminal.
+
+use crate::command::cli::PorosityArgs;
+use crate::command::progress::Progress;
+use crate::command::stages::command_line;
+use crate::geometry::bodies::{Bodies, SolidSummary};
+use crate::grid::Edges;
+use crate::picture::ticks::measure;
+use crate::porosity::{self, Leaf, Porosity};
+use glam::DVec3;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What `--report` writes.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Report {
+    pub(super) version: &'static str,
+    pub(super) command: String,
+    grid: GridReport,
+    /// Of the union, within the grid in m³.
+    solid_volume: f64,
+    bodies: usize,
+    triangles: usize,
+    roads: RoadReport,
+    cells: porosity::CellCounts,
+    max_gap: f64,
+    divided: usize,
+    leaks: Vec<porosity::Leak>,
+    sheets_off_planes: porosity::snap::OffPlanes,
+    /// Of scene files.
+    solids: Vec<SolidSummary>,
+    warnings: Vec<String>,
+    skipped: Vec<&'static str>,
+    seconds: BTreeMap<&'static str, f64>,
+    gjk: porosity::Gjk,
+}
+
+/// How many bodies took which road.
+#[derive(Debug, Clone, Serialize)]
+struct RoadReport {
+    /// Sums over surfaces: exact.
+    surface: usize,
+    /// Subdivision by GJK: bounds.
+    subdivision: usize,
+    /// Of the latter, the rule at its end.
+    leaf: Leaf,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct GridReport {
+    cells: [usize; 3],
+    bounds: [DVec3; 2],
+    unit: &'static str,
+}
+
+impl Report {
+    pub(super) fn new(args: &PorosityArgs, edges: &Edges, bodies: &Bodies, result: &Porosity) -> Self {
+        let mut skipped = Vec::new();
+        if result.subdivided == 0 {
+            skipped.push("gjk: every body has triangles, and their sums are exact and cheaper");
+        }
+        if args.no_areas {
+            skipped.push("area porosities: --no-areas");
+        }
+        if !args.bounds_fields {
+            skipped.push("bound fields: not asked for (--bounds-fields)");
+        }
+        if result.cells.ambiguous == 0 {
+            skipped.push("unions: no cell is shared by bodies");
+        }
+        Report {
+            version: env!("CARGO_PKG_VERSION"),
+            command: command_line(),
+            grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
+            solid_volume: result.solid_volume,
+            bodies: bodies.bodies.len(),
+            triangles: bodies.triangles.len(),
+            roads: RoadReport {
+                surface: bodies.bodies.len() - result.subdivided,
+                subdivision: result.subdivided,
+                leaf: args.leaf,
+            },
+            cells: result.cells,
+            max_gap: result.max_gap,
+            divided: result.divided,
+            leaks: result.leaks.clone(),
+            sheets_off_planes: result.sheets_off_planes,
+            solids: bodies.solids.clone(),
+            warnings: Vec::new(),
+            skipped,
+            seconds: BTreeMap::new(),
+            gjk: result.gjk,
+        }
+    }
+
+    /// With what only the end of the run knows: warnings and the seconds of every stage.
+    pub(super) fn finished(self, progress: &Progress) -> Self {
+        Report { seconds: progress.seconds.clone(), warnings: progress.warnings.clone(), ..self }
+    }
+
+    /// A few lines for the terminal.
+    pub(super) fn summary(&self, progress: &Progress) {
+        let [nx, ny, nz] = self.grid.cells;
+        let c = self.cells;
+        progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
+        progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
+        if self.roads.subdivision > 0 {
+            progress
+                .say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
+        }
+        progress.say(format!("solid volume  {} m³", measure(self.solid_volume)));
+        progress.say(format!(
+            "cells         {} open, {} cut, {} closed; {} shared by bodies",
+            c.open, c.cut, c.closed, c.ambiguous
+        ));
+        progress.say(format!(
+            "largest gap   {}",
+            if self.max_gap > 0.0 { format!("{:.1e}", self.max_gap) } else { "0".into() }
+        ));
+        progress.say(format!("time          {:.3} s", progress.elapsed()));
+    }
+}

@@ -1,0 +1,16 @@
+//! Gas flow through porosity fields: `voidage solve`.
+//!
+//! In reading order: [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and [`setup`], from the case to a flow; [`frames`],
+//! [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
+
+mod arrays;
+pub mod case;
+pub mod checkpoint;
+pub mod frames;
+pub mod inlet;
+pub mod report;
+pub mod run;
+pub mod setup;
+pub mod space;
+pub mod state;
+pub mod table;

@@ -1,0 +1,375 @@
+//! The case file of `voidage solve`, as typed. Every key that is not known is an error.
+//!
+//! Lengths in metres, times in seconds, any consistent units. A state is `rho`, `u`, `v`, `w`, `p`: density, velocity
+//! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
+
+use crate::error::{Error, Result};
+use crate::grid::{self, Edges, Spec};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A whole case.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Written over pictures and into reports.
+    pub title: Option<String>,
+    /// Cells; an axis left out, or of one cell, is no part of the flow.
+    pub grid: Spec,
+    /// The space; open, if left out.
+    #[serde(default)]
+    pub porosity: PorosityKeys,
+    /// The gas.
+    pub gas: GasKeys,
+    /// State at the beginning.
+    pub initial: InitialKeys,
+    /// The sides of the axes that have more than one cell.
+    #[serde(default)]
+    pub boundary: Sides,
+    /// Resistance of obstacles smaller than a cell.
+    #[serde(default)]
+    pub drag: DragKeys,
+    /// A constant acceleration.
+    #[serde(default)]
+    pub gravity: GravityKeys,
+    /// Numerics.
+    #[serde(default)]
+    pub scheme: SchemeKeys,
+    /// When to stop.
+    pub time: TimeKeys,
+    /// What to write beside the last state.
+    #[serde(default)]
+    pub output: OutputKeys,
+}
+
+/// `[porosity]`: `scene` or `from`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PorosityKeys {
+    /// STL or OBJ files, one or a list.
+    pub scene: Option<Paths>,
+    /// Unit of the scene's coordinates.
+    pub unit: Option<crate::geometry::unit::Unit>,
+    /// As `voidage porosity --tol`.
+    pub tol: Option<f64>,
+    /// As `voidage porosity --depth`.
+    pub depth: Option<u32>,
+    /// Directory with `beta_v.npy` and the face fields of the axes that flow.
+    pub from: Option<PathBuf>,
+    /// Differences of the open fraction above this share are jumps and get the throat map; `inf` for none.
+    pub jump: Option<f64>,
+    /// Merge cells of little volume behind open faces, which otherwise set the time step.
+    pub merge: Option<bool>,
+}
+
+/// One path or several.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged, expecting = "a path or a list of paths")]
+pub enum Paths {
+    /// One.
+    One(PathBuf),
+    /// Several.
+    Many(Vec<PathBuf>),
+}
+
+/// Which gas.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// p = (gamma − 1) rho e.
+    Ideal,
+    /// p = c² rho.
+    Isothermal,
+    /// p = p0 (rho/rho0)^gamma.
+    Isentropic,
+}
+
+/// `[gas]`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GasKeys {
+    /// Which gas.
+    pub model: Model,
+    /// Ratio of specific heats (ideal, isentropic).
+    pub gamma: Option<f64>,
+    /// Speed of sound (isothermal).
+    pub sound_speed: Option<f64>,
+    /// rho0 of the reference state (isentropic).
+    pub rho: Option<f64>,
+    /// p0 of the reference state (isentropic).
+    pub p: Option<f64>,
+    /// R in p = rho R T, for states given by their temperature.
+    pub gas_constant: Option<f64>,
+}
+
+/// A state, or a side of the domain, or a region: each uses some of the keys.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateKeys {
+    /// Density.
+    pub rho: Option<f64>,
+    /// Temperature, in place of the density.
+    #[serde(rename = "T")]
+    pub temperature: Option<f64>,
+    /// Velocity along x.
+    pub u: Option<f64>,
+    /// Velocity along y.
+    pub v: Option<f64>,
+    /// Velocity along z.
+    pub w: Option<f64>,
+    /// Pressure.
+    pub p: Option<f64>,
+    /// Of a side: what stands there.
+    #[serde(rename = "type")]
+    pub kind: Option<Kind>,
+    /// Of an inlet: time in which its pressure follows the flow.
+    pub relax: Option<f64>,
+    /// Of a region: lowest corner of a box; missing axes reach to infinity.
+    pub min: Option<Vec<f64>>,
+    /// Highest corner.
+    pub max: Option<Vec<f64>>,
+    /// Of a region: centre of a ball.
+    pub center: Option<Vec<f64>>,
+    /// Its radius.
+    pub radius: Option<f64>,
+}
+
+/// `[initial]`: `uniform` or `from`, then `regions` over it, later ones over earlier ones.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InitialKeys {
+    /// One state everywhere.
+    pub uniform: Option<StateKeys>,
+    /// Directory with `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`.
+    pub from: Option<PathBuf>,
+    /// Boxes and balls with states; a cell belongs to a region if its centre does.
+    #[serde(default)]
+    pub regions: Vec<StateKeys>,
+}
+
+/// What stands at a side of the domain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Gas of a given velocity and density (or temperature) enters; its pressure follows the flow.
+    Inlet,
+    /// A given state outside; waves leave.
+    FarField,
+    /// Gas leaves against a given pressure.
+    Outlet,
+    /// No flux, no friction.
+    Wall,
+    /// Outside as inside.
+    ZeroGradient,
+    /// The opposite side.
+    Periodic,
+}
+
+/// `[boundary]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sides {
+    /// Low side of x.
+    pub x_min: Option<StateKeys>,
+    /// High side of x.
+    pub x_max: Option<StateKeys>,
+    /// Low side of y.
+    pub y_min: Option<StateKeys>,
+    /// High side of y.
+    pub y_max: Option<StateKeys>,
+    /// Low side of z.
+    pub z_min: Option<StateKeys>,
+    /// High side of z.
+    pub z_max: Option<StateKeys>,
+}
+
+impl Sides {
+    /// Low and high side of each axis.
+    #[must_use]
+    pub fn by_axis(&self) -> [[Option<&StateKeys>; 2]; 3] {
+        let Sides { x_min, x_max, y_min, y_max, z_min, z_max } = self;
+        [[x_min, x_max], [y_min, y_max], [z_min, z_max]].map(|sides| sides.map(Option::as_ref))
+    }
+}
+
+/// `[drag]`: R_i = −beta_v rho (linear_i + ½ cr_i |u|) u_i, the same everywhere or from files.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DragKeys {
+    /// CR along x, y, z in 1/m.
+    pub cr: Option<[f64; 3]>,
+    /// Linear coefficients in 1/s.
+    pub linear: Option<[f64; 3]>,
+    /// Directory with any of `cr_x.npy` … `linear_z.npy`.
+    pub from: Option<PathBuf>,
+}
+
+/// `[gravity]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GravityKeys {
+    /// Acceleration along x, y, z in m/s².
+    pub g: Option<[f64; 3]>,
+}
+
+/// `[scheme]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SchemeKeys {
+    /// How the pressure acts on walls inside a cell.
+    pub pressure: Option<Pressure>,
+    /// Limiter of the slopes.
+    pub limiter: Option<LimiterName>,
+    /// Riemann solver.
+    pub riemann: Option<RiemannName>,
+    /// 1 or 2.
+    pub order: Option<u8>,
+    /// Share of the stable time step, above 0 and at most 1.
+    pub cfl: Option<f64>,
+    /// First steps taken at a fifth of the stable step.
+    pub careful_steps: Option<usize>,
+}
+
+/// Form of the pressure force.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pressure {
+    /// On open faces and on the walls inside.
+    Geometric,
+    /// −beta_v grad p.
+    Paper,
+}
+
+/// Limiter.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LimiterName {
+    /// Monotonised central, with contacts kept steep.
+    Steep,
+    /// Monotonised central.
+    Mc,
+    /// Van Leer.
+    VanLeer,
+    /// Minmod.
+    Minmod,
+    /// Central slopes as they are, for smooth flow.
+    None,
+}
+
+/// Riemann solver.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RiemannName {
+    /// HLLC.
+    Hllc,
+    /// HLLE.
+    Hlle,
+    /// Rusanov.
+    Rusanov,
+}
+
+/// `[time]`: at least one of the two.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeKeys {
+    /// Time to reach.
+    pub end: Option<f64>,
+    /// Steps after which to stop.
+    pub max_steps: Option<usize>,
+}
+
+/// `[output]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OutputKeys {
+    /// Time between frames; the first and the last state are always frames.
+    pub every: Option<f64>,
+    /// Files of a frame; `["vtr"]` if left out.
+    pub formats: Option<Vec<Format>>,
+    /// Points whose state is kept at every step.
+    #[serde(default)]
+    pub probes: Vec<Probe>,
+    /// Point through which pictures are cut.
+    pub slice: Option<[f64; 3]>,
+    /// Steps between lines of the log.
+    pub log_every: Option<usize>,
+    /// Seconds of work between checkpoints.
+    pub checkpoint_every: Option<f64>,
+}
+
+/// Files of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Format {
+    /// ParaView, with a `flow.pvd` over all frames.
+    Vtr,
+    /// NumPy arrays.
+    Npy,
+    /// Pictures of velocity and pressure.
+    Png,
+}
+
+/// A point whose state is kept.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    /// Name in the file.
+    pub name: String,
+    /// The point.
+    pub at: [f64; 3],
+}
+
+/// A case file with its place, for errors and for the paths in it.
+#[derive(Debug, Clone)]
+pub struct CaseFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// What it says.
+    pub case: Case,
+}
+
+impl CaseFile {
+    /// Reads a case.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
+        let case = toml::from_str(&text).map_err(|e| grid::toml_error(path, &text, &e))?;
+        Ok(CaseFile { path: path.to_owned(), case })
+    }
+
+    /// A path of the case file, which counts from the file's own directory.
+    #[must_use]
+    pub fn resolve(&self, path: &Path) -> PathBuf {
+        self.path.parent().map_or_else(|| path.to_owned(), |dir| dir.join(path))
+    }
+
+    /// An error at a key.
+    #[must_use]
+    pub fn wrong(&self, key: &str, reason: impl Into<String>) -> Error {
+        Error::at(&self.path, format!("key {key}"), reason)
+    }
+
+    /// `reason` unless `value` is left out or `holds`.
+    ///
+    /// # Errors
+    /// Names key, reason and value.
+    pub fn demand(&self, key: &str, value: Option<f64>, holds: impl Fn(f64) -> bool, reason: &str) -> Result<()> {
+        match value {
+            Some(v) if !holds(v) => Err(self.wrong(key, format!("{reason}, not {v}"))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Cell edges along x, y, z.
+    ///
+    /// # Errors
+    /// No grid.
+    pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
+        match self.case.grid.elsewhere() {
+            Some(file) => grid::read(&self.resolve(file), warnings),
+            None => self.case.grid.clone().edges(&self.path, "grid.", true),
+        }
+    }
+}

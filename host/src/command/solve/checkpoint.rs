@@ -1,0 +1,237 @@
+//! Checkpoints: all that a run needs to go on to the bit, in one file that appears whole or not at all.
+//!
+//! Layout: eight bytes of magic and version, the length of a JSON header (u64), the header, the conserved fields as f64 (density, momentum along
+//! each axis of the flow, energy if there is any), CRC-32 of all before; everything little endian. The header names the
+//! case by checksums of its parts, so that a checkpoint of another case is refused with the part that differs.
+
+use super::inlet::Inlet;
+use super::setup::Setup;
+use crate::error::{Error, Result};
+use crate::files::atomically;
+use crate::files::bytes::write_f64;
+use crate::flow::{Clock, Field};
+use crate::huge::HugeVec;
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+use std::path::Path;
+use voidage_core::flow::{Conserved, Report};
+
+/// First bytes of the file; the last is the version of the layout.
+const MAGIC: &[u8; 8] = b"VOIDAGE\x02";
+
+/// Name of the file in the output directory.
+pub const NAME: &str = "checkpoint.bin";
+
+/// Name of the copy of the last checkpoint from before the first floor.
+pub const UNTOUCHED: &str = "checkpoint_before_floors.bin";
+
+/// Keeps the present checkpoint in `dir`, the last one before a floor: later ones take its place, not that of the copy.
+///
+/// # Errors
+/// The file cannot be copied.
+pub fn keep_untouched(dir: &Path) -> Result<()> {
+    let (from, to) = (dir.join(NAME), dir.join(UNTOUCHED));
+    let bytes = std::fs::read(&from).map_err(|e| Error::io(&from, "read", &e))?;
+    atomically(&to, |out| out.write_all(&bytes))
+}
+
+/// Removes the copy that an earlier run has left in `dir`.
+///
+/// # Errors
+/// The file cannot be removed.
+pub fn forget_untouched(dir: &Path) -> Result<()> {
+    let path = dir.join(UNTOUCHED);
+    match std::fs::remove_file(&path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Error::io(&path, "remove", &e)),
+        _ => Ok(()),
+    }
+}
+
+/// What the run has written and counted so far.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Journal {
+    /// Times of the frames.
+    pub frames: Vec<f64>,
+    /// Bytes of `log.csv`.
+    pub log: u64,
+    /// Bytes of `probes.csv`.
+    pub probes: u64,
+    /// Mass and energy at the beginning.
+    pub begin: [f64; 2],
+    /// Seconds of stepping.
+    pub seconds: f64,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Header {
+    case: Fingerprint,
+    journal: Journal,
+    values: usize,
+    time: f64,
+    steps: usize,
+    repeated: usize,
+    rate: f64,
+    first_order: usize,
+    floored: usize,
+    /// Changed by floors: density, momentum, energy.
+    floor_change: Vec<f64>,
+    /// Through both sides of each axis: density, momentum, energy.
+    inflow: Vec<f64>,
+    inlet_pressures: Vec<f64>,
+}
+
+/// Checksums of the parts of a case that decide its flow. How long it runs and what it writes may change.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fingerprint(Vec<(String, u32)>);
+
+impl Fingerprint {
+    /// Of a flow at its beginning.
+    pub fn new<const D: usize>(setup: &Setup<D>) -> Self {
+        let Setup { flow, edges, .. } = setup;
+        let of_text = |text: String| crc32fast::hash(text.as_bytes());
+        let of_arrays = |arrays: &mut dyn Iterator<Item = &[f64]>| {
+            let mut out = Checksum { inner: io::sink(), hasher: crc32fast::Hasher::new() };
+            for a in arrays {
+                let _ = write_f64(&mut out, &[a.len() as f64]).and_then(|()| write_f64(&mut out, a)); // to a sink
+            }
+            out.hasher.finalize()
+        };
+        let inlets: Vec<_> = setup.inlets.iter().map(|i| (i.at, i.relax)).collect();
+        let parts = [
+            ("grid", of_arrays(&mut edges.0.iter().map(|e| &e[..]))),
+            ("porosity", of_arrays(&mut flow.beta_v().into_iter().chain(flow.faces()))),
+            ("treatment of the porosity", of_text(format!("{:?}", setup.treatment))),
+            ("gas", of_text(format!("{:?}", flow.gas()))),
+            ("initial state", of_arrays(&mut columns(&flow.state))),
+            ("boundary", of_text(format!("{:?} {:?}", flow.boundaries, inlets))),
+            ("drag", of_arrays(&mut flow.drag())),
+            ("gravity", of_text(format!("{:?}", flow.gravity))),
+            ("scheme", of_text(format!("{:?} {} {}", flow.scheme, setup.cfl, flow.careful_steps))),
+        ];
+        Fingerprint(parts.map(|(name, sum)| (name.to_owned(), sum)).to_vec())
+    }
+}
+
+/// The fields of a state in the order of the file.
+fn columns<const D: usize>(state: &Field<f64, D>) -> impl Iterator<Item = &[f64]> {
+    let momentum = state.momentum.iter().map(|m| &m[..]);
+    std::iter::once(&state.density[..]).chain(momentum).chain(std::iter::once(&state.energy[..]))
+}
+
+/// Writes a checkpoint.
+///
+/// # Errors
+/// The file cannot be written; an older one is then untouched.
+pub fn write<const D: usize>(
+    path: &Path,
+    case: &Fingerprint,
+    setup: &Setup<D>,
+    clock: &Clock<f64, D>,
+    journal: &Journal,
+) -> Result<()> {
+    let flow = &setup.flow;
+    let Clock { time, steps, repeated, total } = *clock;
+    let through = |c: &Conserved<f64, D>| [&[c.density][..], &c.momentum[..], &[c.energy][..]].concat();
+    let header = Header {
+        case: case.clone(),
+        journal: journal.clone(),
+        values: columns(&flow.state).map(<[f64]>::len).sum(),
+        time,
+        steps,
+        repeated,
+        rate: total.rate,
+        first_order: total.first_order,
+        floored: total.floored,
+        floor_change: through(&total.floor_change),
+        inflow: total.inflow.iter().flatten().flat_map(through).collect(),
+        inlet_pressures: setup.inlets.iter().map(|i| i.pressure(flow)).collect(),
+    };
+    atomically(path, |out| {
+        let mut out = Checksum { inner: out, hasher: crc32fast::Hasher::new() };
+        let text = serde_json::to_vec(&header)?;
+        out.write_all(MAGIC)?;
+        out.write_all(&(text.len() as u64).to_le_bytes())?;
+        out.write_all(&text)?;
+        columns(&flow.state).try_for_each(|values| write_f64(&mut out, values))?;
+        let sum = out.hasher.finalize();
+        out.inner.write_all(&sum.to_le_bytes())
+    })
+}
+
+/// Puts the flow of `setup` where the checkpoint left it. Returns what that run had written and counted.
+///
+/// # Errors
+/// The file cannot be read, is damaged, or belongs to another case.
+pub fn resume<const D: usize>(path: &Path, case: &Fingerprint, setup: &mut Setup<D>) -> Result<Journal> {
+    let bytes = std::fs::read(path).map_err(|e| match e.kind() {
+        io::ErrorKind::NotFound => Error::file(path, "there is no checkpoint to resume from; run without --resume"),
+        _ => Error::io(path, "read", &e),
+    })?;
+    let (header, values) = parse(&bytes).map_err(|reason| Error::file(path, reason))?;
+    let differ = |(a, b): &(&(String, u32), &(String, u32))| a != b;
+    if let Some((part, _)) = case.0.iter().zip(&header.case.0).find(differ) {
+        return Err(Error::file(path, format!("is of another case: its {} differs; run without --resume", part.0)));
+    }
+    let wrong = || Error::file(path, "is damaged: its parts do not fit the case");
+    let mut values = values.chunks_exact(8).map(|b| f64::from_le_bytes(std::array::from_fn(|i| b[i])));
+    let mut take = |like: &HugeVec| HugeVec::from(values.by_ref().take(like.len()).collect::<Vec<_>>());
+    let old = &setup.flow.state;
+    let density = take(&old.density);
+    let momentum = old.momentum.each_ref().map(&mut take);
+    let state = Field { density, momentum, energy: take(&old.energy) };
+    let Header { time, steps, repeated, rate, first_order, floored, .. } = header;
+    let mut total = Report { rate, first_order, floored, ..Report::new() };
+    let lengths = header.inflow.len() == 2 * D * (D + 2) && header.floor_change.len() == D + 2;
+    if !lengths || header.inlet_pressures.len() != setup.inlets.len() {
+        return Err(wrong());
+    }
+    let amount = |from: &[f64]| {
+        let momentum = std::array::from_fn(|c| from[1 + c]);
+        Conserved { density: from[0], momentum, energy: from[D + 1] }
+    };
+    total.floor_change = amount(&header.floor_change);
+    for (into, from) in total.inflow.iter_mut().flatten().zip(header.inflow.chunks_exact(D + 2)) {
+        *into = amount(from);
+    }
+    setup.flow.resume(state, Clock { time, steps, repeated, total }).map_err(|_| wrong())?;
+    let restore = |(inlet, p): (&Inlet<D>, f64)| inlet.set_pressure(&mut setup.flow, p);
+    setup.inlets.iter().zip(header.inlet_pressures).for_each(restore);
+    Ok(header.journal)
+}
+
+/// Header and values, or the reason why there are none.
+fn parse(bytes: &[u8]) -> std::result::Result<(Header, &[u8]), String> {
+    let damaged = |what: &str| format!("is damaged: {what}");
+    let rest = bytes.strip_prefix(MAGIC).ok_or("is no checkpoint of this version")?;
+    let (body, sum) = bytes.split_last_chunk::<4>().ok_or_else(|| damaged("it ends too early"))?;
+    if crc32fast::hash(body) != u32::from_le_bytes(*sum) {
+        return Err(damaged("its checksum is wrong"));
+    }
+    let (length, rest) = rest.split_first_chunk::<8>().ok_or_else(|| damaged("it ends too early"))?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
+    let text = rest.get(..length).ok_or_else(|| damaged("it ends too early"))?;
+    let header: Header = serde_json::from_slice(text).map_err(|e| damaged(&e.to_string()))?;
+    let values = &rest[length..rest.len().saturating_sub(4).max(length)];
+    if header.values.checked_mul(8) != Some(values.len()) {
+        return Err(damaged("it ends too early"));
+    }
+    Ok((header, values))
+}
+
+/// Passes bytes on and sums them up.
+struct Checksum<W> {
+    inner: W,
+    hasher: crc32fast::Hasher,
+}
+
+impl<W: Write> Write for Checksum<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let n = self.inner.write(bytes)?;
+        self.hasher.update(&bytes[..n]);
+        Ok(n)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}

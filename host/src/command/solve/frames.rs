@@ -1,0 +1,176 @@
+//! The state of a moment as files: NumPy arrays, ParaView frames with their times, pictures.
+
+use super::setup::Setup;
+use crate::error::{Error, Result};
+use crate::files::vtr::{CellField, Field, Vtr};
+use crate::files::{atomically, npy};
+use crate::flow::Flow;
+use crate::grid::Edges;
+use crate::picture::colour::ColourMap;
+use crate::picture::figure::Figure;
+use crate::picture::png;
+use crate::picture::ticks::number;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Primitive variables of all cells, x fastest.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// Density.
+    pub density: Vec<f64>,
+    /// Velocity along x, y, z; 0 along axes of one cell.
+    pub velocity: [Vec<f64>; 3],
+    /// Pressure.
+    pub pressure: Vec<f64>,
+}
+
+impl Snapshot {
+    /// Of the present state.
+    #[must_use]
+    pub fn of<const D: usize>(flow: &Flow<f64, D>, live: [usize; D]) -> Self {
+        let mut velocity: [Vec<f64>; 3] = Default::default();
+        let cells = (0..flow.len()).map(|c| flow.get(c));
+        let (mut density, mut pressure) = (Vec::with_capacity(flow.len()), Vec::with_capacity(flow.len()));
+        for w in cells {
+            density.push(w.density);
+            pressure.push(w.pressure);
+            live.iter().zip(w.velocity).for_each(|(&axis, u)| velocity[axis].push(u));
+        }
+        velocity.iter_mut().for_each(|v| v.resize(flow.len(), 0.0));
+        Snapshot { density, velocity, pressure }
+    }
+
+    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`, all or none.
+    ///
+    /// # Errors
+    /// The files cannot be written.
+    pub fn arrays(&self, dir: &Path, edges: &Edges) -> Result<()> {
+        let [u, v, w] = &self.velocity;
+        let named = [("rho", &self.density), ("u", u), ("v", v), ("w", w), ("p", &self.pressure)];
+        npy::write_all(dir, &named.map(|(name, values)| (name.to_owned(), edges.cells(), &values[..])))
+    }
+
+    /// Writes a frame for ParaView.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn paraview(&self, path: &Path, edges: &Edges, beta_v: Option<&[f64]>, time: f64) -> Result<()> {
+        let [x, y, z] = &edges.0;
+        let scalar = |name, data| CellField::Values(Field { name, components: 1, data });
+        let parts = self.velocity.each_ref().map(|v| &v[..]);
+        let mut cell = vec![
+            scalar("p", &self.pressure),
+            scalar("rho", &self.density),
+            CellField::Vector { name: "velocity", parts },
+        ];
+        cell.extend(beta_v.map(|b| scalar("beta_v", b)));
+        let time = [time];
+        let field_data = vec![Field { name: "TimeValue", components: 1, data: &time }];
+        Vtr { x, y, z, cell, field_data, text: vec![], compress: false }.write(path)
+    }
+
+    /// Speed of all cells.
+    fn speed(&self) -> Vec<f64> {
+        let [u, v, w] = &self.velocity;
+        (0..u.len()).map(|c| (u[c] * u[c] + v[c] * v[c] + w[c] * w[c]).sqrt()).collect()
+    }
+}
+
+/// Where pictures are cut and what is written over them.
+#[derive(Debug, Clone)]
+pub struct Pictures {
+    title: String,
+    at: [usize; 3],
+}
+
+impl Pictures {
+    /// Cuts through `point`, or where the porosity shows most, or in the middle.
+    #[must_use]
+    pub fn new<const D: usize>(setup: &Setup<D>, title: &str, point: Option<[f64; 3]>) -> Self {
+        let edges = &setup.edges;
+        let middle = edges.cells().map(|n| n / 2);
+        let at = match (point, setup.flow.beta_v()) {
+            (Some(point), _) => cell_at(edges, point).unwrap_or(middle),
+            (None, Some(beta)) => png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta).unwrap_or(middle),
+            (None, None) => middle,
+        };
+        Pictures { title: title.to_owned(), at }
+    }
+
+    /// Draws speed and pressure into files of these names.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn draw<const D: usize>(
+        &self,
+        setup: &Setup<D>,
+        shot: &Snapshot,
+        time: f64,
+        paths: [PathBuf; 2],
+    ) -> Result<()> {
+        let solid = setup.space.is_some_and(|s| s.closed_cells > 0);
+        let fields = [("speed [m/s]", shot.speed(), true), ("pressure [Pa]", shot.pressure.clone(), false)];
+        for ((name, mut values, from_zero), path) in fields.into_iter().zip(paths) {
+            if let Some(beta) = setup.flow.beta_v() {
+                values.iter_mut().zip(beta).filter(|(_, b)| **b == 0.0).for_each(|(v, _)| *v = f64::NAN);
+            }
+            let least = if from_zero { 0.0 } else { f64::INFINITY };
+            let range = values
+                .iter()
+                .filter(|v| !v.is_nan())
+                .fold([least, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
+            let edges = setup.edges.0.each_ref().map(|e| &e[..]);
+            let title = format!("{} · t = {} s", self.title, number(time));
+            let note = png::grid_note(edges, "m") + if solid { " · solid in mauve" } else { "" };
+            let map = &ColourMap::sequential();
+            let (unit, ends) = ("m", ["", ""]);
+            Figure { title: &title, note: &note, edges, unit, values: &values, at: self.at, name, range, ends, map }
+                .write(&path)?;
+        }
+        Ok(())
+    }
+}
+
+/// Indices of the cell that holds a point.
+#[must_use]
+pub fn cell_at(edges: &Edges, point: [f64; 3]) -> Option<[usize; 3]> {
+    let mut at = [0; 3];
+    for a in 0..3 {
+        let e = &edges.0[a];
+        let inside = e.first().is_some_and(|&low| low <= point[a]) && e.last().is_some_and(|&high| point[a] <= high);
+        if !inside {
+            return None;
+        }
+        at[a] = e.partition_point(|&x| x <= point[a]).clamp(1, e.len() - 1) - 1;
+    }
+    Some(at)
+}
+
+/// A directory, made if need be.
+///
+/// # Errors
+/// It cannot be made.
+pub fn create(dir: &Path) -> Result<()> {
+    std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))
+}
+
+/// Writes the list of frames with their times that ParaView opens as one series.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn series(path: &Path, times: &[f64]) -> Result<()> {
+    let mut text =
+        String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n");
+    for (n, time) in times.iter().enumerate() {
+        let file = frame_name(n, "vtr");
+        let _ = writeln!(text, "    <DataSet timestep=\"{time}\" part=\"0\" file=\"frames/{file}\"/>"); // a String takes anything
+    }
+    text += "  </Collection>\n</VTKFile>\n";
+    atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// Name of a frame's file in `frames/`.
+#[must_use]
+pub fn frame_name(n: usize, extension: &str) -> String {
+    format!("flow_{n:04}.{extension}")
+}

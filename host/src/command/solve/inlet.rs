@@ -1,0 +1,111 @@
+//! Inlets: a velocity and a density (or temperature) are given, the pressure follows the flow.
+//!
+//! Fixing velocity, density and pressure would reflect every wave. Instead the pressure outside rises while the gas just
+//! inside is too slow and falls while it is too fast, within a relaxation time; waves leave, and the velocity is met
+//! in the end. In a barotropic gas, or where the temperature is given, the density follows the pressure.
+
+use super::case::StateKeys;
+use super::state::States;
+use crate::error::Result;
+use crate::flow::Flow;
+use crate::grid::Edges;
+use voidage_core::flow::{Boundary, Gas, Primitive};
+
+/// An inlet of a flow.
+#[derive(Debug, Clone)]
+pub struct Inlet<const D: usize> {
+    /// Axis among those that flow, and 0 for its low or 1 for its high side.
+    pub at: (usize, usize),
+    /// Time in which the pressure follows.
+    pub relax: f64,
+    /// +1 if the gas enters along the axis, −1 if against it.
+    sign: f64,
+    /// Density over pressure where the temperature is given.
+    per_pressure: Option<f64>,
+    /// Open area beside each cell of the side, as a share of all.
+    shares: Vec<(usize, f64)>,
+}
+
+impl<const D: usize> Inlet<D> {
+    /// The inlet of a table, with its first state; `pressure` is where it starts from unless the table says.
+    ///
+    /// # Errors
+    /// The table gives no state, or one that does not enter.
+    pub fn new(
+        states: &States<'_, D>,
+        key: &str,
+        keys: &StateKeys,
+        at: (usize, usize),
+        pressure: f64,
+        edges: &Edges,
+    ) -> Result<(Self, Primitive<f64, D>)> {
+        let first = keys.p.or((states.gas.has_energy() || keys.rho.is_none()).then_some(pressure));
+        let mut state = states.state(key, &StateKeys { p: first, ..keys.clone() }, None)?;
+        let per_pressure = keys.temperature.zip(states.gas_constant).map(|(t, r)| 1.0 / (r * t));
+        let sign = [1.0, -1.0][at.1];
+        if !(sign * state.velocity[at.0] > 0.0) {
+            let name = super::setup::VELOCITIES[states.live[at.0]];
+            let reason = format!("must point into the domain, not be {}", state.velocity[at.0]);
+            return Err(states.file.wrong(&format!("{key}.{name}"), reason));
+        }
+        let axis = &edges.0[states.live[at.0]];
+        let crossing = (axis[axis.len() - 1] - axis[0]) / states.gas.sound_speed(&state);
+        states.file.demand(
+            &format!("{key}.relax"),
+            keys.relax,
+            |t| t > 0.0 && t.is_finite(),
+            "needs a positive time",
+        )?;
+        let relax = keys.relax.unwrap_or(crossing);
+        let inlet = Inlet { at, relax, sign, per_pressure, shares: Vec::new() };
+        inlet.follow(states.gas, &mut state);
+        Ok((inlet, state))
+    }
+
+    /// Learns the open areas of its side.
+    pub fn look_at(&mut self, flow: &Flow<f64, D>) {
+        self.shares = flow.side(self.at.0, self.at.1);
+        let whole: f64 = self.shares.iter().map(|(_, area)| area).sum();
+        self.shares.retain(|(_, area)| *area > 0.0);
+        self.shares.iter_mut().for_each(|(_, area)| *area /= whole);
+    }
+
+    /// Lets the pressure follow the flow for one step.
+    pub fn relax(&self, flow: &mut Flow<f64, D>, dt: f64) {
+        let (d, side) = self.at;
+        let Boundary::Inlet(state) = flow.boundaries[d][side] else { return };
+        let mean: f64 = self.shares.iter().map(|&(cell, share)| share * flow.get(cell).velocity[d]).sum();
+        let gas = flow.gas();
+        let share = (dt / self.relax).min(1.0);
+        let mut next = flow.boundaries[d][side].relaxed(d, self.sign * mean, gas.sound_speed(&state), share);
+        if let Boundary::Inlet(w) = &mut next {
+            self.follow(gas, w);
+        }
+        flow.boundaries[d][side] = next;
+    }
+
+    /// The present pressure outside.
+    #[must_use]
+    pub fn pressure(&self, flow: &Flow<f64, D>) -> f64 {
+        match flow.boundaries[self.at.0][self.at.1] {
+            Boundary::Inlet(w) => w.pressure,
+            _ => 0.0,
+        }
+    }
+
+    /// Sets the pressure outside, of a flow that goes on.
+    pub fn set_pressure(&self, flow: &mut Flow<f64, D>, pressure: f64) {
+        let gas = flow.gas();
+        if let Boundary::Inlet(w) = &mut flow.boundaries[self.at.0][self.at.1] {
+            w.pressure = pressure;
+            self.follow(gas, w);
+        }
+    }
+
+    /// The density that goes with the pressure.
+    fn follow(&self, gas: Gas<f64>, w: &mut Primitive<f64, D>) {
+        if let Some(density) = gas.density(w.pressure).or(self.per_pressure.map(|k| k * w.pressure)) {
+            w.density = density;
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! `report.json` of a flow, and its few lines for the terminal.
+
+use super::case::CaseFile;
+use super::checkpoint::Journal;
+use super::run::Done;
+use super::setup::{AXES, Setup, SpaceReport};
+use crate::command::progress::Progress;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a run came to.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    version: &'static str,
+    command: String,
+    title: Option<String>,
+    gas: String,
+    cells: [usize; 3],
+    /// The axes that flow.
+    axes: Vec<&'static str>,
+    steps: usize,
+    time: f64,
+    /// Of stepping, over all sessions.
+    seconds: f64,
+    /// Of this session.
+    cell_updates_per_second: f64,
+    threads: usize,
+    /// Mass in the domain at the end.
+    mass: f64,
+    /// (Mass at the end − at the beginning − what entered) / mass at the beginning.
+    mass_drift: f64,
+    /// The same of the energy; gravity does work besides. None for a barotropic gas.
+    energy_drift: Option<f64>,
+    /// Cells set to a floor, over all steps, and what that changed.
+    floors: usize,
+    floor_change: FloorChange,
+    /// Cells whose reconstruction fell back to first order, over all steps.
+    fallbacks: usize,
+    /// Steps repeated with a smaller dt.
+    repeated_steps: usize,
+    /// Times of the frames.
+    frames: Vec<f64>,
+    porosity: Option<SpaceReport>,
+    skipped: Vec<String>,
+    warnings: Vec<String>,
+    /// Seconds of this session by stage.
+    stages: BTreeMap<&'static str, f64>,
+}
+
+/// What floors changed in the content of the domain: sums of the sizes of all changes.
+#[derive(Debug, Clone, Serialize)]
+struct FloorChange {
+    mass: f64,
+    /// Along x, y and z.
+    momentum: [f64; 3],
+    /// None for a barotropic gas.
+    energy: Option<f64>,
+}
+
+impl Report {
+    /// Of a run that has reached its end.
+    #[must_use]
+    pub fn new<const D: usize>(
+        file: &CaseFile,
+        setup: &Setup<D>,
+        journal: &Journal,
+        done: Done,
+        progress: &Progress,
+    ) -> Self {
+        let flow = &setup.flow;
+        let content = flow.content();
+        let entered = |of: fn(&voidage_core::flow::Conserved<f64, D>) -> f64| {
+            flow.total.inflow.iter().flatten().map(of).sum::<f64>()
+        };
+        let drift = |now: f64, begin: f64, entered: f64| (now - begin - entered) / begin;
+        let [mass, energy] = journal.begin;
+        Report {
+            version: env!("CARGO_PKG_VERSION"),
+            command: crate::command::stages::command_line(),
+            title: file.case.title.clone(),
+            gas: format!("{:?}", flow.gas()),
+            cells: setup.edges.cells(),
+            axes: setup.live.iter().map(|&a| AXES[a]).collect(),
+            steps: flow.steps,
+            time: flow.time,
+            seconds: journal.seconds + done.seconds,
+            cell_updates_per_second: (flow.len() * done.steps) as f64 / done.seconds.max(1e-9),
+            threads: rayon::current_num_threads(),
+            mass: content.density,
+            mass_drift: drift(content.density, mass, entered(|c| c.density)),
+            energy_drift: flow.gas().has_energy().then(|| drift(content.energy, energy, entered(|c| c.energy))),
+            floors: flow.total.floored,
+            floor_change: FloorChange {
+                mass: flow.total.floor_change.density,
+                momentum: std::array::from_fn(|axis| {
+                    setup.live.iter().position(|&a| a == axis).map_or(0.0, |d| flow.total.floor_change.momentum[d])
+                }),
+                energy: flow.gas().has_energy().then_some(flow.total.floor_change.energy),
+            },
+            fallbacks: flow.total.first_order,
+            repeated_steps: flow.repeated,
+            frames: journal.frames.clone(),
+            porosity: setup.space,
+            skipped: setup.skipped.clone(),
+            warnings: progress.warnings.clone(),
+            stages: progress.seconds.clone(),
+        }
+    }
+
+    /// A few lines for the terminal.
+    pub fn say(&self, progress: &Progress) {
+        let [nx, ny, nz] = self.cells;
+        progress.say(format!(
+            "grid          {nx} × {ny} × {nz} = {} cells, flow along {}",
+            nx * ny * nz,
+            self.axes.join(", ")
+        ));
+        if let Some(p) = &self.porosity {
+            progress.say(format!(
+                "porosity      {} cells closed, {} merged, {} faces with a jump",
+                p.closed_cells, p.merged_cells, p.jump_faces
+            ));
+        }
+        progress.say(format!("steps         {} to t = {} s", self.steps, self.time));
+        let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {e:.1e}"));
+        progress.say(format!("drift         mass {:.1e}{energy}", self.mass_drift));
+        progress.say(format!(
+            "repairs       {} fallbacks to first order, {} floors, {} steps repeated",
+            self.fallbacks, self.floors, self.repeated_steps
+        ));
+        if self.floors > 0 {
+            let FloorChange { mass, momentum: [x, y, z], energy } = &self.floor_change;
+            let energy = energy.map_or_else(String::new, |e| format!(", energy by {e:.1e}"));
+            let momentum = format!("({x:.1e}, {y:.1e}, {z:.1e})");
+            progress.say(format!("floors        changed the mass by {mass:.1e}, the momentum by {momentum}{energy}"));
+        }
+        progress.say(format!(
+            "time          {:.3} s, {:.2} million cell updates/s",
+            self.seconds,
+            self.cell_updates_per_second / 1e6
+        ));
+    }
+}

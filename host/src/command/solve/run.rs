@@ -1,0 +1,493 @@
+//! `voidage solve`: case → setup → steps → files.
+
+use super::case::{CaseFile, Format, OutputKeys};
+use super::checkpoint::{self, Fingerprint, Journal};
+use super::frames::{self, Pictures, Snapshot, cell_at, create};
+use super::report::Report;
+use super::setup::{Setup, VELOCITIES, live_axes, setup};
+use super::table::Table;
+use crate::command::cli::SolveArgs;
+use crate::command::interrupt;
+use crate::command::progress::Progress;
+use crate::command::stages::threads;
+use crate::error::{Error, Result};
+use crate::files::json;
+use crate::flow::Flow;
+use crate::grid::Edges;
+use indicatif::ProgressBar;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use voidage_core::flow::Primitive;
+
+/// `voidage solve`.
+///
+/// # Errors
+/// Anything that keeps it from writing all that the case asks for; an interrupt.
+pub fn solve(args: &SolveArgs) -> Result<()> {
+    let mut progress = Progress::new(&args.talk);
+    let file = CaseFile::read(&args.case)?;
+    let mut remarks = Vec::new();
+    let edges = file.edges(&mut remarks)?;
+    remarks.into_iter().for_each(|r| progress.warn(r));
+    let dir = match (&args.output, args.case.file_stem()) {
+        (Some(dir), _) => dir.clone(),
+        (None, Some(stem)) => PathBuf::from(stem),
+        (None, None) => return Err(Error::usage("give an output directory with -o")),
+    };
+    keep_inputs(&file, &dir)?;
+    threads(args.threads)?.install(|| match live_axes(&edges)[..] {
+        [a] => run(&file, &edges, [a], dir, args.resume, progress),
+        [a, b] => run(&file, &edges, [a, b], dir, args.resume, progress),
+        [a, b, c] => run(&file, &edges, [a, b, c], dir, args.resume, progress),
+        _ => Ok(()), // there are one to three
+    })
+}
+
+/// The last state must not replace the first one.
+fn keep_inputs(file: &CaseFile, dir: &Path) -> Result<()> {
+    let last = dir.join("final").canonicalize();
+    let from = file.case.initial.from.as_ref().map(|from| file.resolve(from).canonicalize());
+    match (last, from) {
+        (Ok(last), Some(Ok(from))) if last == from => {
+            Err(file.wrong("initial.from", format!("would be replaced by the results in {}", dir.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn run<const D: usize>(
+    file: &CaseFile,
+    edges: &Edges,
+    live: [usize; D],
+    dir: PathBuf,
+    resume: bool,
+    mut progress: Progress,
+) -> Result<()> {
+    let limits = Limits::new(file)?;
+    let setup = progress.stage("setup", |p| setup(file, edges, live, p))?;
+    let mut run = Run::begin(file, setup, limits, dir, resume, &mut progress)?;
+    let stepped = {
+        let _watch = interrupt::Watch::new();
+        progress.stage("steps", |p| run.steps(&p.line()))
+    };
+    stepped?;
+    progress.stage("output", |_| run.snapshot().arrays(&run.dir.join("final"), &run.setup.edges))?;
+    let summary = Report::new(file, &run.setup, &run.journal, run.done, &progress);
+    summary.say(&progress);
+    json::write(&run.dir.join("report.json"), &summary)
+}
+
+/// When to do what.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    end: f64,
+    max_steps: usize,
+    every: f64,
+    log_every: usize,
+    checkpoint_every: Duration,
+}
+
+/// Seconds between checkpoints of a case that does not say.
+const USUAL_PAUSE: f64 = 60.0;
+
+impl Limits {
+    fn new(file: &CaseFile) -> Result<Self> {
+        let (time, output) = (&file.case.time, &file.case.output);
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        file.demand("time.end", time.end, positive, "needs a positive time")?;
+        file.demand("output.every", output.every, positive, "needs a positive time")?;
+        let pause = |v: f64| (0.0..1e9).contains(&v);
+        file.demand("output.checkpoint_every", output.checkpoint_every, pause, "needs seconds, not below 0")?;
+        if time.end.is_none() && time.max_steps.is_none() {
+            return Err(file.wrong("time", "needs end or max_steps"));
+        }
+        if output.log_every == Some(0) {
+            return Err(file.wrong("output.log_every", "is at least 1"));
+        }
+        if matches!((time.end, output.every), (Some(end), Some(every)) if end / every > MOST_FRAMES) {
+            return Err(file.wrong("output.every", format!("makes more than {MOST_FRAMES} frames")));
+        }
+        Ok(Limits {
+            end: time.end.unwrap_or(f64::INFINITY),
+            max_steps: time.max_steps.unwrap_or(usize::MAX),
+            every: output.every.unwrap_or(f64::INFINITY),
+            log_every: output.log_every.unwrap_or(1),
+            checkpoint_every: Duration::from_secs_f64(output.checkpoint_every.unwrap_or(USUAL_PAUSE)),
+        })
+    }
+
+    /// The next moment that a step must not pass. Depends on the time alone, so that a resumed run meets the same.
+    fn next_stop(&self, time: f64) -> f64 {
+        if self.every == f64::INFINITY {
+            return self.end;
+        }
+        let mut n = (time / self.every).floor() + 1.0;
+        if n * self.every <= time {
+            n += 1.0;
+        }
+        (n * self.every).min(self.end)
+    }
+}
+
+/// Frames of a run: more is a slip of the pen.
+const MOST_FRAMES: f64 = 1e6;
+
+/// Columns of `log.csv`. The last three are what floors have changed so far, as sums of sizes; the momentum over all axes.
+const LOG_HEAD: &str = "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy";
+
+/// Share of the mass, momentum or energy in the domain that floors may change before a run stops.
+const MOST_FLOORED: f64 = 1e-6;
+
+/// The speed by which mass becomes the momentum that changes of momentum are measured against: sqrt(E/rho), and in a barotropic gas
+/// that of sound at the mean density.
+fn typical_speed<const D: usize>(flow: &Flow<f64, D>, mass: f64, energy: f64) -> f64 {
+    let gas = flow.gas();
+    if gas.has_energy() {
+        return (energy / mass).sqrt();
+    }
+    let density = mass / (0..flow.len()).map(|cell| flow.open_volume(cell)).sum::<f64>();
+    gas.sound_speed(&Primitive { density, velocity: [0.0; D], pressure: gas.pressure(density, 0.0) })
+}
+
+/// Work of this session.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Done {
+    /// Steps.
+    pub steps: usize,
+    /// Seconds of stepping, output aside.
+    pub seconds: f64,
+}
+
+/// A run in progress.
+struct Run<'a, const D: usize> {
+    setup: Setup<D>,
+    limits: Limits,
+    dir: PathBuf,
+    output: &'a OutputKeys,
+    fingerprint: Fingerprint,
+    journal: Journal,
+    log: Table,
+    probes: Option<(Table, Vec<usize>)>,
+    pictures: Option<Pictures>,
+    done: Done,
+    /// The checkpoint on disk is from before the first floor.
+    untouched: bool,
+}
+
+impl<'a, const D: usize> Run<'a, D> {
+    fn begin(
+        file: &'a CaseFile,
+        mut setup: Setup<D>,
+        limits: Limits,
+        dir: PathBuf,
+        resume: bool,
+        progress: &mut Progress,
+    ) -> Result<Self> {
+        let fingerprint = Fingerprint::new(&setup);
+        let output = &file.case.output;
+        let cells = probe_cells(file, &setup, progress)?;
+        let title =
+            file.case.title.clone().unwrap_or_else(|| {
+                file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+            });
+        let wants = |format: Format| formats(output).contains(&format);
+        let pictures = wants(Format::Png).then(|| Pictures::new(&setup, &title, output.slice));
+        let journal = match resume {
+            true => checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup)?,
+            false => {
+                if let Err(error) = setup.flow.rate() {
+                    return Err(Error::at(&file.path, "initial", trouble(&mut setup, Some(error))));
+                }
+                let content = setup.flow.content();
+                Journal { begin: [content.density, content.energy], ..Journal::default() }
+            }
+        };
+        create(&dir)?;
+        if !formats(output).is_empty() {
+            create(&dir.join("frames"))?;
+        }
+        let table = |name: &str, head: &str, bytes: u64| match bytes {
+            0 => Table::new(&dir.join(name), head),
+            bytes => Table::resume(&dir.join(name), head, bytes),
+        };
+        let log = table("log.csv", LOG_HEAD, journal.log)?;
+        let probes = match cells.is_empty() {
+            true => None,
+            false => Some((table("probes.csv", &probe_head(output), journal.probes)?, cells)),
+        };
+        let begun = journal.log > 0;
+        let (done, untouched) = (Done::default(), setup.flow.total.floored == 0);
+        let mut run = Run { setup, limits, dir, output, fingerprint, journal, log, probes, pictures, done, untouched };
+        if !begun {
+            checkpoint::forget_untouched(&run.dir)?;
+            run.record(0.0)?;
+            run.frame()?;
+            run.checkpoint()?;
+        }
+        Ok(run)
+    }
+
+    /// Steps until the end, or an interrupt.
+    fn steps(&mut self, line: &ProgressBar) -> Result<()> {
+        let (begun, start) = (Instant::now(), (self.setup.flow.time, self.setup.flow.steps));
+        let mut saved = begun;
+        while self.setup.flow.time < self.limits.end && self.setup.flow.steps < self.limits.max_steps {
+            let stop = self.limits.next_stop(self.setup.flow.time);
+            let clock = Instant::now();
+            let dt = self.step(stop)?;
+            self.done.seconds += clock.elapsed().as_secs_f64();
+            self.done.steps += 1;
+            self.record(dt)?;
+            if self.setup.flow.time >= stop {
+                self.frame()?;
+            }
+            if saved.elapsed() >= self.limits.checkpoint_every {
+                self.checkpoint()?;
+                saved = Instant::now();
+            }
+            if !line.is_hidden() {
+                line.set_message(self.progress(dt, start, begun.elapsed()));
+            }
+            if interrupt::asked() {
+                self.checkpoint()?;
+                let (step, time) = (self.setup.flow.steps, self.setup.flow.time);
+                return Err(Error::new(format!("interrupted at step {step}, t = {time}; go on with --resume")));
+            }
+        }
+        // A last state between two frames is shown, but no frame of a run that goes on.
+        self.checkpoint()?;
+        if self.journal.frames.last() != Some(&self.setup.flow.time) {
+            self.frame()?;
+        }
+        Ok(())
+    }
+
+    /// One step that does not pass `stop`; refuses a state that no gas has.
+    fn step(&mut self, stop: f64) -> Result<f64> {
+        let (before, floors) = (self.setup.flow.time, self.setup.flow.total.floored);
+        let stepped = self.setup.flow.advance(self.setup.cfl, stop);
+        let flow = &self.setup.flow;
+        let sound = flow.total.rate.is_finite() && flow.time > before && flow.time.is_finite();
+        match stepped {
+            Ok(dt) if sound => {
+                for inlet in &self.setup.inlets {
+                    inlet.relax(&mut self.setup.flow, dt);
+                }
+                match self.floors_matter(floors) {
+                    Some(reason) => Err(Error::new(reason)),
+                    None => Ok(dt),
+                }
+            }
+            other => {
+                let place = format!("step {}, t = {}", self.setup.flow.steps, self.setup.flow.time);
+                let reason = trouble(&mut self.setup, other.err());
+                let last = self.dir.join(checkpoint::NAME);
+                Err(Error::new(format!("{place}: {reason}; the last good state is in {}", last.display())))
+            }
+        }
+    }
+
+    /// Why a run whose last step added to so many `floors` must not go on: floors have changed too much of what the domain holds.
+    fn floors_matter(&self, floors: usize) -> Option<String> {
+        let flow = &self.setup.flow;
+        let cell = flow.total.floored_cell.filter(|_| flow.total.floored > floors)?;
+        let (change, content) = (flow.total.floor_change, flow.content());
+        let momentum = content.density * typical_speed(flow, content.density, content.energy);
+        let mut shares = vec![("mass", change.density / content.density)];
+        shares.push(("momentum", change.momentum.iter().fold(0.0, |sum, m| sum + m) / momentum));
+        if flow.gas().has_energy() {
+            shares.push(("energy", change.energy / content.energy));
+        }
+        if shares.iter().all(|(_, share)| *share <= MOST_FLOORED) {
+            return None;
+        }
+        let shares: Vec<String> = shares.iter().map(|(name, share)| format!("{share:.1e} of its {name}")).collect();
+        let last = self.dir.join(if self.untouched { checkpoint::NAME } else { checkpoint::UNTOUCHED });
+        Some(format!(
+            "step {}, t = {}: floors have changed what the domain holds by {}, the last in {}; the state before the first floor is in {}",
+            flow.steps,
+            flow.time,
+            shares.join(", "),
+            state_of(&self.setup, cell),
+            last.display()
+        ))
+    }
+
+    /// Lines of the log and of the probes.
+    fn record(&mut self, dt: f64) -> Result<()> {
+        let flow = &self.setup.flow;
+        if flow.steps.is_multiple_of(self.limits.log_every) {
+            let content = flow.content();
+            let energy = if flow.gas().has_energy() { content.energy.to_string() } else { String::new() };
+            let (steps, time, mass, mach) = (flow.steps, flow.time, content.density, flow.max_mach());
+            let (floors, change) = (flow.total.floored, flow.total.floor_change);
+            let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
+            let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
+            let line = format!(
+                "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy}",
+                change.density
+            );
+            self.log.line(&line)?;
+        }
+        if let Some((table, cells)) = &mut self.probes {
+            let mut line = format!("{},{}", flow.steps, flow.time);
+            for &cell in cells.iter() {
+                let w = flow.get(cell);
+                let _ = write!(line, ",{}", w.density); // a String takes anything
+                for axis in 0..3 {
+                    let u = self.setup.live.iter().position(|&a| a == axis).map_or(0.0, |d| w.velocity[d]);
+                    let _ = write!(line, ",{u}");
+                }
+                let _ = write!(line, ",{}", w.pressure);
+            }
+            table.line(&line)?;
+        }
+        Ok(())
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        Snapshot::of(&self.setup.flow, self.setup.live)
+    }
+
+    /// The present state in all formats asked for.
+    fn frame(&mut self) -> Result<()> {
+        let (n, time, dir) = (self.journal.frames.len(), self.setup.flow.time, self.dir.join("frames"));
+        self.journal.frames.push(time);
+        if formats(self.output).is_empty() {
+            return Ok(());
+        }
+        let shot = self.snapshot();
+        for format in formats(self.output) {
+            match format {
+                Format::Vtr => {
+                    let path = dir.join(frames::frame_name(n, "vtr"));
+                    shot.paraview(&path, &self.setup.edges, self.setup.flow.beta_v(), time)?;
+                    frames::series(&self.dir.join("flow.pvd"), &self.journal.frames)?;
+                }
+                Format::Npy => shot.arrays(&dir.join(format!("{n:04}")), &self.setup.edges)?,
+                Format::Png => {
+                    let paths = ["speed", "pressure"].map(|f| dir.join(format!("{f}_{n:04}.png")));
+                    if let Some(pictures) = &self.pictures {
+                        pictures.draw(&self.setup, &shot, time, paths)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&mut self) -> Result<()> {
+        self.log.flush()?;
+        self.journal.log = self.log.bytes();
+        if let Some((table, _)) = &mut self.probes {
+            table.flush()?;
+            self.journal.probes = table.bytes();
+        }
+        let journal = Journal { seconds: self.journal.seconds + self.done.seconds, ..self.journal.clone() };
+        let clock = match self.setup.flow.clock() {
+            Ok(clock) => clock,
+            Err(error) => return Err(Error::new(trouble(&mut self.setup, Some(error)))),
+        };
+        if self.untouched && clock.total.floored > 0 {
+            checkpoint::keep_untouched(&self.dir)?;
+            self.untouched = false;
+        }
+        let path = self.dir.join(checkpoint::NAME);
+        checkpoint::write(&path, &self.fingerprint, &self.setup, &clock, &journal)
+    }
+
+    /// What the terminal shows while it runs.
+    fn progress(&self, dt: f64, (time, steps): (f64, usize), elapsed: Duration) -> String {
+        let flow = &self.setup.flow;
+        let by_time = (flow.time - time) / (self.limits.end - time);
+        let by_steps = (flow.steps - steps) as f64 / (self.limits.max_steps - steps) as f64;
+        let left = elapsed.as_secs_f64() * (1.0 / by_time.max(by_steps).min(1.0) - 1.0);
+        format!("step {}  t = {:.4e} s  dt = {dt:.2e} s  {} left", flow.steps, flow.time, duration(left))
+    }
+}
+
+/// Hours, minutes and seconds.
+fn duration(seconds: f64) -> String {
+    let s = seconds.min(1e9) as u64;
+    match s {
+        0..60 => format!("{s} s"),
+        60..3600 => format!("{} min {:02} s", s / 60, s % 60),
+        _ => format!("{} h {:02} min", s / 3600, s / 60 % 60),
+    }
+}
+
+/// Files of a frame.
+fn formats(output: &OutputKeys) -> &[Format] {
+    output.formats.as_deref().unwrap_or(&[Format::Vtr])
+}
+
+/// What is the matter with a flow that cannot go on: the cell, and its values.
+fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::flow::Error>) -> String {
+    use voidage_core::flow::Error::Unphysical;
+    let (flow, gas) = (&setup.flow, setup.flow.gas());
+    let physical = |cell: usize| {
+        let w = flow.get(cell);
+        let finite = w.velocity.iter().all(|u| u.is_finite()) && w.density.is_finite() && w.pressure.is_finite();
+        finite && w.density > 0.0 && w.pressure > 0.0
+    };
+    let fastest = || {
+        let speed = |c: usize| {
+            let w = flow.get(c);
+            w.velocity.iter().fold(gas.sound_speed(&w), |s, u| s + u.abs())
+        };
+        (0..flow.len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b))).unwrap_or(0)
+    };
+    let (cell, what) = match error {
+        Some(Unphysical { cell }) => (cell, "no gas has this state".to_owned()),
+        Some(other) => return format!("{other:?}"),
+        None => match (0..flow.len()).find(|&c| !physical(c)) {
+            Some(cell) => (cell, "no gas has this state".to_owned()),
+            None => (fastest(), "the time step has shrunk to nothing, here is the fastest signal".to_owned()),
+        },
+    };
+    format!("{}: {what}", state_of(setup, cell))
+}
+
+/// A cell, where it is, and its state.
+fn state_of<const D: usize>(setup: &Setup<D>, cell: usize) -> String {
+    let w = setup.flow.get(cell);
+    let at = super::arrays::index(cell, setup.edges.cells());
+    let x = super::state::centre(&setup.edges, cell);
+    let mut text = format!("cell {at:?} at {x:?}: rho = {:?}, ", w.density);
+    for (axis, u) in setup.live.iter().zip(w.velocity) {
+        let _ = write!(text, "{} = {u:?}, ", VELOCITIES[*axis]); // a String takes anything
+    }
+    format!("{text}p = {:?}", w.pressure)
+}
+
+/// The cells of the probes.
+fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<usize>> {
+    let probes = &file.case.output.probes;
+    let mut cells = Vec::with_capacity(probes.len());
+    for (n, probe) in probes.iter().enumerate() {
+        let key = format!("output.probes[{n}]");
+        if probe.name.is_empty() || probe.name.contains([',', '"', '\n', '\r']) {
+            return Err(file.wrong(&format!("{key}.name"), "needs a name without commas, quotes and line ends"));
+        }
+        if probes[..n].iter().any(|other| other.name == probe.name) {
+            return Err(file.wrong(&format!("{key}.name"), format!("\"{}\" is the name of another", probe.name)));
+        }
+        let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
+            file.wrong(&format!("{key}.at"), format!("{:?} of \"{}\" is outside the grid", probe.at, probe.name))
+        })?;
+        let [nx, ny, _] = setup.edges.cells();
+        let cell = (at[2] * ny + at[1]) * nx + at[0];
+        if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
+            progress.warn(format!("{}: probe {}: its cell {at:?} is solid", file.path.display(), probe.name));
+        }
+        cells.push(cell);
+    }
+    Ok(cells)
+}
+
+fn probe_head(output: &OutputKeys) -> String {
+    let of_probe = |name: &str| ["rho", "u", "v", "w", "p"].map(|q| format!("{name} {q}")).join(",");
+    let all = output.probes.iter().map(|p| of_probe(&p.name));
+    ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")
+}

@@ -1,0 +1,221 @@
+//! States of a case: from the keys of a table, and of all cells at the beginning.
+
+use super::arrays;
+use super::case::{CaseFile, StateKeys};
+use super::setup::{AXES, VELOCITIES};
+use crate::command::stages;
+use crate::error::Result;
+use crate::grid::Edges;
+use std::path::Path;
+use voidage_core::flow::{Gas, Primitive};
+
+/// What is needed to read a state.
+#[derive(Debug, Clone, Copy)]
+pub struct States<'a, const D: usize> {
+    /// The case, for errors.
+    pub file: &'a CaseFile,
+    /// The gas.
+    pub gas: Gas<f64>,
+    /// R in p = rho R T.
+    pub gas_constant: Option<f64>,
+    /// The axes that flow.
+    pub live: [usize; D],
+}
+
+/// A barotropic state may be given by density and pressure if both say the same, to this relative error.
+const AGREEMENT: f64 = 1e-9;
+
+/// What a run keeps for each cell, at least: a grid too large for any memory is refused before it is filled.
+const BYTES_A_CELL: usize = 128;
+
+impl<const D: usize> States<'_, D> {
+    /// The state of a table at `key`; what it does not say is taken from `base`.
+    ///
+    /// # Errors
+    /// Something is missing, contradicts, or is no state.
+    pub fn state(&self, key: &str, keys: &StateKeys, base: Option<Primitive<f64, D>>) -> Result<Primitive<f64, D>> {
+        let missing = |name: &str| self.file.wrong(key, format!("{name} is missing"));
+        let velocity = self.velocity(key, keys, base.map(|b| b.velocity))?;
+        let (density, pressure) = if self.gas.has_energy() {
+            let pressure = keys.p.or(base.map(|b| b.pressure)).ok_or_else(|| missing("p"))?;
+            let density = self.given_density(key, keys, pressure)?.or(base.map(|b| b.density));
+            (density.ok_or_else(|| missing("rho"))?, pressure)
+        } else {
+            let given = keys.p.and_then(|p| self.gas.density(p));
+            let density = self.given_density(key, keys, f64::NAN)?.or(given).or(base.map(|b| b.density));
+            let density = density.ok_or_else(|| missing("rho or p"))?;
+            (density, self.gas.pressure(density, 0.0))
+        };
+        for (name, value) in [("rho", density), ("p", pressure)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(self.file.wrong(key, format!("{name} = {value} is not a positive number")));
+            }
+        }
+        if let Some(p) = keys.p.filter(|p| !((p / pressure - 1.0).abs() <= AGREEMENT)) {
+            return Err(self.file.wrong(key, format!("in this gas rho = {density} has p = {pressure}, not {p}")));
+        }
+        Ok(Primitive { density, velocity, pressure })
+    }
+
+    /// By `rho`, or by `T` at a pressure.
+    fn given_density(&self, key: &str, keys: &StateKeys, pressure: f64) -> Result<Option<f64>> {
+        let Some(temperature) = keys.temperature else { return Ok(keys.rho) };
+        match self.gas_constant {
+            _ if keys.rho.is_some() => Err(self.file.wrong(key, "takes rho or T, not both")),
+            _ if !self.gas.has_energy() => {
+                Err(self.file.wrong(key, "a barotropic gas has no T of its own; give rho or p"))
+            }
+            None => Err(self.file.wrong(key, "T needs gas.gas_constant")),
+            Some(r) => Ok(Some(pressure / (r * temperature))),
+        }
+    }
+
+    fn velocity(&self, key: &str, keys: &StateKeys, base: Option<[f64; D]>) -> Result<[f64; D]> {
+        let given = [keys.u, keys.v, keys.w];
+        for (axis, u) in given.into_iter().enumerate() {
+            let name = VELOCITIES[axis];
+            self.file.demand(&format!("{key}.{name}"), u, f64::is_finite, "needs a finite number")?;
+            if !self.live.contains(&axis) && u.is_some_and(|u| u != 0.0) {
+                return Err(self.file.wrong(
+                    &format!("{key}.{name}"),
+                    format!("axis {} has one cell: nothing flows along it", AXES[axis]),
+                ));
+            }
+        }
+        Ok(std::array::from_fn(|d| given[self.live[d]].unwrap_or(base.map_or(0.0, |b| b[d]))))
+    }
+
+    /// All cells at the beginning, x fastest; `warn` is told of regions without a cell.
+    ///
+    /// # Errors
+    /// As [`States::state`]; an array that cannot be read or holds no states; cells without a state.
+    pub fn initial(&self, edges: &Edges, warn: &mut dyn FnMut(String)) -> Result<Vec<Primitive<f64, D>>> {
+        let keys = &self.file.case.initial;
+        let count: usize = edges.cells().iter().product();
+        stages::room_for(count.saturating_mul(BYTES_A_CELL))?;
+        let mut cells = match (&keys.uniform, &keys.from) {
+            (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
+            (Some(state), None) => {
+                self.no_other_keys("initial.uniform", state, &[])?;
+                vec![Some(self.state("initial.uniform", state, None)?); count]
+            }
+            (None, Some(dir)) => self.read(&self.file.resolve(dir), edges)?.into_iter().map(Some).collect(),
+            (None, None) => vec![None; count],
+        };
+        for (n, region) in keys.regions.iter().enumerate() {
+            let key = format!("initial.regions[{n}]");
+            let (shape, mut empty) = (self.shape(&key, region)?, true);
+            for (cell, state) in cells.iter_mut().enumerate() {
+                if shape.holds(centre(edges, cell)) {
+                    empty = false;
+                    *state = Some(self.state(&key, region, *state)?);
+                }
+            }
+            if empty {
+                let place =
+                    if shape.is_outside(edges) { "lies outside the grid" } else { "holds the centre of no cell" };
+                warn(format!("{}: {key} {place}: it has no effect", self.file.path.display()));
+            }
+        }
+        match cells.iter().position(Option::is_none) {
+            None => Ok(cells.into_iter().flatten().collect()),
+            Some(cell) => {
+                let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
+                Err(self
+                    .file
+                    .wrong("initial", format!("cell {at:?} at {x:?} is in no region, and there is no uniform state")))
+            }
+        }
+    }
+
+    fn no_other_keys(&self, key: &str, keys: &StateKeys, more: &[&str]) -> Result<()> {
+        let known = |k: &&str| ["rho", "T", "u", "v", "w", "p"].contains(k) || more.contains(k);
+        let other = if keys.kind.is_some() { Some("type") } else { keys.given().into_iter().find(|k| !known(k)) };
+        other.map_or(Ok(()), |other| Err(self.file.wrong(&format!("{key}.{other}"), "is not a key of this table")))
+    }
+
+    fn shape(&self, key: &str, keys: &StateKeys) -> Result<Shape> {
+        let point = |name: &str, p: &Option<Vec<f64>>, missing: f64| match p {
+            None => Ok([missing; 3]),
+            Some(p) if (1..=3).contains(&p.len()) && p.iter().all(|x| !x.is_nan()) => {
+                Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing)))
+            }
+            Some(_) => Err(self.file.wrong(&format!("{key}.{name}"), "needs one to three numbers")),
+        };
+        match (&keys.center, keys.radius) {
+            (None, None) => {
+                self.no_other_keys(key, keys, &["min", "max"])?;
+                let min = point("min", &keys.min, f64::NEG_INFINITY)?;
+                Ok(Shape::Box(min, point("max", &keys.max, f64::INFINITY)?))
+            }
+            (Some(_), Some(radius)) if radius > 0.0 => {
+                self.no_other_keys(key, keys, &["center", "radius"])?;
+                // A ball in the plane of a flow, or an interval: axes that are left out do not count.
+                Ok(Shape::Ball(point("center", &keys.center, f64::NAN)?, radius))
+            }
+            _ => Err(self.file.wrong(key, "a ball needs center and a positive radius")),
+        }
+    }
+
+    /// `rho.npy`, `u.npy`, … of a directory. Velocities along axes of one cell may be missing, else must be 0; a
+    /// barotropic gas does not need `p.npy`.
+    fn read(&self, dir: &Path, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
+        let shape = edges.cells();
+        let file = |name: &str| dir.join(format!("{name}.npy"));
+        let density = arrays::read(&file("rho"), shape, arrays::positive)?;
+        let mut velocity: [Vec<f64>; 3] = Default::default();
+        for (axis, values) in velocity.iter_mut().enumerate() {
+            let path = file(VELOCITIES[axis]);
+            if self.live.contains(&axis) {
+                *values = arrays::read(&path, shape, arrays::any)?;
+            } else if path.exists() {
+                arrays::read(&path, shape, |u| (u != 0.0).then_some("flows along an axis of one cell"))?;
+            }
+        }
+        let pressure = match self.gas.has_energy() {
+            true => arrays::read(&file("p"), shape, arrays::positive)?,
+            false => density.iter().map(|&rho| self.gas.pressure(rho, 0.0)).collect(),
+        };
+        let state = |c: usize| Primitive {
+            density: density[c],
+            velocity: self.live.map(|axis| velocity[axis][c]),
+            pressure: pressure[c],
+        };
+        Ok((0..density.len()).map(state).collect())
+    }
+}
+
+/// A region of space.
+enum Shape {
+    Box([f64; 3], [f64; 3]),
+    /// Axes whose centre is NaN do not count.
+    Ball([f64; 3], f64),
+}
+
+impl Shape {
+    /// Wholly beyond the grid.
+    fn is_outside(&self, edges: &Edges) -> bool {
+        let [lo, hi] = edges.bounds().map(|p| p.to_array());
+        (0..3).any(|a| match self {
+            Shape::Box(min, max) => max[a] < lo[a] || min[a] > hi[a],
+            Shape::Ball(center, radius) => center[a] + radius < lo[a] || center[a] - radius > hi[a],
+        })
+    }
+
+    fn holds(&self, x: [f64; 3]) -> bool {
+        match self {
+            Shape::Box(min, max) => (0..3).all(|a| min[a] <= x[a] && x[a] <= max[a]),
+            Shape::Ball(center, radius) => {
+                let away = |a: usize| if center[a].is_nan() { 0.0 } else { x[a] - center[a] };
+                (0..3).map(|a| away(a) * away(a)).sum::<f64>() <= radius * radius
+            }
+        }
+    }
+}
+
+/// Centre of a cell.
+#[must_use]
+pub fn centre(edges: &Edges, cell: usize) -> [f64; 3] {
+    let at = arrays::index(cell, edges.cells());
+    [0, 1, 2].map(|a| f64::midpoint(edges.0[a][at[a]], edges.0[a][at[a] + 1]))
+}

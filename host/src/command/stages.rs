@@ -1,0 +1,238 @@
+//! The stages that the commands share: scene → bodies, bodies and grid → porosity, each with its warnings.
+
+use crate::command::cli::SceneArgs;
+use crate::command::progress::Progress;
+use crate::error::{Error, Result};
+use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::read;
+use crate::geometry::scene;
+use crate::geometry::unit::Unit;
+use crate::grid::Edges;
+use crate::picture::ticks::{measure as number, number_to};
+use crate::porosity::snap::{self, OffPlanes};
+use crate::porosity::{self, Leaf, Method, Options, Porosity};
+use glam::DVec3;
+use std::path::Path;
+use voidage_core::grid::Grid;
+
+/// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does.
+///
+/// # Errors
+/// The first file that cannot be read or holds nothing solid; or two grids.
+pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option<Edges>)> {
+    let scale = args.unit.unwrap_or(Unit::M).metres();
+    let (mut bodies, mut grid) = (Bodies::default(), None);
+    for path in &args.scene {
+        if scene::is_scene(path) {
+            let found = progress.stage("read", |_| scene::read(path))?;
+            progress.stage("bodies", |_| scene::load::add(&found, &mut bodies))?;
+            if found.grid.is_some() && grid.is_some() {
+                return Err(Error::file(path, "a second scene with a [grid]: leave one of them out"));
+            }
+            grid = grid.or(found.grid);
+            if args.unit.is_some() {
+                progress.warn(format!("{}: a scene names its own units; --unit does not change them", path.display()));
+            }
+            continue;
+        }
+        let mesh = progress.stage("read", |_| read::read(path))?;
+        mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
+        progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
+        if args.unit.is_none() {
+            warn_if_millimetres(path, &bodies, progress);
+        }
+    }
+    bodies.warnings.iter().for_each(|w| progress.warn(w.as_str()));
+    Ok((bodies, grid))
+}
+
+/// No plant is larger than this in metres, and few parts are smaller than this in millimetres.
+const LARGEST_PLANT: f64 = 1000.0;
+
+fn warn_if_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
+    let Some([lo, hi]) = bodies.diagnoses.last().map(|d| d.bounds) else { return };
+    let size = hi - lo;
+    if size.max_element() >= LARGEST_PLANT && size.max_element() < LARGEST_PLANT * 1e4 {
+        progress.warn(format!(
+            "{}: its size, {:.6} × {:.6} × {:.6}, would be in metres; if these are millimetres, give --unit mm",
+            path.display(),
+            size.x,
+            size.y,
+            size.z
+        ));
+    }
+}
+
+/// The command as typed.
+#[must_use]
+pub fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned());
+    std::iter::once("voidage".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// As many threads as asked for, or as there are cores.
+///
+/// # Errors
+/// The system refuses them.
+pub fn threads(count: Option<u16>) -> Result<rayon::ThreadPool> {
+    let count = count.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    pool.map_err(|e| Error::new(format!("cannot start {count} threads: {e}")))
+}
+
+/// Porosity of bodies on a grid, with a warning for whatever makes it less certain.
+///
+/// # Errors
+/// The edges are no grid, or one beyond memory.
+pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut Progress) -> Result<Porosity> {
+    let grid = edges.grid(None)?;
+    warn_if_outside(bodies, edges, &grid, progress);
+    room_for(porosity::memory(&grid, bodies, options))?;
+    let layers = edges.cells()[2] * porosity::levels(bodies).len();
+    let result = progress.stage("porosity", |p| {
+        let bar = p.bar("porosity", layers);
+        porosity::porosity_watched(&grid, bodies, options, &|| bar.inc(1))
+    });
+    report_leaks(bodies, &result, progress);
+    report_sheets(bodies, result.sheets_off_planes, progress);
+    if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
+        let why = match options.leaf {
+            Leaf::Plane => "are not convex, or not surely so: measured by their surface, exactly",
+            _ => "do not close edge by edge, or are sheets: measured by their surface",
+        };
+        let (count, all) = (bodies.bodies.len() - result.subdivided, bodies.bodies.len());
+        progress.warn(format!("{count} of {all} bodies {why}"));
+    }
+    if options.leaf != Leaf::Plane && result.subdivided == 0 {
+        progress.warn("--leaf has no effect: every body was measured by its surface (--method gjk subdivides)");
+    }
+    if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
+        progress.warn(format!(
+            "the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
+            result.max_gap, options.tol
+        ));
+    }
+    Ok(result)
+}
+
+/// Ask for the memory of the fields before work begins: a failure half way could not be reported.
+///
+/// # Errors
+/// There is none.
+pub fn room_for(bytes: usize) -> Result<()> {
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        Error::new(format!("the fields of this grid need {:.1} GB of memory: take fewer cells", bytes as f64 * 1e-9))
+    })
+}
+
+/// The sums over surfaces measure only what has one.
+///
+/// # Errors
+/// The first solid that has none.
+pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
+    match bodies.solids.iter().find(|s| bodies.bodies[s.bodies.clone()].iter().any(|b| b.triangles.is_empty())) {
+        None => Ok(()),
+        Some(solid) => Err(Error::new(format!(
+            "{}: solid \"{}\": a {} has no triangles to be measured by its surface",
+            solid.scene, solid.name, solid.shape
+        ))),
+    }
+}
+
+/// Geometry outside the grid does not count; say so.
+fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &mut Progress) {
+    let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
+    let fine = 1e-6 * (hi - lo).max(max - min).max_element();
+    let point = |p: DVec3| {
+        format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
+    };
+    let extent = |p, q| format!("{} to {}", point(p), point(q));
+    // What is flush with the grid but for rounding is within.
+    let near = snap::near(grid);
+    let room = |b: &Body| near + b.single.map_or(DVec3::ZERO, |s| s.error(b.bounds[0]).max(s.error(b.bounds[1])));
+    let beyond = |b: &Body| {
+        let room = room(b);
+        (b.bounds[0] + room).cmplt(lo).any() || (b.bounds[1] - room).cmpgt(hi).any()
+    };
+    if !((min + near).cmplt(hi).all() && (max - near).cmpgt(lo).all()) {
+        progress.warn(format!(
+            "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
+            bodies.files(),
+            extent(min, max),
+            extent(lo, hi)
+        ));
+        return;
+    }
+    if bodies.bodies.iter().any(beyond) {
+        progress.warn(format!(
+            "{}: the geometry, {}, extends beyond the grid, {}; only what is inside counts",
+            bodies.files(),
+            extent(min, max),
+            extent(lo, hi)
+        ));
+    }
+    let outside = |[min, max]: [DVec3; 2]| (min - near).cmpgt(hi).any() || (max + near).cmplt(lo).any();
+    let solids = bodies.solids.iter().filter(|s| outside(s.bounds)).map(|s| format!("solid \"{}\"", s.name));
+    let files = bodies.diagnoses.iter().filter(|d| outside(d.bounds)).map(|d| d.file.clone());
+    let names: Vec<String> = if bodies.solids.is_empty() { files.collect() } else { solids.collect() };
+    if let Some(names) = listed(&names) {
+        progress.warn(format!("{names}: outside the grid, {}, and without effect", extent(lo, hi)));
+    }
+}
+
+/// Names that a sentence holds at most.
+const MOST_NAMES: usize = 5;
+
+/// Names in a sentence, the first few of many; none if there are none.
+fn listed(names: &[String]) -> Option<String> {
+    let shown = names[..names.len().min(MOST_NAMES)].join(", ");
+    match names.len() {
+        0 => None,
+        n if n > MOST_NAMES => Some(format!("{shown} and {} more", n - MOST_NAMES)),
+        _ => Some(shown),
+    }
+}
+
+/// Bounds this close are one value.
+const ROUNDING: f64 = 1e-9;
+
+/// A row that misses zero by more than this fraction of a face deserves a warning; less is cracks of `f32` corners.
+const LEAK_TO_WARN: f64 = 1e-6;
+
+fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
+    let leaks: Vec<_> = result.leaks.iter().filter(|l| l.fraction > LEAK_TO_WARN).collect();
+    if let Some(worst) = leaks.first() {
+        let body = &bodies.bodies[worst.body];
+        let files = bodies.files();
+        progress.warn(format!(
+            "{files}: the surface of {} bodies leaks: in layer {} of body {} \"{}\" a row ends {:.3e} of a face away from zero",
+            leaks.len(),
+            worst.layer,
+            worst.body,
+            body.name,
+            worst.fraction
+        ));
+    }
+    if result.winding > WINDING_TO_WARN {
+        let files = bodies.files();
+        progress.warn(format!(
+            "{files}: a surface cuts through itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
+            result.winding
+        ));
+    }
+}
+
+fn report_sheets(bodies: &Bodies, off: OffPlanes, progress: &mut Progress) {
+    if off.sheets > 0 {
+        progress.warn(format!(
+            "{}: of {} sheets without thickness, {} block nothing with {} m² in all, which lie in no plane of the grid",
+            bodies.files(),
+            bodies.bodies.iter().filter(|b| b.sheet).count(),
+            off.sheets,
+            number(off.area)
+        ));
+    }
+}
+
+/// A body whose own share leaves 0..1 by more than this crosses itself.
+const WINDING_TO_WARN: f64 = 1e-6;

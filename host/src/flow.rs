@@ -1,0 +1,416 @@
+//! A flow that owns its memory and steps on all threads.
+//!
+//! [`Flow`] is the core's [`Problem`] with storage: two fields, porosity and drag, scratch for each thread. Each thread
+//! advances its own slab of layers; the bits of the state are the same for any number of threads.
+
+mod field;
+mod slabs;
+mod space;
+
+use crate::huge::HugeVec;
+use field::Compensated;
+use rayon::prelude::*;
+use slabs::step;
+use space::Space;
+use voidage_core::flow::{
+    Boundary, Clusters, Conserved, Drag, Error, Gas, Mesh, Porosity, Primitive, Problem, Report, Scheme,
+};
+
+pub use field::{Field, Scalar};
+pub use space::{Tidied, Treatment};
+
+/// Drag coefficients of all cells; an empty vector stands for zero.
+#[derive(Clone, Debug)]
+struct Resistance<R: Scalar, const D: usize> {
+    quadratic: [HugeVec<R>; D],
+    linear: [HugeVec<R>; D],
+}
+
+/// How far a flow has come: with the state and the boundaries, all that it needs to go on to the bit.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock<R, const D: usize> {
+    /// Time reached.
+    pub time: R,
+    /// Steps done.
+    pub steps: usize,
+    /// Steps repeated with a smaller dt.
+    pub repeated: usize,
+    /// Sums over all steps; the rate is the present one.
+    pub total: Report<R, D>,
+}
+
+/// A flow in progress.
+#[derive(Clone, Debug)]
+pub struct Flow<R: Scalar, const D: usize> {
+    widths: [Vec<R>; D],
+    gas: Gas<R>,
+    /// Low and high side of each axis; may change between steps.
+    pub boundaries: [[Boundary<R, D>; 2]; D],
+    /// Choices of the scheme.
+    pub scheme: Scheme,
+    /// Acceleration of gravity.
+    pub gravity: [R; D],
+    space: Option<Space<R, D>>,
+    resistance: Option<Resistance<R, D>>,
+    /// The present state; may be changed between steps.
+    pub state: Field<R, D>,
+    next: Field<R, D>,
+    marks: Vec<u8>,
+    scratch: Vec<HugeVec<R>>,
+    rate: Option<R>,
+    /// First steps to take at a fifth of the stable step: a blast starts from states whose speeds the estimate cannot know.
+    pub careful_steps: usize,
+    /// Time reached.
+    pub time: R,
+    /// Steps done.
+    pub steps: usize,
+    /// Sums over all steps: fallbacks, floors, inflow. The rate is the present one.
+    pub total: Report<R, D>,
+    /// Steps repeated with a smaller dt to avoid a floor.
+    pub repeated: usize,
+}
+
+/// How often a step that needed floors is repeated with half the step before the floors stand.
+const REPEATS: usize = 4;
+
+/// Share of the stable step that careful steps take.
+const CAREFUL_SHARE: f64 = 0.2;
+
+impl<R: Scalar, const D: usize> Flow<R, D> {
+    /// A flow on cells of the given widths; the state is to be set.
+    pub fn new(widths: [Vec<R>; D], gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Self {
+        let cells = widths.iter().map(Vec::len).product();
+        Flow {
+            widths,
+            gas,
+            boundaries,
+            scheme: Scheme::default(),
+            gravity: [R::ZERO; D],
+            space: None,
+            resistance: None,
+            state: Field::new(cells, gas),
+            next: Field::new(cells, gas),
+            marks: vec![0; cells],
+            scratch: Vec::new(),
+            rate: None,
+            careful_steps: 0,
+            time: R::ZERO,
+            steps: 0,
+            total: Report::new(),
+            repeated: 0,
+        }
+    }
+
+    /// Cells of equal widths along each axis.
+    pub fn uniform(cells: [usize; D], width: [R; D], gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Self {
+        Self::new(std::array::from_fn(|d| vec![width[d]; cells[d]]), gas, boundaries)
+    }
+
+    /// Gives the space its open fractions. Fractions within a few rounding errors of 0 (negative ones too) count as 0:
+    /// geometry leaves such dust where a cell is closed. Returns what was changed.
+    ///
+    /// # Errors
+    /// An array does not fit the mesh.
+    pub fn set_porosity(
+        &mut self,
+        volume: Vec<R>,
+        faces: [Vec<R>; D],
+        treatment: Treatment<R>,
+    ) -> Result<Tidied, Error> {
+        let periodic = self.boundaries.map(|b| b[0] == Boundary::Periodic);
+        let (space, tidied) = Space::new(&self.mesh(), periodic, volume.into(), faces.map(Into::into), treatment)?;
+        self.space = Some(space);
+        self.rate = None;
+        Ok(tidied)
+    }
+
+    /// Gives the cells their drag, CR in 1/length and the linear coefficient in 1/time; empty vectors stand for zero.
+    pub fn set_drag(&mut self, quadratic: [Vec<R>; D], linear: [Vec<R>; D]) {
+        self.resistance = Some(Resistance { quadratic: quadratic.map(Into::into), linear: linear.map(Into::into) });
+    }
+
+    /// Cells along each axis.
+    pub fn cells(&self) -> [usize; D] {
+        self.widths.each_ref().map(Vec::len)
+    }
+
+    /// Cells in all.
+    pub fn len(&self) -> usize {
+        self.state.density.len()
+    }
+
+    /// No cell at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The gas.
+    pub fn gas(&self) -> Gas<R> {
+        self.gas
+    }
+
+    /// Cells merged into clusters.
+    pub fn merged_cells(&self) -> usize {
+        self.space.as_ref().map_or(0, |s| s.clusters.len())
+    }
+
+    /// Faces where the porosity jumps and the throat map acts.
+    pub fn jump_faces(&self) -> usize {
+        self.space.as_ref().map_or(0, |s| s.jump_faces(&self.mesh()))
+    }
+
+    /// Open fractions of the cells, if the space has any.
+    pub fn beta_v(&self) -> Option<&[R]> {
+        self.space.as_ref().map(|s| &s.volume[..])
+    }
+
+    /// Open fractions of the faces, axis by axis, if the space has any.
+    pub fn faces(&self) -> impl Iterator<Item = &[R]> {
+        self.space.iter().flat_map(|s| s.faces.iter().map(|f| &f[..]))
+    }
+
+    /// Drag coefficients, the quadratic ones of each axis first, if there are any.
+    pub fn drag(&self) -> impl Iterator<Item = &[R]> {
+        self.resistance.iter().flat_map(|r| r.quadratic.iter().chain(&r.linear).map(|c| &c[..]))
+    }
+
+    /// How far the flow has come.
+    ///
+    /// # Errors
+    /// As [`Flow::rate`].
+    pub fn clock(&mut self) -> Result<Clock<R, D>, Error> {
+        let rate = self.rate()?;
+        Ok(Clock { time: self.time, steps: self.steps, repeated: self.repeated, total: Report { rate, ..self.total } })
+    }
+
+    /// Puts the flow where another with the same problem stood.
+    ///
+    /// # Errors
+    /// The field does not fit.
+    pub fn resume(&mut self, state: Field<R, D>, clock: Clock<R, D>) -> Result<(), Error> {
+        let fits = |a: &[R], b: &[R]| match (a.len(), b.len()) {
+            (expected, found) if expected != found => Err(Error::ShapeMismatch { expected, found }),
+            _ => Ok(()),
+        };
+        fits(&self.state.density, &state.density)?;
+        fits(&self.state.energy, &state.energy)?;
+        (0..D).try_for_each(|d| fits(&self.state.momentum[d], &state.momentum[d]))?;
+        let Clock { time, steps, repeated, total } = clock;
+        (self.state, self.rate) = (state, Some(total.rate));
+        (self.time, self.steps, self.repeated, self.total) = (time, steps, repeated, total);
+        Ok(())
+    }
+
+    /// Memory of the state and the solver's own, without porosity and drag, in units of one conserved field.
+    pub fn memory_ratio(&self) -> f64 {
+        let bytes = |f: &Field<R, D>| {
+            (f.density.len() + f.momentum.iter().map(|m| m.len()).sum::<usize>() + f.energy.len()) * size_of::<R>()
+        };
+        let scratch: usize = self.scratch.iter().map(|s| s.len() * size_of::<R>()).sum();
+        (bytes(&self.state) + bytes(&self.next) + self.marks.len() + scratch) as f64 / bytes(&self.state) as f64
+    }
+
+    /// Runs a closure with the problem and the two fields.
+    fn with_problem<T>(
+        &mut self,
+        f: impl FnOnce(&Problem<'_, R, D>, &Field<R, D>, &mut Field<R, D>, &mut [u8], &mut Vec<HugeVec<R>>) -> T,
+    ) -> T {
+        let problem = Problem {
+            mesh: Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) },
+            gas: self.gas,
+            boundaries: self.boundaries,
+            scheme: self.scheme,
+            porosity: self.space.as_ref().map(|s| Porosity {
+                volume: &s.volume,
+                faces: s.faces.each_ref().map(|f| &**f),
+                marks: &s.marks,
+            }),
+            clusters: Clusters(self.space.as_ref().map_or(&[], |s| &s.clusters)),
+            drag: self.resistance.as_ref().map(|r| Drag {
+                quadratic: r.quadratic.each_ref().map(|q| &**q),
+                linear: r.linear.each_ref().map(|q| &**q),
+            }),
+            gravity: self.gravity,
+        };
+        f(&problem, &self.state, &mut self.next, &mut self.marks, &mut self.scratch)
+    }
+
+    /// Sets every cell from the coordinates of its centre (the origin of the mesh is 0).
+    pub fn fill(&mut self, f: impl Fn([R; D]) -> Primitive<R, D>) {
+        let centres: [Vec<R>; D] = self.widths.each_ref().map(|w| {
+            let mut edge = R::ZERO;
+            w.iter()
+                .map(|&w| {
+                    edge += w;
+                    edge - R::HALF * w
+                })
+                .collect()
+        });
+        let cells = self.cells();
+        let gas = self.gas;
+        let mut view = self.state.view_mut();
+        for cell in 0..view.density.len() {
+            let mut rest = cell;
+            let x = std::array::from_fn(|d| {
+                let i = rest % cells[d];
+                rest /= cells[d];
+                centres[d][i]
+            });
+            view.set(cell, &gas.conserved(&f(x)));
+        }
+        self.rate = None;
+    }
+
+    /// Sets one cell.
+    pub fn set(&mut self, cell: usize, w: &Primitive<R, D>) {
+        let u = self.gas.conserved(w);
+        self.state.view_mut().set(cell, &u);
+        self.rate = None;
+    }
+
+    /// One cell.
+    pub fn get(&self, cell: usize) -> Primitive<R, D> {
+        self.gas.primitive(&self.state.view().get(cell))
+    }
+
+    fn mesh(&self) -> Mesh<'_, R, D> {
+        Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) }
+    }
+
+    /// Open volume of a cell.
+    pub fn open_volume(&self, cell: usize) -> R {
+        let mesh = self.mesh();
+        let volume = mesh.volume(mesh.coordinates(cell));
+        self.space.as_ref().map_or(volume, |s| volume * s.volume[cell])
+    }
+
+    /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there.
+    pub fn side(&self, d: usize, side: usize) -> Vec<(usize, R)> {
+        let (mesh, last) = (self.mesh(), self.widths[d].len().saturating_sub(1));
+        let cells = (0..self.len()).filter(|&c| mesh.coordinates(c)[d] == side * last);
+        cells
+            .map(|cell| {
+                let at = mesh.coordinates(cell);
+                let face = mesh.face(d, at) + side * mesh.face_stride(d);
+                let open = self.space.as_ref().map_or(R::ONE, |s| s.faces[d][face]);
+                (cell, open * mesh.volume(at) / self.widths[d][at[d]])
+            })
+            .collect()
+    }
+
+    /// The largest Mach number of any cell.
+    pub fn max_mach(&self) -> R {
+        let rows = self.len() / self.widths[0].len().max(1);
+        let larger = |a: R, b: R| if b > a { b } else { a };
+        let view = self.state.view();
+        let of_row = |row: usize| {
+            let cells = row * self.widths[0].len()..(row + 1) * self.widths[0].len();
+            cells.fold(R::ZERO, |most, cell| {
+                let w = self.gas.primitive(&view.get(cell));
+                let speed_sq = w.velocity.iter().fold(R::ZERO, |s, &u| s + u * u);
+                larger(most, speed_sq * w.density / (self.gas.gamma() * w.pressure))
+            })
+        };
+        (0..rows).into_par_iter().map(of_row).reduce(|| R::ZERO, larger).sqrt()
+    }
+
+    /// Contents of the domain, summed with the cells' open volumes; the same bits for any number of threads.
+    pub fn content(&self) -> Conserved<R, D> {
+        let n = self.widths[0].len().max(1);
+        let rows: Vec<Compensated<R, D>> =
+            (0..self.len() / n).into_par_iter().map(|row| self.row_content(row * n, n)).collect();
+        let mut sum = Compensated::default();
+        rows.iter().for_each(|row| sum.add(&row.sum));
+        sum.sum
+    }
+
+    fn row_content(&self, start: usize, n: usize) -> Compensated<R, D> {
+        let (mesh, view) = (self.mesh(), self.state.view());
+        let mut at = mesh.coordinates(start);
+        let mut sum = Compensated::default();
+        for i in 0..n {
+            at[0] = i;
+            let open = self.space.as_ref().map_or(R::ONE, |s| s.volume[start + i]);
+            let (v, u) = (mesh.volume(at) * open, view.get(start + i));
+            sum.add(&Conserved { density: v * u.density, momentum: u.momentum.map(|m| v * m), energy: v * u.energy });
+        }
+        sum
+    }
+
+    /// Largest signal rate Σ_d (|u_d| + c)/dx_d of the present state.
+    pub fn rate(&mut self) -> Result<R, Error> {
+        if let Some(rate) = self.rate {
+            return Ok(rate);
+        }
+        let mut state = std::mem::replace(&mut self.state, Field::new(0, self.gas));
+        self.with_problem(|problem, _, _, _, _| problem.settle(&mut state.view_mut()));
+        self.state = state;
+        let rate = self.with_problem(|problem, old, _, _, _| problem.rate(&old.view()))?;
+        self.rate = Some(rate);
+        Ok(rate)
+    }
+
+    /// The largest stable step at a CFL number; infinite where nothing can move.
+    pub fn stable_dt(&mut self, cfl: R) -> Result<R, Error> {
+        let rate = self.rate()?;
+        let share = if self.steps < self.careful_steps { R::from_f64(CAREFUL_SHARE) } else { R::ONE };
+        Ok(if rate > R::ZERO { cfl * share / rate } else { R::INFINITY })
+    }
+
+    /// Tells the flow that the caller has changed `state`.
+    pub fn touched(&mut self) {
+        self.rate = None;
+    }
+
+    /// One step of `dt`, whatever its stability. Returns what it did.
+    pub fn step(&mut self, dt: R) -> Result<Report<R, D>, Error> {
+        self.rate()?;
+        let report =
+            self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
+        self.accept(dt, &report);
+        Ok(report)
+    }
+
+    fn accept(&mut self, dt: R, report: &Report<R, D>) {
+        std::mem::swap(&mut self.state, &mut self.next);
+        self.time += dt;
+        self.steps += 1;
+        self.rate = Some(report.rate);
+        let mut total = self.total.and(report);
+        total.rate = report.rate;
+        self.total = total;
+    }
+
+    /// One stable step that does not pass `end`; a step that would need floors is repeated with less.
+    pub fn advance(&mut self, cfl: R, end: R) -> Result<R, Error> {
+        let mut dt = self.stable_dt(cfl)?;
+        let left = end - self.time;
+        let last = !(dt < left);
+        if last {
+            dt = left;
+        }
+        let mut repeats = 0;
+        loop {
+            let report =
+                self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
+            if report.floored == 0 || repeats == REPEATS {
+                self.accept(dt, &report);
+                self.repeated += repeats;
+                if last && repeats == 0 {
+                    self.time = end;
+                }
+                return Ok(dt);
+            }
+            repeats += 1;
+            dt = R::HALF * dt;
+        }
+    }
+
+    /// Stable steps until `end`.
+    pub fn run(&mut self, cfl: R, end: R) -> Result<(), Error> {
+        while self.time < end {
+            self.advance(cfl, end)?;
+        }
+        Ok(())
+    }
+}

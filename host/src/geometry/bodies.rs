@@ -1,0 +1,385 @@
+//! From the triangles of files to bodies that can be measured: closed, outward, cavities attached.
+//!
+//! Never requires a manifold. What is wrong with a surface is counted, said in a warning with its place, and given a
+//! defined meaning; see [`Diagnosis`].
+
+use crate::geometry::form::Form;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::repair::nesting::{self, Closed, Role};
+use crate::geometry::repair::rims::rims;
+use crate::geometry::repair::shells::{self, Sets, Shell};
+use crate::geometry::repair::weld::{self, Indexed};
+use crate::geometry::single::SingleSource;
+use glam::DVec3;
+
+use rustc_hash::FxHashMap as HashMap;
+use serde::Serialize;
+
+use std::ops::Range;
+
+/// Points closer than this many units in the last place of `f32` may be one point that an exporter wrote twice.
+const WELD_ULPS: f64 = 4.0;
+
+/// Larger coordinates would overflow when multiplied.
+const LARGEST: f64 = 1e60;
+
+/// A closed surface around solid, possibly with cavities; or a convex body known by formula.
+#[derive(Debug, Clone, Serialize)]
+pub struct Body {
+    /// Name of the solid that its first triangle came from.
+    pub name: String,
+    /// Its run in [`Bodies::triangles`]; empty if only its form is known.
+    pub triangles: Range<usize>,
+    /// What it is by formula, if that is known.
+    #[serde(skip)]
+    pub form: Option<Form>,
+    /// Where its corners were rounded to `f32`, if they were.
+    #[serde(skip)]
+    pub single: Option<SingleSource>,
+    /// Its own open fraction: 0 is solid.
+    pub porosity: f64,
+    /// Solid volume of this body alone.
+    pub volume: f64,
+    /// Lowest and highest corner.
+    pub bounds: [DVec3; 2],
+    /// Cavities attached.
+    pub cavities: usize,
+    /// No volume: a sheet, which blocks faces where it lies in their plane.
+    pub sheet: bool,
+}
+
+/// What was found in a file's surface, in numbers.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Diagnosis {
+    /// The file.
+    pub file: String,
+    /// Triangles read.
+    pub triangles: usize,
+    /// Named solids read.
+    pub solids: usize,
+    /// Distinct points.
+    pub points: usize,
+    /// Triangles with two equal corners or no area.
+    pub degenerate: usize,
+    /// Triangles that repeat another and were dropped.
+    pub repeated: usize,
+    /// Largest distance by which points were moved to close cracks; 0 if none.
+    pub welded_by: f64,
+    /// Triangles whose orientation disagreed with their neighbours and were turned.
+    pub turned: usize,
+    /// Shells (connected surfaces).
+    pub shells: usize,
+    /// Shells with negative volume that are bodies: turned inside out.
+    pub inside_out: usize,
+    /// Shells that are cavities.
+    pub cavities: usize,
+    /// Shells that cannot be oriented.
+    pub one_sided: usize,
+    /// Shells without volume.
+    pub sheets: usize,
+    /// Edges without a partner.
+    pub boundary_edges: usize,
+    /// Of these, edges of T-junctions, which close in space.
+    pub t_junction_edges: usize,
+    /// Holes that were capped.
+    pub holes: usize,
+    /// Bodies in the end.
+    pub bodies: usize,
+    /// Signed volume of the triangles as read.
+    pub signed_volume: f64,
+    /// Sum of the bodies' volumes (overlaps counted as often as they occur).
+    pub body_volume: f64,
+    /// Area of the surface.
+    pub area: f64,
+    /// Lowest and highest corner.
+    pub bounds: [DVec3; 2],
+}
+
+/// A solid of a scene file, in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct SolidSummary {
+    /// The scene file.
+    pub scene: String,
+    /// Its name there.
+    pub name: String,
+    /// What it is there: `sphere`, …, `file`.
+    pub shape: &'static str,
+    /// Its own open fraction.
+    pub porosity: f64,
+    /// How many of it there are.
+    pub copies: usize,
+    /// Their run in [`Bodies::bodies`].
+    pub bodies: Range<usize>,
+    /// Sum of their volumes.
+    pub volume: f64,
+    /// Lowest and highest corner.
+    pub bounds: [DVec3; 2],
+}
+
+/// The bodies of a scene.
+#[derive(Debug, Clone, Default)]
+pub struct Bodies {
+    /// Triangles of all bodies, counter-clockwise from outside.
+    pub triangles: Vec<[DVec3; 3]>,
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// One a file.
+    pub diagnoses: Vec<Diagnosis>,
+    /// Solids of scene files.
+    pub solids: Vec<SolidSummary>,
+    /// Sentences for the user; each names its file.
+    pub warnings: Vec<String>,
+}
+
+impl Bodies {
+    /// Lowest and highest corner of all bodies; none if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        let all = self.bodies.iter().map(|b| b.bounds);
+        all.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+    }
+
+    /// The files that they came from, for messages.
+    #[must_use]
+    pub fn files(&self) -> String {
+        let mut files: Vec<&str> = self.diagnoses.iter().map(|d| d.file.as_str()).collect();
+        files.extend(self.solids.iter().map(|s| s.scene.as_str()));
+        files.dedup();
+        files.join(", ")
+    }
+
+    /// Add the bodies of a file; its coordinates are multiplied by `scale`.
+    ///
+    /// # Errors
+    /// If nothing in it has an area, or a coordinate is beyond all measure.
+    pub fn add(&mut self, mesh: &Mesh, scale: f64) -> crate::error::Result<()> {
+        let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
+        if let Some(n) = scaled.iter().position(|t| t.iter().any(|p| !(p.abs().max_element() <= LARGEST))) {
+            let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(scaled[n][0]));
+            return Err(crate::error::Error::at(&mesh.path, format!("triangle {n} (counted from 0)"), reason));
+        }
+        let mut report = Reporter { file: mesh.path.display().to_string(), warnings: Vec::new() };
+        let mut d = Diagnosis {
+            file: report.file.clone(),
+            triangles: scaled.len(),
+            solids: mesh.solids.len(),
+            ..measure(&scaled)
+        };
+        let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
+        let indexed = clean(&scaled, solid_of, &mut d, &mut report);
+        let Some((indexed, shells)) = indexed else {
+            let reason = format!("all {} triangles are degenerate (no area): nothing solid", d.triangles);
+            return Err(crate::error::Error::file(&mesh.path, reason));
+        };
+        let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
+        let (closed, names) = close(&indexed, &shells, name_of, &mut d, &mut report);
+        let first = self.bodies.len();
+        self.assemble(closed, names, &mut d, &mut report);
+        if mesh.single_precision {
+            self.bodies[first..].iter_mut().for_each(|b| b.single = Some(SingleSource::scaled(scale)));
+        }
+        self.warnings.append(&mut report.warnings);
+        self.diagnoses.push(d);
+        Ok(())
+    }
+
+    /// Give the shells their roles and orientation, and store them.
+    fn assemble(&mut self, shells: Vec<Closed>, names: Vec<String>, d: &mut Diagnosis, report: &mut Reporter) {
+        let roles = nesting::roles(&shells);
+        let first = self.bodies.len();
+        for (s, shell) in shells.iter().enumerate().filter(|&(s, _)| roles[s] == Role::Body) {
+            let begin = self.triangles.len();
+            let mut volume = self.push(shell, true);
+            let cavities = (0..shells.len()).filter(|&c| roles[c] == Role::CavityOf(s));
+            let mut count = 0;
+            for c in cavities {
+                volume -= self.push(&shells[c], false);
+                count += 1;
+            }
+            d.inside_out += usize::from(shell.volume < 0.0 && !shell.is_sheet());
+            d.cavities += count;
+            d.sheets += usize::from(shell.is_sheet());
+            let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
+            let (name, form, single, porosity) = (names[s].clone(), None, None, 0.0);
+            self.bodies.push(Body { name, triangles, form, single, porosity, volume, bounds, cavities: count, sheet });
+        }
+        d.bodies = self.bodies.len() - first;
+        d.body_volume = self.bodies[first..].iter().map(|b| b.volume).sum();
+        if d.inside_out > 0 {
+            report.warn(format!(
+                "{} of {} bodies are inside out (normals point inward); taken as solid",
+                d.inside_out, d.bodies
+            ));
+        }
+        if d.sheets > 0 {
+            let place = self.bodies[first..].iter().find(|b| b.sheet).map_or(DVec3::ZERO, |b| b.bounds[0]);
+            report.warn(format!(
+                "{} sheets have no thickness (the first at {}); they hold no volume and block a face only where they lie in its plane",
+                d.sheets,
+                show(place)
+            ));
+        }
+    }
+
+    /// Store a shell's triangles, outward or inward; returns its volume without sign.
+    fn push(&mut self, shell: &Closed, outward: bool) -> f64 {
+        let turn = (shell.volume < 0.0) == outward && !shell.is_sheet();
+        self.triangles.extend(shell.triangles.iter().map(|&[a, b, c]| if turn { [a, c, b] } else { [a, b, c] }));
+        shell.volume.abs()
+    }
+}
+
+/// Collects warnings of one file.
+struct Reporter {
+    file: String,
+    warnings: Vec<String>,
+}
+
+impl Reporter {
+    fn warn(&mut self, reason: String) {
+        self.warnings.push(format!("{}: {reason}", self.file));
+    }
+}
+
+/// A point for people.
+fn show(p: DVec3) -> String {
+    match p.abs().max_element() {
+        size if size == 0.0 || (1e-3..1e9).contains(&size) => format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z),
+        _ => format!("({:.6e}, {:.6e}, {:.6e})", p.x, p.y, p.z),
+    }
+}
+
+fn measure(triangles: &[[DVec3; 3]]) -> Diagnosis {
+    let whole = Closed::new(triangles.to_vec());
+    Diagnosis { signed_volume: whole.volume, area: whole.area(), bounds: whole.bounds, ..Diagnosis::default() }
+}
+
+/// Weld, drop what is no surface, split into shells. None if nothing has an area.
+fn clean(
+    triangles: &[[DVec3; 3]],
+    solid_of: impl Fn(u32) -> usize,
+    d: &mut Diagnosis,
+    report: &mut Reporter,
+) -> Option<(Indexed, Vec<Shell>)> {
+    let mut mesh = weld::weld(triangles);
+    d.points = mesh.points.len();
+    let flat = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]) == DVec3::ZERO;
+    d.degenerate = triangles.iter().filter(|t| flat(t)).count();
+    if d.degenerate == triangles.len() {
+        return None;
+    }
+    if d.degenerate > 0 {
+        report.warn(format!("{} degenerate triangles (no area) are ignored", d.degenerate));
+    }
+    let mut alive = distinct(&mesh);
+    d.repeated = shells::drop_repeats(&mesh, &mut alive);
+    if d.repeated > 0 {
+        report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
+    }
+    close_cracks(&mut mesh, &alive, d, report);
+    let shells = shells::shells(&mut mesh, &alive, solid_of);
+    d.shells = shells.len();
+    d.turned = shells.iter().map(|s| s.turned).sum();
+    if d.turned > 0 {
+        report.warn(format!("{} triangles had the wrong orientation (winding) and were turned", d.turned));
+    }
+    d.one_sided = shells.iter().filter(|s| s.one_sided).count();
+    if d.one_sided > 0 {
+        report.warn(format!(
+            "{} shells are one-sided (no consistent orientation); results near them are unreliable",
+            d.one_sided
+        ));
+    }
+    Some((mesh, shells))
+}
+
+/// Triangles with three different corners.
+fn distinct(mesh: &Indexed) -> Vec<bool> {
+    mesh.triangles.iter().map(|[a, b, c]| a != b && b != c && c != a).collect()
+}
+
+/// If edges lack partners, try whether points that differ by rounding are meant to be one.
+fn close_cracks(mesh: &mut Indexed, alive: &[bool], d: &mut Diagnosis, report: &mut Reporter) {
+    let before = shells::unmatched_edges(mesh, alive);
+    if before == 0 {
+        return;
+    }
+    let largest = d.bounds[0].abs().max(d.bounds[1].abs()).max_element();
+    let loose = shells::unmatched_points(mesh, alive);
+    let mut merged = mesh.clone();
+    let moved = weld::merge_close(&mut merged, alive, &loose, WELD_ULPS * f64::from(f32::EPSILON) * largest);
+    if 2 * shells::unmatched_edges(&merged, alive) > before {
+        return;
+    }
+    report.warn(format!("points up to {moved:.1e} apart were merged to close cracks"));
+    d.welded_by = moved;
+    *mesh = merged;
+}
+
+/// Make every shell closed: join those that close each other, cap holes.
+fn close(
+    mesh: &Indexed,
+    shells: &[Shell],
+    name_of: impl Fn(u32) -> String,
+    d: &mut Diagnosis,
+    report: &mut Reporter,
+) -> (Vec<Closed>, Vec<String>) {
+    let corners = |n: &u32| mesh.triangles[*n as usize].map(|v| mesh.points[v as usize]);
+    let (mut closed, mut names) = (Vec::new(), Vec::new());
+    let mut largest_hole: Option<(f64, DVec3)> = None;
+    for group in groups(shells) {
+        let members = group.iter().flat_map(|&s| shells[s].triangles.iter());
+        let mut triangles: Vec<_> = members.clone().map(corners).collect();
+        let boundary: Vec<_> = group.iter().flat_map(|&s| shells[s].boundary.iter().copied()).collect();
+        d.boundary_edges += boundary.len();
+        for rim in rims(&boundary) {
+            if rim.cancels(&mesh.points) {
+                d.t_junction_edges += rim.edges.len();
+                continue;
+            }
+            let cap = rim.cap(&mesh.points);
+            let area: f64 = cap.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum();
+            if largest_hole.is_none_or(|(largest, _)| area > largest) {
+                largest_hole = Some((area, rim.middle(&mesh.points)));
+            }
+            d.holes += 1;
+            triangles.extend(cap);
+        }
+        names.push(members.min().map_or_else(String::new, |&n| name_of(n)));
+        closed.push(Closed::new(triangles));
+    }
+    if d.t_junction_edges > 0 {
+        report.warn(format!("{} edges have no partner (T-junctions), but the surface closes", d.t_junction_edges));
+    }
+    if let Some((area, place)) = largest_hole {
+        report.warn(format!(
+            "the surface is open: {} boundary edges around {} holes, closed with caps (the largest, area {area:.6}, at {})",
+            d.boundary_edges - d.t_junction_edges,
+            d.holes,
+            show(place)
+        ));
+    }
+    (closed, names)
+}
+
+/// Shells that belong together: closed ones alone, open ones with those that share a corner of their boundary.
+fn groups(shells: &[Shell]) -> Vec<Vec<usize>> {
+    let mut sets = Sets::new(shells.len());
+    let mut owner = HashMap::default();
+    for (s, shell) in shells.iter().enumerate() {
+        for v in shell.boundary.iter().flatten() {
+            let other = *owner.entry(*v).or_insert(s);
+            sets.join(s, other);
+        }
+    }
+    let mut at = HashMap::default();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for s in 0..shells.len() {
+        let group = *at.entry(sets.find(s)).or_insert_with(|| {
+            groups.push(Vec::new());
+            groups.len() - 1
+        });
+        groups[group].push(s);
+    }
+    groups
+}

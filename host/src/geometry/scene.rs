@@ -1,0 +1,123 @@
+//! Scene files: solids by formula, by points or from files, placed, repeated, each with its own porosity.
+//!
+//! ```toml
+//! [[solid]]
+//! name = "pipe"
+//! shape = "cylinder"
+//! from = [0.0, 0.0, 0.0]
+//! to = [10.0, 0.0, 0.0]
+//! radius = 0.15
+//! array = { count = [1, 8, 2], step = [0.0, 0.5, 3.0] }
+//!
+//! [[solid]]
+//! name = "grating"
+//! shape = "file"
+//! path = "grating.stl"
+//! unit = "mm"
+//! porosity = 0.6
+//! rotate = { axis = [0, 0, 1], angle = 30 }
+//! translate = [0, 0, 3]
+//! ```
+//!
+//! Lengths are in metres. A solid is turned about its own centre (see [`shape::Shape::centre`]), then moved, then repeated. Every key
+//! must be known. In reading order: [`table`], [`hull`], [`placement`], [`shape`], [`load`].
+
+pub mod hull;
+pub mod load;
+pub mod placement;
+pub mod shape;
+pub mod table;
+
+use crate::error::{Error, Result};
+use crate::grid::{self, Edges};
+use placement::{MOST_COPIES, Placement};
+use shape::Shape;
+use std::path::{Path, PathBuf};
+use table::{Source, StrictTable};
+use toml::de::DeTable;
+
+/// A scene file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The file.
+    pub path: PathBuf,
+    /// Its solids in file order.
+    pub solids: Vec<Solid>,
+    /// Its grid, if it has one.
+    pub grid: Option<Edges>,
+}
+
+/// A solid of a scene: a shape, placed and repeated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Its name.
+    pub name: String,
+    /// The line that it begins in.
+    pub line: usize,
+    /// What it is.
+    pub shape: Shape,
+    /// Its own open fraction: 0 is solid.
+    pub porosity: f64,
+    /// Where it and its copies are.
+    pub placement: Placement,
+}
+
+/// No scene file is larger, in bytes.
+const LARGEST_FILE: u64 = 1 << 28;
+
+/// Is a SCENE argument a scene file?
+#[must_use]
+pub fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// Read a scene file; the files it names are not opened.
+///
+/// # Errors
+/// A file that cannot be read, a key that is wrong, missing or not known: with the line, the solid and the reason.
+pub fn read(path: &Path) -> Result<Scene> {
+    parse(path, &table::read_text(path, LARGEST_FILE)?)
+}
+
+/// Read the text of a scene file; `path` names it in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, text: &str) -> Result<Scene> {
+    let table = DeTable::parse(text).map_err(|e| grid::toml_error(path, text, &e))?;
+    let source = Source::new(path, text);
+    let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
+    let solids = solids(&mut keys)?;
+    let grid = keys.grid("grid")?;
+    keys.finish()?;
+    if solids.is_empty() {
+        return Err(Error::file(path, "a scene without solids: it needs at least one [[solid]]"));
+    }
+    Ok(Scene { path: path.to_owned(), solids, grid })
+}
+
+/// The tables `[[solid]]` of a scene.
+///
+/// # Errors
+/// As [`read`].
+pub fn solids(keys: &mut StrictTable) -> Result<Vec<Solid>> {
+    let mut total = 0;
+    let tables = keys.tables("solid")?.into_iter();
+    let counted = tables.map(|table| {
+        let (solid, table) = solid(table)?;
+        total += solid.placement.copies();
+        let few = total <= MOST_COPIES;
+        if few { Ok(solid) } else { Err(table.fail(format!("more than {MOST_COPIES} solids in one scene"))) }
+    });
+    counted.collect()
+}
+
+fn solid(mut keys: StrictTable<'_>) -> Result<(Solid, StrictTable<'_>)> {
+    let name = keys.need("name", table::text)?;
+    keys.subject = format!("solid \"{name}\"");
+    let shape = Shape::read(&mut keys)?;
+    let porosity = keys.get("porosity", table::fraction)?.unwrap_or(0.0);
+    let placement = Placement::read(&mut keys)?;
+    keys.finish()?;
+    Ok((Solid { name, line: keys.line(), shape, porosity, placement }, keys))
+}

@@ -1,0 +1,220 @@
+//! The shapes of solids: their keys, checks, volumes, and their forms in place.
+
+use super::hull;
+use super::placement::Motion;
+use super::table::{self, StrictTable};
+use crate::error::Result;
+use crate::geometry::form::Form;
+use crate::geometry::unit::Unit;
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::path::PathBuf;
+use std::sync::Arc;
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
+use voidage_core::convex::support::Transformed;
+use voidage_core::number::aabb::Aabb;
+
+/// A shape as the scene describes it, before it is placed. Lengths in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// `center`, `radius`
+    Sphere {
+        /// Centre.
+        center: DVec3,
+        /// Radius.
+        radius: f64,
+    },
+    /// `center`, `semi_axes`
+    Ellipsoid {
+        /// Centre.
+        center: DVec3,
+        /// Half its length along x, y and z.
+        semi_axes: DVec3,
+    },
+    /// `min`, `max`
+    Box {
+        /// Lowest corner.
+        min: DVec3,
+        /// Highest corner.
+        max: DVec3,
+    },
+    /// `from`, `to`, `radius`
+    Round {
+        /// Cylinder, capsule or cone.
+        kind: Round,
+        /// One end of the axis; a cone's base centre.
+        from: DVec3,
+        /// The other; a cone's apex.
+        to: DVec3,
+        /// Radius; a cone's at its base.
+        radius: f64,
+    },
+    /// `points`
+    Hull(hull::Hull),
+    /// `path`, `unit`, `scale`
+    File {
+        /// The file, relative to the scene's directory.
+        path: PathBuf,
+        /// Metres in one unit of its coordinates.
+        scale: f64,
+    },
+}
+
+/// Bodies of revolution with an axis of given ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Round {
+    /// Flat ends.
+    Cylinder,
+    /// Round ends beyond those of the axis.
+    Capsule,
+    /// Apex at the end of the axis.
+    Cone,
+}
+
+/// All names of shapes.
+const NAMES: &str = "sphere, ellipsoid, box, cylinder, capsule, cone, hull, file";
+
+impl Shape {
+    /// Read `shape` and the keys that it asks for.
+    ///
+    /// # Errors
+    /// A shape that is not known, a key that is missing, of the wrong kind, or that leaves nothing solid.
+    pub fn read(keys: &mut StrictTable) -> Result<Self> {
+        let round = |kind: Round, keys: &mut StrictTable| {
+            let (from, to) = (keys.need("from", table::point)?, keys.need("to", table::point)?);
+            let radius = keys.need("radius", table::positive)?;
+            if from == to && kind != Round::Capsule {
+                return Err(keys.wrong("to", "is the same point as from"));
+            }
+            Ok(Shape::Round { kind, from, to, radius })
+        };
+        match keys.need("shape", table::text)?.as_str() {
+            "sphere" => Ok(Shape::Sphere {
+                center: keys.need("center", table::point)?,
+                radius: keys.need("radius", table::positive)?,
+            }),
+            "ellipsoid" => Ok(Shape::Ellipsoid {
+                center: keys.need("center", table::point)?,
+                semi_axes: DVec3::from_array(keys.need("semi_axes", table::three(table::positive))?),
+            }),
+            "box" => {
+                let (min, max) = (keys.need("min", table::point)?, keys.need("max", table::point)?);
+                if min.cmplt(max).all() {
+                    Ok(Shape::Box { min, max })
+                } else {
+                    Err(keys.wrong("max", format!("({max}) must lie above min ({min}) along every axis")))
+                }
+            }
+            "cylinder" => round(Round::Cylinder, keys),
+            "capsule" => round(Round::Capsule, keys),
+            "cone" => round(Round::Cone, keys),
+            "hull" => {
+                let points = keys.need("points", table::list(table::point))?;
+                hull::Hull::new(&points).map(Shape::Hull).map_err(|reason| keys.wrong("points", reason))
+            }
+            "file" => file(keys),
+            other => Err(keys.wrong("shape", format!("\"{other}\" is not known: {NAMES}"))),
+        }
+    }
+
+    /// Its name in scene files.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Shape::Sphere { .. } => "sphere",
+            Shape::Ellipsoid { .. } => "ellipsoid",
+            Shape::Box { .. } => "box",
+            Shape::Round { kind: Round::Cylinder, .. } => "cylinder",
+            Shape::Round { kind: Round::Capsule, .. } => "capsule",
+            Shape::Round { kind: Round::Cone, .. } => "cone",
+            Shape::Hull(_) => "hull",
+            Shape::File { .. } => "file",
+        }
+    }
+
+    /// The point that a rotation leaves in place: the middle of the axis or of the box around it; of files, none before they are read.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        match self {
+            Shape::Sphere { center, .. } | Shape::Ellipsoid { center, .. } => *center,
+            Shape::Box { min, max } => middle(*min, *max),
+            Shape::Round { from, to, .. } => middle(*from, *to),
+            Shape::Hull(hull) => {
+                let Aabb { min, max } = Aabb::around(&hull.corners);
+                middle(min, max)
+            }
+            Shape::File { .. } => DVec3::ZERO,
+        }
+    }
+
+    /// Its volume by formula; of files, 0 before they are read.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        match self {
+            Shape::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
+            Shape::Ellipsoid { semi_axes, .. } => 4.0 / 3.0 * PI * semi_axes.element_product(),
+            Shape::Box { min, max } => (max - min).element_product(),
+            Shape::Round { kind, from, to, radius } => {
+                let cylinder = PI * radius * radius * (to - from).length();
+                match kind {
+                    Round::Cylinder => cylinder,
+                    Round::Capsule => cylinder + 4.0 / 3.0 * PI * radius.powi(3),
+                    Round::Cone => cylinder / 3.0,
+                }
+            }
+            Shape::Hull(hull) => hull.volume(),
+            Shape::File { .. } => 0.0,
+        }
+    }
+
+    /// Where it is after a motion; none for files.
+    #[must_use]
+    pub fn placed(&self, motion: &Motion) -> Option<Form> {
+        let at = |p: &DVec3| motion.apply(*p);
+        Some(match self {
+            Shape::Sphere { center, radius } => Form::Sphere(Sphere { center: at(center), radius: *radius }),
+            Shape::Ellipsoid { center, semi_axes } => {
+                let about_origin = Ellipsoid { center: DVec3::ZERO, semi_axes: *semi_axes };
+                let turn = motion.matrix();
+                let columns = [turn.x_axis, turn.y_axis, turn.z_axis];
+                Form::Ellipsoid(Transformed::new(about_origin, columns, DVec3::ONE, at(center)))
+            }
+            Shape::Box { min, max } if motion.turn.is_none() => Form::Box(Aabb { min: at(min), max: at(max) }),
+            Shape::Box { min, max } => Form::Hull(hull::corners_of_box(*min, *max).iter().map(at).collect()),
+            Shape::Round { kind, from, to, radius } => match kind {
+                Round::Cylinder => Form::Cylinder(Cylinder::new(at(from), at(to), *radius)),
+                Round::Capsule => Form::Capsule(Capsule { from: at(from), to: at(to), radius: *radius }),
+                Round::Cone => Form::Cone(Cone::new(at(from), at(to), *radius)),
+            },
+            Shape::Hull(hull) => Form::Hull(hull.corners.iter().map(at).collect::<Arc<[_]>>()),
+            Shape::File { .. } => return None,
+        })
+    }
+
+    /// Triangles of its surface, outward, before it is placed; none if it is round or a file.
+    #[must_use]
+    pub fn surface(&self) -> Vec<[DVec3; 3]> {
+        match self {
+            Shape::Box { min, max } => hull::surface_of_box(*min, *max),
+            Shape::Hull(hull) => hull.surface(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+fn middle(a: DVec3, b: DVec3) -> DVec3 {
+    a * 0.5 + b * 0.5
+}
+
+fn file(keys: &mut StrictTable) -> Result<Shape> {
+    let path = PathBuf::from(keys.need("path", table::text)?);
+    let unit = keys.get("unit", |value| {
+        let name = table::text(value)?;
+        Unit::named(&name).ok_or_else(|| format!("\"{name}\" is not known: {}", Unit::ALL.map(Unit::name).join(", ")))
+    })?;
+    let scale = keys.get("scale", table::positive)?.unwrap_or(1.0);
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        return Err(keys.wrong("path", "names a scene, but scenes do not hold scenes: only STL and OBJ files"));
+    }
+    Ok(Shape::File { path, scale: scale * unit.unwrap_or(Unit::M).metres() })
+}

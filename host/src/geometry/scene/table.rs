@@ -1,0 +1,303 @@
+//! A TOML table read strictly: every key has a reader, every reader says what it wants.
+
+use crate::error::{Error, Result};
+use crate::grid::{self, Edges};
+use glam::DVec3;
+use std::path::Path;
+use toml::de::{DeTable, DeValue};
+
+/// A TOML file, for messages.
+#[derive(Debug, Clone)]
+pub struct Source<'a> {
+    path: &'a Path,
+    text: &'a str,
+    /// Where its line breaks are.
+    breaks: Vec<usize>,
+}
+
+impl<'a> Source<'a> {
+    /// A file's path and text.
+    #[must_use]
+    pub fn new(path: &'a Path, text: &'a str) -> Self {
+        Source { path, text, breaks: text.match_indices('\n').map(|(at, _)| at).collect() }
+    }
+
+    /// The line that a byte of the text is in.
+    #[must_use]
+    pub fn line(&self, at: usize) -> usize {
+        self.breaks.partition_point(|&end| end < at) + 1
+    }
+
+    /// An error at a byte of the text.
+    #[must_use]
+    pub fn error(&self, at: usize, reason: impl Into<String>) -> Error {
+        Error::at(self.path, format!("line {}", self.line(at)), reason)
+    }
+}
+
+/// The text of a regular file of at most `most` bytes.
+///
+/// # Errors
+/// If there is no such file, or it is larger.
+pub fn read_text(path: &Path, most: u64) -> Result<String> {
+    let about = std::fs::metadata(path).map_err(|e| Error::io(path, "open", &e))?;
+    if !about.is_file() {
+        return Err(Error::file(path, "not a regular file"));
+    }
+    if about.len() > most {
+        return Err(Error::file(path, format!("too large: {} bytes, at most {most} are read", about.len())));
+    }
+    std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))
+}
+
+/// What a reader of values returns: the value, or what it wanted instead.
+type Wanted<T> = std::result::Result<T, String>;
+
+/// A table of which each key is asked for once.
+#[derive(Debug)]
+pub struct StrictTable<'a> {
+    source: &'a Source<'a>,
+    /// What the table describes, such as `solid "beam"`.
+    pub subject: String,
+    /// Where it begins in the text.
+    pub at: usize,
+    table: &'a DeTable<'a>,
+    known: Vec<&'static str>,
+}
+
+impl<'a> StrictTable<'a> {
+    /// Read `table`, which begins at byte `at`.
+    #[must_use]
+    pub fn new(source: &'a Source<'a>, subject: impl Into<String>, at: usize, table: &'a DeTable<'a>) -> Self {
+        StrictTable { source, subject: subject.into(), at, table, known: Vec::new() }
+    }
+
+    /// The value of a key, if it is there.
+    ///
+    /// # Errors
+    /// If it is not what `read` wants.
+    pub fn get<T>(&mut self, key: &'static str, read: impl FnOnce(&DeValue) -> Wanted<T>) -> Result<Option<T>> {
+        self.known.push(key);
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        read(value.get_ref()).map(Some).map_err(|reason| self.wrong(key, reason))
+    }
+
+    /// The value of a key that must be there.
+    ///
+    /// # Errors
+    /// If it is missing or not what `read` wants.
+    pub fn need<T>(&mut self, key: &'static str, read: impl FnOnce(&DeValue) -> Wanted<T>) -> Result<T> {
+        self.get(key, read)?.ok_or_else(|| self.fail(format!("key {key} is missing")))
+    }
+
+    /// The table that a key holds, if it is there.
+    ///
+    /// # Errors
+    /// If it holds something else.
+    pub fn table(&mut self, key: &'static str) -> Result<Option<StrictTable<'a>>> {
+        self.known.push(key);
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        match value.get_ref() {
+            DeValue::Table(table) => {
+                let subject = format!("{}{key}", self.prefix());
+                Ok(Some(StrictTable::new(self.source, subject, value.span().start, table)))
+            }
+            other => Err(self.wrong(key, format!("needs a table, not {}", kind(other)))),
+        }
+    }
+
+    /// The tables of a `[[key]]`; none if it is not there.
+    ///
+    /// # Errors
+    /// If it holds something else.
+    pub fn tables(&mut self, key: &'static str) -> Result<Vec<StrictTable<'a>>> {
+        self.known.push(key);
+        let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
+        let wrong = |other: &DeValue| self.wrong(key, format!("needs tables [[{key}]], not {}", kind(other)));
+        let DeValue::Array(items) = value.get_ref() else { return Err(wrong(value.get_ref())) };
+        let tables = items.iter().enumerate().map(|(n, item)| match item.get_ref() {
+            DeValue::Table(table) => {
+                Ok(StrictTable::new(self.source, format!("{key} {}", n + 1), item.span().start, table))
+            }
+            other => Err(wrong(other)),
+        });
+        tables.collect()
+    }
+
+    /// The grid that a key holds, if it is there; see [`crate::grid`].
+    ///
+    /// # Errors
+    /// If it holds none.
+    pub fn grid(&mut self, key: &'static str) -> Result<Option<Edges>> {
+        self.known.push(key);
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        grid::from_value(self.source.path, self.source.text, value.clone()).map(Some)
+    }
+
+    /// The grids of a `[[key]]`; none if it is not there.
+    ///
+    /// # Errors
+    /// If one is none.
+    pub fn grids(&mut self, key: &'static str) -> Result<Vec<Edges>> {
+        self.known.push(key);
+        let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
+        let items = value.get_ref().as_array().ok_or_else(|| self.wrong(key, format!("needs tables [[{key}]]")))?;
+        items.iter().map(|item| grid::from_value(self.source.path, self.source.text, item.clone())).collect()
+    }
+
+    /// The line that the table begins in.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.source.line(self.at)
+    }
+
+    /// Every key must have been asked for.
+    ///
+    /// # Errors
+    /// The first that was not.
+    pub fn finish(&self) -> Result<()> {
+        match self.table.keys().find(|key| !self.known.contains(&key.get_ref().as_ref())) {
+            None => Ok(()),
+            Some(key) => {
+                let known = self.known.join(", ");
+                let reason = format!("{}key {} is not known here (known: {known})", self.prefix(), key.get_ref());
+                Err(self.source.error(key.span().start, reason))
+            }
+        }
+    }
+
+    /// An error about a key, at its line.
+    #[must_use]
+    pub fn wrong(&self, key: &str, reason: impl std::fmt::Display) -> Error {
+        let at = self.table.get(key).map_or(self.at, |value| value.span().start);
+        self.source.error(at, format!("{}{key} {reason}", self.prefix()))
+    }
+
+    /// An error about the table, at its line.
+    #[must_use]
+    pub fn fail(&self, reason: impl std::fmt::Display) -> Error {
+        self.source.error(self.at, format!("{}{reason}", self.prefix()))
+    }
+
+    fn prefix(&self) -> String {
+        if self.subject.is_empty() { String::new() } else { format!("{}: ", self.subject) }
+    }
+}
+
+/// A value's type, with its article.
+fn kind(value: &DeValue) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "an integer",
+        DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// Larger coordinates overflow when multiplied, and are no geometry.
+const LARGEST: f64 = 1e60;
+
+/// A finite number.
+///
+/// # Errors
+/// What it should be.
+pub fn number(value: &DeValue) -> Wanted<f64> {
+    let digits = match value {
+        DeValue::Float(f) => f.as_str(),
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+        other => return Err(format!("needs a number, not {}", kind(other))),
+    };
+    match digits.parse::<f64>() {
+        Ok(x) if x.abs() <= LARGEST => Ok(x),
+        _ => Err(format!("needs a finite number below {LARGEST:e}, not {digits}")),
+    }
+}
+
+/// A number above zero.
+///
+/// # Errors
+/// What it should be.
+pub fn positive(value: &DeValue) -> Wanted<f64> {
+    let x = number(value)?;
+    if x > 0.0 { Ok(x) } else { Err(format!("must be positive, not {x}")) }
+}
+
+/// A number from 0 to 1.
+///
+/// # Errors
+/// What it should be.
+pub fn fraction(value: &DeValue) -> Wanted<f64> {
+    let x = number(value)?;
+    if (0.0..=1.0).contains(&x) { Ok(x) } else { Err(format!("must be from 0 to 1, not {x}")) }
+}
+
+/// A whole number of at least zero.
+///
+/// # Errors
+/// What it should be.
+pub fn index(value: &DeValue) -> Wanted<usize> {
+    let DeValue::Integer(i) = value else { return Err(format!("needs a whole number, not {}", kind(value))) };
+    usize::from_str_radix(i.as_str(), i.radix())
+        .map_err(|_| format!("needs a whole number that can be counted, not {i}"))
+}
+
+/// A whole number of at least one.
+///
+/// # Errors
+/// What it should be.
+pub fn count(value: &DeValue) -> Wanted<usize> {
+    let n = index(value)?;
+    if n > 0 { Ok(n) } else { Err("must be at least 1, not 0".to_owned()) }
+}
+
+/// True or false.
+///
+/// # Errors
+/// What it should be.
+pub fn truth(value: &DeValue) -> Wanted<bool> {
+    value.as_bool().ok_or_else(|| format!("needs true or false, not {}", kind(value)))
+}
+
+/// A text.
+///
+/// # Errors
+/// What it should be.
+pub fn text(value: &DeValue) -> Wanted<String> {
+    value.as_str().map(str::to_owned).ok_or_else(|| format!("needs a string, not {}", kind(value)))
+}
+
+/// A list of values of one kind.
+///
+/// # Errors
+/// What the first wrong one should be.
+pub fn list<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
+    move |value| {
+        let items = value.as_array().ok_or_else(|| format!("needs a list, not {}", kind(value)))?;
+        let read = |(n, item): (usize, &toml::Spanned<DeValue>)| {
+            read(item.get_ref()).map_err(|reason| format!("[{n}] {reason}"))
+        };
+        items.iter().enumerate().map(read).collect()
+    }
+}
+
+/// A list of three values of one kind.
+///
+/// # Errors
+/// What it should be.
+pub fn three<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<[T; 3]> {
+    move |value| {
+        let found = list(read)(value)?;
+        <[T; 3]>::try_from(found).map_err(|all| format!("needs three values, not {}", all.len()))
+    }
+}
+
+/// Three numbers.
+///
+/// # Errors
+/// What it should be.
+pub fn point(value: &DeValue) -> Wanted<DVec3> {
+    three(number)(value).map(DVec3::from_array)
+}

@@ -1,0 +1,90 @@
+//! Corners that miss a grid plane by rounding are put into it.
+//!
+//! CAD writes 2.8e-17 where it means 0, and a file of `f32` 0.300000012 where it means 0.3. A wall that misses the plane of a face by so
+//! little would block the face or not by chance; in the plane it blocks it. No corner moves farther than its source was rounded.
+
+use crate::geometry::bodies::{Bodies, Body};
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+use voidage_core::grid::{Grid, Located};
+
+/// Corners within this share of the grid's largest coordinate are in the plane: far below the digits of any `f32` file.
+const NEAR: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// A copy of the bodies' triangles with such corners moved; none if there are no such corners.
+#[must_use]
+pub fn into_planes(grid: &Grid<f64>, bodies: &Bodies) -> Option<Vec<[DVec3; 3]>> {
+    let near = near(grid);
+    let moved = |t: usize| {
+        let body = body_of(bodies, t);
+        bodies.triangles[t].map(|p| in_plane(grid, p, near, body))
+    };
+    let all = 0..bodies.triangles.len();
+    let any = all.clone().into_par_iter().any(|t| moved(t) != bodies.triangles[t]);
+    any.then(|| all.into_par_iter().map(moved).collect())
+}
+
+/// Distance along each axis within which any corner is in a plane, in metres.
+#[must_use]
+pub fn near(grid: &Grid<f64>) -> DVec3 {
+    DVec3::from_array([0, 1, 2].map(|axis| {
+        let e = grid.edges(axis);
+        e[0].abs().max(e[e.len() - 1].abs()) * NEAR
+    }))
+}
+
+/// The body that a triangle belongs to; bodies have their triangles one after the other.
+fn body_of(bodies: &Bodies, triangle: usize) -> Option<&Body> {
+    bodies.bodies.get(bodies.bodies.partition_point(|b| b.triangles.end <= triangle))
+}
+
+/// A corner, its coordinates replaced by those of the planes that it misses by rounding.
+fn in_plane(grid: &Grid<f64>, p: DVec3, near: DVec3, body: Option<&Body>) -> DVec3 {
+    let plane = DVec3::from_array([0, 1, 2].map(|axis| nearest(grid, axis, p[axis])));
+    let off = (plane - p).abs();
+    let mut room = near;
+    if let Some(source) = body.and_then(|b| b.single).filter(|s| off.min_element() <= near.max_element() + s.reach(p)) {
+        room += source.error(p);
+    }
+    DVec3::select(off.cmple(room), plane, p)
+}
+
+/// The plane nearest to a coordinate.
+fn nearest(grid: &Grid<f64>, axis: usize, value: f64) -> f64 {
+    let edges = grid.edges(axis);
+    let last = edges.len() - 1;
+    let (below, above) = match grid.locate(axis, value) {
+        Located::Below => (0, 0),
+        Located::Cell(i) => (i, i + 1),
+        Located::Above => (last, last),
+    };
+    if value - edges[below] <= edges[above] - value { edges[below] } else { edges[above] }
+}
+
+/// Sheets without thickness that lie, wholly or in part, in no plane of the grid: such parts block nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct OffPlanes {
+    /// Number of such sheets.
+    pub sheets: usize,
+    /// Area of those parts, one side of them, in m².
+    pub area: f64,
+}
+
+/// Finds such sheets; `triangles` are those of `bodies`, or a copy with corners moved.
+#[must_use]
+pub fn sheets_off_planes(grid: &Grid<f64>, bodies: &Bodies, triangles: &[[DVec3; 3]]) -> OffPlanes {
+    let mut found = OffPlanes::default();
+    for sheet in bodies.bodies.iter().filter(|b| b.sheet) {
+        let off = triangles[sheet.triangles.clone()].iter().filter(|t| !lies_in_plane(grid, t));
+        // A sheet has two sides, and triangles on each.
+        let area = off.map(|[a, b, c]| (b - a).cross(c - a).length() * 0.25).sum::<f64>();
+        found.sheets += usize::from(area > 0.0);
+        found.area += area;
+    }
+    found
+}
+
+fn lies_in_plane(grid: &Grid<f64>, [a, b, c]: &[DVec3; 3]) -> bool {
+    (0..3).any(|axis| a[axis] == b[axis] && b[axis] == c[axis] && nearest(grid, axis, a[axis]) == a[axis])
+}

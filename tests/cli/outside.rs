@@ -1,0 +1,66 @@
+//! What lies outside the grid is said by name; what is flush with it is not outside.
+
+use crate::kit::{Scratch, solved, stderr, voidage};
+use std::fs;
+
+const GRID: &str = "[grid]\norigin = [0, 0, 0]\nspacing = [0.1, 0.1, 0.1]\ncells = [10, 10, 10]\n";
+
+fn said(solids: &str) -> String {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    fs::write(&scene, format!("{solids}{GRID}")).expect("written");
+    let output = voidage(&[&"porosity", &scene, &"--tol", &"0.5", &"--depth", &"1"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    stderr(&output)
+}
+
+fn cylinder(name: &str, from: [f64; 3], to: [f64; 3], radius: f64) -> String {
+    format!("[[solid]]\nname = \"{name}\"\nshape = \"cylinder\"\nfrom = {from:?}\nto = {to:?}\nradius = {radius}\n")
+}
+
+#[test]
+fn a_solid_flush_with_the_grid_is_within() {
+    for radius in [0.5, 0.3] {
+        let text = said(&cylinder("pipe", [0.0, 0.5, 0.5], [1.0, 0.5, 0.5], radius));
+        assert!(!text.contains("beyond the grid"), "{text}");
+    }
+    let askew = said(&cylinder("pipe", [0.0, 0.5, 0.3], [1.0, 0.5, 0.3], 0.3));
+    assert!(!askew.contains("beyond the grid"), "{askew}");
+    let beyond = said(&cylinder("pipe", [0.0, 0.5, 0.5], [1.0 + 1e-9, 0.5, 0.5], 0.3));
+    assert!(beyond.contains("extends beyond the grid"), "{beyond}");
+}
+
+#[test]
+fn solids_outside_are_named() {
+    let inside = cylinder("inner", [0.2, 0.5, 0.5], [0.8, 0.5, 0.5], 0.1);
+    let text = said(&(inside.clone() + &cylinder("stray", [2.0, 0.5, 0.5], [3.0, 0.5, 0.5], 0.1)));
+    assert!(text.contains("solid \"stray\": outside the grid"), "{text}");
+    assert!(!text.contains("inner"), "{text}");
+    let many: String = (0..7).map(|n| cylinder(&format!("s{n}"), [2.0, 0.5, 0.5], [3.0, 0.5, 0.5], 0.1)).collect();
+    let text = said(&(inside + &many));
+    assert!(text.contains("solid \"s4\" and 2 more: outside the grid"), "{text}");
+}
+
+#[test]
+fn regions_outside_are_named() {
+    let case = |region: &str| {
+        format!(
+            "[grid]\nx = {{ points = [0, 1], cells = [10] }}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n\
+             [initial]\nuniform = {{ rho = 1, p = 1 }}\nregions = [{region}]\n\
+             [boundary]\nx_min = {{ type = \"wall\" }}\nx_max = {{ type = \"wall\" }}\n[time]\nmax_steps = 1\n"
+        )
+    };
+    for (region, words) in [
+        ("{ min = [1.5], rho = 2, p = 1 }", Some("initial.regions[0] lies outside the grid")),
+        ("{ center = [-1.0], radius = 0.5, rho = 2, p = 1 }", Some("initial.regions[0] lies outside the grid")),
+        ("{ min = [0.51], max = [0.54], rho = 2, p = 1 }", Some("initial.regions[0] holds the centre of no cell")),
+        ("{ min = [0.5], rho = 2, p = 1 }", None),
+    ] {
+        let at = Scratch::new();
+        let text = stderr(&solved(&at, &case(region), "out", &[]));
+        match words {
+            Some(words) => assert!(text.contains(words), "{region}: {text}"),
+            None => assert!(!text.contains("regions"), "{region}: {text}"),
+        }
+    }
+}
