@@ -18,9 +18,11 @@
 //! 2. [`limiter`]: slopes; [`riemann`]: the flux through a face; [`drag`]: resistance of the obstacles, at any stiffness;
 //!    [`boundary`]: the sides of the domain
 //! 3. [`porosity`]: open fractions made ready: jumps, walls, small cells
-//! 4. `kernel`: one slab of one step, row by row
-//! 5. [`step`]: the problem, one slab of one step; [`step_report`]: what a step did; [`fallback`]: the whole step, and what happens to
-//!    unphysical states
+//! 4. [`error`]: what a caller may get wrong
+//! 5. [`problem`]: what stays the same during a step, and its contracts; [`step_report`]: what a step did; [`fallback`]: what happens
+//!    to unphysical states
+//! 6. `kernel`: one slab of one step, row by row
+//! 7. [`step`]: one slab of one step, and the whole step
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.
@@ -29,6 +31,7 @@
 
 pub mod boundary;
 pub mod drag;
+pub mod error;
 pub mod fallback;
 mod kernel;
 pub mod limiter;
@@ -41,10 +44,12 @@ pub mod step_report;
 
 pub use boundary::Boundary;
 pub use drag::Drag;
+pub use error::Error;
 pub use limiter::Limiter;
 pub use porosity::clusters::Clusters;
-pub use porosity::fractions::{Mesh, Porosity, mark};
-pub use problem::{Error, PressureForm, Problem, Scheme};
+pub use porosity::fractions::{Mesh, Porosity};
+pub use porosity::mark::mark;
+pub use problem::{PressureForm, Problem, Scheme};
 pub use riemann::Riemann;
 pub use state::{Conserved, Fields, FieldsMut, Gas, Primitive};
 pub use step_report::Report;

@@ -58,3 +58,51 @@ fn text_of(source: &Path, module: &str) -> String {
     assert!(!text.is_empty(), "{module} has no file");
     text
 }
+
+/// Every file of a room in which files import downwards only: its path within the crate, as `flow::kernel::rows`.
+fn files_of(folder: &Path, module: &str, files: &mut Vec<(String, String)>) {
+    let text = std::fs::read_to_string(folder.with_extension("rs")).expect("a module");
+    files.push((module.to_owned(), text));
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.expect("an entry").path();
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        if path.extension().is_some_and(|e| e == "rs") {
+            files_of(&path.with_extension(""), &format!("{module}::{name}"), files);
+        }
+    }
+}
+
+/// The paths below `crate::` that a text imports, lists in braces taken apart.
+fn imports(text: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    for statement in text.split("\nuse crate::").skip(1).filter_map(|rest| rest.split_once(';')) {
+        let statement: String = statement.0.split_whitespace().collect();
+        match statement.split_once('{') {
+            None => all.push(statement),
+            Some((prefix, list)) => all.extend(list.trim_end_matches('}').split(',').map(|n| format!("{prefix}{n}"))),
+        }
+    }
+    all
+}
+
+#[test]
+fn files_of_the_flow_import_without_circles() {
+    let mut files = Vec::new();
+    files_of(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src/flow"), "flow", &mut files);
+    // A room's own file names its parts and takes them up; it imports none of them.
+    let place = |import: &str| {
+        let within = |m: &str| import == m || import.strip_prefix(m).is_some_and(|rest| rest.starts_with("::"));
+        (0..files.len()).filter(|&f| within(&files[f].0)).max_by_key(|&f| files[f].0.len())
+    };
+    let uses: Vec<Vec<usize>> = files.iter().map(|f| imports(&f.1).iter().filter_map(|i| place(i)).collect()).collect();
+    assert!(uses.iter().map(Vec::len).sum::<usize>() > 50, "imports were seen");
+    // What imports nothing that is left is taken away until nothing is left.
+    let mut left: Vec<usize> = (0..files.len()).collect();
+    while !left.is_empty() {
+        let before = left.len();
+        let now = left.clone();
+        left.retain(|&f| uses[f].iter().any(|u| *u != f && now.contains(u)));
+        let names: Vec<&str> = left.iter().map(|&f| files[f].0.as_str()).collect();
+        assert!(left.len() < before, "these import one another: {names:?}");
+    }
+}

@@ -253,7 +253,7 @@ fn floored_middle(pressure: f64, kinetic: f64, total: f64) -> (Primitive<f64, 2>
         gravity: [0.0; 2],
     };
     let mut report = Report::new();
-    problem.apply_floors(&old.view(), &mut flow.state.view_mut(), &mut report);
+    problem.apply_floors(&old.view(), &mut flow.state.view_mut(), &mut report).unwrap();
     assert_eq!((report.floored, report.floored_cell), (1, Some(MIDDLE)));
     (flow.get(MIDDLE), report.floor_change)
 }

@@ -1,6 +1,7 @@
 //! Tests of the PDR Euler kernel: invariances to the bit, conservation, convergence, extremes, reference cases.
 
 mod balance;
+mod contracts;
 mod convergence;
 mod extremes;
 mod inclined;

@@ -1,5 +1,6 @@
 //! What happens where a new state leaves the physical set: first order around it, at last a floor.
 
+use crate::flow::error::{Error, fits};
 use crate::flow::problem::Problem;
 use crate::flow::state::{Conserved, Fields, FieldsMut, Gas, Primitive, sum};
 use crate::flow::step_report::Report;
@@ -28,13 +29,17 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     }
 
     /// Marks every unphysical cell of a new field and its neighbours for a first-order step; returns how many marks are new.
-    pub fn mark_troubled(&self, new: &Fields<'_, R, D>, first_order: &mut [u8]) -> usize {
+    ///
+    /// # Errors
+    /// A slice does not fit the mesh.
+    pub fn mark_troubled(&self, new: &Fields<'_, R, D>, first_order: &mut [u8]) -> Result<usize, Error> {
+        self.check_fields(new)?;
+        fits(self.mesh.len(), first_order.len())?;
         let mut added = 0;
         let mut set = |i: usize| {
-            if let Some(mark) = first_order.get_mut(i) {
-                added += usize::from(*mark == 0);
-                *mark = 1;
-            }
+            let mark = &mut first_order[i];
+            added += usize::from(*mark == 0);
+            *mark = 1;
         };
         for cell in 0..self.mesh.len() {
             if !self.is_physical(&new.get(cell)) {
@@ -42,7 +47,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
                 self.each_beside(cell, |_, _, beside| set(beside));
             }
         }
-        added
+        Ok(added)
     }
 
     /// Mean density and pressure of the cell and of those behind its open faces.
@@ -92,7 +97,17 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
 
     /// The last resort: gives every unphysical cell a positive state, scaled to the old states around it. Adds to the report how many
     /// these are, and what of mass, momentum and energy they changed.
-    pub fn apply_floors(&self, old: &Fields<'_, R, D>, new: &mut FieldsMut<'_, R, D>, report: &mut Report<R, D>) {
+    ///
+    /// # Errors
+    /// A slice does not fit the mesh.
+    pub fn apply_floors(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        report: &mut Report<R, D>,
+    ) -> Result<(), Error> {
+        self.check_fields(old)?;
+        self.fits(&new.as_fields(), self.mesh.len())?;
         for cell in 0..self.mesh.len() {
             let u = new.get(cell);
             if self.is_physical(&u) {
@@ -115,5 +130,6 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             report.rate = R::larger(self.cell_rate(&floored, cell), report.rate);
         }
         report.unphysical = 0;
+        Ok(())
     }
 }

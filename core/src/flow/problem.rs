@@ -2,6 +2,7 @@
 
 use crate::flow::boundary::Boundary;
 use crate::flow::drag::Drag;
+use crate::flow::error::{Error, fits};
 use crate::flow::limiter::Limiter;
 use crate::flow::porosity::areas::Ducts;
 use crate::flow::porosity::clusters::{Clusters, least_volume};
@@ -57,39 +58,33 @@ pub struct Problem<'a, R, const D: usize> {
     pub gravity: [R; D],
 }
 
-/// A broken contract.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Error {
-    /// A slice does not fit the mesh.
-    ShapeMismatch {
-        /// Length by the mesh.
-        expected: usize,
-        /// Length given.
-        found: usize,
-    },
-    /// An axis is periodic on one side only.
-    HalfPeriodic {
-        /// The axis.
-        axis: usize,
-    },
-    /// A cell outside the physical set (density or pressure not positive, or not finite).
-    Unphysical {
-        /// Its flat index.
-        cell: usize,
-    },
-}
-
 impl<R: Real, const D: usize> Problem<'_, R, D> {
     /// Checks the contracts between the slices once.
     pub fn check(&self) -> Result<(), Error> {
         let n = self.mesh.len();
-        let fits = |expected: usize, found: usize| {
-            if expected == found { Ok(()) } else { Err(Error::ShapeMismatch { expected, found }) }
-        };
         for d in 0..D {
             if (self.boundaries[d][0] == Boundary::Periodic) != (self.boundaries[d][1] == Boundary::Periodic) {
                 return Err(Error::HalfPeriodic { axis: d });
             }
+        }
+        let positive = |x: R| x > R::ZERO && x.is_finite();
+        for (axis, widths) in self.mesh.widths.iter().enumerate() {
+            if let Some(cell) = widths.iter().position(|&w| !positive(w)) {
+                return Err(Error::Width { axis, cell });
+            }
+        }
+        let gas = match self.gas {
+            Gas::Ideal { gamma } => gamma > R::ONE && gamma.is_finite(),
+            Gas::Isothermal { sound_speed } => positive(sound_speed),
+            Gas::Isentropic { gamma, density, pressure } => {
+                gamma > R::ONE && gamma.is_finite() && positive(density) && positive(pressure)
+            }
+        };
+        if !gas {
+            return Err(Error::Gas);
+        }
+        if let Some(entry) = self.clusters.cells().position(|cell| cell >= n) {
+            return Err(Error::Cluster { entry });
         }
         if let Some(p) = &self.porosity {
             fits(n, p.volume.len())?;
@@ -127,12 +122,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
 
     pub(in crate::flow) fn fits(&self, f: &Fields<'_, R, D>, expected: usize) -> Result<(), Error> {
         let energy = if self.gas.has_energy() { f.energy.len() } else { expected };
-        for found in f.momentum.iter().map(|m| m.len()).chain([f.density.len(), energy]) {
-            if found != expected {
-                return Err(Error::ShapeMismatch { expected, found });
-            }
-        }
-        Ok(())
+        let lengths = f.momentum.iter().map(|m| m.len()).chain([f.density.len(), energy]);
+        lengths.into_iter().try_for_each(|found| fits(expected, found))
     }
 
     /// Signal rate of one cell, jumps and merging included.

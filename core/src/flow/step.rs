@@ -1,11 +1,12 @@
 //! One slab of one step, and the whole step on one thread.
 
+use crate::flow::error::{Error, fits};
 use crate::flow::fallback::FALLBACKS;
 use crate::flow::kernel::scratch::{PIECE, Sizes, in_pieces};
 use crate::flow::kernel::slab::Part;
 use crate::flow::kernel::{long_line, sweep};
 use crate::flow::porosity::clusters;
-use crate::flow::problem::{Error, Problem};
+use crate::flow::problem::Problem;
 use crate::flow::state::{Fields, FieldsMut};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
@@ -39,8 +40,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         }
         let layer = if D == 1 { cells[0] } else { self.mesh.layer() };
         self.fits(&new.as_fields(), layer * slab.len())?;
-        if let Some(f) = first_order.filter(|f| f.len() != self.mesh.len()) {
-            return Err(Error::ShapeMismatch { expected: self.mesh.len(), found: f.len() });
+        if let Some(f) = first_order {
+            fits(self.mesh.len(), f.len())?;
         }
         let needed = self.scratch_len();
         if scratch.len() < needed {
@@ -54,15 +55,30 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     }
 
     /// Prepares a starting field: clusters whose cells differ much share one state. Gas at rest is left alone.
-    pub fn settle(&self, field: &mut FieldsMut<'_, R, D>) {
+    ///
+    /// # Errors
+    /// A slice does not fit the mesh.
+    pub fn prepare(&self, field: &mut FieldsMut<'_, R, D>) -> Result<(), Error> {
+        self.check_fields(&field.as_fields())?;
         if let Some(p) = &self.porosity {
-            clusters::settle(self.clusters, &self.mesh, p.volume, self.gas, field);
+            clusters::average_unequal(self.clusters, &self.mesh, p.volume, self.gas, field);
         }
+        Ok(())
     }
 
     /// Merges the small cells of a new field in place; the report's rate and count cover the merged cells.
-    pub fn merge(&self, old: &Fields<'_, R, D>, new: &mut FieldsMut<'_, R, D>, report: &mut Report<R, D>) {
-        let Some(p) = &self.porosity else { return };
+    ///
+    /// # Errors
+    /// A slice does not fit the mesh.
+    pub fn merge(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        report: &mut Report<R, D>,
+    ) -> Result<(), Error> {
+        self.check_fields(old)?;
+        self.fits(&new.as_fields(), self.mesh.len())?;
+        let Some(p) = &self.porosity else { return Ok(()) };
         clusters::apply(self.clusters, &self.mesh, p.volume, old, new);
         for cell in self.clusters.cells() {
             let u = new.get(cell);
@@ -72,6 +88,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
                 report.unphysical += 1;
             }
         }
+        Ok(())
     }
 
     /// One step on one thread: slab, merging, and, if a state came out unphysical, again with first order around it, at last
@@ -86,27 +103,25 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         marks: &mut [u8],
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
-        if marks.len() != self.mesh.len() {
-            return Err(Error::ShapeMismatch { expected: self.mesh.len(), found: marks.len() });
-        }
+        fits(self.mesh.len(), marks.len())?;
         let all = 0..self.mesh.cells()[D - 1];
         let mut report = self.advance_slab(old, new, all.clone(), dt, None, scratch)?;
-        self.merge(old, new, &mut report);
+        self.merge(old, new, &mut report)?;
         if report.unphysical == 0 {
             return Ok(report);
         }
         marks.fill(0);
         for _ in 0..FALLBACKS {
-            if self.mark_troubled(&new.as_fields(), marks) == 0 {
+            if self.mark_troubled(&new.as_fields(), marks)? == 0 {
                 break;
             }
             report = self.advance_slab(old, new, all.clone(), dt, Some(marks), scratch)?;
-            self.merge(old, new, &mut report);
+            self.merge(old, new, &mut report)?;
             if report.unphysical == 0 {
                 return Ok(report);
             }
         }
-        self.apply_floors(old, new, &mut report);
+        self.apply_floors(old, new, &mut report)?;
         Ok(report)
     }
 }

@@ -274,13 +274,22 @@ pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
         out_p[i] = p[i] - sum::<R, D>(d_p);
     }
     if weighted {
-        for i in 0..n {
-            let d_p: [R; D] = each(|d| {
-                let scale = if POROUS || d == 0 { rows[d][i] } else { ones[d] };
-                scale * (u[d][i] * (rho[i] * weight[d][i]))
-            });
-            out_p[i] -= sum::<R, D>(d_p);
-        }
+        let scale = |d: usize, i: usize| if POROUS || d == 0 { rows[d][i] } else { ones[d] };
+        add_weight::<R, D>(scale, u, rho, weight, out_p);
+    }
+}
+
+/// What the weight of the gas, `weight[d]` = g_d dx_d times its density, takes from its pressure over the half step.
+fn add_weight<R: Real, const D: usize>(
+    scale: impl Fn(usize, usize) -> R,
+    u: [&[R]; D],
+    rho: &[R],
+    weight: [&[R]; D],
+    pressure: &mut [R],
+) {
+    for (i, p) in pressure.iter_mut().enumerate() {
+        let d_p: [R; D] = each(|d| scale(d, i) * (u[d][i] * (rho[i] * weight[d][i])));
+        *p -= sum::<R, D>(d_p);
     }
 }
 

@@ -440,7 +440,7 @@ fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::flo
     };
     let (cell, what) = match error {
         Some(Unphysical { cell }) => (cell, "no gas has this state".to_owned()),
-        Some(other) => return format!("{other:?}"),
+        Some(other) => return other.to_string(),
         None => match (0..flow.len()).find(|&c| !physical(c)) {
             Some(cell) => (cell, "no gas has this state".to_owned()),
             None => (fastest(), "the time step has shrunk to nothing, here is the fastest signal".to_owned()),
