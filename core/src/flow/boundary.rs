@@ -9,6 +9,7 @@ use crate::number::real::Real;
 
 /// What stands outside one side of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Boundary<R, const D: usize> {
     /// The opposite side; must stand on both.
     Periodic,
