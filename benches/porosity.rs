@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::read;
-use voidage::grid::{Edges, Source, edges};
+use voidage::grid::{Edges, GridSpec, edges};
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_tests::solids::{scene, sixteen_spheres};
 use voidage_tests::truth::{Truth, fixture, shared};
@@ -22,15 +22,12 @@ fn main() {
     let skid = read(&fixture("cad_skid.stl"));
     let truth = Truth::read(&fixture("cad_skid.stl.npz"));
     case("cad_skid", &skid, &truth.edges(), Some(&truth));
-    let fine = edges(&Source::Cells([400, 260, 220], None), skid.bounds(), &mut Vec::new()).expect("a grid");
+    let fine = edges(&GridSpec::Cells([400, 260, 220], None), skid.bounds(), &mut Vec::new()).expect("a grid");
     case("cad_skid, fine", &skid, &fine, None);
-    match shared("corpus") {
-        Some(corpus) => {
-            let huldra = read(&corpus.join("meshes/huldra_psup_region.stl"));
-            let truth = Truth::read(&corpus.join("ground_truth/huldra_psup_region.stl.npz"));
-            case("huldra_psup_region", &huldra, &truth.edges(), Some(&truth));
-        }
-        None => println!("huldra_psup_region: skipped, the shared corpus is absent"),
+    if let Some(corpus) = shared("corpus") {
+        let huldra = read(&corpus.join("meshes/huldra_psup_region.stl"));
+        let truth = Truth::read(&corpus.join("ground_truth/huldra_psup_region.stl.npz"));
+        case("huldra_psup_region", &huldra, &truth.edges(), Some(&truth));
     }
 }
 

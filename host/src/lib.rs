@@ -1,8 +1,63 @@
-//! Porosity of files on disk: reading, threads, writing. The mathematics is in [`voidage_core`].
+//! Volume and area porosity of triangles on structured grids, and gas flow through it: files, memory and threads around the
+//! mathematics of [`voidage_core`].
 //!
-//! Data flows one way: [`geometry`] → [`grid`] → [`porosity`] → [`flow`] → [`files`], [`picture`]; [`command`] shows the stages in order.
+//! **Porosity of triangles in memory.** [`geometry::bodies`] makes closed bodies of them, [`porosity`] measures these on a grid.
+//!
+//! ```
+//! use voidage::geometry::{bodies::Bodies, mesh::Mesh};
+//! use voidage::porosity::{Options, porosity};
+//! use voidage::{DVec3, grid::Edges};
+//!
+//! let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];                  // a tetrahedron of volume 1/6
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|v: usize| corner[v]));
+//! let mut bodies = Bodies::default();
+//! bodies.add(&Mesh::from(triangles.to_vec()), 1.0)?;                         // coordinates are metres
+//! let edges = Edges([vec![0.0, 1.0, 2.0], vec![0.0, 1.0], vec![0.0, 1.0]]);
+//! let found = porosity(&edges.grid(None)?, &bodies, Options::default());
+//! assert!((found.beta.v[0] - 5.0 / 6.0).abs() < 1e-15);                      // open fraction of the first cell, x fastest
+//! assert!((found.beta.x[0] - 0.5).abs() < 1e-15);                            // and of the face below it along x
+//! # Ok::<(), voidage::error::Error>(())
+//! ```
+//!
+//! **Porosity of a file.** [`geometry::read`] takes STL and OBJ; what is wrong with the surface is said in `bodies.warnings`.
+//!
+//! ```
+//! use std::path::Path;
+//! use voidage::geometry::{bodies::Bodies, read};
+//! use voidage::grid::{GridSpec, edges};
+//! use voidage::porosity::{Options, porosity};
+//!
+//! let mut bodies = Bodies::default();
+//! bodies.add(&read::read(Path::new("../tests/fixtures/analytic_boxes_aligned.stl"))?, 1.0)?;
+//! let edges = edges(&GridSpec::Cells([20, 20, 20], None), bodies.bounds(), &mut Vec::new())?;
+//! let found = porosity(&edges.grid(None)?, &bodies, Options::default());
+//! assert!(found.cells.cut > 0 && found.max_gap < 1e-9);
+//! # Ok::<(), voidage::error::Error>(())
+//! ```
+//!
+//! **Flow.** [`flow::Flow`] owns its fields and steps on all threads of the present pool.
+//!
+//! ```
+//! use voidage::flow::{Flow, Treatment};
+//! use voidage::voidage_core::flow::{Boundary, Gas, Primitive};
+//!
+//! // A tube of 100 cells, a plate with holes in its middle: half of the face is open.
+//! let mut flow: Flow<f64, 1> = Flow::uniform([100], [0.01], Gas::Ideal { gamma: 1.4 }, [[Boundary::Wall; 2]]);
+//! let (volume, mut faces) = (vec![1.0; 100], vec![1.0; 101]);
+//! faces[50] = 0.5;
+//! flow.set_porosity(volume, [faces], Treatment::default())?;
+//! flow.fill(|[x]| Primitive { density: if x < 0.5 { 1.0 } else { 0.125 }, velocity: [0.0], pressure: if x < 0.5 { 1.0 } else { 0.1 } });
+//! let mass = flow.content().density;
+//! flow.run(0.8, 0.1)?;
+//! assert!((flow.content().density / mass - 1.0).abs() < 1e-13);
+//! # Ok::<(), voidage::voidage_core::flow::Error>(())
+//! ```
+//!
+//! Data flows one way: [`grid`], [`geometry`] → [`porosity`] → [`flow`] → [`files`], `picture`; `command`, which nothing else uses, shows the
+//! stages in order. Without the features `cli`, `pictures` and `scene` nothing here needs a terminal, a picture or a TOML file.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "cli")]
 pub mod command;
 pub mod error;
 pub mod files;
@@ -10,5 +65,9 @@ pub mod flow;
 pub mod geometry;
 pub mod grid;
 pub mod huge;
+#[cfg(feature = "pictures")]
 pub mod picture;
 pub mod porosity;
+
+pub use glam::DVec3;
+pub use voidage_core;

@@ -8,7 +8,10 @@ pub mod convex;
 mod fields;
 mod layers;
 mod levels;
+mod options;
+mod result;
 pub mod snap;
+mod targets;
 mod unions;
 
 use crate::geometry::bodies::Bodies;
@@ -19,143 +22,11 @@ pub use fields::FieldSet;
 use glam::DVec3;
 use layers::{Summary, Target, Worker};
 pub use levels::levels;
+pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
-use serde::Serialize;
+pub use result::{CellCounts, Gjk, Leak, Porosity};
+use targets::targets;
 use voidage_core::grid::Grid;
-use voidage_core::subdivide;
-
-/// How volumes are found.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Method {
-    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision.
-    #[default]
-    Auto,
-    /// Sums over the surface: exact for any closed surface of triangles
-    Surface,
-    /// Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close
-    Gjk,
-}
-
-/// What becomes of the smallest parts of a cell that a body still cuts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Leaf {
-    /// Touched counts as solid: the paper's rule, which finds too much
-    Solid,
-    /// Touched counts half
-    Half,
-    /// Bounded by planes and points: certified, of second order
-    #[default]
-    Plane,
-}
-
-impl Leaf {
-    /// How deep a subdivision goes unless another depth is asked for: the paper's, or far enough for the default tolerance.
-    #[must_use]
-    pub fn depth(self) -> u32 {
-        if self == Leaf::Plane { 6 } else { 3 }
-    }
-}
-
-impl From<Leaf> for subdivide::Leaf {
-    fn from(leaf: Leaf) -> Self {
-        match leaf {
-            Leaf::Solid => subdivide::Leaf::Solid,
-            Leaf::Half => subdivide::Leaf::Half,
-            Leaf::Plane => subdivide::Leaf::Plane,
-        }
-    }
-}
-
-/// What to compute and how far to refine.
-#[derive(Debug, Clone, Copy)]
-pub struct Options {
-    /// Unions are found exactly; where one has no proof, divide the cell until its bounds are this close.
-    pub tol: f64,
-    /// How often a cell whose union has no proof may be divided by 2 along each axis.
-    pub depth: u32,
-    /// Keep lower and upper bounds of all fields.
-    pub bounds: bool,
-    /// Compute the faces; without, their fields stay empty.
-    pub areas: bool,
-    /// How volumes are found.
-    pub method: Method,
-    /// What ends a subdivision by GJK.
-    pub leaf: Leaf,
-}
-
-impl Options {
-    /// Where between its bounds a value lies: in the middle; by the paper's rule at the solid end.
-    fn solid_end(&self) -> f64 {
-        if self.leaf == Leaf::Solid { 1.0 } else { 0.5 }
-    }
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Options { tol: 1e-4, depth: 6, bounds: false, areas: true, method: Method::Auto, leaf: Leaf::Plane }
-    }
-}
-
-/// Cells by kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct CellCounts {
-    /// No solid.
-    pub open: usize,
-    /// Partly solid, or with surface inside.
-    pub cut: usize,
-    /// All solid.
-    pub closed: usize,
-    /// Of the cut cells: shared by several bodies, so that their union had to be found.
-    pub ambiguous: usize,
-}
-
-/// How often GJK was asked.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Gjk {
-    /// Queries.
-    pub queries: u64,
-    /// Of these, without an answer: work, not error.
-    pub undecided: u64,
-}
-
-/// Where a body's surface fails to close.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Leak {
-    /// The body.
-    pub body: usize,
-    /// How far the worst row ends from zero, as a fraction of a face.
-    pub fraction: f64,
-    /// Its layer of cells.
-    pub layer: usize,
-}
-
-/// Porosities of a grid.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Porosity {
-    /// Open fractions: 1 open, 0 blocked.
-    pub beta: FieldSet,
-    /// Lower and upper bounds of the same, if asked for.
-    pub bounds: Option<[FieldSet; 2]>,
-    /// Cells by kind.
-    pub cells: CellCounts,
-    /// Solid volume within the grid.
-    pub solid_volume: f64,
-    /// Largest distance of the bounds of any cell or face.
-    pub max_gap: f64,
-    /// Cells divided because their union had no proof at once.
-    pub divided: usize,
-    /// By how much a body's own share of a cell left 0..1: surface that crosses itself.
-    pub winding: f64,
-    /// Sheets that block nothing, for they lie in no plane of the grid.
-    pub sheets_off_planes: snap::OffPlanes,
-    /// Bodies that went by subdivision, of all.
-    pub subdivided: usize,
-    /// Queries of GJK.
-    pub gjk: Gjk,
-    /// Bodies whose rows did not return to zero, worst first, one entry a body.
-    pub leaks: Vec<Leak>,
-}
 
 /// Bytes that the fields of a grid take, with what one thread needs beside them.
 #[must_use]
@@ -267,18 +138,6 @@ fn union(
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
     };
     Union { level, porosity, layers: summaries }
-}
-
-/// Where each layer writes.
-fn targets<'a>(grid: &Grid<f64>, beta: &'a mut FieldSet, bounds: Option<&'a mut [FieldSet; 2]>) -> Vec<Target<'a>> {
-    let beta = beta.layers(grid);
-    match bounds {
-        None => beta.into_iter().map(|beta| Target { beta, bounds: None }).collect(),
-        Some([low, high]) => {
-            let bounds = low.layers(grid).into_iter().zip(high.layers(grid));
-            beta.into_iter().zip(bounds).map(|(beta, (l, h))| Target { beta, bounds: Some([l, h]) }).collect()
-        }
-    }
 }
 
 fn worst_leaks(bodies: usize, summaries: &[Summary]) -> Vec<Leak> {

@@ -18,7 +18,7 @@ fn bodies(parts: &[&[Triangle]]) -> Bodies {
     let triangles = parts.concat();
     let solids = vec![Solid { name: "part".into(), triangles: 0..triangles.len() }];
     let mut bodies = Bodies::default();
-    let mesh = Mesh { path: "test.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() };
+    let mesh = Mesh { name: "test.stl".into(), solids, ..Mesh::from(triangles) };
     bodies.add(&mesh, 1.0).expect("bodies");
     bodies
 }

@@ -134,7 +134,7 @@ fn cells_of_a_segment_grow_by_one_factor() {
     for ratio in [1.000_001, 1.0 + 1e-10, 1.0 - 3e-12, 1.5, -7.0, 1e10] {
         let x = format!("x = {{ points = [0, 100], cells = [{n}], ratios = [{ratio}] }}\ny = [0, 1]\nz = [0, 1]\n");
         fs::write(&file, x).expect("written");
-        let edges = voidage::grid::read(&file, &mut warnings).expect("a grid").0;
+        let edges = voidage::grid::file::read(&file, &mut warnings).expect("a grid").0;
         let widths: Vec<f64> = edges[0].windows(2).map(|e| e[1] - e[0]).collect();
         let last_by_first = if ratio < 0.0 { -1.0 / ratio } else { ratio };
         let factor = f64::powf(last_by_first, 1.0 / f64::from(n - 1));

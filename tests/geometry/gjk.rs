@@ -17,17 +17,11 @@ use voidage_tests::gjk::*;
 use voidage_tests::oracle;
 use voidage_tests::random::Random;
 use voidage_tests::recipe::{FAMILIES, Recipe, recipes};
+use voidage_tests::truth;
 
 /// A file of the shared data beside the repository, if it is there.
 fn shared(name: &str) -> Option<String> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/gjk").join(name);
-    match std::fs::read_to_string(&path) {
-        Ok(text) => Some(text),
-        Err(_) => {
-            println!("SKIPPED: no ../shared/gjk/{name} beside the repository; its cases were not run");
-            None
-        }
-    }
+    truth::shared(&format!("gjk/{name}")).map(|path| std::fs::read_to_string(path).expect("a text"))
 }
 
 fn total(scores: BTreeMap<String, Score>) -> Score {

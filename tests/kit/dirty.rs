@@ -29,7 +29,7 @@ pub fn any_triangles_are_measured(bytes: &[u8]) {
     let triangles: Vec<_> =
         bytes.chunks_exact(6).take(64).map(|c| [corner(c), corner(&c[2..]), corner(&c[4..])]).collect();
     let solids = vec![Solid { name: String::new(), triangles: 0..triangles.len() }];
-    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() }, 0);
+    measure(&Mesh { name: "fuzz.stl".into(), solids, ..Mesh::from(triangles) }, 0);
 }
 
 /// Any triangles with corners from 2⁻⁶⁴ to 2⁶³ in size are measured within 0..1. A cut of so long an edge is a rounding error
@@ -40,7 +40,7 @@ pub fn any_sizes_are_measured(bytes: &[u8]) {
     let chunks = bytes.chunks_exact(18).take(64);
     let triangles: Vec<_> = chunks.map(|c| [corner(c), corner(&c[6..]), corner(&c[12..])]).collect();
     let solids = vec![Solid { name: String::new(), triangles: 0..triangles.len() }];
-    measure(&Mesh { path: "fuzz.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() }, 0);
+    measure(&Mesh { name: "fuzz.stl".into(), solids, ..Mesh::from(triangles) }, 0);
 }
 
 /// Measure a mesh on an aligned and on an odd grid.

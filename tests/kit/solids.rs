@@ -1,11 +1,10 @@
 //! Triangulated solids, outward, and scenes of them.
 
 use glam::{DMat3, DVec3};
-use std::path::PathBuf;
 use voidage::geometry::bodies::{Bodies, Body};
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::{Mesh, Solid};
-use voidage::geometry::scene::hull::Hull;
+use voidage::geometry::scene::hull::HullSolid;
 use voidage_core::convex::shape::Sphere;
 
 /// A triangle: three corners, counter-clockwise from outside.
@@ -120,8 +119,7 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
     let mut bodies = Bodies::default();
     for (n, triangles) in solids.iter().enumerate() {
         let solids = vec![Solid { name: format!("solid {n}"), triangles: 0..triangles.len() }];
-        let path = PathBuf::from(format!("solid-{n}.stl"));
-        let mesh = Mesh { path, solids, triangles: triangles.clone(), single_precision: false, warnings: Vec::new() };
+        let mesh = Mesh { name: format!("solid-{n}.stl"), solids, ..Mesh::from(triangles.clone()) };
         bodies.add(&mesh, 1.0).expect("a solid with an area");
     }
     bodies
@@ -132,7 +130,7 @@ pub fn scene(solids: &[Vec<Triangle>]) -> Bodies {
 /// # Panics
 /// For fewer than four points.
 #[must_use]
-pub fn point_sphere(count: usize) -> Hull {
+pub fn point_sphere(count: usize) -> HullSolid {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let points: Vec<DVec3> = (0..count)
         .map(|n| {
@@ -142,12 +140,12 @@ pub fn point_sphere(count: usize) -> Hull {
             (DVec3::new(r * cos, r * sin, z) * 1e6).round() / 1e6
         })
         .collect();
-    Hull::new(&points).expect("points of a sphere span a volume")
+    HullSolid::new(&points).expect("points of a sphere span a volume")
 }
 
 /// A hull as the text of an OBJ file.
 #[must_use]
-pub fn obj(hull: &Hull) -> String {
+pub fn obj(hull: &HullSolid) -> String {
     let mut text = String::new();
     for p in &hull.corners {
         text += &format!("v {} {} {}\n", p.x, p.y, p.z);

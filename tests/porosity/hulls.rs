@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
-use voidage::geometry::scene::hull::Hull;
+use voidage::geometry::scene::hull::HullSolid;
 
 /// Six times the signed volume of a tetrahedron with whole coordinates.
 fn volume6([a, b, c]: [DVec3; 3], p: DVec3) -> i64 {
@@ -27,7 +27,7 @@ fn check(points: &[DVec3]) {
         }
         !spans
     };
-    let Ok(hull) = Hull::new(points) else {
+    let Ok(hull) = HullSolid::new(points) else {
         assert!(flat, "refused though it has a volume: {points:?}");
         return;
     };
@@ -86,7 +86,7 @@ fn cubes_turned_by_rounding_angles() {
         for n in 0..125 {
             points.push(turn * DVec3::new((n % 5) as f64, (n / 5 % 5) as f64, (n / 25) as f64) + DVec3::splat(17.0));
         }
-        let hull = Hull::new(&points).expect("a volume");
+        let hull = HullSolid::new(&points).expect("a volume");
         assert!((hull.volume() - 64.0).abs() < 1e-11, "{}", hull.volume());
         assert_eq!(hull.triangles.len(), 2 * hull.corners.len() - 4);
     }
@@ -97,7 +97,7 @@ fn many_points_on_a_sphere_are_quick() {
     let mut rng = voidage_tests::random::Random::new(4);
     let points: Vec<DVec3> = (0..20_000).map(|_| DVec3::from_array(rng.on_sphere())).collect();
     let begin = std::time::Instant::now();
-    let hull = Hull::new(&points).expect("a volume");
+    let hull = HullSolid::new(&points).expect("a volume");
     assert!((hull.volume() / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3);
     assert!(begin.elapsed().as_secs() < 20, "{:?}", begin.elapsed());
 }
@@ -106,10 +106,10 @@ fn many_points_on_a_sphere_are_quick() {
 fn sizes_beyond_arithmetic_are_refused() {
     let unit = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     for scale in [1e-60, 1e-20, 1e20, 1e60] {
-        let hull = Hull::new(&unit.map(|p| p * scale)).expect("a volume");
+        let hull = HullSolid::new(&unit.map(|p| p * scale)).expect("a volume");
         assert!((hull.volume() / scale.powi(3) * 6.0 - 1.0).abs() < 1e-12, "{scale}");
     }
-    assert!(Hull::new(&unit.map(|p| p * 1e-310)).is_err());
-    assert!(Hull::new(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z * 1e-200]).is_err());
-    assert!(Hull::new(&unit.map(|p| p * f64::INFINITY)).is_err());
+    assert!(HullSolid::new(&unit.map(|p| p * 1e-310)).is_err());
+    assert!(HullSolid::new(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z * 1e-200]).is_err());
+    assert!(HullSolid::new(&unit.map(|p| p * f64::INFINITY)).is_err());
 }

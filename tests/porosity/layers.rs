@@ -1,108 +1,361 @@
-//! The layers of the core and of the host: a module uses only modules above it.
+//! What uses what, file by file, and what is called what: as the sources of core and host say.
 
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
-/// Rooms of the core from the bottom up; `a/b.rs` counts as `a`. The flow uses scalars only, and no geometry uses the flow.
+/// Rooms of the core from the bottom up. The flow uses scalars only, and no geometry uses the flow.
 const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivide"];
 
-/// Modules of the host likewise.
+/// Rooms and single files of the host likewise.
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
+/// Files that use each other and may, each group with its reason.
+const CIRCLES: [(&[&str], &str); 7] = [
+    (
+        &[
+            "core/convex/exact.rs",
+            "core/convex/exact/lattice.rs",
+            "core/convex/exact/search.rs",
+            "core/convex/exact/simplex.rs",
+        ],
+        "exact.rs is the door and defines the answers that its parts give",
+    ),
+    (&["core/convex/gjk.rs", "core/convex/gjk/distance.rs", "core/convex/gjk/pair.rs"], "likewise"),
+    (&["core/convex/shape.rs", "core/convex/shape/curved.rs", "core/convex/shape/plane.rs"], "likewise"),
+    (
+        &["core/convex/shape/adjacency.rs", "core/convex/shape/hull.rs"],
+        "a hull keeps its neighbours, which are found by its scan",
+    ),
+    (
+        &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
+        "union.rs is the door and defines the pieces that its parts sort",
+    ),
+    (
+        &["host/geometry/repair/shells.rs", "host/geometry/repair/weld.rs"],
+        "both speak of the edges of welded triangles",
+    ),
+    (
+        &["host/porosity/layers.rs", "host/porosity/targets.rs", "host/porosity/unions.rs"],
+        "a true recursion: a cell that is divided is measured as a layer of its own",
+    ),
+];
+
 #[test]
-fn modules_import_downwards_only() {
-    check("../core/src", &CORE);
-    check("../host/src", &HOST);
+fn rooms_import_downwards_only() {
+    for (package, order) in [("core", &CORE[..]), ("host", &HOST[..])] {
+        let sources = Sources::read(package);
+        let place = |module: &Module| {
+            let room = module.first().expect("lib.rs imports nothing");
+            order.iter().position(|r| r == room).unwrap_or_else(|| panic!("{package}: the order lacks {room}"))
+        };
+        let arrows = sources.arrows();
+        assert!(arrows.len() > 50, "imports were seen");
+        for (from, to) in arrows {
+            assert!(place(&to) <= place(&from), "{package}: {} uses {}", name(&from), name(&to));
+            assert!(package == "host" || to[0] != "flow" || from[0] == "flow", "core: {} uses the flow", name(&from));
+        }
+    }
 }
 
-fn check(source: &str, order: &[&str]) {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(source);
-    let place = |module: &str| order.iter().position(|m| *m == module);
-    let mut checked = 0;
-    for (at, module) in order.iter().enumerate() {
-        let text = text_of(&source, module);
-        for line in text.lines().filter(|l| !l.trim_start().starts_with("//")) {
-            for used in line.split("crate::").skip(1) {
-                let name: String = used.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();
-                if name == *module {
-                    continue;
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    let mut found = String::new();
+    for package in ["core", "host"] {
+        for circle in circles(&Sources::read(package).arrows()) {
+            let files: Vec<String> = circle.iter().map(|m| format!("{package}/{}", name(m))).collect();
+            if !CIRCLES.iter().any(|(known, _)| files.iter().all(|f| known.contains(&f.as_str()))) {
+                let _ = writeln!(found, "{}", files.join(" "));
+            }
+        }
+    }
+    assert!(found.is_empty(), "files that use each other:\n{found}");
+}
+
+/// A library is no terminal: what is below the command knows of none, nor of what users type.
+#[test]
+fn only_the_command_speaks_to_a_terminal() {
+    for (module, text) in &Sources::read("host").files {
+        if module.first().is_some_and(|room| room == "command") {
+            continue;
+        }
+        for word in ["clap", "indicatif", "ctrlc", "stdout(", "stderr(", "println!(", "std::env", "command::"] {
+            assert!(!text.contains(word), "{} names {word}", name(module));
+        }
+    }
+}
+
+/// Types of the same name in different files, each with its reason.
+const SHARED_NAMES: [(&str, &str); 9] = [
+    ("Body", "the trait of what is subdivided; a body of the host has a name and a place in a file"),
+    ("Convex", "the trait of chords; the host's enum of all convex bodies implements it"),
+    ("Error", "that of the flow is a value without text; that of the host names file, place and reason"),
+    ("Fields", "fields of a gas and of a layer"),
+    ("Leaf", "that of the host has a default and a name in reports"),
+    ("Mesh", "cells of a flow; triangles that are subdivided; triangles of a file"),
+    ("Overlap", "the proof of GJK; the union in a cell"),
+    ("Porosity", "what a flow takes; what was found"),
+    ("Report", "of a step; of a run"),
+];
+
+#[test]
+fn each_type_has_a_name_of_its_own() {
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for package in ["core", "host"] {
+        for (module, text) in &Sources::read(package).files {
+            for line in text.lines() {
+                for word in ["pub struct ", "pub enum ", "pub trait ", "pub type "] {
+                    // Associated types are indented, as are items within functions and macros.
+                    let Some(rest) = line.strip_prefix(word) else { continue };
+                    let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                    places.entry(name).or_default().push(format!("{package}/{}", self::name(module)));
                 }
-                assert!(name != "flow" || source.ends_with("host/src"), "{module} uses the flow");
-                let below = place(&name).unwrap_or_else(|| panic!("{module} uses {name}, which the list lacks"));
-                assert!(below < at, "{module} uses {name}, which stands above it");
-                checked += 1;
             }
         }
     }
-    assert!(checked > 10, "imports were seen");
-    let listed = std::fs::read_to_string(source.join("lib.rs")).expect("lib.rs");
-    for line in listed.lines().filter_map(|l| l.strip_prefix("pub mod ")) {
-        let name = line.trim_end_matches(';');
-        assert!(place(name).is_some(), "module {name} is missing in the order");
+    assert!(places.len() > 100, "types were seen");
+    let mut found = String::new();
+    for (name, places) in places.iter().filter(|(_, places)| places.len() > 1) {
+        if !SHARED_NAMES.iter().any(|(known, _)| known == name) {
+            let _ = writeln!(found, "{name}: {}", places.join(", "));
+        }
+    }
+    assert!(found.is_empty(), "names that are used twice:\n{found}");
+}
+
+/// The harness of the core is off, as there is nothing in it.
+#[test]
+fn the_core_has_no_tests_that_never_run() {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core");
+    assert!(std::fs::read_to_string(manifest.join("Cargo.toml")).expect("a manifest").contains("[lib]\ntest = false"));
+    let mut waiting = vec![manifest.join("src")];
+    while let Some(path) = waiting.pop() {
+        if path.is_dir() {
+            waiting.extend(std::fs::read_dir(&path).expect("a directory").map(|e| e.expect("an entry").path()));
+        } else {
+            let text = std::fs::read_to_string(&path).expect("a source");
+            assert!(!text.contains("#[test]"), "{}: a test that never runs", path.display());
+        }
     }
 }
 
-/// A module's file and those in its folder, whichever it has.
-fn text_of(source: &Path, module: &str) -> String {
-    let mut text = std::fs::read_to_string(source.join(format!("{module}.rs"))).unwrap_or_default();
-    let mut folders = vec![source.join(module)];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).into_iter().flatten() {
-            let path = entry.expect("an entry").path();
+/// A module by its path from the root of its package; that of `lib.rs` is empty.
+type Module = Vec<String>;
+
+fn name(module: &Module) -> String {
+    format!("{}.rs", module.join("/"))
+}
+
+/// The files of a package, without comments and tests.
+struct Sources {
+    files: BTreeMap<Module, String>,
+}
+
+impl Sources {
+    fn read(package: &str) -> Self {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("src");
+        let mut files = BTreeMap::new();
+        let mut waiting: Vec<PathBuf> = vec![root.clone()];
+        while let Some(path) = waiting.pop() {
             if path.is_dir() {
-                folders.push(path);
-            } else {
-                text += &std::fs::read_to_string(path).expect("a part of a module");
+                waiting.extend(std::fs::read_dir(&path).expect("a directory").map(|e| e.expect("an entry").path()));
+                continue;
+            }
+            let inner = path.strip_prefix(&root).expect("inside").with_extension("");
+            let mut module: Module = inner.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            assert!(
+                module.last().is_some_and(|last| last != "mod"),
+                "{}: modules are `a.rs` beside `a/`",
+                path.display()
+            );
+            if module == ["main"] {
+                continue;
+            }
+            module.retain(|part| part != "lib");
+            files.insert(module, code(&std::fs::read_to_string(&path).expect("a source")));
+        }
+        Sources { files }
+    }
+
+    /// Which file uses which other.
+    fn arrows(&self) -> BTreeSet<(Module, Module)> {
+        let doors: BTreeMap<&Module, Vec<Import>> = self.files.iter().map(|(m, text)| (m, imports(text))).collect();
+        let mut arrows = BTreeSet::new();
+        for (module, text) in &self.files {
+            let own = doors[module].iter().filter(|i| !(i.public && self.is_below(module, &i.path)));
+            let named = own.map(|i| i.path.clone()).chain(inline_paths(text));
+            for path in named {
+                if let Some(file) = self.resolve(&doors, module, &path, 0)
+                    && file != *module
+                    && !module.is_empty()
+                {
+                    arrows.insert((module.clone(), file));
+                }
             }
         }
+        arrows
     }
-    assert!(!text.is_empty(), "{module} has no file");
-    text
-}
 
-/// Every file of a room in which files import downwards only: its path within the crate, as `flow::kernel::rows`.
-fn files_of(folder: &Path, module: &str, files: &mut Vec<(String, String)>) {
-    let text = std::fs::read_to_string(folder.with_extension("rs")).expect("a module");
-    files.push((module.to_owned(), text));
-    for entry in std::fs::read_dir(folder).into_iter().flatten() {
-        let path = entry.expect("an entry").path();
-        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        if path.extension().is_some_and(|e| e == "rs") {
-            files_of(&path.with_extension(""), &format!("{module}::{name}"), files);
+    /// Whether a path leads to a module within this one: a door that shows what is behind it.
+    fn is_below(&self, module: &Module, path: &[String]) -> bool {
+        path.first().is_some_and(|first| self.files.contains_key(&[&module[..], std::slice::from_ref(first)].concat()))
+    }
+
+    /// The file where the item of a path is defined, doors followed; none outside of the package.
+    fn resolve(
+        &self,
+        doors: &BTreeMap<&Module, Vec<Import>>,
+        from: &Module,
+        path: &[String],
+        depth: usize,
+    ) -> Option<Module> {
+        let mut rest = path;
+        let mut at: Module = from.clone();
+        match rest.first()?.as_str() {
+            "crate" => at.clear(),
+            "self" => {}
+            "super" => drop(at.pop()),
+            _ if self.is_below(from, path) => at.push(rest[0].clone()),
+            _ => return None,
         }
+        rest = &rest[1..];
+        while let Some(next) = rest.first() {
+            if next == "super" {
+                at.pop();
+            } else {
+                at.push(next.clone());
+                if !self.files.contains_key(&at) {
+                    at.pop();
+                    // Children see what their parent imports for itself, too.
+                    let door = doors[&at].iter().find(|i| i.name == *next);
+                    return match door {
+                        Some(door) if depth < 8 => self.resolve(doors, &at, &door.path, depth + 1),
+                        _ => Some(at),
+                    };
+                }
+            }
+            rest = &rest[1..];
+        }
+        self.files.contains_key(&at).then_some(at)
     }
 }
 
-/// The paths below `crate::` that a text imports, lists in braces taken apart.
-fn imports(text: &str) -> Vec<String> {
+/// A source without its comments and its tests, which stand at its end.
+fn code(text: &str) -> String {
+    let text = text.split("#[cfg(test)]").next().unwrap_or(text);
+    let without = |line: &str| match line.trim_start().starts_with("//") {
+        true => String::new(),
+        false => line.split(" // ").next().unwrap_or(line).to_owned() + "\n",
+    };
+    text.lines().map(without).collect()
+}
+
+/// A path that a `use` brings in, and the name that it gets.
+struct Import {
+    path: Vec<String>,
+    name: String,
+    public: bool,
+}
+
+fn imports(text: &str) -> Vec<Import> {
     let mut all = Vec::new();
-    for statement in text.split("\nuse crate::").skip(1).filter_map(|rest| rest.split_once(';')) {
-        let statement: String = statement.0.split_whitespace().collect();
-        match statement.split_once('{') {
-            None => all.push(statement),
-            Some((prefix, list)) => all.extend(list.trim_end_matches('}').split(',').map(|n| format!("{prefix}{n}"))),
+    let mut rest = text;
+    while let Some(at) = rest.find("use ") {
+        let line = &rest[rest[..at].rfind('\n').map_or(0, |n| n + 1)..at];
+        let visible = line.trim();
+        rest = &rest[at + 4..];
+        if !(visible.is_empty() || visible.starts_with("pub")) {
+            continue;
         }
+        let Some((tree, after)) = rest.split_once(';') else { break };
+        let tree: String = tree.split_whitespace().collect::<Vec<_>>().join(" ");
+        expand(&[], &tree, &mut |path, name| {
+            all.push(Import { path, name, public: !visible.is_empty() });
+        });
+        rest = after;
     }
     all
 }
 
-#[test]
-fn files_of_the_flow_import_without_circles() {
-    let mut files = Vec::new();
-    files_of(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src/flow"), "flow", &mut files);
-    // A room's own file names its parts and takes them up; it imports none of them.
-    let place = |import: &str| {
-        let within = |m: &str| import == m || import.strip_prefix(m).is_some_and(|rest| rest.starts_with("::"));
-        (0..files.len()).filter(|&f| within(&files[f].0)).max_by_key(|&f| files[f].0.len())
-    };
-    let uses: Vec<Vec<usize>> = files.iter().map(|f| imports(&f.1).iter().filter_map(|i| place(i)).collect()).collect();
-    assert!(uses.iter().map(Vec::len).sum::<usize>() > 50, "imports were seen");
-    // What imports nothing that is left is taken away until nothing is left.
-    let mut left: Vec<usize> = (0..files.len()).collect();
-    while !left.is_empty() {
-        let before = left.len();
-        let now = left.clone();
-        left.retain(|&f| uses[f].iter().any(|u| *u != f && now.contains(u)));
-        let names: Vec<&str> = left.iter().map(|&f| files[f].0.as_str()).collect();
-        assert!(left.len() < before, "these import one another: {names:?}");
+/// Each path of a `use` tree.
+fn expand(before: &[String], tree: &str, found: &mut impl FnMut(Vec<String>, String)) {
+    let tree = tree.trim();
+    if let Some((head, list)) = tree.split_once('{') {
+        let mut path = before.to_vec();
+        path.extend(head.split("::").map(str::trim).filter(|p| !p.is_empty()).map(str::to_owned));
+        let list = list.strip_suffix('}').expect("a closed list");
+        let (mut depth, mut start) = (0, 0);
+        for (at, c) in list.char_indices().chain([(list.len(), ',')]) {
+            match c {
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                ',' if depth == 0 => {
+                    if !list[start..at].trim().is_empty() {
+                        expand_dyn(&path, &list[start..at], found);
+                    }
+                    start = at + 1;
+                }
+                _ => {}
+            }
+        }
+        return;
     }
+    let (path, alias) = tree.split_once(" as ").map_or((tree, None), |(path, alias)| (path, Some(alias)));
+    let mut whole = before.to_vec();
+    whole.extend(path.split("::").map(str::trim).filter(|p| !matches!(*p, "" | "*")).map(str::to_owned));
+    if whole.len() > before.len() && whole.last().is_some_and(|l| l == "self") && !before.is_empty() {
+        whole.pop();
+    }
+    let name = alias.map_or_else(|| whole.last().cloned().unwrap_or_default(), str::to_owned);
+    found(whole, name);
+}
+
+/// As [`expand`]; the recursion would make types without end.
+fn expand_dyn(before: &[String], tree: &str, found: &mut dyn FnMut(Vec<String>, String)) {
+    expand(before, tree, &mut |path, name| found(path, name));
+}
+
+/// Paths within expressions, signatures and types.
+fn inline_paths(text: &str) -> Vec<Vec<String>> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut paths = Vec::new();
+    for statement in text.split('\n').filter(|l| !l.trim_start().trim_start_matches("pub ").starts_with("use ")) {
+        let mut rest = statement;
+        while let Some(at) = rest.find("::") {
+            let begin = rest[..at].rfind(|c| !is_word(c)).map_or(0, |n| n + 1);
+            let path_end = rest[begin..].find(|c: char| !is_word(c) && c != ':').map_or(rest.len(), |n| begin + n);
+            let parts = rest[begin..path_end].split("::").filter(|p| !p.is_empty());
+            let path: Vec<String> = parts.map(str::to_owned).collect();
+            if !path.is_empty() {
+                paths.push(path);
+            }
+            rest = &rest[path_end.max(at + 2)..];
+        }
+    }
+    paths
+}
+
+/// Groups of files each of which uses, by way of others, all of its group.
+fn circles(arrows: &BTreeSet<(Module, Module)>) -> Vec<BTreeSet<Module>> {
+    let nodes: BTreeSet<&Module> = arrows.iter().flat_map(|(a, b)| [a, b]).collect();
+    let reached = |from: &Module| {
+        let (mut seen, mut waiting) = (BTreeSet::new(), vec![from.clone()]);
+        while let Some(at) = waiting.pop() {
+            for (_, to) in arrows.iter().filter(|(a, _)| *a == at) {
+                if seen.insert(to.clone()) {
+                    waiting.push(to.clone());
+                }
+            }
+        }
+        seen
+    };
+    let all: BTreeMap<&Module, BTreeSet<Module>> = nodes.iter().map(|n| (*n, reached(n))).collect();
+    let mut groups = BTreeSet::new();
+    for (node, seen) in &all {
+        let group: BTreeSet<Module> = seen.iter().filter(|other| all[other].contains(*node)).cloned().collect();
+        if group.len() > 1 {
+            groups.insert(group);
+        }
+    }
+    groups.into_iter().collect()
 }

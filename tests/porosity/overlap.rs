@@ -146,7 +146,7 @@ fn named_solids_that_share_corners_stay_apart() {
     triangles.extend(cuboid(low, DVec3::new(2.0, 1.25, 0.5)));
     let solids = [0..12, 12..24].map(|triangles| Solid { name: String::new(), triangles }).to_vec();
     let mut bodies = voidage::geometry::bodies::Bodies::default();
-    let mesh = Mesh { path: "two.stl".into(), solids, triangles, single_precision: false, warnings: Vec::new() };
+    let mesh = Mesh { name: "two.stl".into(), solids, ..Mesh::from(triangles) };
     bodies.add(&mesh, 1.0).expect("bodies");
     assert_eq!(bodies.bodies.len(), 2);
     let edges = Edges([vec![0.0, 3.0], vec![0.0, 3.0], vec![0.0, 3.0]]);

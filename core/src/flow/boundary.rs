@@ -9,7 +9,6 @@ use crate::number::real::Real;
 
 /// What stands outside one side of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Boundary<R, const D: usize> {
     /// The opposite side; must stand on both.
     Periodic,

@@ -97,7 +97,6 @@ impl<R: Real, const D: usize> Conserved<R, D> {
 
 /// Where the pressure comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Gas<R> {
     /// p = (gamma − 1) rho e, with an energy equation.
     Ideal {

@@ -90,7 +90,7 @@ impl<R: Real> Columns<R> {
     /// So many parts will do if the surface is smooth, judging by the gap of some.
     fn wanted(&self, gap: R, parts: usize) -> usize {
         let wanted = (gap / self.enough).sqrt() * R::from_usize(parts) * R::from_f64(MARGIN);
-        (wanted.to_f64() as usize + 1).max(parts + 1 + parts / 8).min(self.parts.min(MAX_PARTS))
+        (wanted.to_f64() as usize).saturating_add(1).max(parts + 1 + parts / 8).min(self.parts.min(MAX_PARTS))
     }
 }
 

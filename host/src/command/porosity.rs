@@ -9,7 +9,7 @@ use super::stages::{load, measure, need_surfaces, threads};
 use crate::error::Result;
 use crate::files::json;
 use crate::geometry::bodies::Bodies;
-use crate::grid::{self, Edges, Source};
+use crate::grid::{self, Edges, GridSpec};
 use crate::porosity::{Method, Options};
 use report::Report;
 
@@ -25,9 +25,11 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         if args.method == Method::Surface {
             need_surfaces(&bodies)?;
         }
-        let source = source(args, &bodies, own_grid);
         let mut remarks = Vec::new();
-        let edges = grid::edges(&source, bodies.bounds(), &mut remarks)?;
+        let edges = match &args.grid {
+            Some(path) => grid::file::read(path, &mut remarks)?,
+            None => grid::edges(&spec(args, &bodies, own_grid), bodies.bounds(), &mut remarks)?,
+        };
         remarks.into_iter().for_each(|r| progress.warn(r));
         let depth = args.depth.unwrap_or(args.leaf.depth());
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
@@ -44,15 +46,14 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
 }
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.
-fn source(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> Source {
-    match (&args.grid, args.cells, args.spacing, own) {
-        (Some(path), ..) => Source::File(path.clone()),
-        (_, Some(cells), ..) => Source::Cells(cells, args.bounds),
-        (_, _, Some(spacing), _) => Source::Spacing(spacing, args.bounds),
-        (.., Some(edges)) if args.bounds.is_none() => Source::Edges(edges),
+fn spec(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> GridSpec {
+    match (args.cells, args.spacing, own) {
+        (Some(cells), ..) => GridSpec::Cells(cells, args.bounds),
+        (_, Some(spacing), _) => GridSpec::Spacing(spacing, args.bounds),
+        (.., Some(edges)) if args.bounds.is_none() => GridSpec::Edges(edges),
         _ => {
             let size = args.bounds.or_else(|| bodies.bounds()).map_or(1.0, |[lo, hi]| (hi - lo).max_element());
-            Source::Spacing(if size > 0.0 { size / 64.0 } else { 1.0 }, args.bounds)
+            GridSpec::Spacing(if size > 0.0 { size / 64.0 } else { 1.0 }, args.bounds)
         }
     }
 }

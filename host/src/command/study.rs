@@ -11,7 +11,7 @@ use crate::command::progress::{Progress, print};
 use crate::error::{Error, Result};
 use crate::files::atomically;
 use crate::picture::chart::{Chart, Series};
-use case::Case;
+use case::StudyCase;
 use measure::Row;
 use std::path::Path;
 
@@ -22,7 +22,7 @@ use std::path::Path;
 pub fn study(args: &StudyArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
     let case = case::read(&args.case)?;
-    let rows = measure::all(&args.case, &case, &mut progress)?;
+    let rows = measure::all(&args.case, &case, &mut progress, |progress, row| progress.say(table::line(row)))?;
     if let Some(dir) = &args.output {
         std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
         let write = |name: &str, text: String| atomically(&dir.join(name), |out| out.write_all(text.as_bytes()));
@@ -41,7 +41,7 @@ pub fn study(args: &StudyArgs) -> Result<()> {
 const EXACT: f64 = 1e-16;
 
 /// Relative error of the solid volume against run time: a colour for each method, a line for each scene and number of threads.
-fn draw(case: &Case, rows: &[Row], path: &Path) -> Result<bool> {
+fn draw(case: &StudyCase, rows: &[Row], path: &Path) -> Result<bool> {
     let series = case.recipes.iter().map(|recipe| {
         let mut lines: Vec<(&str, usize, Vec<[f64; 2]>)> = Vec::new();
         for row in rows.iter().filter(|r| r.method == recipe.name) {

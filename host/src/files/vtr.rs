@@ -17,14 +17,14 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use source::{BLOCK, Source};
+use source::{ArraySource, BLOCK};
 
 /// Fastest deflate: porosity is mostly long runs, which higher levels hardly shrink further.
 const LEVEL: u8 = 1;
 
 /// An array of its own: `data.len() / components` tuples, interleaved.
 #[derive(Clone, Copy, Debug)]
-pub struct Field<'a> {
+pub struct NamedField<'a> {
     /// Name shown by the viewer.
     pub name: &'a str,
     /// Values in a tuple.
@@ -37,7 +37,7 @@ pub struct Field<'a> {
 #[derive(Clone, Copy, Debug)]
 pub enum CellField<'a> {
     /// One tuple for each cell.
-    Values(Field<'a>),
+    Values(NamedField<'a>),
     /// A vector from three arrays with one value for each cell.
     Vector {
         /// Name shown by the viewer.
@@ -66,7 +66,7 @@ pub struct Vtr<'a> {
     /// Fields to colour by; the first scalar and the first vector become the active ones.
     pub cell: Vec<CellField<'a>>,
     /// Arrays of any length that go with the file, such as face fields. One value called `TimeValue` is the time.
-    pub field_data: Vec<Field<'a>>,
+    pub field_data: Vec<NamedField<'a>>,
     /// Text that goes with the file: name and value.
     pub text: Vec<(&'a str, &'a str)>,
     /// Compress with zlib.
@@ -119,7 +119,7 @@ impl Vtr<'_> {
                 return Err("a grid needs at least two edges along each axis".into());
             }
         }
-        let plain = |name, data| Array { name, components: 1, source: Source::Values(data) };
+        let plain = |name, data| Array { name, components: 1, source: ArraySource::Values(data) };
         Ok(Arrays {
             cell: self.cell.iter().map(|field| cell_array(field, cells)).collect::<std::result::Result<_, _>>()?,
             edges: [plain("x", self.x), plain("y", self.y), plain("z", self.z)],
@@ -160,7 +160,7 @@ impl Vtr<'_> {
 struct Array<'a> {
     name: &'a str,
     components: usize,
-    source: Source<'a>,
+    source: ArraySource<'a>,
 }
 
 impl Array<'_> {
@@ -202,9 +202,9 @@ impl Arrays<'_> {
 
 fn cell_array<'a>(field: &CellField<'a>, cells: [usize; 3]) -> std::result::Result<Array<'a>, String> {
     let (name, components, source) = match *field {
-        CellField::Values(Field { name, components, data }) => (name, components, Some(Source::Values(data))),
-        CellField::Vector { name, parts } => (name, 3, Source::vector(parts, cells)),
-        CellField::LowFaces { name, faces } => (name, 3, Source::low_faces(faces, cells)),
+        CellField::Values(NamedField { name, components, data }) => (name, components, Some(ArraySource::Values(data))),
+        CellField::Vector { name, parts } => (name, 3, ArraySource::vector(parts, cells)),
+        CellField::LowFaces { name, faces } => (name, 3, ArraySource::low_faces(faces, cells)),
     };
     let [nx, ny, nz] = cells;
     source
@@ -213,12 +213,12 @@ fn cell_array<'a>(field: &CellField<'a>, cells: [usize; 3]) -> std::result::Resu
         .ok_or_else(|| format!("the field '{name}' does not have the length of a grid of {nx} x {ny} x {nz} cells"))
 }
 
-fn free_array<'a>(field: &Field<'a>) -> std::result::Result<Array<'a>, String> {
-    let Field { name, components, data } = *field;
+fn free_array<'a>(field: &NamedField<'a>) -> std::result::Result<Array<'a>, String> {
+    let NamedField { name, components, data } = *field;
     if components == 0 || data.is_empty() || data.len() % components != 0 {
         return Err(format!("the array '{name}' has {} values for {components} components", data.len()));
     }
-    Ok(Array { name, components, source: Source::Values(data) })
+    Ok(Array { name, components, source: ArraySource::Values(data) })
 }
 
 /// A text as VTK stores it: the numbers of its bytes, ended by zero.
@@ -234,7 +234,7 @@ fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-fn raw(out: &mut impl Write, source: &Source) -> io::Result<()> {
+fn raw(out: &mut impl Write, source: &ArraySource) -> io::Result<()> {
     out.write_all(&(8 * source.len() as u64).to_le_bytes())?;
     let mut bytes = vec![0; 8 * BLOCK.min(source.len())];
     for first in (0..source.len()).step_by(BLOCK) {
@@ -245,7 +245,7 @@ fn raw(out: &mut impl Write, source: &Source) -> io::Result<()> {
     Ok(())
 }
 
-fn compressed(out: &mut (impl Write + Seek), source: &Source) -> io::Result<()> {
+fn compressed(out: &mut (impl Write + Seek), source: &ArraySource) -> io::Result<()> {
     let starts: Vec<usize> = (0..source.len()).step_by(BLOCK).collect();
     let short = source.len() % BLOCK;
     let mut header = vec![starts.len() as u64, 8 * BLOCK as u64, 8 * short as u64];
@@ -264,7 +264,7 @@ fn compressed(out: &mut (impl Write + Seek), source: &Source) -> io::Result<()> 
     out.seek(SeekFrom::Start(end)).map(drop)
 }
 
-fn compressed_block(source: &Source, first: usize) -> Vec<u8> {
+fn compressed_block(source: &ArraySource, first: usize) -> Vec<u8> {
     let mut bytes = vec![0; 8 * BLOCK.min(source.len() - first)];
     source.encode(first, &mut bytes);
     compress_to_vec_zlib(&bytes, LEVEL)

@@ -30,8 +30,9 @@ impl<R: Real> Default for Treatment<R> {
     }
 }
 
-/// What [`Flow::set_porosity`](super::flow::Flow::set_porosity) changed in the fractions given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+/// What [`Flow::set_porosity`](super::Flow::set_porosity) changed in the fractions given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Tidied {
     /// Cells whose fraction was within a few rounding errors of 0 and became 0.
     pub dust_cells: usize,

@@ -3,6 +3,7 @@
 //! Never requires a manifold. What is wrong with a surface is counted, said in a warning with its place, and given a
 //! defined meaning; see [`Diagnosis`].
 
+use crate::error::{Error, Result};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::repair::nesting::{self, Closed, Role};
@@ -13,7 +14,6 @@ use crate::geometry::single::SingleSource;
 use glam::DVec3;
 
 use rustc_hash::FxHashMap as HashMap;
-use serde::Serialize;
 
 use std::ops::Range;
 
@@ -24,17 +24,18 @@ const WELD_ULPS: f64 = 4.0;
 const LARGEST: f64 = 1e60;
 
 /// A closed surface around solid, possibly with cavities; or a convex body known by formula.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Body {
     /// Name of the solid that its first triangle came from.
     pub name: String,
     /// Its run in [`Bodies::triangles`]; empty if only its form is known.
     pub triangles: Range<usize>,
     /// What it is by formula, if that is known.
-    #[serde(skip)]
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub form: Option<Form>,
     /// Where its corners were rounded to `f32`, if they were.
-    #[serde(skip)]
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub single: Option<SingleSource>,
     /// Its own open fraction: 0 is solid.
     pub porosity: f64,
@@ -49,7 +50,8 @@ pub struct Body {
 }
 
 /// What was found in a file's surface, in numbers.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Diagnosis {
     /// The file.
     pub file: String,
@@ -96,7 +98,8 @@ pub struct Diagnosis {
 }
 
 /// A solid of a scene file, in numbers.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SolidSummary {
     /// The scene file.
     pub scene: String,
@@ -148,17 +151,17 @@ impl Bodies {
         files.join(", ")
     }
 
-    /// Add the bodies of a file; its coordinates are multiplied by `scale`.
+    /// Add the bodies of a mesh; its coordinates are multiplied by `scale`.
     ///
     /// # Errors
     /// If nothing in it has an area, or a coordinate is beyond all measure.
-    pub fn add(&mut self, mesh: &Mesh, scale: f64) -> crate::error::Result<()> {
+    pub fn add(&mut self, mesh: &Mesh, scale: f64) -> Result<()> {
         let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
         if let Some(n) = scaled.iter().position(|t| t.iter().any(|p| !(p.abs().max_element() <= LARGEST))) {
             let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(scaled[n][0]));
-            return Err(crate::error::Error::at(&mesh.path, format!("triangle {n} (counted from 0)"), reason));
+            return Err(Error { place: Some(format!("triangle {n} (counted from 0)")), ..mesh.error(reason) });
         }
-        let mut report = Reporter { file: mesh.path.display().to_string(), warnings: Vec::new() };
+        let mut report = Reporter { file: mesh.name.clone(), warnings: Vec::new() };
         let mut d = Diagnosis {
             file: report.file.clone(),
             triangles: scaled.len(),
@@ -169,7 +172,7 @@ impl Bodies {
         let indexed = clean(&scaled, solid_of, &mut d, &mut report);
         let Some((indexed, shells)) = indexed else {
             let reason = format!("all {} triangles are degenerate (no area): nothing solid", d.triangles);
-            return Err(crate::error::Error::file(&mesh.path, reason));
+            return Err(mesh.error(reason));
         };
         let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
         let (closed, names) = close(&indexed, &shells, name_of, &mut d, &mut report);
@@ -237,7 +240,8 @@ struct Reporter {
 
 impl Reporter {
     fn warn(&mut self, reason: String) {
-        self.warnings.push(format!("{}: {reason}", self.file));
+        let separator = if self.file.is_empty() { "" } else { ": " };
+        self.warnings.push(format!("{}{separator}{reason}", self.file));
     }
 }
 

@@ -16,7 +16,7 @@ use std::path::Path;
 
 use super::mesh::Mesh;
 use crate::error::{Error, Result};
-use kind::Kind;
+use kind::FileKind;
 
 /// Bytes looked at before a file is read whole, so that a huge file of the wrong kind costs nothing.
 const HEAD: u64 = 64 * 1024;
@@ -28,8 +28,8 @@ pub fn read(path: &Path) -> Result<Mesh> {
     append(path, &mut file, HEAD.min(len), &mut bytes)?;
     let kind = kind::of(path, &bytes, len)?;
     let wanted = match kind {
-        Kind::BinaryStl => stl::binary::extent(path, &bytes, len)?,
-        Kind::AsciiStl | Kind::Obj => len,
+        FileKind::BinaryStl => stl::binary::extent(path, &bytes, len)?,
+        FileKind::AsciiStl | FileKind::Obj => len,
     };
     append(path, &mut file, wanted.saturating_sub(bytes.len() as u64), &mut bytes)?;
     parse(path, kind, bytes, len)
@@ -42,11 +42,11 @@ pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Mesh> {
     parse(path, kind, bytes, len)
 }
 
-fn parse(path: &Path, kind: Kind, bytes: Vec<u8>, len: u64) -> Result<Mesh> {
+fn parse(path: &Path, kind: FileKind, bytes: Vec<u8>, len: u64) -> Result<Mesh> {
     match kind {
-        Kind::BinaryStl => stl::binary::read(path, bytes, len),
-        Kind::AsciiStl => stl::ascii::read(path, text::without_bom(&bytes)),
-        Kind::Obj => obj::read(path, text::without_bom(&bytes)),
+        FileKind::BinaryStl => stl::binary::read(path, bytes, len),
+        FileKind::AsciiStl => stl::ascii::read(path, text::without_bom(&bytes)),
+        FileKind::Obj => obj::read(path, text::without_bom(&bytes)),
     }
 }
 

@@ -29,11 +29,11 @@ pub mod shape;
 pub mod table;
 
 use crate::error::{Error, Result};
-use crate::grid::{self, Edges};
+use crate::grid::{Edges, file};
 use placement::{MOST_COPIES, Placement};
 use shape::Shape;
 use std::path::{Path, PathBuf};
-use table::{Source, StrictTable};
+use table::{StrictTable, TomlText};
 use toml::de::DeTable;
 
 /// A scene file.
@@ -42,14 +42,14 @@ pub struct Scene {
     /// The file.
     pub path: PathBuf,
     /// Its solids in file order.
-    pub solids: Vec<Solid>,
+    pub solids: Vec<SceneSolid>,
     /// Its grid, if it has one.
     pub grid: Option<Edges>,
 }
 
 /// A solid of a scene: a shape, placed and repeated.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solid {
+pub struct SceneSolid {
     /// Its name.
     pub name: String,
     /// The line that it begins in.
@@ -84,8 +84,8 @@ pub fn read(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn parse(path: &Path, text: &str) -> Result<Scene> {
-    let table = DeTable::parse(text).map_err(|e| grid::toml_error(path, text, &e))?;
-    let source = Source::new(path, text);
+    let table = DeTable::parse(text).map_err(|e| file::toml_error(path, text, &e))?;
+    let source = TomlText::new(path, text);
     let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
     let solids = solids(&mut keys)?;
     let grid = keys.grid("grid")?;
@@ -100,7 +100,7 @@ pub fn parse(path: &Path, text: &str) -> Result<Scene> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn solids(keys: &mut StrictTable) -> Result<Vec<Solid>> {
+pub fn solids(keys: &mut StrictTable) -> Result<Vec<SceneSolid>> {
     let mut total = 0;
     let tables = keys.tables("solid")?.into_iter();
     let counted = tables.map(|table| {
@@ -112,12 +112,12 @@ pub fn solids(keys: &mut StrictTable) -> Result<Vec<Solid>> {
     counted.collect()
 }
 
-fn solid(mut keys: StrictTable<'_>) -> Result<(Solid, StrictTable<'_>)> {
+fn solid(mut keys: StrictTable<'_>) -> Result<(SceneSolid, StrictTable<'_>)> {
     let name = keys.need("name", table::text)?;
     keys.subject = format!("solid \"{name}\"");
     let shape = Shape::read(&mut keys)?;
     let porosity = keys.get("porosity", table::fraction)?.unwrap_or(0.0);
     let placement = Placement::read(&mut keys)?;
     keys.finish()?;
-    Ok((Solid { name, line: keys.line(), shape, porosity, placement }, keys))
+    Ok((SceneSolid { name, line: keys.line(), shape, porosity, placement }, keys))
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use super::canvas::{Canvas, Colour, GREY, INK, Style, text_width};
 use super::colour::ColourMap;
-use super::heatmap::{Area, Axis, Heatmap, NORMAL, SMALL, pointer, triangle};
+use super::heatmap::{Area, EdgeAxis, Heatmap, NORMAL, SMALL, pointer, triangle};
 use super::ticks::{number, number_to, ticks};
 use crate::error::{Error, Result};
 use layout::{BAR, Layout, Panel, Rooms};
@@ -60,7 +60,7 @@ impl Figure<'_> {
     /// Draws and writes a PNG file.
     ///
     /// # Errors
-    /// A length that does not fit the grid, a slice outside, edges that do not ascend, or as [`super::atomically`].
+    /// A length that does not fit the grid, a slice outside, edges that do not ascend, or as [`crate::files::atomically`].
     pub fn write(&self, path: &Path) -> Result<()> {
         self.draw().map_err(|reason| Error::file(path, reason))?.write(path)
     }
@@ -114,8 +114,8 @@ impl Figure<'_> {
         Ok(cells)
     }
 
-    fn axis(&self, axis: usize) -> Axis<'_> {
-        Axis { name: NAMES[axis], unit: self.unit, edges: self.edges[axis] }
+    fn axis(&self, axis: usize) -> EdgeAxis<'_> {
+        EdgeAxis { name: NAMES[axis], unit: self.unit, edges: self.edges[axis] }
     }
 
     /// Centre of the cells that the slice across an axis shows.

@@ -23,7 +23,7 @@ const OUTLINE: f64 = 0.13;
 
 /// A direction of the picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Axis<'a> {
+pub struct EdgeAxis<'a> {
     /// Its name.
     pub name: &'a str,
     /// Unit of its numbers; may be empty.
@@ -48,9 +48,9 @@ pub struct Area {
 /// A field over two axes.
 pub struct Heatmap<'a> {
     /// To the right.
-    pub across: Axis<'a>,
+    pub across: EdgeAxis<'a>,
     /// Upwards.
-    pub up: Axis<'a>,
+    pub up: EdgeAxis<'a>,
     /// The value of a cell, by its index across and up.
     pub value: &'a dyn Fn(usize, usize) -> f64,
     /// Values of the first and the last colour.
@@ -61,7 +61,7 @@ pub struct Heatmap<'a> {
     pub title: &'a str,
 }
 
-impl Axis<'_> {
+impl EdgeAxis<'_> {
     /// First and last edge; zeros for an empty axis.
     #[must_use]
     pub fn ends(&self) -> [f64; 2] {
@@ -116,8 +116,9 @@ impl Heatmap<'_> {
     }
 
     fn outlines(&self, canvas: &mut Canvas, area: Area) {
-        let wide =
-            |axis: &Axis, pixels: usize| pixels as f64 / axis.edges.len().saturating_sub(1).max(1) as f64 >= OUTLINED;
+        let wide = |axis: &EdgeAxis, pixels: usize| {
+            pixels as f64 / axis.edges.len().saturating_sub(1).max(1) as f64 >= OUTLINED
+        };
         if !wide(&self.across, area.width) || !wide(&self.up, area.height) {
             return;
         }
@@ -162,7 +163,7 @@ impl Heatmap<'_> {
 }
 
 /// A small triangle that points at a place on the upper (`across`) or right edge of a panel.
-pub fn pointer(canvas: &mut Canvas, area: Area, axis: &Axis, v: f64, across: bool, colour: Colour) {
+pub fn pointer(canvas: &mut Canvas, area: Area, axis: &EdgeAxis, v: f64, across: bool, colour: Colour) {
     if across {
         let x = area.x + nearest(axis.pixel(v, area.width), area.width);
         triangle(canvas, x, area.y.saturating_sub(2), true, colour);
@@ -193,7 +194,7 @@ fn nearest(pixel: f64, pixels: usize) -> usize {
 }
 
 /// As many marks as have room for their numbers.
-fn level_ticks(axis: &Axis, width: usize) -> Ticks {
+fn level_ticks(axis: &EdgeAxis, width: usize) -> Ticks {
     let [low, high] = axis.ends();
     for wanted in (1..=(width / 75).max(1)).rev() {
         let marks = ticks(low, high, wanted);
@@ -209,7 +210,7 @@ fn level_ticks(axis: &Axis, width: usize) -> Ticks {
     ticks(low, high, 1)
 }
 
-fn upright_ticks(axis: &Axis, height: usize) -> Ticks {
+fn upright_ticks(axis: &EdgeAxis, height: usize) -> Ticks {
     let [low, high] = axis.ends();
     ticks(low, high, (height / 42).max(1))
 }

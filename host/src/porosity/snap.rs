@@ -6,7 +6,6 @@
 use crate::geometry::bodies::{Bodies, Body};
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 use voidage_core::grid::{Grid, Located};
 
 /// Corners within this share of the grid's largest coordinate are in the plane: far below the digits of any `f32` file.
@@ -63,7 +62,8 @@ fn nearest(grid: &Grid<f64>, axis: usize, value: f64) -> f64 {
 }
 
 /// Sheets without thickness that lie, wholly or in part, in no plane of the grid: such parts block nothing.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct OffPlanes {
     /// Number of such sheets.
     pub sheets: usize,

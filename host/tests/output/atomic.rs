@@ -164,7 +164,7 @@ fn pipes_are_written_and_stay_pipes() {
 fn unfinished_files_can_be_discarded() {
     let dir = Dir::new("discard");
     let child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "atomic::child_that_discards"])
+        .args(["--exact", "output::atomic::child_that_discards"])
         .env("VOIDAGE_TEST_DIR", &dir.0)
         .output()
         .unwrap();

@@ -7,7 +7,7 @@ use super::{Dir, indices, porosity, uniform};
 use voidage::picture::canvas::{Canvas, INK, WHITE};
 use voidage::picture::colour::{ColourMap, NO_VALUE};
 use voidage::picture::figure::Figure;
-use voidage::picture::heatmap::{Area, Axis, Heatmap};
+use voidage::picture::heatmap::{Area, EdgeAxis, Heatmap};
 use voidage::picture::png;
 
 fn decoded(path: &Path) -> (usize, usize, Vec<[u8; 3]>) {
@@ -24,7 +24,7 @@ fn a_heatmap_puts_each_cell_where_its_edges_are() {
     let (across, up) = ([10.0, 11.0, 14.0], [0.0, 2.0, 3.0]); // 1 : 3 and 2 : 1
     let map = ColourMap::sequential();
     let value = |a: usize, b: usize| if (a, b) == (1, 1) { f64::NAN } else { 0.25 + 0.25 * (a + 2 * b) as f64 };
-    let axis = |edges| Axis { name: "x", unit: "m", edges };
+    let axis = |edges| EdgeAxis { name: "x", unit: "m", edges };
     let area = Area { x: 100, y: 50, width: 400, height: 300 };
     let mut canvas = Canvas::new(600, 500);
     let range = [0.0, 1.0];

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Cursor;
 
 use super::{Dir, indices, porosity, uniform};
-use voidage::files::vtr::{CellField, Field, Vtr};
+use voidage::files::vtr::{CellField, NamedField, Vtr};
 
 /// A file as this test understands it: attributes of the XML by plain search, arrays from the appended bytes.
 struct Parsed {
@@ -97,7 +97,7 @@ impl Fields {
     fn file(&self, edges: &[Vec<f64>; 3], compress: bool) -> Vec<u8> {
         let [x, y, z] = edges;
         let [beta_x, beta_y, beta_z] = self.faces.each_ref().map(|f| &f[..]);
-        let scalar = |name, data| Field { name, components: 1, data };
+        let scalar = |name, data| NamedField { name, components: 1, data };
         let grid = Vtr {
             x,
             y,
@@ -148,7 +148,7 @@ fn vtr_text_is_spelt_in_numbers_and_names_are_escaped() {
     let numbers = text[text.find('>').unwrap() + 1..text.find("</Array>").unwrap()].split_whitespace();
     let bytes: Vec<u8> = numbers.map(|n| n.parse().unwrap()).collect();
     assert_eq!(bytes, b"a \"test\" & <more>\0");
-    let one = Field { name: "a<b & \"c\"", components: 1, data: &[1.0] };
+    let one = NamedField { name: "a<b & \"c\"", components: 1, data: &[1.0] };
     let edges = uniform(1);
     let grid = Vtr { x: &edges, y: &edges, z: &edges, cell: vec![CellField::Values(one)], ..Vtr::default() };
     let mut out = Cursor::new(vec![]);
@@ -173,15 +173,15 @@ fn vtr_refuses_lengths_that_do_not_fit_and_writes_nothing() {
     let dir = Dir::new("vtr-bad");
     let path = dir.file("out.vtr");
     let (edges, cell, short) = (uniform(2), [0.5; 8], [0.5; 7]);
-    let scalar = |data| Field { name: "beta", components: 1, data };
+    let scalar = |data| NamedField { name: "beta", components: 1, data };
     let fits = Vtr { x: &edges, y: &edges, z: &edges, cell: vec![CellField::Values(scalar(&cell))], ..Vtr::default() };
     let faces = [0.5; 12];
     let bad = [
         (Vtr { cell: vec![CellField::Values(scalar(&short))], ..fits.clone() }, "'beta' does not have the length"),
         (Vtr { cell: vec![CellField::Vector { name: "u", parts: [&cell, &cell, &short] }], ..fits.clone() }, "'u'"),
         (Vtr { cell: vec![CellField::LowFaces { name: "f", faces: [&faces, &cell, &faces] }], ..fits.clone() }, "'f'"),
-        (Vtr { cell: vec![CellField::Values(Field { components: 0, ..scalar(&[]) })], ..fits.clone() }, "'beta'"),
-        (Vtr { field_data: vec![Field { components: 3, ..scalar(&cell) }], ..fits.clone() }, "8 values for 3"),
+        (Vtr { cell: vec![CellField::Values(NamedField { components: 0, ..scalar(&[]) })], ..fits.clone() }, "'beta'"),
+        (Vtr { field_data: vec![NamedField { components: 3, ..scalar(&cell) }], ..fits.clone() }, "8 values for 3"),
         (Vtr { field_data: vec![scalar(&[])], ..fits.clone() }, "0 values"),
         (Vtr { z: &edges[..1], ..fits.clone() }, "at least two edges"),
     ];

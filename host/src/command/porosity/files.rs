@@ -4,7 +4,7 @@ use super::report::Report;
 use crate::command::cli::PorosityArgs;
 use crate::command::progress::Progress;
 use crate::error::{Error, Result};
-use crate::files::vtr::{CellField, Field, Vtr};
+use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::files::{check_target, npy};
 use crate::grid::Edges;
 use crate::picture::png;
@@ -97,13 +97,13 @@ fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, abou
     let beta = &result.beta;
     let mut cell = Vec::new();
     for (name, _, data) in all.iter().filter(|(name, ..)| name.starts_with("beta_v")) {
-        cell.push(CellField::Values(Field { name, components: 1, data }));
+        cell.push(CellField::Values(NamedField { name, components: 1, data }));
     }
     if !beta.x.is_empty() {
         cell.push(CellField::LowFaces { name: "beta_f", faces: [&beta.x, &beta.y, &beta.z] });
     }
     let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
-    let field_data = staggered.map(|(name, _, data)| Field { name, components: 1, data }).collect();
+    let field_data = staggered.map(|(name, _, data)| NamedField { name, components: 1, data }).collect();
     let version = format!("voidage {}", about.version);
     Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }
         .write(path)

@@ -4,9 +4,16 @@
 //! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
 use crate::error::{Error, Result};
-use crate::grid::{self, Edges, Spec};
+use crate::grid::Edges;
+use crate::grid::file::{self, GridTable};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+
+/// Names of the axes.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Names of the velocities along them.
+pub const VELOCITIES: [&str; 3] = ["u", "v", "w"];
 
 /// A whole case.
 #[derive(Debug, Clone, Deserialize)]
@@ -15,7 +22,7 @@ pub struct Case {
     /// Written over pictures and into reports.
     pub title: Option<String>,
     /// Cells; an axis left out, or of one cell, is no part of the flow.
-    pub grid: Spec,
+    pub grid: GridTable,
     /// The space; open, if left out.
     #[serde(default)]
     pub porosity: PorosityKeys,
@@ -335,7 +342,7 @@ impl CaseFile {
     /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
-        let case = toml::from_str(&text).map_err(|e| grid::toml_error(path, &text, &e))?;
+        let case = toml::from_str(&text).map_err(|e| file::toml_error(path, &text, &e))?;
         Ok(CaseFile { path: path.to_owned(), case })
     }
 
@@ -368,7 +375,7 @@ impl CaseFile {
     /// No grid.
     pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
         match self.case.grid.elsewhere() {
-            Some(file) => grid::read(&self.resolve(file), warnings),
+            Some(file) => file::read(&self.resolve(file), warnings),
             None => self.case.grid.clone().edges(&self.path, "grid.", true),
         }
     }

@@ -14,7 +14,7 @@ use crate::huge::HugeVec;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 use std::path::Path;
-use voidage_core::flow::{Conserved, Report};
+use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primitive, Report, Riemann, Scheme};
 
 /// First bytes of the file; the last is the version of the layout.
 const MAGIC: &[u8; 8] = b"VOIDAGE\x02";
@@ -88,7 +88,6 @@ impl Fingerprint {
     /// Of a flow at its beginning.
     pub fn new<const D: usize>(setup: &Setup<D>) -> Self {
         let Setup { flow, edges, .. } = setup;
-        let of_text = |text: String| crc32fast::hash(text.as_bytes());
         let of_arrays = |arrays: &mut dyn Iterator<Item = &[f64]>| {
             let mut out = Checksum { inner: io::sink(), hasher: crc32fast::Hasher::new() };
             for a in arrays {
@@ -96,20 +95,68 @@ impl Fingerprint {
             }
             out.hasher.finalize()
         };
-        let inlets: Vec<_> = setup.inlets.iter().map(|i| (i.at, i.relax)).collect();
+        let of_numbers = |numbers: &[f64]| of_arrays(&mut std::iter::once(numbers));
+        let inlets = setup.inlets.iter().flat_map(|i| [i.at.0 as f64, i.at.1 as f64, i.relax]);
+        let sides: Vec<f64> = flow.boundaries.iter().flatten().flat_map(side_numbers).chain(inlets).collect();
+        let treatment = [setup.treatment.jump, f64::from(u8::from(setup.treatment.merge))];
+        let scheme = [&scheme_numbers(&flow.scheme)[..], &[setup.cfl, flow.careful_steps as f64]].concat();
         let parts = [
             ("grid", of_arrays(&mut edges.0.iter().map(|e| &e[..]))),
             ("porosity", of_arrays(&mut flow.beta_v().into_iter().chain(flow.faces()))),
-            ("treatment of the porosity", of_text(format!("{:?}", setup.treatment))),
-            ("gas", of_text(format!("{:?}", flow.gas()))),
+            ("treatment of the porosity", of_numbers(&treatment)),
+            ("gas", of_numbers(&gas_numbers(&flow.gas()))),
             ("initial state", of_arrays(&mut columns(&flow.state))),
-            ("boundary", of_text(format!("{:?} {:?}", flow.boundaries, inlets))),
+            ("boundary", of_numbers(&sides)),
             ("drag", of_arrays(&mut flow.drag())),
-            ("gravity", of_text(format!("{:?}", flow.gravity))),
-            ("scheme", of_text(format!("{:?} {} {}", flow.scheme, setup.cfl, flow.careful_steps))),
+            ("gravity", of_numbers(&flow.gravity)),
+            ("scheme", of_numbers(&scheme)),
         ];
         Fingerprint(parts.map(|(name, sum)| (name.to_owned(), sum)).to_vec())
     }
+}
+
+// Kinds as numbers, each with its values: they mean the same in every version, whatever the kinds are called in the code.
+
+fn gas_numbers(gas: &Gas<f64>) -> Vec<f64> {
+    match *gas {
+        Gas::Ideal { gamma } => vec![0.0, gamma],
+        Gas::Isothermal { sound_speed } => vec![1.0, sound_speed],
+        Gas::Isentropic { gamma, density, pressure } => vec![2.0, gamma, density, pressure],
+    }
+}
+
+fn side_numbers<const D: usize>(side: &Boundary<f64, D>) -> Vec<f64> {
+    let state = |kind: f64, w: &Primitive<f64, D>| [&[kind, w.density][..], &w.velocity[..], &[w.pressure]].concat();
+    match side {
+        Boundary::Periodic => vec![0.0],
+        Boundary::Wall => vec![1.0],
+        Boundary::ZeroGradient => vec![2.0],
+        Boundary::FarField(w) => state(3.0, w),
+        Boundary::Inlet(w) => state(4.0, w),
+        Boundary::Outlet { pressure } => vec![5.0, *pressure],
+        Boundary::Reservoir { density, pressure } => vec![6.0, *density, *pressure],
+    }
+}
+
+fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
+    let riemann = match scheme.riemann {
+        Riemann::Hllc => 0.0,
+        Riemann::Hlle => 1.0,
+        Riemann::Rusanov => 2.0,
+    };
+    let limiter = match scheme.limiter {
+        Limiter::FirstOrder => 0.0,
+        Limiter::MonotonizedCentral => 1.0,
+        Limiter::Steep => 2.0,
+        Limiter::VanLeer => 3.0,
+        Limiter::Minmod => 4.0,
+        Limiter::Unlimited => 5.0,
+    };
+    let pressure = match scheme.pressure {
+        PressureForm::Geometric => 0.0,
+        PressureForm::Paper => 1.0,
+    };
+    [riemann, limiter, pressure]
 }
 
 /// The fields of a state in the order of the file.
@@ -233,5 +280,36 @@ impl<W: Write> Write for Checksum<W> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.inner.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number that changed would make every checkpoint that exists one of another case.
+    #[test]
+    fn kinds_keep_their_numbers() {
+        assert_eq!(gas_numbers(&Gas::Ideal { gamma: 1.4 }), [0.0, 1.4]);
+        assert_eq!(gas_numbers(&Gas::Isothermal { sound_speed: 340.0 }), [1.0, 340.0]);
+        assert_eq!(gas_numbers(&Gas::Isentropic { gamma: 1.4, density: 1.2, pressure: 1e5 }), [2.0, 1.4, 1.2, 1e5]);
+        let w = Primitive { density: 1.0, velocity: [2.0, 3.0], pressure: 4.0 };
+        let sides = [
+            Boundary::Periodic,
+            Boundary::Wall,
+            Boundary::ZeroGradient,
+            Boundary::FarField(w),
+            Boundary::Inlet(w),
+            Boundary::Outlet { pressure: 1.0 },
+            Boundary::Reservoir { density: 1.0, pressure: 2.0 },
+        ];
+        for (kind, side) in sides.iter().enumerate() {
+            assert_eq!(side_numbers(side)[0], kind as f64, "{side:?}");
+        }
+        assert_eq!(side_numbers(&sides[3])[1..], [1.0, 2.0, 3.0, 4.0]);
+        let scheme = Scheme { riemann: Riemann::Rusanov, limiter: Limiter::Minmod, pressure: PressureForm::Paper };
+        assert_eq!(scheme_numbers(&scheme), [2.0, 4.0, 1.0]);
+        let usual = Scheme { riemann: Riemann::Hllc, limiter: Limiter::FirstOrder, pressure: PressureForm::Geometric };
+        assert_eq!(scheme_numbers(&usual), [0.0; 3]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::setup::Setup;
 use crate::error::{Error, Result};
-use crate::files::vtr::{CellField, Field, Vtr};
+use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::files::{atomically, npy};
 use crate::flow::Flow;
 use crate::grid::Edges;
@@ -56,7 +56,7 @@ impl Snapshot {
     /// The file cannot be written.
     pub fn paraview(&self, path: &Path, edges: &Edges, beta_v: Option<&[f64]>, time: f64) -> Result<()> {
         let [x, y, z] = &edges.0;
-        let scalar = |name, data| CellField::Values(Field { name, components: 1, data });
+        let scalar = |name, data| CellField::Values(NamedField { name, components: 1, data });
         let parts = self.velocity.each_ref().map(|v| &v[..]);
         let mut cell = vec![
             scalar("p", &self.pressure),
@@ -65,7 +65,7 @@ impl Snapshot {
         ];
         cell.extend(beta_v.map(|b| scalar("beta_v", b)));
         let time = [time];
-        let field_data = vec![Field { name: "TimeValue", components: 1, data: &time }];
+        let field_data = vec![NamedField { name: "TimeValue", components: 1, data: &time }];
         Vtr { x, y, z, cell, field_data, text: vec![], compress: false }.write(path)
     }
 

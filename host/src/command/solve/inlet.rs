@@ -44,7 +44,7 @@ impl<const D: usize> Inlet<D> {
         let per_pressure = keys.temperature.zip(states.gas_constant).map(|(t, r)| 1.0 / (r * t));
         let sign = [1.0, -1.0][at.1];
         if !(sign * state.velocity[at.0] > 0.0) {
-            let name = super::setup::VELOCITIES[states.live[at.0]];
+            let name = super::case::VELOCITIES[states.live[at.0]];
             let reason = format!("must point into the domain, not be {}", state.velocity[at.0]);
             return Err(states.file.wrong(&format!("{key}.{name}"), reason));
         }

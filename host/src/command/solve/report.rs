@@ -1,12 +1,20 @@
 //! `report.json` of a flow, and its few lines for the terminal.
 
-use super::case::CaseFile;
+use super::case::{AXES, CaseFile};
 use super::checkpoint::Journal;
-use super::run::Done;
-use super::setup::{AXES, Setup, SpaceReport};
+use super::setup::{Setup, SpaceReport};
 use crate::command::progress::Progress;
 use serde::Serialize;
 use std::collections::BTreeMap;
+
+/// Work of this session.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Done {
+    /// Steps.
+    pub steps: usize,
+    /// Seconds of stepping, output aside.
+    pub seconds: f64,
+}
 
 /// What a run came to.
 #[derive(Debug, Clone, Serialize)]

@@ -1,10 +1,10 @@
 //! `voidage solve`: case → setup → steps → files.
 
-use super::case::{CaseFile, Format, OutputKeys};
+use super::case::{CaseFile, Format, OutputKeys, VELOCITIES};
 use super::checkpoint::{self, Fingerprint, Journal};
 use super::frames::{self, Pictures, Snapshot, cell_at, create};
-use super::report::Report;
-use super::setup::{Setup, VELOCITIES, live_axes, setup};
+use super::report::{Done, Report};
+use super::setup::{Setup, live_axes, setup};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
@@ -148,15 +148,6 @@ fn typical_speed<const D: usize>(flow: &Flow<f64, D>, mass: f64, energy: f64) ->
     }
     let density = mass / (0..flow.len()).map(|cell| flow.open_volume(cell)).sum::<f64>();
     gas.sound_speed(&Primitive { density, velocity: [0.0; D], pressure: gas.pressure(density, 0.0) })
-}
-
-/// Work of this session.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Done {
-    /// Steps.
-    pub steps: usize,
-    /// Seconds of stepping, output aside.
-    pub seconds: f64,
 }
 
 /// A run in progress.

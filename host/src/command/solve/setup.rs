@@ -1,7 +1,7 @@
 //! From a case to a flow that is ready to step: every value checked, nothing made that the case does not need.
 
 use super::arrays;
-use super::case::{CaseFile, GasKeys, Kind, LimiterName, Model, Pressure, RiemannName, StateKeys};
+use super::case::{AXES, CaseFile, GasKeys, Kind, LimiterName, Model, Pressure, RiemannName, StateKeys};
 use super::inlet::Inlet;
 use super::space;
 use super::state::States;
@@ -12,11 +12,6 @@ use crate::grid::Edges;
 use serde::Serialize;
 use std::path::Path;
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
-
-/// Names of the axes.
-pub const AXES: [&str; 3] = ["x", "y", "z"];
-/// Names of the velocities along them.
-pub const VELOCITIES: [&str; 3] = ["u", "v", "w"];
 
 /// A flow with what the run needs to know about it.
 #[derive(Debug)]

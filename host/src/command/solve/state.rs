@@ -1,8 +1,7 @@
 //! States of a case: from the keys of a table, and of all cells at the beginning.
 
 use super::arrays;
-use super::case::{CaseFile, StateKeys};
-use super::setup::{AXES, VELOCITIES};
+use super::case::{AXES, CaseFile, StateKeys, VELOCITIES};
 use crate::command::stages;
 use crate::error::Result;
 use crate::grid::Edges;

@@ -31,9 +31,10 @@
 //! ```
 
 use crate::error::{Error, Result};
-use crate::geometry::scene::table::{self, Source, StrictTable};
-use crate::geometry::scene::{self, Solid};
-use crate::grid::{Edges, toml_error};
+use crate::geometry::scene::table::{self, StrictTable, TomlText};
+use crate::geometry::scene::{self, SceneSolid};
+use crate::grid::Edges;
+use crate::grid::file::toml_error;
 use crate::porosity::{Leaf, Method, Options};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
@@ -41,7 +42,7 @@ use toml::de::{DeTable, DeValue};
 
 /// A study.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct StudyCase {
     /// Head of its tables.
     pub title: String,
     /// Runs of each, of which the median time counts.
@@ -66,16 +67,16 @@ pub struct Subject {
     /// SCENE files.
     pub files: Vec<PathBuf>,
     /// Solids of its own.
-    pub solids: Vec<Solid>,
+    pub solids: Vec<SceneSolid>,
     /// Solid volume in every grid, if it is known.
     pub exact: Option<f64>,
     /// A cell to look at.
-    pub probe: Option<Probe>,
+    pub probe: Option<ProbeCell>,
 }
 
 /// A cell whose porosity is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Probe {
+pub struct ProbeCell {
     /// Which, from 0.
     pub cell: [usize; 3],
     /// Its open fraction.
@@ -101,10 +102,10 @@ const MOST: usize = 1024;
 ///
 /// # Errors
 /// As [`scene::read`].
-pub fn read(path: &Path) -> Result<Case> {
+pub fn read(path: &Path) -> Result<StudyCase> {
     let text = table::read_text(path, LARGEST_FILE)?;
     let table = DeTable::parse(&text).map_err(|e| toml_error(path, &text, &e))?;
-    let source = Source::new(path, &text);
+    let source = TomlText::new(path, &text);
     let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
     let title = keys.get("title", table::text)?.unwrap_or_default();
     let repeats = keys.get("repeats", few)?.unwrap_or(3);
@@ -135,7 +136,7 @@ pub fn read(path: &Path) -> Result<Case> {
             ));
         }
     }
-    Ok(Case { title, repeats, threads, areas, subjects, grids, recipes })
+    Ok(StudyCase { title, repeats, threads, areas, subjects, grids, recipes })
 }
 
 fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
@@ -154,9 +155,11 @@ fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
     Ok(Subject { name, files, solids, exact, probe })
 }
 
-fn probe(keys: &mut StrictTable) -> Result<Probe> {
-    let probe =
-        Probe { cell: keys.need("cell", table::three(table::index))?, beta_v: keys.need("beta_v", table::fraction)? };
+fn probe(keys: &mut StrictTable) -> Result<ProbeCell> {
+    let probe = ProbeCell {
+        cell: keys.need("cell", table::three(table::index))?,
+        beta_v: keys.need("beta_v", table::fraction)?,
+    };
     keys.finish()?;
     Ok(probe)
 }

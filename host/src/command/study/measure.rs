@@ -1,6 +1,6 @@
 //! The runs of a study, each with its time and its distance from the reference.
 
-use super::case::{Case, Probe, Recipe, Subject};
+use super::case::{ProbeCell, Recipe, StudyCase, Subject};
 use crate::command::cli::SceneArgs;
 use crate::command::progress::Progress;
 use crate::command::stages;
@@ -49,11 +49,16 @@ pub struct Row {
 const REFERENCE: Options =
     Options { tol: 0.0, depth: 6, bounds: false, areas: true, method: Method::Surface, leaf: Leaf::Plane };
 
-/// Run all.
+/// Run all; `row_done` is called after each.
 ///
 /// # Errors
 /// A scene that cannot be read, or that a method cannot measure.
-pub fn all(path: &Path, case: &Case, progress: &mut Progress) -> Result<Vec<Row>> {
+pub fn all(
+    path: &Path,
+    case: &StudyCase,
+    progress: &mut Progress,
+    row_done: impl Fn(&Progress, &Row),
+) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for subject in &case.subjects {
         let bodies = bodies(path, subject, progress)?;
@@ -66,7 +71,7 @@ pub fn all(path: &Path, case: &Case, progress: &mut Progress) -> Result<Vec<Row>
                 }
                 for &threads in &case.threads {
                     let run = run(case, subject, &bodies, grid, recipe, threads, reference.as_ref())?;
-                    progress.say(super::table::line(&run));
+                    row_done(progress, &run);
                     rows.push(run);
                 }
             }
@@ -98,7 +103,7 @@ fn reference(bodies: &Bodies, edges: &Edges, areas: bool) -> Result<Option<Poros
 }
 
 fn run(
-    case: &Case,
+    case: &StudyCase,
     subject: &Subject,
     bodies: &Bodies,
     edges: &Edges,
@@ -117,7 +122,7 @@ fn run(
     }
     seconds.sort_by(f64::total_cmp);
     let exact = subject.exact.or_else(|| reference.map(|r| r.solid_volume));
-    let beta = |probe: Probe| {
+    let beta = |probe: ProbeCell| {
         let ([nx, ny, _], [i, j, k]) = (edges.cells(), probe.cell);
         [result.beta.v[(k * ny + j) * nx + i], probe.beta_v]
     };

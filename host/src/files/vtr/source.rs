@@ -5,7 +5,7 @@ use crate::files::bytes::encode;
 /// Values in a block. A multiple of 3, so that blocks hold whole vectors; 192 KiB, six windows of deflate.
 pub(super) const BLOCK: usize = 3 * 8192;
 
-pub(super) enum Source<'a> {
+pub(super) enum ArraySource<'a> {
     Values(&'a [f64]),
     Interleaved { cells: [usize; 3], parts: [Part<'a>; 3] },
 }
@@ -17,7 +17,7 @@ pub(super) struct Part<'a> {
     plane: usize,
 }
 
-impl<'a> Source<'a> {
+impl<'a> ArraySource<'a> {
     /// None if a length does not fit.
     pub(super) fn vector(parts: [&'a [f64]; 3], cells: [usize; 3]) -> Option<Self> {
         Self::interleaved(parts, cells, [cells; 3])
@@ -32,22 +32,22 @@ impl<'a> Source<'a> {
     fn interleaved(data: [&'a [f64]; 3], cells: [usize; 3], shapes: [[usize; 3]; 3]) -> Option<Self> {
         let fits = data.iter().zip(&shapes).all(|(d, s)| d.len() == s.iter().product::<usize>());
         let part = |c: usize| Part { data: data[c], row: shapes[c][0], plane: shapes[c][0] * shapes[c][1] };
-        fits.then(|| Source::Interleaved { cells, parts: [part(0), part(1), part(2)] })
+        fits.then(|| ArraySource::Interleaved { cells, parts: [part(0), part(1), part(2)] })
     }
 
     /// Number of values.
     pub(super) fn len(&self) -> usize {
         match self {
-            Source::Values(data) => data.len(),
-            Source::Interleaved { cells, .. } => 3 * cells.iter().product::<usize>(),
+            ArraySource::Values(data) => data.len(),
+            ArraySource::Interleaved { cells, .. } => 3 * cells.iter().product::<usize>(),
         }
     }
 
     /// Fills `bytes` with the values from `first` on; for vectors both are whole tuples.
     pub(super) fn encode(&self, first: usize, bytes: &mut [u8]) {
         match self {
-            Source::Values(data) => encode(&data[first..first + bytes.len() / 8], bytes),
-            Source::Interleaved { cells, parts } => interleave(*cells, parts, first / 3, bytes),
+            ArraySource::Values(data) => encode(&data[first..first + bytes.len() / 8], bytes),
+            ArraySource::Interleaved { cells, parts } => interleave(*cells, parts, first / 3, bytes),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 
 /// The formats that are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum FileKind {
     BinaryStl,
     AsciiStl,
     Obj,
@@ -42,12 +42,12 @@ const REFUSED: &[(&[u8], &str)] = &[
 ];
 
 /// The kind of a file from its first bytes (all of them, if it is short) and its length; an error says what it is instead.
-pub fn of(path: &Path, head: &[u8], len: u64) -> Result<Kind> {
+pub fn of(path: &Path, head: &[u8], len: u64) -> Result<FileKind> {
     if head.is_empty() {
         return Err(Error::file(path, "is empty (0 bytes)"));
     }
     if binary::count(head).is_some_and(|count| binary::size(count) == len) {
-        return Ok(Kind::BinaryStl);
+        return Ok(FileKind::BinaryStl);
     }
     if let Some(what) = refused(head) {
         return Err(Error::file(path, format!("is {what}")));
@@ -56,10 +56,10 @@ pub fn of(path: &Path, head: &[u8], len: u64) -> Result<Kind> {
         return by_extension(path, head, len);
     };
     if word.is("solid") || word.is("facet") {
-        return Ok(if looks_binary(head) { Kind::BinaryStl } else { Kind::AsciiStl });
+        return Ok(if looks_binary(head) { FileKind::BinaryStl } else { FileKind::AsciiStl });
     }
     if has_vertex(text::without_bom(head)) && !has_many_controls(body(head)) {
-        return Ok(Kind::Obj);
+        return Ok(FileKind::Obj);
     }
     by_extension(path, head, len)
 }
@@ -107,20 +107,20 @@ fn has_vertex(head: &[u8]) -> bool {
 }
 
 /// Last resort for what bears no mark: its extension, or the message that helps most.
-fn by_extension(path: &Path, head: &[u8], len: u64) -> Result<Kind> {
+fn by_extension(path: &Path, head: &[u8], len: u64) -> Result<FileKind> {
     let text = text::without_bom(head);
     if text.trim_ascii().is_empty() {
         return Err(Error::file(path, format!("is empty: nothing but white space in {} bytes", head.len())));
     }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) && !looks_binary(head) {
-        return Ok(Kind::Obj);
+        return Ok(FileKind::Obj);
     }
     if len < binary::DATA as u64 {
         let reason = format!("is neither ASCII STL nor OBJ, and truncated as a binary STL: {len} of at least 84 bytes");
         return Err(Error::file(path, reason));
     }
     if looks_binary(head) {
-        return Ok(Kind::BinaryStl);
+        return Ok(FileKind::BinaryStl);
     }
     let start = text::quote(text.trim_ascii_start().split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or(text));
     Err(Error::file(

@@ -10,7 +10,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::polygon::{EarClipper, Split};
-use super::text::{SingleDigits, Tally, Token, Tokens, quote};
+use super::text::{OddityCount, SingleDigits, Token, Tokens, quote};
 use crate::error::{Error, Result};
 use crate::geometry::mesh::{Mesh, Solid};
 
@@ -48,10 +48,10 @@ struct Face {
 /// What is passed over, and warned of.
 #[derive(Default)]
 struct Oddities {
-    short: Tally,
-    curved: Tally,
-    unknown: Tally,
-    forced: Tally,
+    short: OddityCount,
+    curved: OddityCount,
+    unknown: OddityCount,
+    forced: OddityCount,
 }
 
 /// Statements that say nothing about the surface.
@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
             let reason = format!("no faces: {} vertices, but no `f` with three of them", self.vertices.len());
             return Err(Error::at(self.path, self.tokens.last_line(), self.with_first_unknown(reason)));
         }
-        let mut mesh = Mesh::new(self.path);
+        let mut mesh = Mesh::of_file(self.path);
         let firsts = self.triangulate(&mut mesh)?;
         mesh.solids = self.solids(&firsts);
         mesh.single_precision = self.digits.are_single();

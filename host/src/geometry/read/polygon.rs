@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
 
-use bins::Bins;
+use bins::EarBins;
 
 /// Splits polygons, one after the other; keeps its memory and its count of steps.
 pub struct EarClipper {
@@ -25,7 +25,7 @@ pub struct EarClipper {
     /// Corners that are not convex: only these can lie in an ear, and a convex corner stays convex.
     blockers: Vec<usize>,
     /// The same by their places.
-    bins: Bins,
+    bins: EarBins,
     is_blocker: Vec<bool>,
     /// Entries of `blockers` and `bins` that are none any more.
     stale: usize,
@@ -72,7 +72,7 @@ impl EarClipper {
             next: Vec::new(),
             clipped: Vec::new(),
             blockers: Vec::new(),
-            bins: Bins::default(),
+            bins: EarBins::default(),
             is_blocker: Vec::new(),
             stale: 0,
             candidates: VecDeque::new(),

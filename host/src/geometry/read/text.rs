@@ -218,12 +218,12 @@ fn digits(text: &[u8]) -> (usize, i32) {
 
 /// How often something was met, and where first: a million oddities make one warning.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Tally {
+pub struct OddityCount {
     count: usize,
     first: usize,
 }
 
-impl Tally {
+impl OddityCount {
     /// Met at this offset.
     pub fn add(&mut self, at: usize) {
         if self.count == 0 {

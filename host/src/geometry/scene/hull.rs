@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 /// A convex polytope: corners and outward triangles.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hull {
+pub struct HullSolid {
     /// The points on the hull, in the order given; some may lie inside faces or edges.
     pub corners: Vec<DVec3>,
     /// Indices into `corners`, counter-clockwise from outside.
@@ -21,7 +21,7 @@ pub struct Hull {
 /// Coordinates are scaled to 1; what is smaller than this would underflow in the predicates, which then would no longer be exact.
 const SMALLEST: f64 = 1.0 / (1_u128 << 120) as f64 / (1_u128 << 120) as f64;
 
-impl Hull {
+impl HullSolid {
     /// The hull of some points.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Hull {
             renamed[v] = corners.len() as u32;
             corners.push(points[v]);
         }
-        Hull { corners, triangles: triangles.iter().map(|t| t.map(|v| renamed[v as usize])).collect() }
+        HullSolid { corners, triangles: triangles.iter().map(|t| t.map(|v| renamed[v as usize])).collect() }
     }
 
     /// Its triangles by corners.

@@ -2,7 +2,7 @@
 
 use super::placement::Motion;
 use super::shape::Shape;
-use super::{Scene, Solid};
+use super::{Scene, SceneSolid};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, SolidSummary};
 use crate::geometry::read;
@@ -40,7 +40,7 @@ pub fn add(scene: &Scene, bodies: &mut Bodies) -> Result<()> {
     Ok(())
 }
 
-fn add_solid(scene: &Scene, solid: &Solid, bodies: &mut Bodies) -> Result<()> {
+fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<()> {
     let Shape::File { path, scale } = &solid.shape else {
         let surface = solid.shape.surface();
         check_size(bodies, surface.len(), solid)?;
@@ -78,7 +78,7 @@ fn add_solid(scene: &Scene, solid: &Solid, bodies: &mut Bodies) -> Result<()> {
 }
 
 /// Refuse copies that would not fit into memory.
-fn check_size(bodies: &mut Bodies, triangles: usize, solid: &Solid) -> Result<()> {
+fn check_size(bodies: &mut Bodies, triangles: usize, solid: &SceneSolid) -> Result<()> {
     let copies = solid.placement.copies();
     let total = triangles.checked_mul(copies).and_then(|n| n.checked_add(bodies.triangles.len()));
     // A single copy is as large as its file; that is the user's own measure.
@@ -99,7 +99,7 @@ fn push_surface(bodies: &mut Bodies, surface: &[[DVec3; 3]], motion: &Motion) ->
 }
 
 /// A copy by its place in the array, a part of a file by its name there.
-fn name(solid: &Solid, [i, j, k]: [usize; 3], part: &str) -> String {
+fn name(solid: &SceneSolid, [i, j, k]: [usize; 3], part: &str) -> String {
     let copy = if solid.placement.copies() > 1 { format!("[{i},{j},{k}]") } else { String::new() };
     let separator = if part.is_empty() { "" } else { "/" };
     format!("{}{copy}{separator}{part}", solid.name)

@@ -50,7 +50,7 @@ pub enum Shape {
         radius: f64,
     },
     /// `points`
-    Hull(hull::Hull),
+    Hull(hull::HullSolid),
     /// `path`, `unit`, `scale`
     File {
         /// The file, relative to the scene's directory.
@@ -110,7 +110,7 @@ impl Shape {
             "cone" => round(Round::Cone, keys),
             "hull" => {
                 let points = keys.need("points", table::list(table::point))?;
-                hull::Hull::new(&points).map(Shape::Hull).map_err(|reason| keys.wrong("points", reason))
+                hull::HullSolid::new(&points).map(Shape::Hull).map_err(|reason| keys.wrong("points", reason))
             }
             "file" => file(keys),
             other => Err(keys.wrong("shape", format!("\"{other}\" is not known: {NAMES}"))),

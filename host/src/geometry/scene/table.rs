@@ -1,25 +1,25 @@
 //! A TOML table read strictly: every key has a reader, every reader says what it wants.
 
 use crate::error::{Error, Result};
-use crate::grid::{self, Edges};
+use crate::grid::{Edges, file};
 use glam::DVec3;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 /// A TOML file, for messages.
 #[derive(Debug, Clone)]
-pub struct Source<'a> {
+pub struct TomlText<'a> {
     path: &'a Path,
     text: &'a str,
     /// Where its line breaks are.
     breaks: Vec<usize>,
 }
 
-impl<'a> Source<'a> {
+impl<'a> TomlText<'a> {
     /// A file's path and text.
     #[must_use]
     pub fn new(path: &'a Path, text: &'a str) -> Self {
-        Source { path, text, breaks: text.match_indices('\n').map(|(at, _)| at).collect() }
+        TomlText { path, text, breaks: text.match_indices('\n').map(|(at, _)| at).collect() }
     }
 
     /// The line that a byte of the text is in.
@@ -56,7 +56,7 @@ type Wanted<T> = std::result::Result<T, String>;
 /// A table of which each key is asked for once.
 #[derive(Debug)]
 pub struct StrictTable<'a> {
-    source: &'a Source<'a>,
+    source: &'a TomlText<'a>,
     /// What the table describes, such as `solid "beam"`.
     pub subject: String,
     /// Where it begins in the text.
@@ -68,7 +68,7 @@ pub struct StrictTable<'a> {
 impl<'a> StrictTable<'a> {
     /// Read `table`, which begins at byte `at`.
     #[must_use]
-    pub fn new(source: &'a Source<'a>, subject: impl Into<String>, at: usize, table: &'a DeTable<'a>) -> Self {
+    pub fn new(source: &'a TomlText<'a>, subject: impl Into<String>, at: usize, table: &'a DeTable<'a>) -> Self {
         StrictTable { source, subject: subject.into(), at, table, known: Vec::new() }
     }
 
@@ -131,7 +131,7 @@ impl<'a> StrictTable<'a> {
     pub fn grid(&mut self, key: &'static str) -> Result<Option<Edges>> {
         self.known.push(key);
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        grid::from_value(self.source.path, self.source.text, value.clone()).map(Some)
+        file::from_value(self.source.path, self.source.text, value.clone()).map(Some)
     }
 
     /// The grids of a `[[key]]`; none if it is not there.
@@ -142,7 +142,7 @@ impl<'a> StrictTable<'a> {
         self.known.push(key);
         let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
         let items = value.get_ref().as_array().ok_or_else(|| self.wrong(key, format!("needs tables [[{key}]]")))?;
-        items.iter().map(|item| grid::from_value(self.source.path, self.source.text, item.clone())).collect()
+        items.iter().map(|item| file::from_value(self.source.path, self.source.text, item.clone())).collect()
     }
 
     /// The line that the table begins in.

@@ -4,11 +4,11 @@ use glam::DVec2;
 
 /// Indices of points, bin by bin.
 #[derive(Default)]
-pub struct Bins {
+pub struct EarBins {
     low: DVec2,
-    /// Bins per length, on both axes.
+    /// EarBins per length, on both axes.
     density: DVec2,
-    /// Bins on a side; 0 if there are none.
+    /// EarBins on a side; 0 if there are none.
     side: usize,
     /// End of each bin in `items`; the next begins there.
     ends: Vec<usize>,
@@ -18,7 +18,7 @@ pub struct Bins {
 /// Fewer points than this are faster looked at one by one.
 const FEW: usize = 32;
 
-impl Bins {
+impl EarBins {
     /// Sorts these points, about one to a bin; makes no bins if they are few.
     pub fn fill(&mut self, points: &[DVec2], members: &[usize]) {
         self.side = if members.len() < FEW { 0 } else { members.len().isqrt() };

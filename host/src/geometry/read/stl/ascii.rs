@@ -22,12 +22,12 @@ use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::geometry::mesh::{Mesh, Solid};
-use crate::geometry::read::text::{SingleDigits, Tally, Token, Tokens, quote};
+use crate::geometry::read::text::{OddityCount, SingleDigits, Token, Tokens, quote};
 
 /// Reads all solids of a text.
 pub fn read(path: &Path, text: &[u8]) -> Result<Mesh> {
-    let (mesh, digits, oddities) = (Mesh::new(path), SingleDigits::default(), Oddities::default());
-    let mut reader = Reader { tokens: Tokens::new(text), mesh, digits, oddities };
+    let (mesh, digits, oddities) = (Mesh::of_file(path), SingleDigits::default(), Oddities::default());
+    let mut reader = Reader { path, tokens: Tokens::new(text), mesh, digits, oddities };
     while let Some(token) = reader.keyword() {
         if token.is("solid") {
             reader.solid()?;
@@ -44,6 +44,7 @@ pub fn read(path: &Path, text: &[u8]) -> Result<Mesh> {
 }
 
 struct Reader<'a> {
+    path: &'a Path,
     tokens: Tokens<'a>,
     mesh: Mesh,
     digits: SingleDigits,
@@ -53,11 +54,11 @@ struct Reader<'a> {
 /// What is read in spite of the format, and warned of.
 #[derive(Default)]
 struct Oddities {
-    comments: Tally,
-    empty: Tally,
-    endless: Tally,
-    homeless: Tally,
-    normals: Tally,
+    comments: OddityCount,
+    empty: OddityCount,
+    endless: OddityCount,
+    homeless: OddityCount,
+    normals: OddityCount,
 }
 
 impl<'a> Reader<'a> {
@@ -232,7 +233,7 @@ impl<'a> Reader<'a> {
         if self.mesh.triangles.is_empty() {
             let hint = if self.tokens.len() < 84 { "; a binary STL would have at least 84 bytes" } else { "" };
             let reason = format!("no triangles: the text ends without a `facet`{hint}");
-            return Err(Error::at(&self.mesh.path, self.tokens.last_line(), reason));
+            return Err(Error::at(self.path, self.tokens.last_line(), reason));
         }
         let Oddities { comments, empty, endless, homeless, normals } = self.oddities;
         let sentences = [
@@ -260,13 +261,13 @@ impl<'a> Reader<'a> {
             }
             None => {
                 let reason = format!("truncated: the text ends where {expected} was expected");
-                Error::at(&self.mesh.path, self.tokens.last_line(), reason)
+                Error::at(self.path, self.tokens.last_line(), reason)
             }
         }
     }
 
     fn error(&self, at: usize, reason: String) -> Error {
-        Error::at(&self.mesh.path, self.tokens.line(at), reason)
+        Error::at(self.path, self.tokens.line(at), reason)
     }
 }
 

@@ -64,10 +64,10 @@ fn too_short(path: &Path, count: u32, len: u64) -> Error {
 /// Reads the triangles. `bytes` begins as the file does and holds its [`extent`]; `len` is the length of the file.
 pub fn read(path: &Path, mut bytes: Vec<u8>, len: u64) -> Result<Mesh> {
     let end = extent(path, &bytes, len)?;
-    let mut mesh = Mesh::new(path);
+    let mut mesh = Mesh::of_file(path);
     if let Some(count) = count(&bytes).filter(|&count| size(count) < len) {
         let follows = bytes.get(size(count) as usize..end as usize).unwrap_or(&[]);
-        check_rest(&mut mesh, count, follows, len)?;
+        check_rest(path, &mut mesh, count, follows, len)?;
     }
     // Blank lines for a header: stl_io would take one that begins with `solid` for ASCII, and look for its end far into the file.
     bytes.iter_mut().take(HEADER).for_each(|byte| *byte = b'\n');
@@ -79,12 +79,12 @@ pub fn read(path: &Path, mut bytes: Vec<u8>, len: u64) -> Result<Mesh> {
 
 /// Bytes beyond the last triangle: exporters append notes and padding, so that is a warning.
 /// Whole records, unless they are padding, mean that the count is wrong and triangles would be lost.
-fn check_rest(mesh: &mut Mesh, count: u32, follows: &[u8], len: u64) -> Result<()> {
+fn check_rest(path: &Path, mesh: &mut Mesh, count: u32, follows: &[u8], len: u64) -> Result<()> {
     let rest = len - size(count);
     let is_padding = follows.iter().all(|byte| Some(byte) == follows.first());
     if rest.is_multiple_of(RECORD as u64) && !is_padding {
         let held = u64::from(count) + rest / RECORD as u64;
-        return Err(Error::file(&mesh.path, format!("its count says {count} triangles, but the file holds {held}")));
+        return Err(Error::file(path, format!("its count says {count} triangles, but the file holds {held}")));
     }
     let bytes = if rest == 1 { "byte follows" } else { "bytes follow" };
     mesh.warn(format_args!("{rest} {bytes} the last of {count} triangles; ignored"));

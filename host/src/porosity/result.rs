@@ -1,0 +1,67 @@
+//! What was found.
+
+use super::fields::FieldSet;
+use super::snap::OffPlanes;
+
+/// Cells by kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct CellCounts {
+    /// No solid.
+    pub open: usize,
+    /// Partly solid, or with surface inside.
+    pub cut: usize,
+    /// All solid.
+    pub closed: usize,
+    /// Of the cut cells: shared by several bodies, so that their union had to be found.
+    pub ambiguous: usize,
+}
+
+/// How often GJK was asked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Gjk {
+    /// Queries.
+    pub queries: u64,
+    /// Of these, without an answer: work, not error.
+    pub undecided: u64,
+}
+
+/// Where a body's surface fails to close.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Leak {
+    /// The body.
+    pub body: usize,
+    /// How far the worst row ends from zero, as a fraction of a face.
+    pub fraction: f64,
+    /// Its layer of cells.
+    pub layer: usize,
+}
+
+/// Porosities of a grid.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Porosity {
+    /// Open fractions: 1 open, 0 blocked.
+    pub beta: FieldSet,
+    /// Lower and upper bounds of the same, if asked for.
+    pub bounds: Option<[FieldSet; 2]>,
+    /// Cells by kind.
+    pub cells: CellCounts,
+    /// Solid volume within the grid.
+    pub solid_volume: f64,
+    /// Largest distance of the bounds of any cell or face.
+    pub max_gap: f64,
+    /// Cells divided because their union had no proof at once.
+    pub divided: usize,
+    /// By how much a body's own share of a cell left 0..1: surface that crosses itself.
+    pub winding: f64,
+    /// Sheets that block nothing, for they lie in no plane of the grid.
+    pub sheets_off_planes: OffPlanes,
+    /// Bodies that went by subdivision, of all.
+    pub subdivided: usize,
+    /// Queries of GJK.
+    pub gjk: Gjk,
+    /// Bodies whose rows did not return to zero, worst first, one entry a body.
+    pub leaks: Vec<Leak>,
+}

@@ -1,0 +1,5 @@
+//! The library: reading, repairing, writing.
+
+mod bodies;
+mod input;
+mod output;
