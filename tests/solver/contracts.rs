@@ -110,7 +110,7 @@ fn any_mixture_of_lengths_is_refused_without_panic() {
     for _ in 0..3000 {
         let mut all = lengths();
         for length in &mut all {
-            if s.bits() % 4 == 0 {
+            if s.bits().is_multiple_of(4) {
                 *length = usize::from(s.bits() % 40);
             }
         }
@@ -165,7 +165,7 @@ fn states_that_are_none_are_stepped_over_without_panic() {
             drag: None,
             gravity: [0.0],
         };
-        let mut value = |usual: f64| if s.bits() % 4 == 0 { s.pick(&none) } else { usual };
+        let mut value = |usual: f64| if s.bits().is_multiple_of(4) { s.pick(&none) } else { usual };
         let states: Vec<Conserved<f64, 1>> =
             (0..6).map(|_| Conserved { density: value(1.0), momentum: [value(0.1)], energy: value(2.5) }).collect();
         let density: Vec<f64> = states.iter().map(|u| u.density).collect();
