@@ -201,7 +201,7 @@ regions = [{{ min = [0.5], rho = 2 }}]
 x_min = {{ type = "periodic" }}
 x_max = {{ type = "periodic" }}
 [gravity]
-g = [{gravity}]
+g = [{gravity}, 0, 0]
 [time]
 max_steps = {steps}
 [output]

@@ -31,18 +31,31 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     /// Whether the wall inside a cell is inclined to the grid.
     ///
     /// The high open face less the low one, axis by axis, is the area vector of that wall (Gauss). A duct that changes its area
-    /// has one component, along itself; a wall that cuts through the cell at an angle has more. A cell with all its volume open
-    /// holds no wall: what closes its faces lies in their planes.
+    /// has one component, along itself; a wall that cuts through the cell at an angle has more, and so has the corner of a body that
+    /// is aligned with the grid. A cell with all its volume open holds no wall: what closes its faces lies in their planes.
     fn holds_inclined_wall(&self, at: [usize; D], periodic: [bool; D]) -> bool {
         let least = rounding::<R>();
-        if self.porosity.volume[self.mesh.index(at)] >= R::ONE - least {
+        let open = self.porosity.volume[self.mesh.index(at)];
+        if open >= R::ONE - least {
             return false;
         }
-        let differs = |&d: &usize| {
+        let (mut components, mut product) = (0, R::ONE);
+        let (mut solid_corner, mut open_corner) = (true, true);
+        for d in 0..D {
             let (low, high) = self.ducts(d, at, periodic[d]).openings(0);
-            (high - low).abs() > least
-        };
-        (0..D).filter(differs).count() > 1
+            let change = (high - low).abs();
+            if change > least {
+                components += 1;
+                product *= change;
+                let part = change < R::ONE - least;
+                solid_corner &= part & (R::larger(low, high) >= R::ONE - least);
+                open_corner &= part & (R::smaller(low, high) <= least);
+            }
+        }
+        // The corner of a body aligned with the grid, or the space it leaves, is a box: in a plane its area is the product of its
+        // sides, in space the square of its volume the product of its faces. A plane cuts off half of that or less.
+        let is_box = |volume: R| (if components == 3 { volume * volume } else { volume } - product).abs() <= least;
+        components > 1 && !(solid_corner && is_box(R::ONE - open)) && !(open_corner && is_box(open))
     }
 }
 

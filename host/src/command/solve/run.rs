@@ -296,7 +296,7 @@ impl<'a, const D: usize> Run<'a, D> {
         let shares: Vec<String> = shares.iter().map(|(name, share)| format!("{share:.1e} of its {name}")).collect();
         let last = self.dir.join(if self.untouched { checkpoint::NAME } else { checkpoint::UNTOUCHED });
         Some(format!(
-            "step {}, t = {}: floors have changed what the domain holds by {}, the last in {}; the state before the first floor is in {}",
+            "step {}, t = {}: floors have changed what the domain holds by {}, the last in {}; the last good state is in {}",
             flow.steps,
             flow.time,
             shares.join(", "),
