@@ -180,7 +180,8 @@ fn a_scene_and_its_arrays_give_the_same_flow() {
         assert!(a == b, "{field}");
     }
     let report = json(&at.file("scene/report.json"));
-    assert!(report["porosity"]["jump_faces"].as_u64().expect("a count") > 100, "{report}");
+    // Most of its walls are round, and cells cut by them have no jumps.
+    assert!(report["porosity"]["jump_faces"].as_u64().expect("a count") > 20, "{report}");
     for drift in ["mass_drift", "energy_drift"] {
         assert!(report[drift].as_f64().expect("a number").abs() < 1e-12, "{drift}: {}", report[drift]);
     }
