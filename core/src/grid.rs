@@ -4,9 +4,12 @@
 //! with x fastest: cell `(k*ny + j)*nx + i`, as Fortran `a(nx,ny,nz)` and VTK. A face field is one longer along its own
 //! axis: x faces `(k*ny + j)*(nx+1) + i`, y faces `(k*(ny+1) + j)*nx + i`, z faces `(k*ny + j)*nx + i`.
 
+pub mod bounds;
 pub mod fields;
 
-use crate::number::real::Real;
+use crate::number::aabb::Aabb;
+use crate::number::real::{Real, Vector};
+use core::fmt;
 
 /// Edges of a rectilinear grid, borrowed from the caller, checked once.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +43,22 @@ pub enum GridError {
     OutOfRange,
 }
 
+impl fmt::Display for GridError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let name = |axis: usize| ["x", "y", "z"].get(axis).copied().unwrap_or("?");
+        match *self {
+            GridError::NoCell { axis } => write!(f, "fewer than two edges along {}", name(axis)),
+            GridError::NotFinite { axis, index } => write!(f, "edge {index} along {} is NaN or infinite", name(axis)),
+            GridError::NotIncreasing { axis, index } => {
+                write!(f, "edge {index} along {} does not lie above the one before it", name(axis))
+            }
+            GridError::OutOfRange => f.write_str("cells too small, too large or too many to compute with"),
+        }
+    }
+}
+
+impl core::error::Error for GridError {}
+
 impl<'a, R: Real> Grid<'a, R> {
     /// A grid on three lists of strictly increasing, finite edges, each with at least two entries.
     ///
@@ -59,11 +78,11 @@ impl<'a, R: Real> Grid<'a, R> {
                 return Err(GridError::NotFinite { axis, index });
             }
             let mut smallest = R::INFINITY;
-            for (index, pair) in e.windows(2).enumerate() {
-                if pair[1] <= pair[0] {
-                    return Err(GridError::NotIncreasing { axis, index: index + 1 });
+            for (index, (&lo, &hi)) in (1..).zip(e.iter().zip(e.iter().skip(1))) {
+                if hi <= lo {
+                    return Err(GridError::NotIncreasing { axis, index });
                 }
-                smallest = smallest.min(pair[1] - pair[0]);
+                smallest = smallest.min(hi - lo);
             }
             finest *= smallest;
             whole *= last - first;
@@ -78,16 +97,39 @@ impl<'a, R: Real> Grid<'a, R> {
         Ok(Grid { edges })
     }
 
-    /// The edges along one axis (0, 1, 2 for x, y, z).
+    /// The edges along one axis (0, 1 for x, y, otherwise z).
     #[must_use]
+    #[inline(always)]
     pub fn edges(&self, axis: usize) -> &'a [R] {
-        self.edges[axis]
+        match axis {
+            0 => self.edges[0],
+            1 => self.edges[1],
+            _ => self.edges[2],
+        }
     }
 
     /// Number of cells `[nx, ny, nz]`.
     #[must_use]
+    #[inline(always)]
     pub fn cells(&self) -> [usize; 3] {
         self.edges.map(|e| e.len() - 1)
+    }
+
+    /// The lowest and the highest edge along an axis (0, 1 for x, y, otherwise z).
+    #[must_use]
+    pub fn ends(&self, axis: usize) -> [R; 2] {
+        match self.edges(axis) {
+            [first, .., last] => [*first, *last],
+            // No grid is made of fewer than two edges.
+            _ => [R::ZERO; 2],
+        }
+    }
+
+    /// The box of the whole grid.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb<R::Vector> {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.ends(axis));
+        Aabb { min: R::Vector::new(x[0], y[0], z[0]), max: R::Vector::new(x[1], y[1], z[1]) }
     }
 
     /// Number of cells in all.
@@ -96,12 +138,15 @@ impl<'a, R: Real> Grid<'a, R> {
         self.cells().iter().product()
     }
 
-    /// Shape of the field of faces normal to `axis`: the cells, one more along the axis.
+    /// Shape of the field of faces normal to `axis` (0, 1, otherwise 2): the cells, one more along the axis.
     #[must_use]
     pub fn face_shape(&self, axis: usize) -> [usize; 3] {
-        let mut n = self.cells();
-        n[axis] += 1;
-        n
+        let [nx, ny, nz] = self.cells();
+        match axis {
+            0 => [nx + 1, ny, nz],
+            1 => [nx, ny + 1, nz],
+            _ => [nx, ny, nz + 1],
+        }
     }
 
     /// Position of a cell in a field.
@@ -118,18 +163,18 @@ impl<'a, R: Real> Grid<'a, R> {
         (k * ny + j) * nx + i
     }
 
-    /// Lowest and highest corner of a cell.
+    /// The box of a cell; none if the grid has no such cell.
     #[must_use]
-    pub fn cell_box(&self, cell: [usize; 3]) -> ([R; 3], [R; 3]) {
-        let [x, y, z] = self.edges;
-        let [i, j, k] = cell;
-        ([x[i], y[j], z[k]], [x[i + 1], y[j + 1], z[k + 1]])
+    pub fn cell_box(&self, [i, j, k]: [usize; 3]) -> Option<Aabb<R::Vector>> {
+        let side = |axis: usize, n: usize| Some((*self.edges(axis).get(n)?, *self.edges(axis).get(n.checked_add(1)?)?));
+        let (x, y, z) = (side(0, i)?, side(1, j)?, side(2, k)?);
+        Some(Aabb { min: R::Vector::new(x.0, y.0, z.0), max: R::Vector::new(x.1, y.1, z.1) })
     }
 
     /// The cell of `axis` that holds a coordinate.
     #[must_use]
     pub fn locate(&self, axis: usize, value: R) -> Located {
-        locate(self.edges[axis], value)
+        locate(self.edges(axis), value)
     }
 }
 
@@ -146,19 +191,20 @@ pub enum Located {
 
 /// Find the cell of a coordinate in a list of edges: a guess for equal spacing, then bisection.
 pub(crate) fn locate<R: Real>(edges: &[R], value: R) -> Located {
-    let last = edges.len() - 1;
-    if value < edges[0] {
+    let [first, .., end] = edges else { return Located::Above };
+    if value < *first {
         return Located::Below;
     }
-    if !(value < edges[last]) {
+    if !(value < *end) {
         return Located::Above;
     }
-    let share = (value - edges[0]) / (edges[last] - edges[0]);
+    let last = edges.len() - 1;
+    let share = (value - *first) / (*end - *first);
     let guess = ((share * R::from_usize(last)).to_f64() as usize).min(last - 1);
     for i in [guess, guess.saturating_sub(1), (guess + 1).min(last - 1)] {
-        if edges[i] <= value && value < edges[i + 1] {
+        if edges.get(i).is_some_and(|&lo| lo <= value) && edges.get(i + 1).is_some_and(|&hi| value < hi) {
             return Located::Cell(i);
         }
     }
-    Located::Cell(edges.partition_point(|&e| e <= value) - 1)
+    Located::Cell(edges.partition_point(|&e| e <= value).saturating_sub(1))
 }

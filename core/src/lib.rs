@@ -6,7 +6,8 @@
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
 //! 3. [`grid`]: cells, faces, index order; solid fractions of a layer, as bounds that bodies share
-//! 4. [`surface`]: fractions from triangulated surfaces, and the exact union of bodies
+//! 4. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
+//!    in [`surface`]
 //! 5. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
 //! 6. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
 #![cfg_attr(not(feature = "std"), no_std)]

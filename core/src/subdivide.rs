@@ -13,9 +13,10 @@ pub mod mesh;
 pub mod place;
 
 use crate::grid::Grid;
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::subdivide::chord_bounds::{Bounds, Columns, MAX_PARTS};
+use crate::subdivide::chord_bounds::{Columns, MAX_PARTS};
 use crate::subdivide::mesh::slab;
 use crate::subdivide::place::{Body, Heights, MAX_PLANES, Near, Occupancy, Planes, Tally, Trace};
 

@@ -35,22 +35,33 @@
 //! # Ok::<(), voidage::error::Error>(())
 //! ```
 //!
-//! **Flow.** [`flow::Flow`] owns its fields and steps on all threads of the present pool.
+//! **Flow.** [`flow::Flow`] owns its fields and steps on all threads of the present pool; it takes open fractions, wherever they come from.
 //!
 //! ```
 //! use voidage::flow::{Flow, Treatment};
+//! use voidage::geometry::{bodies::Bodies, mesh::Mesh};
+//! use voidage::porosity::{Options, porosity};
 //! use voidage::voidage_core::flow::{Boundary, Gas, Primitive};
+//! use voidage::{DVec3, grid::Edges};
 //!
-//! // A tube of 100 cells, a plate with holes in its middle: half of the face is open.
-//! let mut flow: Flow<f64, 1> = Flow::uniform([100], [0.01], Gas::Ideal { gamma: 1.4 }, [[Boundary::Wall; 2]]);
-//! let (volume, mut faces) = (vec![1.0; 100], vec![1.0; 101]);
-//! faces[50] = 0.5;
-//! flow.set_porosity(volume, [faces], Treatment::default())?;
-//! flow.fill(|[x]| Primitive { density: if x < 0.5 { 1.0 } else { 0.125 }, velocity: [0.0], pressure: if x < 0.5 { 1.0 } else { 0.1 } });
+//! let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|v: usize| corner[v] * 0.5));
+//! let mut bodies = Bodies::default();
+//! bodies.add(&Mesh::from(triangles.to_vec()), 1.0)?;
+//! let edges = Edges([0, 1, 2].map(|_| (0..=8).map(|i| f64::from(i) / 8.0).collect()));
+//! let beta = porosity(&edges.grid(None)?, &bodies, Options::default()).beta;
+//!
+//! // A box of walls with that corner cut off, and a blast from the other side.
+//! let widths = [0, 1, 2].map(|axis| edges.widths(axis));
+//! let mut flow: Flow<f64, 3> = Flow::new(widths, Gas::Ideal { gamma: 1.4 }, [[Boundary::Wall; 2]; 3]);
+//! let faces = [beta.x.to_vec(), beta.y.to_vec(), beta.z.to_vec()];
+//! flow.set_porosity(beta.v.to_vec(), faces, Treatment::default()).expect("fractions of this grid");
+//! let pressure = |x: f64| if x > 0.8 { 2.0 } else { 1.0 };
+//! flow.fill(|[x, _, _]| Primitive { density: 1.0, velocity: [0.0; 3], pressure: pressure(x) });
 //! let mass = flow.content().density;
-//! flow.run(0.8, 0.1)?;
+//! flow.run(0.8, 0.2).expect("a physical state");
 //! assert!((flow.content().density / mass - 1.0).abs() < 1e-13);
-//! # Ok::<(), voidage::voidage_core::flow::Error>(())
+//! # Ok::<(), voidage::error::Error>(())
 //! ```
 //!
 //! Data flows one way: [`grid`], [`geometry`] → [`porosity`] → [`flow`] → [`files`], `picture`; `command`, which nothing else uses, shows the

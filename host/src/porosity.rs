@@ -3,7 +3,6 @@
 //! A layer of cells depends on no other, and what a thread writes depends only on the layer: the bits are the same for
 //! any number of threads.
 
-mod bins;
 pub mod convex;
 mod fields;
 mod layers;
@@ -12,21 +11,21 @@ mod options;
 mod result;
 pub mod snap;
 mod targets;
-mod unions;
 
-use crate::geometry::bodies::Bodies;
+use crate::geometry::bodies::{self, Bodies};
 pub use crate::huge::HugeVec;
-use bins::Bins;
 use convex::Roads;
 pub use fields::FieldSet;
 use glam::DVec3;
-use layers::{Summary, Target, Worker};
+use layers::{Summary, Target, Workers};
 pub use levels::levels;
 pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
 pub use result::{CellCounts, Gjk, Leak, Porosity};
 use targets::targets;
 use voidage_core::grid::Grid;
+use voidage_core::surface::bins::{Group, Surface};
+use voidage_core::surface::layer::Layers;
 
 /// Bytes that the fields of a grid take, with what one thread needs beside them.
 #[must_use]
@@ -34,7 +33,7 @@ pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
     // Of several levels, one joins the others, and one is remembered for the next.
     let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(3);
-    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces) + Worker::needed(grid))
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + layers::memory_of_a_thread(grid)
 }
 
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.
@@ -104,25 +103,29 @@ fn union(
 ) -> Union {
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
     let convex = roads.road(triangles, options, counts);
-    let bins = Bins::new(grid, bodies, triangles, |body| counts(body) && roads.by_surface(body));
+    let (surfaces, broken) = surfaces(bodies, triangles, |body| counts(body) && roads.by_surface(body));
+    let needed = Layers::needed(grid, &surfaces);
+    let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
+    let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
+    let workers = Workers::new();
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
-    let summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
+    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
         .into_par_iter()
         .enumerate()
-        .map_init(
-            || Worker::new(grid, options),
-            |worker, (k, mut target)| {
-                let same = last.filter(|last| !last.may_change(grid, bodies, level, k));
-                let summary = match same {
-                    Some(last) => last.copy_layer(k, &mut target),
-                    None => worker.layer(grid, &bins, &convex, k, target),
-                };
-                layer_done();
-                summary
-            },
-        )
+        .map(|(k, mut target)| {
+            let same = last.filter(|last| !last.may_change(grid, bodies, level, k));
+            let summary = match same {
+                Some(last) => last.copy_layer(k, &mut target),
+                None => workers.layer(grid, &layers, &convex, k, target),
+            };
+            layer_done();
+            summary
+        })
         .collect();
+    if let Some(first) = summaries.first_mut() {
+        first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
+    }
     let total = summaries.iter().fold(Summary::default(), Summary::join);
     let porosity = Porosity {
         beta,
@@ -140,11 +143,29 @@ fn union(
     Union { level, porosity, layers: summaries }
 }
 
+/// The surfaces of all bodies, and which of them are broken. Without triangles are those that are not `wanted`, and those with a
+/// coordinate that is no number, which some scale or turn has made too large: of these nothing can be said.
+fn surfaces<'a>(
+    bodies: &Bodies,
+    triangles: &'a [[DVec3; 3]],
+    wanted: impl Fn(usize) -> bool,
+) -> (Vec<Surface<'a, DVec3>>, Vec<usize>) {
+    let mut broken = Vec::new();
+    let surface = |(number, body): (usize, &bodies::Body)| {
+        let mut own = if wanted(number) { &triangles[body.triangles.clone()] } else { &[] };
+        if !own.iter().flatten().all(|p| p.is_finite()) {
+            broken.push(number);
+            own = &[];
+        }
+        if body.sheet { Surface::sheet(own) } else { Surface::new(own) }
+    };
+    (bodies.bodies.iter().enumerate().map(surface).collect(), broken)
+}
+
 fn worst_leaks(bodies: usize, summaries: &[Summary]) -> Vec<Leak> {
     let mut worst: Vec<Option<Leak>> = vec![None; bodies];
     for (layer, summary) in summaries.iter().enumerate() {
         for &(body, fraction) in &summary.leaks {
-            let body = body as usize;
             if worst[body].is_none_or(|l| l.fraction < fraction) {
                 worst[body] = Some(Leak { body, fraction, layer });
             }

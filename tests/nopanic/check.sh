@@ -6,7 +6,7 @@ cd "$(dirname "$0")"
 target="${CARGO_TARGET_DIR:-target}"
 cargo rustc --quiet --release -- -C link-arg=-nostartfiles -C link-arg=-Wl,--gc-sections
 object="$target/release/libvoidage_nopanic.so"
-nm -D "$object" | grep -q ' T nopanic_f64' || { echo "no queries in $object"; exit 1; }
+nm -D "$object" | grep -q ' T nopanic_f64' && nm -D "$object" | grep -q ' T nopanic_layers_f64' || { echo "no queries in $object"; exit 1; }
 if nm -C "$object" | grep -iE 'panic(ked|king|_fmt|_bounds|_const|_nounwind|_impl)|rust_begin_unwind|unwrap_failed|expect_failed|slice_.*_fail|len_mismatch|__rust_alloc|malloc'; then
     echo "a panic or an allocation is reachable from a query"
     exit 1

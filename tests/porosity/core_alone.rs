@@ -1,50 +1,248 @@
 //! The core by itself, as another solver would use it, in both precisions.
 
+use glam::{DVec3, Vec3};
+use voidage::geometry::bodies::Bodies;
+use voidage::grid::Edges;
+use voidage::porosity::{FieldSet, Options, Porosity, porosity, snap};
 use voidage_core::grid::fields::{Fields, Layer, ShapeMismatch};
 use voidage_core::grid::{Grid, GridError};
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::surface::cells::{Scratch, add_body};
+use voidage_core::surface::bins::{BinsError, BinsNeeded, Group, Surface};
+use voidage_core::surface::cells::{Scratch, SurfaceError, add_body};
+use voidage_core::surface::layer::{
+    LayerError, LayerMemory, LayerOptions, LayerReport, LayerSlices, Layers, MemoryNeeded,
+};
+use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 use voidage_core::surface::z_faces::{Side, add_section};
-use voidage_tests::solids::{sphere, volume};
+use voidage_tests::random::Random;
+use voidage_tests::solids::{cuboid, scene, sphere, turned_box, volume};
+use voidage_tests::truth::fixture;
+
+/// Slices of any origin.
+fn room<T: Default + Clone>(count: usize) -> Vec<T> {
+    vec![T::default(); count]
+}
+
+/// Fields of cells, x, y and z faces: values, lower and upper bounds; and what was reported.
+struct Found<R> {
+    value: [Vec<R>; 4],
+    bounds: [[Vec<R>; 4]; 2],
+    reports: Vec<LayerReport<R>>,
+}
+
+/// A share of the memory for shared cells that is given, and the pieces that a union may have.
+#[derive(Clone, Copy)]
+struct Given {
+    tenths: usize,
+    pieces: usize,
+}
+
+/// As much as the host gives.
+const PLENTY: Given = Given { tenths: 10, pieces: 1024 };
+
+fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given) -> Found<V::Scalar> {
+    let set = || {
+        let faces = [0, 1, 2].map(|axis| room(grid.face_shape(axis).iter().product()));
+        let [x, y, z] = faces;
+        [room(grid.cell_count()), x, y, z]
+    };
+    let mut found = Found { value: set(), bounds: [set(), set()], reports: Vec::new() };
+    let BinsNeeded { numbers, groups } = Layers::needed(grid, bodies);
+    let (mut numbers, mut groups) = (room(numbers), room(groups));
+    let layers = Layers::new(grid, bodies, LayerOptions::default(), &mut numbers, &mut groups).expect("sorted");
+    let MemoryNeeded { reals, flags, numbers, groups } = layers.memory_needed();
+    let least = LayerMemory::<V>::needed(grid);
+    let share = |needed: usize, least: usize| least + (needed - least) * given.tenths / 10;
+    let (mut reals, mut flags) = (room(share(reals, least.reals)), room(share(flags, least.flags)));
+    let (mut numbers, mut groups) = (room(share(numbers, 0)), room::<Group<V>>(share(groups, 0)));
+    let mut pieces: Vec<Piece<V::Scalar>> = room(given.pieces);
+    let (mut split_pieces, mut order) = (room(4 * given.pieces), room(4 * given.pieces));
+    let (mut nodes, mut parts): (Vec<Node<V::Scalar>>, Vec<Part>) = (room(4 * given.pieces), room(given.pieces / 4));
+    let (mut fragments, mut pending): (Vec<Fragment<V::Scalar>>, Vec<PendingNode>) =
+        (room(given.pieces), room(given.pieces));
+    let union = UnionMemory {
+        pieces: &mut pieces,
+        split_pieces: &mut split_pieces,
+        order: &mut order,
+        nodes: &mut nodes,
+        parts: &mut parts,
+        fragments: &mut fragments,
+        pending: &mut pending,
+    };
+    let mut memory = LayerMemory::new(grid, &mut reals, &mut flags, &mut numbers, &mut groups, union).expect("room");
+    for k in 0..grid.cells()[2] {
+        let [low, high] = found.bounds.each_mut().map(|set| slices(grid, k, set));
+        let report = layers.layer(k, slices(grid, k, &mut found.value), Some([low, high]), &mut memory);
+        found.reports.push(report.expect("a layer"));
+    }
+    found
+}
+
+fn slices<'a, R: Real>(grid: &Grid<R>, k: usize, [v, x, y, z]: &'a mut [Vec<R>; 4]) -> LayerSlices<'a, R> {
+    LayerSlices::of_fields(grid, k, v, [x, y, z]).expect("fields of the grid")
+}
+
+/// The surfaces of bodies, as the host hands them over.
+fn surfaces<'a>(bodies: &Bodies, triangles: &'a [[DVec3; 3]]) -> Vec<Surface<'a, DVec3>> {
+    let surface = |body: &voidage::geometry::bodies::Body| {
+        let own = &triangles[body.triangles.clone()];
+        if body.sheet { Surface::sheet(own) } else { Surface::new(own) }
+    };
+    bodies.bodies.iter().map(surface).collect()
+}
+
+fn host(grid: &Grid<f64>, bodies: &Bodies) -> Porosity {
+    porosity(grid, bodies, Options { bounds: true, ..Options::default() })
+}
+
+/// The core gives the bits of the host.
+fn same_bits(edges: &Edges, bodies: &Bodies) -> Porosity {
+    let grid = edges.grid(None).expect("a grid");
+    let expected = host(&grid, bodies);
+    let moved = snap::into_planes(&grid, bodies);
+    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    let found = fields(&grid, &surfaces(bodies, triangles), PLENTY);
+    let [lower, upper] = expected.bounds.as_ref().expect("bounds");
+    for (set, found) in
+        [&expected.beta, lower, upper].into_iter().zip([&found.value, &found.bounds[0], &found.bounds[1]])
+    {
+        let FieldSet { v, x, y, z } = set;
+        for (n, (expected, found)) in [v, x, y, z].into_iter().zip(found).enumerate() {
+            let differ = expected.iter().zip(found).position(|(a, b)| a.to_bits() != b.to_bits());
+            assert_eq!((expected.len(), differ), (found.len(), None), "field {n}");
+        }
+    }
+    let sum = |of: fn(&LayerReport<f64>) -> usize| found.reports.iter().map(of).sum::<usize>();
+    let kinds = expected.cells;
+    assert_eq!([kinds.open, kinds.cut], [sum(|r| r.cells.open), sum(|r| r.cells.cut)]);
+    assert_eq!([kinds.closed, kinds.ambiguous], [sum(|r| r.cells.closed), sum(|r| r.cells.ambiguous)]);
+    assert_eq!(expected.divided, sum(|r| r.divided));
+    assert_eq!(expected.max_gap, found.reports.iter().fold(0.0, |m: f64, r| m.max(r.max_gap)));
+    assert_eq!(expected.solid_volume, found.reports.iter().map(|r| r.solid_volume).sum::<f64>());
+    expected
+}
+
+fn read(name: &str) -> Bodies {
+    let mut bodies = Bodies::default();
+    bodies.add(&voidage::geometry::read::read(&fixture(name)).expect("a mesh"), 1.0).expect("bodies");
+    bodies
+}
+
+/// A grid of `cells` over the box of some bodies.
+fn grid_over(bodies: &Bodies, cells: [usize; 3]) -> Edges {
+    let [lo, hi] = bodies.bounds().expect("bodies");
+    Edges([0, 1, 2].map(|a| (0..=cells[a]).map(|i| lo[a] + (hi[a] - lo[a]) * i as f64 / cells[a] as f64).collect()))
+}
+
+#[test]
+fn a_skid_has_the_bits_of_the_host() {
+    let skid = read("cad_skid.stl");
+    let found = same_bits(&grid_over(&skid, [40, 26, 22]), &skid);
+    assert!(found.cells.ambiguous > 500);
+    // Cells so large that they are divided, with walls that several bodies share.
+    let found = same_bits(&grid_over(&skid, [5, 4, 3]), &skid);
+    assert!(found.divided > 10);
+}
+
+#[test]
+fn boxes_in_grid_planes_have_the_bits_of_the_host() {
+    let boxes = read("analytic_boxes_aligned.stl");
+    same_bits(&grid_over(&boxes, [12, 10, 8]), &boxes);
+    same_bits(&grid_over(&boxes, [5, 3, 1]), &boxes);
+}
+
+#[test]
+fn overlapping_solids_have_the_bits_of_the_host() {
+    let mut random = Random::new(5);
+    for _ in 0..4 {
+        let bodies = scene(&overlapping(&mut random));
+        same_bits(&Edges([edges(6), edges(5), edges(7)]), &bodies);
+        same_bits(&Edges([edges(1), edges(2), edges(1)]), &bodies);
+    }
+}
+
+/// Equal cells of the unit cube.
+fn edges(n: usize) -> Vec<f64> {
+    (0..=n).map(|i| i as f64 / n as f64).collect()
+}
+
+/// A ball, turned boxes and boxes in planes, all of them overlapping.
+fn overlapping(random: &mut Random) -> Vec<Vec<[DVec3; 3]>> {
+    let mut solids = vec![sphere(DVec3::splat(0.5), 0.3, 6)];
+    for _ in 0..6 {
+        let center = DVec3::from_array([0; 3].map(|_| random.between(0.2, 0.8)));
+        let turn = glam::DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), random.between(0.0, 3.0));
+        solids.push(turned_box(center, DVec3::new(0.3, 0.1, 0.2), turn));
+        let corner = DVec3::from_array([0; 3].map(|_| random.below(4) as f64 / 7.0));
+        solids.push(cuboid(corner, corner + DVec3::new(2.0, 3.0, 1.0) / 7.0));
+    }
+    solids
+}
+
+/// Whatever the memory, bounds hold the truth; with none, shared cells keep the bounds of their bodies.
+#[test]
+fn too_little_memory_gives_bounds() {
+    let bodies = scene(&overlapping(&mut Random::new(9)));
+    let all = Edges([edges(4), edges(3), edges(2)]);
+    let grid = all.grid(None).expect("a grid");
+    let surfaces = surfaces(&bodies, &bodies.triangles);
+    let best = fields(&grid, &surfaces, PLENTY);
+    let mut gaps = Vec::new();
+    for given in [(0, 0), (0, 1024), (1, 4), (2, 40), (5, 16), (10, 8), (10, 64)] {
+        let found = fields(&grid, &surfaces, Given { tenths: given.0, pieces: given.1 });
+        for field in 0..4 {
+            for at in 0..best.value[field].len() {
+                let [low, high] = [0, 1].map(|n| found.bounds[n][field][at]);
+                let truth = best.value[field][at];
+                assert!(low <= truth + 1e-4 && truth <= high + 1e-4, "{given:?}: {truth} in {low}..{high}");
+            }
+        }
+        gaps.push(found.reports.iter().fold(0.0, |m: f64, r| m.max(r.max_gap)));
+    }
+    assert!(gaps[0] > 0.1 && gaps[6] < 0.02, "{gaps:?}");
+}
+
+#[test]
+fn single_precision_holds_double_precision() {
+    let bodies = scene(&overlapping(&mut Random::new(11)));
+    let double = Edges([edges(6), edges(5), edges(4)]);
+    let expected = fields(&double.grid(None).expect("a grid"), &surfaces(&bodies, &bodies.triangles), PLENTY);
+    let single: Vec<[Vec3; 3]> = bodies.triangles.iter().map(|t| t.map(|p| p.as_vec3())).collect();
+    let single: Vec<_> = bodies.bodies.iter().map(|b| Surface::new(&single[b.triangles.clone()])).collect();
+    let [x, y, z] = [6, 5, 4].map(|n| edges(n).into_iter().map(|e| e as f32).collect::<Vec<_>>());
+    let found = fields(&Grid::new(&x, &y, &z).expect("a grid"), &single, PLENTY);
+    for at in 0..expected.value[0].len() {
+        let [low, high] = [0, 1].map(|n| f64::from(found.bounds[n][0][at]));
+        let truth = expected.value[0][at];
+        assert!(low - 1e-4 <= truth && truth <= high + 1e-4, "cell {at}: {truth} in {low}..{high}");
+    }
+    let widest = found.reports.iter().fold(0.0, |m: f32, r| m.max(r.max_gap));
+    assert!(widest < 0.02, "{widest}");
+}
 
 /// Solid volume of one closed surface in the unit cube, and the largest leak.
 fn solid_volume<V: Vector>(triangles: &[[V; 3]], n: usize) -> (V::Scalar, V::Scalar) {
     let edges: Vec<V::Scalar> = (0..=n).map(|i| V::Scalar::from_usize(i) / V::Scalar::from_usize(n)).collect();
     let grid = Grid::new(&edges, &edges, &edges).expect("a grid");
-    let zero = V::Scalar::ZERO;
-    let needed = Fields::<u8>::needed(&grid);
-    let (mut lower, mut sum) = (vec![zero; needed], vec![zero; needed]);
-    let (mut marks, mut scratch) = (vec![0; needed], vec![zero; Scratch::needed(&grid)]);
-    let ids: Vec<u32> = (0..triangles.len() as u32).collect();
-    let (mut total, mut leak) = (zero, zero);
-    for k in 0..n {
-        let mut layer = Layer {
-            lower: Fields::within(&grid, &mut lower).expect("room"),
-            sum: Fields::within(&grid, &mut sum).expect("room"),
-            marks: Fields::within(&grid, &mut marks).expect("room"),
-        };
-        layer.clear();
-        let mut scratch = Scratch::new(&grid, &mut scratch).expect("room");
-        leak = leak.max(add_body(&grid, k, triangles, &ids, &mut scratch, &mut layer).leak);
-        leak = leak.max(add_section(&grid, k, Side::Above, triangles, &ids, &mut scratch, &mut layer));
-        layer.lower.cell.iter().for_each(|&v| total += v);
-    }
-    (total / V::Scalar::from_usize(n * n * n), leak)
+    let found = fields(&grid, &[Surface::new(triangles)], Given { tenths: 0, pieces: 0 });
+    found.reports.iter().fold((V::Scalar::ZERO, V::Scalar::ZERO), |(volume, leak), r| {
+        (volume + r.solid_volume, leak.max(r.defects.leak))
+    })
 }
 
 #[test]
 fn a_sphere_in_both_precisions() {
-    let ball = sphere(glam::DVec3::splat(0.5), 0.4, 5);
+    let ball = sphere(DVec3::splat(0.5), 0.4, 5);
     let (v, leak) = solid_volume(&ball, 13);
     assert!((v - volume(&ball)).abs() < 1e-14 && leak < 1e-13, "{v} {leak}");
-    let single: Vec<[glam::Vec3; 3]> = ball.iter().map(|t| t.map(|p| p.as_vec3())).collect();
+    let single: Vec<[Vec3; 3]> = ball.iter().map(|t| t.map(|p| p.as_vec3())).collect();
     let (v, leak) = solid_volume(&single, 13);
     assert!((f64::from(v) - volume(&ball)).abs() < 1e-5 && leak < 1e-4, "{v} {leak}");
 }
 
 #[test]
 fn a_missing_triangle_leaks() {
-    let mut ball = sphere(glam::DVec3::splat(0.5), 0.4, 5);
+    let mut ball = sphere(DVec3::splat(0.5), 0.4, 5);
     ball.pop();
     assert!(solid_volume(&ball, 13).1 > 0.01);
 }
@@ -58,6 +256,80 @@ fn wrong_shapes_are_refused() {
     assert_eq!(Scratch::new(&grid, &mut short).err(), Some(ShapeMismatch { expected: needed, found: 3 }));
     let mut short = [0_u8; 3];
     assert!(Fields::within(&grid, &mut short).is_err());
+    assert_eq!(grid.cell_box([0, 2, 0]), None);
+    assert_eq!(grid.cell_box([usize::MAX; 3]), None);
+}
+
+#[test]
+fn bodies_that_do_not_fit_the_layer_are_refused() {
+    let e = [0.0, 0.25, 0.5, 1.0];
+    let (grid, smaller) = (Grid::new(&e, &e, &e).expect("a grid"), Grid::new(&e[1..], &e, &e).expect("a grid"));
+    let ball = sphere(DVec3::splat(0.5), 0.4, 3);
+    let ids = room::<u32>(1);
+    let (mut lower, mut sum, mut flags, mut scratch) = (room(99), room(99), room(99), room(99));
+    let mut add = |own: &Grid<f64>, k: usize, ids: &[u32], ball: &[[DVec3; 3]]| {
+        let fields = (Fields::within(own, &mut lower).expect("room"), Fields::within(own, &mut sum).expect("room"));
+        let mut layer = Layer::new(fields.0, fields.1, Fields::within(own, &mut flags).expect("room")).expect("equal");
+        let mut scratch = Scratch::new(own, &mut scratch[..Scratch::needed(own)]).expect("room");
+        let cells = add_body(&grid, k, ball, ids, &mut scratch, &mut layer).err();
+        (cells, add_section(&grid, k + 1, Side::Above, ball, ids, &mut scratch, &mut layer).err())
+    };
+    let shape = SurfaceError::Shape(ShapeMismatch { expected: 3, found: 2 });
+    assert_eq!(add(&grid, 2, &ids, &ball), (None, None));
+    assert_eq!(add(&smaller, 2, &ids, &ball), (Some(shape), Some(shape)));
+    let (no_layer, no_plane) =
+        (SurfaceError::NoLayer { layer: 3, layers: 3 }, SurfaceError::NoLayer { layer: 4, layers: 4 });
+    assert_eq!(add(&grid, 3, &ids, &ball), (Some(no_layer), Some(no_plane)));
+    let missing = SurfaceError::NoTriangle { id: 5, triangles: 1 };
+    assert_eq!(add(&grid, 1, &[0, 5], &ball[..1]), (Some(missing), Some(missing)));
+    let broken = SurfaceError::NotFinite { id: 0 };
+    assert_eq!(add(&grid, 1, &ids, &[[DVec3::NAN; 3]]), (Some(broken), Some(broken)));
+}
+
+#[test]
+fn the_door_refuses_what_does_not_fit() {
+    let e = [0.0, 0.5, 1.0];
+    let grid = Grid::new(&e, &e, &e).expect("a grid");
+    let other = Grid::new(&e[..2], &e, &e).expect("a grid");
+    let ball = sphere(DVec3::splat(0.5), 0.4, 3);
+    let (mut numbers, mut groups) = (room(5000), room(50));
+    let infinite = [[DVec3::splat(f64::INFINITY); 3]];
+    let bodies = [Surface::new(&ball), Surface::new(&infinite)];
+    let options = LayerOptions::default();
+    let found = Layers::new(&grid, &bodies, options, &mut numbers, &mut groups).err();
+    assert_eq!(found, Some(BinsError::NotFinite { body: 1, triangle: 0 }));
+    let bodies = [Surface::new(&ball)];
+    let needed = Layers::needed(&grid, &bodies);
+    for (n, g) in [(0, needed.groups), (needed.numbers - 1, needed.groups), (needed.numbers, 0)] {
+        let found = Layers::new(&grid, &bodies, options, &mut numbers[..n], &mut groups[..g]).err();
+        assert!(matches!(found, Some(BinsError::Memory { .. })), "{found:?}");
+    }
+    let layers = Layers::new(&grid, &bodies, options, &mut numbers, &mut groups).expect("sorted");
+    let needed = LayerMemory::<DVec3>::needed(&grid);
+    let (mut reals, mut flags) = (room(needed.reals), room(needed.flags));
+    let found = LayerMemory::<DVec3>::new(
+        &grid,
+        &mut reals[..needed.reals - 1],
+        &mut flags,
+        &mut [],
+        &mut [],
+        UnionMemory::default(),
+    );
+    assert_eq!(found.err(), Some(ShapeMismatch { expected: needed.reals, found: needed.reals - 1 }));
+    let mut layer = |own: &Grid<f64>, k: usize, count: usize| {
+        let mut memory =
+            LayerMemory::new(own, &mut reals, &mut flags, &mut [], &mut [], UnionMemory::default()).expect("room");
+        let (mut v, mut x, mut y, mut z, mut top) = (room(count), room(6), room(6), room(4), room(4));
+        let top = if k == 1 { &mut top[..] } else { &mut [] };
+        layers.layer(k, LayerSlices::new(&mut v, &mut x, &mut y, &mut z, top), None, &mut memory)
+    };
+    assert_eq!(layer(&grid, 2, 4).err(), Some(LayerError::NoLayer { layer: 2, layers: 2 }));
+    assert_eq!(layer(&other, 1, 4).err(), Some(LayerError::OtherGrid));
+    assert_eq!(layer(&grid, 1, 5).err(), Some(LayerError::Shape(ShapeMismatch { expected: 4, found: 5 })));
+    assert!(layer(&grid, 0, 4).is_ok() && layer(&grid, 1, 4).is_ok());
+    let (mut v, mut short) = (room(8), room(3));
+    let found = LayerSlices::of_fields(&grid, 0, &mut v, [&mut short, &mut [], &mut []]);
+    assert_eq!(found.err(), Some(LayerError::Shape(ShapeMismatch { expected: 12, found: 3 })));
 }
 
 #[test]

@@ -35,10 +35,6 @@ const CIRCLES: [(&[&str], &str); 7] = [
         &["host/geometry/repair/shells.rs", "host/geometry/repair/weld.rs"],
         "both speak of the edges of welded triangles",
     ),
-    (
-        &["host/porosity/layers.rs", "host/porosity/targets.rs", "host/porosity/unions.rs"],
-        "a true recursion: a cell that is divided is measured as a layer of its own",
-    ),
 ];
 
 #[test]
@@ -86,14 +82,13 @@ fn only_the_command_speaks_to_a_terminal() {
 }
 
 /// Types of the same name in different files, each with its reason.
-const SHARED_NAMES: [(&str, &str); 9] = [
+const SHARED_NAMES: [(&str, &str); 8] = [
     ("Body", "the trait of what is subdivided; a body of the host has a name and a place in a file"),
     ("Convex", "the trait of chords; the host's enum of all convex bodies implements it"),
     ("Error", "that of the flow is a value without text; that of the host names file, place and reason"),
     ("Fields", "fields of a gas and of a layer"),
     ("Leaf", "that of the host has a default and a name in reports"),
     ("Mesh", "cells of a flow; triangles that are subdivided; triangles of a file"),
-    ("Overlap", "the proof of GJK; the union in a cell"),
     ("Porosity", "what a flow takes; what was found"),
     ("Report", "of a step; of a run"),
 ];

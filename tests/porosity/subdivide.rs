@@ -11,9 +11,9 @@ use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::convex::chord::Convex;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere};
 use voidage_core::convex::support::Transformed;
+use voidage_core::grid::bounds::Bounds;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::subdivide::chord_bounds::Bounds;
 use voidage_core::subdivide::place::{Body, Tally};
 use voidage_core::subdivide::{Candidate, Leaf as Rest, MAX_DEPTH, MAX_RANGES, Memory, Range, Rule, Waiting, share};
 use voidage_tests::convex::{Part, bounds_hold_the_union, run};
@@ -166,8 +166,7 @@ fn a_million_cells_hold_closed_forms_and_finer_cells() {
         let mut gaps = 0.0;
         for _ in 0..SAMPLES {
             let n = cut[random.below(cut.len())];
-            let (lo, hi) = grid.cell_box([n % 100, n / 100 % 100, n / 10_000]);
-            let cell = Aabb { min: DVec3::from_array(lo), max: DVec3::from_array(hi) };
+            let cell = grid.cell_box([n % 100, n / 100 % 100, n / 10_000]).expect("a cell");
             let own = [1.0 - upper.v[n], 1.0 - lower.v[n]];
             let finer = match &form {
                 Form::Sphere(s) => finer(*s, &cell),
@@ -196,6 +195,20 @@ fn a_million_cells_hold_closed_forms_and_finer_cells() {
 fn finer<B: Body<Vector = DVec3>>(body: B, cell: &Aabb<DVec3>) -> Bounds<f64> {
     let rule = Rule { leaf: Rest::Plane, depth: 6, tol: 1e-5 };
     share(cell, &[body], rule, &mut Lists::new().memory(), &mut Tally::default()).expect("room")
+}
+
+/// No gap at all is wanted: as many columns as there are, counted without wrapping round.
+#[test]
+fn without_a_tolerance_all_columns_are_used() {
+    let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
+    let octant = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
+    let found = |tol: f64| {
+        let rule = Rule { leaf: Rest::Plane, depth: 4, tol };
+        share(&octant, &[ball], rule, &mut Lists::new().memory(), &mut Tally::default()).expect("room")
+    };
+    let (all, some) = (found(0.0), found(1e-2));
+    assert!(all.lower <= PI / 6.0 && PI / 6.0 <= all.upper, "{all:?}");
+    assert!(all.gap() < 1e-3 && all.gap() < some.gap(), "{all:?} and {some:?}");
 }
 
 #[test]

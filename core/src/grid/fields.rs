@@ -5,19 +5,18 @@
 
 use crate::grid::Grid;
 use crate::number::real::Real;
+use core::fmt;
 
 /// One value for every cell and face of a layer, in the caller's slices: cells `ny*nx`, x faces `ny*(nx+1)`, y faces
 /// `(ny+1)*nx`, and the z faces below the cells `ny*nx`; x fastest.
 #[derive(Debug)]
 pub struct Fields<'a, T> {
-    /// Of the cells.
-    pub cell: &'a mut [T],
-    /// Of the x faces.
-    pub x: &'a mut [T],
-    /// Of the y faces.
-    pub y: &'a mut [T],
-    /// Of the z faces below the cells.
-    pub z: &'a mut [T],
+    /// Cells along x and y.
+    pub(crate) cells: [usize; 2],
+    pub(crate) cell: &'a mut [T],
+    pub(crate) x: &'a mut [T],
+    pub(crate) y: &'a mut [T],
+    pub(crate) z: &'a mut [T],
 }
 
 /// A slice has another length than the grid asks for.
@@ -29,8 +28,16 @@ pub struct ShapeMismatch {
     pub found: usize,
 }
 
+impl fmt::Display for ShapeMismatch {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "a slice of {} entries where the grid asks for {}", self.found, self.expected)
+    }
+}
+
+impl core::error::Error for ShapeMismatch {}
+
 /// Check a length that must be met exactly.
-fn exactly(expected: usize, found: usize) -> Result<(), ShapeMismatch> {
+pub(crate) fn exactly(expected: usize, found: usize) -> Result<(), ShapeMismatch> {
     if expected == found { Ok(()) } else { Err(ShapeMismatch { expected, found }) }
 }
 
@@ -56,7 +63,7 @@ impl<'a, T: Copy> Fields<'a, T> {
         exactly((nx + 1) * ny, x.len())?;
         exactly(nx * (ny + 1), y.len())?;
         exactly(nx * ny, z.len())?;
-        Ok(Fields { cell, x, y, z })
+        Ok(Fields { cells: [nx, ny], cell, x, y, z })
     }
 
     /// Length of one buffer that holds the four fields.
@@ -72,12 +79,36 @@ impl<'a, T: Copy> Fields<'a, T> {
     /// [`ShapeMismatch`] if the buffer is too short.
     pub fn within<R: Real>(grid: &Grid<R>, buffer: &'a mut [T]) -> Result<Self, ShapeMismatch> {
         let [nx, ny, _] = grid.cells();
-        at_least(Self::needed(grid), buffer.len())?;
-        let (cell, rest) = buffer.split_at_mut(nx * ny);
-        let (x, rest) = rest.split_at_mut((nx + 1) * ny);
-        let (y, rest) = rest.split_at_mut(nx * (ny + 1));
-        let (z, _) = rest.split_at_mut(nx * ny);
-        Ok(Fields { cell, x, y, z })
+        let short = ShapeMismatch { expected: Self::needed(grid), found: buffer.len() };
+        let (cell, rest) = buffer.split_at_mut_checked(nx * ny).ok_or(short)?;
+        let (x, rest) = rest.split_at_mut_checked((nx + 1) * ny).ok_or(short)?;
+        let (y, rest) = rest.split_at_mut_checked(nx * (ny + 1)).ok_or(short)?;
+        let (z, _) = rest.split_at_mut_checked(nx * ny).ok_or(short)?;
+        Ok(Fields { cells: [nx, ny], cell, x, y, z })
+    }
+
+    /// Of the cells.
+    #[must_use]
+    pub fn cells(&self) -> &[T] {
+        self.cell
+    }
+
+    /// Of the faces normal to an axis (0, 1, otherwise 2).
+    #[must_use]
+    pub fn faces(&self, axis: usize) -> &[T] {
+        match axis {
+            0 => self.x,
+            1 => self.y,
+            _ => self.z,
+        }
+    }
+
+    pub(crate) fn faces_mut(&mut self, axis: usize) -> &mut [T] {
+        match axis {
+            0 => self.x,
+            1 => self.y,
+            _ => self.z,
+        }
     }
 
     /// Set every entry.
@@ -86,25 +117,84 @@ impl<'a, T: Copy> Fields<'a, T> {
             field.fill(value);
         }
     }
+
+    /// The same fields, for a shorter time.
+    pub(crate) fn reborrow(&mut self) -> Fields<'_, T> {
+        Fields { cells: self.cells, cell: self.cell, x: self.x, y: self.y, z: self.z }
+    }
 }
 
 /// Bounds of the solid fractions of one layer, from the bodies added so far.
 #[derive(Debug)]
 pub struct Layer<'a, R> {
     /// The largest share of a single body: a lower bound, and exact where `sum` equals it.
-    pub lower: Fields<'a, R>,
+    pub(crate) lower: Fields<'a, R>,
     /// The sum of all shares; limited to 1, an upper bound.
-    pub sum: Fields<'a, R>,
+    pub(crate) sum: Fields<'a, R>,
     /// 1 where surface lies inside the cell or in the plane of the face, else 0.
-    pub marks: Fields<'a, u8>,
+    pub(crate) has_surface: Fields<'a, u8>,
 }
 
-impl<R: Real> Layer<'_, R> {
+impl<'a, R: Real> Layer<'a, R> {
+    /// A layer in three sets of fields, all open.
+    ///
+    /// # Errors
+    /// [`ShapeMismatch`] if they are not of the same grid.
+    pub fn new(lower: Fields<'a, R>, sum: Fields<'a, R>, has_surface: Fields<'a, u8>) -> Result<Self, ShapeMismatch> {
+        for cells in [sum.cells, has_surface.cells] {
+            exactly(lower.cells[0], cells[0])?;
+            exactly(lower.cells[1], cells[1])?;
+        }
+        let mut layer = Layer { lower, sum, has_surface };
+        layer.clear();
+        Ok(layer)
+    }
+
     /// Forget all bodies: everything open.
     pub fn clear(&mut self) {
         self.lower.fill(R::ZERO);
         self.sum.fill(R::ZERO);
-        self.marks.fill(0);
+        self.has_surface.fill(0);
+    }
+
+    /// The largest share of a single body: a lower bound, and exact where [`Layer::sum`] equals it.
+    #[must_use]
+    pub fn lower(&self) -> &Fields<'a, R> {
+        &self.lower
+    }
+
+    /// The sum of all shares; limited to 1, an upper bound.
+    #[must_use]
+    pub fn sum(&self) -> &Fields<'a, R> {
+        &self.sum
+    }
+
+    /// 1 where surface lies inside the cell or in the plane of the face, else 0.
+    #[must_use]
+    pub fn has_surface(&self) -> &Fields<'a, u8> {
+        &self.has_surface
+    }
+
+    /// Lower bounds and sums of the cells, to add what other bodies have of them.
+    pub fn cells_mut(&mut self) -> (&mut [R], &mut [R]) {
+        (self.lower.cell, self.sum.cell)
+    }
+
+    /// Lower bounds and sums of the faces normal to an axis (0, 1, otherwise 2), likewise.
+    pub fn faces_mut(&mut self, axis: usize) -> (&mut [R], &mut [R]) {
+        (self.lower.faces_mut(axis), self.sum.faces_mut(axis))
+    }
+
+    /// The same layer, for a shorter time.
+    pub(crate) fn reborrow(&mut self) -> Layer<'_, R> {
+        Layer { lower: self.lower.reborrow(), sum: self.sum.reborrow(), has_surface: self.has_surface.reborrow() }
+    }
+
+    /// The slices are those of a layer of this grid.
+    pub(crate) fn fits(&self, grid: &Grid<R>) -> Result<(), ShapeMismatch> {
+        let [nx, ny, _] = grid.cells();
+        exactly(nx, self.lower.cells[0])?;
+        exactly(ny, self.lower.cells[1])
     }
 }
 
@@ -126,7 +216,7 @@ pub(crate) fn noise<R: Real>() -> R {
 
 /// Let a body's share count in the bounds of a cell or face.
 #[inline(always)]
-pub(crate) fn count<R: Real>(share: R, lower: &mut R, sum: &mut R) {
+pub(crate) fn accumulate<R: Real>(share: R, lower: &mut R, sum: &mut R) {
     if share > R::ZERO {
         let share = if share > R::ONE - noise::<R>() { R::ONE } else { share };
         *lower = lower.max(share);
@@ -134,11 +224,11 @@ pub(crate) fn count<R: Real>(share: R, lower: &mut R, sum: &mut R) {
     }
 }
 
-/// As [`count`], for a share of a face; noise counts as open. A face is `whole` if it lies in no wall and bounds a cell without
+/// As [`accumulate`], for a share of a face; noise counts as open. A face is `whole` if it lies in no wall and bounds a cell without
 /// surface inside: then it is open or closed altogether.
 #[inline(always)]
-pub(crate) fn count_face<R: Real>(share: R, whole: bool, lower: &mut R, sum: &mut R) {
+pub(crate) fn accumulate_face<R: Real>(share: R, whole: bool, lower: &mut R, sum: &mut R) {
     if share > if whole { R::HALF } else { noise::<R>() } {
-        count(if whole { R::ONE } else { share }, lower, sum);
+        accumulate(if whole { R::ONE } else { share }, lower, sum);
     }
 }

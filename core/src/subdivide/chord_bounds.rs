@@ -15,32 +15,9 @@
 
 use crate::convex::chord::{Convex, rounding};
 use crate::convex::support::ScalarOf;
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-
-/// Bounds of a fraction: `0 <= lower <= truth <= upper <= 1`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds<R> {
-    /// Not above the truth.
-    pub lower: R,
-    /// Not below it.
-    pub upper: R,
-}
-
-impl<R: Real> Bounds<R> {
-    /// Nothing solid.
-    pub const OPEN: Self = Bounds { lower: R::ZERO, upper: R::ZERO };
-    /// All solid.
-    pub const CLOSED: Self = Bounds { lower: R::ONE, upper: R::ONE };
-    /// Nothing known.
-    pub const UNKNOWN: Self = Bounds { lower: R::ZERO, upper: R::ONE };
-
-    /// How far the bounds are apart.
-    #[must_use]
-    pub fn gap(self) -> R {
-        self.upper - self.lower
-    }
-}
 
 /// How finely to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]

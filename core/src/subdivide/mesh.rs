@@ -10,9 +10,10 @@
 use crate::convex::chord::rounded;
 use crate::convex::sat::{BoxTriangle, box_triangle};
 use crate::convex::shape::Triangle;
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::subdivide::chord_bounds::{Bounds, Columns};
+use crate::subdivide::chord_bounds::Columns;
 use crate::subdivide::place::{Body, Near, Occupancy, Seen, Tally, Trace};
 
 /// A surface in the caller's memory, counter-clockwise from outside; every edge must have its reverse. Of a larger one it may hold those

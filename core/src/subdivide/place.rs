@@ -6,9 +6,10 @@
 use crate::convex::chord::{Convex, rounded, rounding};
 use crate::convex::exact::Contact;
 use crate::convex::gjk::{Intersection, intersect};
+use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::subdivide::chord_bounds::{Bounds, Columns};
+use crate::subdivide::chord_bounds::Columns;
 
 /// How a box lies to a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,10 +17,11 @@
 //! of a face counts before the face where the solid begins and after it where the solid ends: the face is blocked in both
 //! cases.
 
-use crate::grid::fields::{Layer, ShapeMismatch, at_least, count, count_face, noise};
+use crate::grid::fields::{Layer, ShapeMismatch, accumulate, accumulate_face, at_least, noise};
 use crate::grid::{Grid, Located};
 use crate::number::real::{Real, Vector};
 use crate::surface::clip::{Polygon, split};
+use core::fmt;
 
 /// What is wrong with a body's surface in one layer; zero, but for rounding, if it is closed and does not cross itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,6 +39,52 @@ impl<R: Real> Defects<R> {
         Defects { leak: self.leak.max(other.leak), winding: self.winding.max(other.winding) }
     }
 }
+
+/// Why a body cannot be added to a layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SurfaceError {
+    /// The grid has no such layer of cells, or no such plane.
+    NoLayer {
+        /// The layer or plane asked for.
+        layer: usize,
+        /// How many there are.
+        layers: usize,
+    },
+    /// A number stands for no triangle.
+    NoTriangle {
+        /// That number.
+        id: u32,
+        /// How many triangles there are.
+        triangles: usize,
+    },
+    /// A triangle has a coordinate that is NaN or infinite.
+    NotFinite {
+        /// The triangle's number.
+        id: u32,
+    },
+    /// Layer or scratch belong to another grid.
+    Shape(ShapeMismatch),
+}
+
+impl From<ShapeMismatch> for SurfaceError {
+    fn from(error: ShapeMismatch) -> Self {
+        SurfaceError::Shape(error)
+    }
+}
+
+impl fmt::Display for SurfaceError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            SurfaceError::NoLayer { layer, layers } => write!(f, "layer or plane {layer} of {layers}"),
+            SurfaceError::NoTriangle { id, triangles } => write!(f, "triangle {id} of {triangles}"),
+            SurfaceError::NotFinite { id } => write!(f, "triangle {id} has a coordinate that is NaN or infinite"),
+            SurfaceError::Shape(mismatch) => mismatch.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SurfaceError {}
 
 /// Caller's memory for the sums of one body in one layer.
 #[derive(Debug)]
@@ -61,6 +108,11 @@ impl<'a, R: Real> Scratch<'a, R> {
         at_least(Self::needed(grid), reals.len())?;
         Ok(Scratch { reals })
     }
+
+    /// It serves any body on this grid.
+    pub(crate) fn fits(&self, grid: &Grid<R>) -> Result<(), ShapeMismatch> {
+        at_least(Self::needed(grid), self.reals.len())
+    }
 }
 
 /// The cells `i0..i0+ni` × `j0..j0+nj` of a layer that a body reaches.
@@ -74,14 +126,23 @@ pub(crate) struct Window {
 
 impl Window {
     /// Around some triangles; none if they do not reach the grid. Touching its outer planes is reaching.
-    pub fn around<R: Real, V: Vector<Scalar = R>>(grid: &Grid<R>, triangles: &[[V; 3]], ids: &[u32]) -> Option<Self> {
+    pub fn around<R: Real, V: Vector<Scalar = R>>(
+        grid: &Grid<R>,
+        triangles: &[[V; 3]],
+        ids: &[u32],
+    ) -> Result<Option<Self>, SurfaceError> {
         let (mut lo, mut hi) = (V::splat(R::INFINITY), V::splat(-R::INFINITY));
-        for corner in ids.iter().filter_map(|&id| triangles.get(id as usize)).flatten() {
-            (lo, hi) = (lo.min(*corner), hi.max(*corner));
+        for &id in ids {
+            let missing = SurfaceError::NoTriangle { id, triangles: triangles.len() };
+            for corner in triangles.get(id as usize).ok_or(missing)? {
+                if !corner.is_finite() {
+                    return Err(SurfaceError::NotFinite { id });
+                }
+                (lo, hi) = (lo.min(*corner), hi.max(*corner));
+            }
         }
-        let (i0, ni) = Self::span(grid, 0, lo.x(), hi.x())?;
-        let (j0, nj) = Self::span(grid, 1, lo.y(), hi.y())?;
-        Some(Window { i0, ni, j0, nj })
+        let (i, j) = (Self::span(grid, 0, lo.x(), hi.x()), Self::span(grid, 1, lo.y(), hi.y()));
+        Ok(i.zip(j).map(|((i0, ni), (j0, nj))| Window { i0, ni, j0, nj }))
     }
 
     fn span<R: Real>(grid: &Grid<R>, axis: usize, lo: R, hi: R) -> Option<(usize, usize)> {
@@ -167,6 +228,9 @@ struct Buffers<R: Real> {
 ///
 /// `ids` lists at least those of the body's triangles that reach into the slab `z[k]..z[k+1]`. Corners are in the grid's
 /// frame and unit, counter-clockwise seen from outside. Returns what the sums say about the surface.
+///
+/// # Errors
+/// [`SurfaceError`]: no such layer or triangle, a coordinate that is no number, memory of another grid.
 pub fn add_body<R: Real, V: Vector<Scalar = R>>(
     grid: &Grid<R>,
     k: usize,
@@ -174,10 +238,14 @@ pub fn add_body<R: Real, V: Vector<Scalar = R>>(
     ids: &[u32],
     scratch: &mut Scratch<R>,
     layer: &mut Layer<R>,
-) -> Defects<R> {
+) -> Result<Defects<R>, SurfaceError> {
     let none = Defects { leak: R::ZERO, winding: R::ZERO };
-    let Some(window) = Window::around(grid, triangles, ids) else { return none };
-    let [lo, hi] = [grid.edges(2)[k], grid.edges(2)[k + 1]];
+    let Some(&[lo, hi]) = grid.edges(2).get(k..).and_then(|edges| edges.first_chunk()) else {
+        return Err(SurfaceError::NoLayer { layer: k, layers: grid.cells()[2] });
+    };
+    layer.fits(grid)?;
+    scratch.fits(grid)?;
+    let Some(window) = Window::around(grid, triangles, ids)? else { return Ok(none) };
     let mut sums = Sums::new(grid, window, scratch, layer);
     let mut b = Buffers::default();
     for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
@@ -189,7 +257,7 @@ pub fn add_body<R: Real, V: Vector<Scalar = R>>(
         }
     }
     let defects = sums.x_faces_and_cells(hi - lo);
-    defects.worst(Defects { leak: sums.y_faces(hi - lo), ..none })
+    Ok(defects.worst(Defects { leak: sums.y_faces(hi - lo), ..none }))
 }
 
 /// If a triangle's extent along `axis` is below this share of its coordinates, it gets an origin of its own.
@@ -300,7 +368,7 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
         let Window { i0, j0, .. } = self.window;
         if self.y.holds(row) {
             let nx = self.grid.cells()[0];
-            self.layer.marks.x[(j0 + row as usize) * (nx + 1) + i0 + c as usize] = 1;
+            self.layer.has_surface.x[(j0 + row as usize) * (nx + 1) + i0 + c as usize] = 1;
         }
         let begins = piece.doubled_area()[0] < R::ZERO;
         self.integrate(row, if begins { c - 1 } else { c }, piece);
@@ -317,8 +385,8 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             let nx = self.grid.cells()[0];
             let at = |j: isize| (j0 as isize + j) as usize * nx + i0 + c as usize;
             match wall {
-                Some(face) => self.layer.marks.y[at(face)] = 1,
-                None if self.y.holds(row) => self.layer.marks.cell[at(row)] = 1,
+                Some(face) => self.layer.has_surface.y[at(face)] = 1,
+                None if self.y.holds(row) => self.layer.has_surface.cell[at(row)] = 1,
                 None => {}
             }
         }
@@ -365,31 +433,31 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             let to_fraction = R::ONE / ((y[j + 1] - y[j]) * dz);
             let faces = j * (nx + 1) + i0;
             let cells = j * nx + i0;
-            let Layer { lower, sum, marks } = &mut *self.layer;
-            let walls = &marks.x[faces..][..ni + 1];
+            let Layer { lower, sum, has_surface } = &mut *self.layer;
+            let walls = &has_surface.x[faces..][..ni + 1];
             let (face_lower, face_sum) = (&mut lower.x[faces..][..ni + 1], &mut sum.x[faces..][..ni + 1]);
             let (cell_lower, cell_sum) = (&mut lower.cell[cells..][..ni], &mut sum.cell[cells..][..ni]);
-            let cut = &marks.cell[cells..][..ni];
+            let cut = &has_surface.cell[cells..][..ni];
             let mut area = -flux[0];
             for c in 0..ni {
                 let face = area * to_fraction;
                 let whole = walls[c] == 0 && (cut[c] == 0 || (c > 0 && cut[c - 1] == 0));
-                count_face(face, whole, &mut face_lower[c], &mut face_sum[c]);
+                accumulate_face(face, whole, &mut face_lower[c], &mut face_sum[c]);
                 area -= flux[c + 1];
                 let share = face - moment[c] * (sixth * to_fraction) / (x[i0 + c + 1] - x[i0 + c]);
                 let surface = flux[c + 1] != R::ZERO || moment[c] != R::ZERO;
                 if cut[c] == 0 {
                     // Nothing but walls: after them the cell is open or closed as a whole.
                     if share > R::HALF {
-                        count(R::ONE, &mut cell_lower[c], &mut cell_sum[c]);
+                        accumulate(R::ONE, &mut cell_lower[c], &mut cell_sum[c]);
                     }
                 } else if surface || share > noise::<R>() {
                     defects.winding = defects.winding.max(share - R::ONE).max(-share);
-                    count(share, &mut cell_lower[c], &mut cell_sum[c]);
+                    accumulate(share, &mut cell_lower[c], &mut cell_sum[c]);
                 }
             }
             let whole = walls[ni] == 0 && cut[ni - 1] == 0;
-            count_face(area * to_fraction, whole, &mut face_lower[ni], &mut face_sum[ni]);
+            accumulate_face(area * to_fraction, whole, &mut face_lower[ni], &mut face_sum[ni]);
             defects.leak = defects.leak.max(((area - flux[ni + 1]) * to_fraction).abs());
         }
         defects
@@ -406,13 +474,14 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
                 continue;
             }
             let faces = (j0 + row) * nx + i0;
-            let Layer { lower, sum, marks } = &mut *self.layer;
-            let (lower, sum, walls) = (&mut lower.y[faces..][..ni], &mut sum.y[faces..][..ni], &marks.y[faces..][..ni]);
-            let uncut = |row: usize, c: usize| marks.cell[(j0 + row) * nx + i0 + c] == 0;
+            let Layer { lower, sum, has_surface } = &mut *self.layer;
+            let (lower, sum, walls) =
+                (&mut lower.y[faces..][..ni], &mut sum.y[faces..][..ni], &has_surface.y[faces..][..ni]);
+            let uncut = |row: usize, c: usize| has_surface.cell[(j0 + row) * nx + i0 + c] == 0;
             for c in 0..ni {
                 let to_fraction = R::ONE / ((x[i0 + c + 1] - x[i0 + c]) * dz);
                 let whole = walls[c] == 0 && ((row < nj && uncut(row, c)) || (row > 0 && uncut(row - 1, c)));
-                count_face(-flux[c] * to_fraction, whole, &mut lower[c], &mut sum[c]);
+                accumulate_face(-flux[c] * to_fraction, whole, &mut lower[c], &mut sum[c]);
                 above[c] += flux[c];
                 if row == nj {
                     leak = leak.max((above[c] * to_fraction).abs());

@@ -8,7 +8,7 @@
 //! After B. Naylor, J. Amanatides, W. Thibault, *Merging BSP Trees Yields Polyhedral Set Operations*, SIGGRAPH 1990.
 //!
 //! **Proof.** The volume is computed along x, y and z. A piece wrongly kept or dropped leaves the surface of the union open, and
-//! the three then differ. Their spread is reported as [`CellUnion::error`]; beyond [`MAX_SPREAD`] there is no answer.
+//! the three then differ. Their spread is reported as [`CellFractions::error`]; beyond [`MAX_SPREAD`] there is no answer.
 //!
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
@@ -16,13 +16,14 @@ mod bsp;
 mod descent;
 mod piece;
 
+use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::clip::{Polygon, cross, dot, keep, sub};
-use bsp::{Branch, Soil, grow};
-use descent::{Descent, Way};
+use bsp::{Branch, BspMemory, build_bsp};
+use descent::{Descent, DescentRule};
 use piece::{Ball, Plane};
 
-pub use bsp::{Node, Task};
+pub use bsp::{Node, PendingNode};
 pub use descent::{Fragment, Part};
 pub use piece::Piece;
 
@@ -38,7 +39,7 @@ const LONGEST_EDGE: f64 = 1.5;
 
 /// Solid fractions of the union in one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CellUnion<R> {
+pub struct CellFractions<R> {
     /// Of the cell.
     pub cell: R,
     /// Of the low x, y and z face, seen from inside the cell.
@@ -49,14 +50,15 @@ pub struct CellUnion<R> {
     pub error: R,
 }
 
-/// Caller's memory for the unions of cells; the larger, the more surface a cell may hold. Contents do not matter.
-#[derive(Debug)]
-pub struct Workspace<'a, R: Real> {
+/// Caller's memory for the unions of cells; the larger, the more surface a cell may hold. Contents do not matter. The default is
+/// none: every cell that bodies share is divided.
+#[derive(Debug, Default)]
+pub struct UnionMemory<'a, R: Real> {
     /// Pieces of all bodies.
     pub pieces: &'a mut [Piece<R>],
     /// Parts of pieces that were cut while a tree grew.
-    pub shards: &'a mut [Piece<R>],
-    /// Which pieces and shards go where while a tree grows.
+    pub split_pieces: &'a mut [Piece<R>],
+    /// Which pieces and split pieces go where while a tree grows.
     pub order: &'a mut [u32],
     /// Nodes of all trees.
     pub nodes: &'a mut [Node<R>],
@@ -65,7 +67,63 @@ pub struct Workspace<'a, R: Real> {
     /// Fragments under way.
     pub fragments: &'a mut [Fragment<R>],
     /// Branches of a tree still to grow.
-    pub tasks: &'a mut [Task],
+    pub pending: &'a mut [PendingNode],
+}
+
+impl<R: Real> UnionMemory<'_, R> {
+    /// The same memory, for a shorter time.
+    pub fn reborrow(&mut self) -> UnionMemory<'_, R> {
+        UnionMemory {
+            pieces: self.pieces,
+            split_pieces: self.split_pieces,
+            order: self.order,
+            nodes: self.nodes,
+            parts: self.parts,
+            fragments: self.fragments,
+            pending: self.pending,
+        }
+    }
+}
+
+/// Memory for the unions of cells with up to `N` pieces in one value, which may stand on the stack, in a static or in a box.
+#[derive(Clone, Debug)]
+pub struct UnionBuffers<R: Real, const N: usize> {
+    pieces: [Piece<R>; N],
+    split_pieces: [[Piece<R>; 4]; N],
+    order: [[u32; 4]; N],
+    nodes: [[Node<R>; 4]; N],
+    parts: [Part; N],
+    fragments: [Fragment<R>; N],
+    pending: [PendingNode; N],
+}
+
+impl<R: Real, const N: usize> Default for UnionBuffers<R, N> {
+    fn default() -> Self {
+        UnionBuffers {
+            pieces: [Piece::default(); N],
+            split_pieces: [[Piece::default(); 4]; N],
+            order: [[0; 4]; N],
+            nodes: [[Node::default(); 4]; N],
+            parts: [Part::default(); N],
+            fragments: [Fragment::default(); N],
+            pending: [PendingNode::default(); N],
+        }
+    }
+}
+
+impl<R: Real, const N: usize> UnionBuffers<R, N> {
+    /// Its slices.
+    pub fn memory(&mut self) -> UnionMemory<'_, R> {
+        UnionMemory {
+            pieces: &mut self.pieces,
+            split_pieces: self.split_pieces.as_flattened_mut(),
+            order: self.order.as_flattened_mut(),
+            nodes: self.nodes.as_flattened_mut(),
+            parts: &mut self.parts,
+            fragments: &mut self.fragments,
+            pending: &mut self.pending,
+        }
+    }
 }
 
 /// Why there is no union: divide the cell.
@@ -74,10 +132,10 @@ pub enum NoProof {
     /// The workspace is too small for what the cell holds.
     Full,
     /// Planes too close to tell apart, or the three volumes disagree; a blur may help.
-    Doubt,
+    Ambiguous,
 }
 
-use NoProof::{Doubt, Full};
+use NoProof::{Ambiguous, Full};
 
 /// How a cell is seen: 0..1 along each axis.
 #[derive(Clone, Copy, Debug)]
@@ -90,52 +148,53 @@ struct Frame<R> {
 
 /// The union of some bodies in one cell, or on one face between two cells.
 #[derive(Debug)]
-pub struct Overlap<'a, R: Real> {
-    space: Workspace<'a, R>,
+pub struct CellUnion<'a, R: Real> {
+    space: UnionMemory<'a, R>,
     frame: Frame<R>,
     /// Its planes are thicker than rounding asks for.
     blurred: bool,
     part_count: usize,
     /// So many of them have their tree.
-    planted: usize,
+    built: usize,
     piece_count: usize,
     node_count: usize,
 }
 
-impl<'a, R: Real> Overlap<'a, R> {
+impl<'a, R: Real> CellUnion<'a, R> {
     /// Begin with the cell `lo..hi`; it sets the frame. Planes closer than `blur`, in cells, are taken for one plane: faces that
-    /// were meant to coincide and miss by so much then do, and [`CellUnion::error`] says what that may cost.
-    pub fn new(space: Workspace<'a, R>, lo: [R; 3], hi: [R; 3], blur: R) -> Self {
+    /// were meant to coincide and miss by so much then do, and [`CellFractions::error`] says what that may cost.
+    pub fn new<V: Vector<Scalar = R>>(space: UnionMemory<'a, R>, cell: Aabb<V>, blur: R) -> Self {
+        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
         let size = sub(hi, lo);
         let mut reach = R::ONE;
         for axis in 0..3 {
             reach = reach.max(lo[axis].abs().max(hi[axis].abs()) / size[axis]);
         }
         let rounding = R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach;
-        Overlap {
+        CellUnion {
             space,
             frame: Frame { origin: lo, scale: size, thickness: rounding.max(blur) },
             blurred: blur > rounding,
             part_count: 0,
-            planted: 0,
+            built: 0,
             piece_count: 0,
             node_count: 0,
         }
     }
 
     /// Add what a body has of surface inside the cell `lo..hi`; nothing happens if it has none. With `below` the cell is the
-    /// lower one beside the face that [`Overlap::face`] will ask for.
+    /// lower one beside the face that [`CellUnion::face`] will ask for.
     ///
     /// # Errors
     /// [`NoProof::Full`] if the workspace cannot hold it.
     pub fn add<V: Vector<Scalar = R>>(
         &mut self,
-        lo: [R; 3],
-        hi: [R; 3],
+        cell: Aabb<V>,
         below: bool,
         triangles: &[[V; 3]],
         ids: &[u32],
     ) -> Result<(), NoProof> {
+        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
         let first = self.piece_count;
         let mut filling = R::ZERO;
         let mut scratch = [Polygon::default(); 2];
@@ -165,16 +224,16 @@ impl<'a, R: Real> Overlap<'a, R> {
     }
 
     /// Build the trees of the bodies added since the last time; not before it is known that all their pieces find room.
-    fn plant(&mut self) -> Result<(), NoProof> {
-        for n in self.planted..self.part_count {
+    fn build_trees(&mut self) -> Result<(), NoProof> {
+        for n in self.built..self.part_count {
             let Part { first, end, .. } = self.space.parts[n];
             if end > first {
-                let Workspace { pieces, shards, order, nodes, tasks, .. } = &mut self.space;
-                let soil = Soil { shards, order, tasks, nodes, node_count: &mut self.node_count };
-                self.space.parts[n].root = grow(&pieces[first..end], soil, self.frame.thickness)?;
+                let UnionMemory { pieces, split_pieces, order, nodes, pending, .. } = &mut self.space;
+                let memory = BspMemory { split_pieces, order, pending, nodes, node_count: &mut self.node_count };
+                self.space.parts[n].root = build_bsp(&pieces[first..end], memory, self.frame.thickness)?;
             }
         }
-        self.planted = self.part_count;
+        self.built = self.part_count;
         Ok(())
     }
 
@@ -182,14 +241,14 @@ impl<'a, R: Real> Overlap<'a, R> {
     ///
     /// # Errors
     /// [`NoProof`]: divide the cell.
-    pub fn cell(&mut self) -> Result<CellUnion<R>, NoProof> {
-        self.plant()?;
+    pub fn cell(&mut self) -> Result<CellFractions<R>, NoProof> {
+        self.build_trees()?;
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         let (mut descent, pieces) = self.descent();
         for (own, part) in descent.parts.iter().enumerate() {
             for Piece { polygon, ball, plane, .. } in &pieces[part.first..part.end] {
-                let way = Way { toward: plane.normal, own: Some(own), both_sides: false };
-                descent.send(polygon, *ball, way, |kept| integrate(kept, &mut flux, &mut moment))?;
+                let rule = DescentRule { toward: plane.normal, own: Some(own), both_sides: false };
+                descent.send(polygon, *ball, rule, |kept| integrate(kept, &mut flux, &mut moment))?;
             }
         }
         let (mut low, mut high, mut volume) = ([R::ZERO; 3], [R::ZERO; 3], [R::ZERO; 3]);
@@ -206,11 +265,11 @@ impl<'a, R: Real> Overlap<'a, R> {
         }
         let shift = self.largest_shift();
         if !(error <= R::from_f64(MAX_SPREAD).max(self.frame.thickness).max(shift)) {
-            return Err(Doubt);
+            return Err(Ambiguous);
         }
         let error = error + shift;
         let within = |v: R| v.max(R::ZERO).min(R::ONE);
-        Ok(CellUnion { cell: within((max + min) * R::HALF), low, high: high.map(within), error })
+        Ok(CellFractions { cell: within((max + min) * R::HALF), low, high: high.map(within), error })
     }
 
     /// By how much a blur may change volumes and areas: every piece moves by no more than the thickness.
@@ -228,7 +287,7 @@ impl<'a, R: Real> Overlap<'a, R> {
     /// # Errors
     /// [`NoProof`], of the workspace or of planes.
     pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
-        self.plant()?;
+        self.build_trees()?;
         let mut square = Polygon::default();
         for (u, v) in [(R::ZERO, R::ZERO), (R::ONE, R::ZERO), (R::ONE, R::ONE), (R::ZERO, R::ONE)] {
             let mut corner = [at; 3];
@@ -238,14 +297,14 @@ impl<'a, R: Real> Overlap<'a, R> {
         let mut toward = [R::ZERO; 3];
         toward[axis] = if limit == Limit::Below { -R::ONE } else { R::ONE };
         let mut open = R::ZERO;
-        let way = Way { toward, own: None, both_sides: limit == Limit::Both };
-        self.descent().0.send(&square, Ball::around(&square), way, |kept| open += kept.doubled_area()[axis])?;
+        let rule = DescentRule { toward, own: None, both_sides: limit == Limit::Both };
+        self.descent().0.send(&square, Ball::around(&square), rule, |kept| open += kept.doubled_area()[axis])?;
         Ok((R::ONE - open * R::HALF).max(R::ZERO).min(R::ONE))
     }
 
     /// What goes down the trees, and all pieces.
     fn descent(&mut self) -> (Descent<'_, R>, &[Piece<R>]) {
-        let Workspace { pieces, nodes, parts, fragments, .. } = &mut self.space;
+        let UnionMemory { pieces, nodes, parts, fragments, .. } = &mut self.space;
         let parts = &parts[..self.part_count];
         (Descent { nodes, parts, fragments, spare: Polygon::default(), thickness: self.frame.thickness }, pieces)
     }

@@ -11,9 +11,9 @@
 //! in the plane itself are the walls that the other side adds.
 
 use crate::grid::Grid;
-use crate::grid::fields::{Layer, count_face};
+use crate::grid::fields::{Layer, accumulate_face};
 use crate::number::real::{Real, Vector};
-use crate::surface::cells::{Axis, Scratch, Window};
+use crate::surface::cells::{Axis, Scratch, SurfaceError, Window};
 use crate::surface::clip::{Polygon, crossing, split};
 
 /// The side of a plane on which its section is taken.
@@ -30,6 +30,9 @@ pub enum Side {
 ///
 /// `ids` lists at least those of the body's triangles that touch the plane, level ones in it included. Returns the
 /// largest amount by which a row failed to return to zero, as a fraction of a face.
+///
+/// # Errors
+/// [`SurfaceError`]: no such plane or triangle, a coordinate that is no number, memory of another grid.
 pub fn add_section<R: Real, V: Vector<Scalar = R>>(
     grid: &Grid<R>,
     plane: usize,
@@ -38,19 +41,22 @@ pub fn add_section<R: Real, V: Vector<Scalar = R>>(
     ids: &[u32],
     scratch: &mut Scratch<R>,
     layer: &mut Layer<R>,
-) -> R {
-    let Some(window) = Window::around(grid, triangles, ids) else { return R::ZERO };
-    let z = grid.edges(2)[plane];
+) -> Result<R, SurfaceError> {
+    let edges = grid.edges(2);
+    let z = *edges.get(plane).ok_or(SurfaceError::NoLayer { layer: plane, layers: edges.len() })?;
+    layer.fits(grid)?;
+    scratch.fits(grid)?;
+    let Some(window) = Window::around(grid, triangles, ids)? else { return Ok(R::ZERO) };
     let mut sums = Sums::new(grid, window, scratch);
     for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
         let corners = triangle.map(Vector::to_array);
         if corners.iter().all(|c| c[2] == z) {
-            sums.wall(side, &corners, layer.marks.z);
+            sums.wall(side, &corners, layer.has_surface.z);
         } else if let Some([from, to]) = segment(&corners, z, side) {
             sums.scatter(from, to);
         }
     }
-    sums.faces(side, layer)
+    Ok(sums.faces(side, layer))
 }
 
 /// Where the boundary of a triangle leaves `side` of the plane and where it comes back; none if it does neither.
@@ -150,7 +156,7 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
     }
 
     /// Add a level triangle in the plane, where it is the wall that `side` does not see.
-    fn wall(&mut self, side: Side, corners: &[[R; 3]; 3], marks: &mut [u8]) {
+    fn wall(&mut self, side: Side, corners: &[[R; 3]; 3], has_surface: &mut [u8]) {
         let mut rest = Polygon::new(corners);
         let faces_up = rest.doubled_area()[2] > R::ZERO;
         let weight = if faces_up == (side == Side::Above) { R::HALF } else { R::ZERO };
@@ -167,16 +173,16 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
                 split(&strip, 0, self.x.upper(c), &mut cell, &mut spare);
                 core::mem::swap(&mut strip, &mut spare);
                 if c >= 0 && !cell.is_empty() {
-                    self.add_wall(row as usize, c as usize, cell.doubled_area()[2].abs() * weight, marks);
+                    self.add_wall(row as usize, c as usize, cell.doubled_area()[2].abs() * weight, has_surface);
                 }
             }
         }
     }
 
-    fn add_wall(&mut self, row: usize, c: usize, area: R, marks: &mut [u8]) {
+    fn add_wall(&mut self, row: usize, c: usize, area: R, has_surface: &mut [u8]) {
         let Window { i0, ni, j0, .. } = self.window;
         self.walls[row * ni + c] += area;
-        marks[(j0 + row) * self.grid.cells()[0] + i0 + c] = 1;
+        has_surface[(j0 + row) * self.grid.cells()[0] + i0 + c] = 1;
     }
 
     /// Fractions of the faces from the sums along x.
@@ -191,14 +197,14 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
             let height = y[j + 1] - y[j];
             let faces = j * nx + i0;
             let (lower, sum) = (&mut layer.lower.z[faces..][..ni], &mut layer.sum.z[faces..][..ni]);
-            let (walls_seen, cut) = (&layer.marks.z[faces..][..ni], &layer.marks.cell[faces..][..ni]);
+            let (walls_seen, cut) = (&layer.has_surface.z[faces..][..ni], &layer.has_surface.cell[faces..][..ni]);
             let mut length = -flux[0];
             for c in 0..ni {
                 let width = x[i0 + c + 1] - x[i0 + c];
                 let share = (length * width - moment[c] * R::HALF + walls[c]) / (width * height);
                 // The layer's cells are those above the plane.
                 let whole = side == Side::Above && walls_seen[c] == 0 && cut[c] == 0;
-                count_face(share, whole, &mut lower[c], &mut sum[c]);
+                accumulate_face(share, whole, &mut lower[c], &mut sum[c]);
                 length -= flux[c + 1];
             }
             leak = leak.max(((length - flux[ni + 1]) / height).abs());

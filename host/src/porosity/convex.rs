@@ -13,12 +13,14 @@ use voidage_core::convex::polytope::{Facet, Polytope, facets};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::convex::support::Transformed;
 use voidage_core::grid::Grid;
+use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
-use voidage_core::subdivide::chord_bounds::{Bounds, Columns};
+use voidage_core::subdivide::chord_bounds::Columns;
 use voidage_core::subdivide::mesh::{Mesh, slab};
 use voidage_core::subdivide::place::{self, Near, Occupancy, Seen, Tally, Trace};
 use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
+use voidage_core::surface::OtherBodies;
 
 /// A body in its place, convex but for the last kind.
 #[derive(Debug, Clone, Copy)]
@@ -207,7 +209,6 @@ fn is_closed(triangles: &[[DVec3; 3]]) -> bool {
 pub struct Road<'a> {
     bodies: Vec<(Aabb<DVec3>, Convex<'a>)>,
     rule: Rule<f64>,
-    areas: bool,
 }
 
 /// A thread's memory for subdivision.
@@ -239,12 +240,7 @@ impl<'a> Road<'a> {
     pub fn new(bodies: Vec<Convex<'a>>, options: Options) -> Self {
         let rule = Rule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
         let bodies = bodies.into_iter().map(|b| (place::Body::bounds(&b), b)).collect();
-        Road { bodies, rule, areas: options.areas }
-    }
-
-    /// A box around each body.
-    pub fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
-        self.bodies.iter().map(|(bounds, _)| *bounds)
+        Road { bodies, rule }
     }
 
     /// Holds no body.
@@ -253,30 +249,9 @@ impl<'a> Road<'a> {
         self.bodies.is_empty()
     }
 
-    /// Add the bodies to layer `k`: its cells, x and y faces, and the z faces below.
-    pub fn add(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
-        let nx = grid.cells()[0];
-        let Layer { lower, sum, .. } = layer;
-        let mut wanted = vec![(Places::Cells, nx, &mut *lower.cell, &mut *sum.cell)];
-        if self.areas {
-            wanted.push((Places::Faces(0), nx + 1, lower.x, sum.x));
-            wanted.push((Places::Faces(1), nx, lower.y, sum.y));
-            wanted.push((Places::Faces(2), nx, lower.z, sum.z));
-        }
-        self.between(grid, [k, k + 1], lists, |road, lists| {
-            let fields = wanted.into_iter();
-            fields
-                .map(|(places, row, lower, sum)| road.places(grid, places, k, lists, row, lower, sum))
-                .fold(Tally::default(), joined)
-        })
-    }
-
-    /// Add the bodies to the z faces in plane `k`, held in `layer.…z`.
-    pub fn add_top(&self, grid: &Grid<f64>, k: usize, lists: &mut Lists, layer: &mut Layer<f64>) -> Tally {
-        let nx = grid.cells()[0];
-        self.between(grid, [k, k], lists, |road, lists| {
-            road.places(grid, Places::Faces(2), k, lists, nx, layer.lower.z, layer.sum.z)
-        })
+    /// The bodies and a thread's memory for them, as the layers of a grid in the core take them.
+    pub fn with<'r>(&'r self, grid: &'r Grid<'r, f64>, lists: &'r mut Lists) -> RoadWithLists<'r, 'a> {
+        RoadWithLists { road: self, grid, lists, tally: Tally::default() }
     }
 
     /// Work with what lies between two z planes of the grid: the bodies that do, and of surfaces the triangles.
@@ -343,18 +318,73 @@ impl<'a> Road<'a> {
         };
         subdivide(grid, places, range, &bodies, self.rule, &mut memory, fill).expect(FITS)
     }
+}
 
-    /// May a body reach a cell or its sides?
+/// Bodies and a thread's memory for them.
+#[derive(Debug)]
+pub struct RoadWithLists<'r, 'a> {
+    road: &'r Road<'a>,
+    /// The whole grid, not that of a divided cell.
+    grid: &'r Grid<'r, f64>,
+    lists: &'r mut Lists,
+    tally: Tally,
+}
+
+impl RoadWithLists<'_, '_> {
+    /// How often GJK was asked for shares of the cells and faces of the whole grid.
     #[must_use]
-    pub fn reaches(&self, lo: [f64; 3], hi: [f64; 3], lists: &mut Lists) -> bool {
-        let (lo, hi) = (DVec3::from_array(lo), DVec3::from_array(hi));
-        let room = (hi - lo) * ROOM;
-        let cell = Aabb { min: lo - room, max: hi + room };
-        let near = self.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// Add to some places of a layer what lies between two z planes.
+    fn add_between(&mut self, grid: &Grid<f64>, planes: [usize; 2], wanted: &[Places], layer: &mut Layer<f64>) {
+        let found = self.road.between(grid, planes, self.lists, |road, lists| {
+            let place = |&places: &Places| {
+                let [row, _, _] = match places {
+                    Places::Cells => grid.cells(),
+                    Places::Faces(axis) => grid.face_shape(axis),
+                };
+                let (lower, sum) = match places {
+                    Places::Cells => layer.cells_mut(),
+                    Places::Faces(axis) => layer.faces_mut(axis),
+                };
+                road.places(grid, places, planes[0], lists, row, lower, sum)
+            };
+            wanted.iter().map(place).fold(Tally::default(), joined)
+        });
+        if grid.cells() == self.grid.cells() && grid.bounds() == self.grid.bounds() {
+            self.tally = joined(self.tally, found);
+        }
+    }
+}
+
+impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
+    fn is_empty(&self) -> bool {
+        self.road.is_empty()
+    }
+
+    fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
+        self.road.bodies.iter().map(|(bounds, _)| *bounds)
+    }
+
+    fn add(&mut self, grid: &Grid<f64>, k: usize, areas: bool, layer: &mut Layer<f64>) {
+        let all = [Places::Cells, Places::Faces(0), Places::Faces(1), Places::Faces(2)];
+        self.add_between(grid, [k, k + 1], if areas { &all } else { &all[..1] }, layer);
+    }
+
+    fn add_plane(&mut self, grid: &Grid<f64>, plane: usize, layer: &mut Layer<f64>) {
+        self.add_between(grid, [plane, plane], &[Places::Faces(2)], layer);
+    }
+
+    fn reach(&mut self, cell: Aabb<DVec3>) -> bool {
+        let room = cell.size() * ROOM;
+        let cell = Aabb { min: cell.min - room, max: cell.max + room };
+        let near = self.road.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
         let bodies: Vec<_> = near.map(|(_, body)| *body).collect();
         let rule = Rule { leaf: voidage_core::subdivide::Leaf::Half, depth: 0, tol: 1.0 };
         !bodies.is_empty()
-            && share(&cell, &bodies, rule, &mut lists.memory(&bodies), &mut Tally::default()).expect(FITS)
+            && share(&cell, &bodies, rule, &mut self.lists.memory(&bodies), &mut Tally::default()).expect(FITS)
                 != Bounds::OPEN
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::huge::HugeVec;
 use voidage_core::grid::Grid;
+use voidage_core::surface::layer::LayerSlices;
 
 /// A value for every cell and face of a grid, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -69,6 +70,14 @@ impl FieldSet {
             top: split_off(&mut z, if k + 1 == nz { nx * ny } else { 0 }),
         });
         layers.collect()
+    }
+}
+
+impl<'a> Slices<'a> {
+    /// As the core takes them.
+    pub fn for_core(self) -> LayerSlices<'a, f64> {
+        let Slices { v, x, y, z, top } = self;
+        LayerSlices::new(v, x, y, z, top)
     }
 }
 

@@ -1,15 +1,15 @@
-//! One layer of cells after the other, in one thread's memory.
+//! The layers of the core in a thread's memory.
 
-use super::bins::Bins;
+use super::CellCounts;
 use super::convex::{Lists, Road, joined};
 use super::fields::Slices;
-use super::unions::Unions;
-use super::{CellCounts, Options};
+use glam::DVec3;
+use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
-use voidage_core::grid::fields::{Fields, Layer};
 use voidage_core::subdivide::place::Tally;
-use voidage_core::surface::cells::{Scratch, add_body};
-use voidage_core::surface::z_faces::{Side, add_section};
+use voidage_core::surface::bins::Group;
+use voidage_core::surface::layer::{CellKinds, LayerMemory, LayerReport, Layers, MemoryNeeded};
+use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 
 /// Rows that miss zero by more than this fraction of a face leak.
 const LEAK: f64 = 1e-9;
@@ -33,10 +33,23 @@ pub struct Summary {
     /// Queries of GJK.
     pub tally: Tally,
     /// Body and residual of rows that leak.
-    pub leaks: Vec<(u32, f64)>,
+    pub leaks: Vec<(usize, f64)>,
 }
 
 impl Summary {
+    fn new(report: LayerReport<f64>, tally: Tally, leaks: Vec<(usize, f64)>) -> Self {
+        let CellKinds { open, cut, closed, ambiguous } = report.cells;
+        Summary {
+            cells: CellCounts { open, cut, closed, ambiguous },
+            volume: report.solid_volume,
+            max_gap: report.max_gap,
+            divided: report.divided,
+            winding: report.defects.winding,
+            tally,
+            leaks,
+        }
+    }
+
     /// The same without the work, for a layer that is copied.
     #[must_use]
     pub fn copied(&self) -> Self {
@@ -59,7 +72,7 @@ impl Summary {
     }
 }
 
-/// Where a layer's open fractions go.
+/// Where a layer's open fractions go; zeros before.
 #[derive(Debug)]
 pub struct Target<'a> {
     /// The value: the middle of the bounds.
@@ -68,193 +81,122 @@ pub struct Target<'a> {
     pub bounds: Option<[Slices<'a>; 2]>,
 }
 
+/// Bytes of memory that one layer's sums take.
+#[must_use]
+pub fn memory_of_a_thread(grid: &Grid<f64>) -> usize {
+    size_of::<f64>().saturating_mul(LayerMemory::<DVec3>::needed(grid).reals)
+}
+
+/// One worker for each thread of the current pool, made when the thread gets its first layer.
+#[derive(Default)]
+pub struct Workers(Vec<Mutex<Option<Worker>>>);
+
+impl Workers {
+    /// None made yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Workers((0..rayon::current_num_threads()).map(|_| Mutex::new(None)).collect())
+    }
+
+    /// Compute layer `k` in the memory of the current thread.
+    pub fn layer(&self, grid: &Grid<f64>, layers: &Layers<DVec3>, road: &Road, k: usize, target: Target) -> Summary {
+        let slot = rayon::current_thread_index().and_then(|n| self.0.get(n));
+        match slot {
+            None => Worker::new(layers).layer(grid, layers, road, k, target),
+            Some(slot) => {
+                let mut worker = slot.lock().unwrap_or_else(PoisonError::into_inner);
+                worker.get_or_insert_with(|| Worker::new(layers)).layer(grid, layers, road, k, target)
+            }
+        }
+    }
+}
+
 /// A thread's memory.
-pub struct Worker {
-    options: Options,
-    scratch: Vec<f64>,
-    sum: Vec<f64>,
-    marks: Vec<u8>,
-    /// Lower bounds of fields that have no slice of their own.
-    spare: Vec<f64>,
+struct Worker {
+    needed: MemoryNeeded,
+    reals: Vec<f64>,
+    flags: Vec<u8>,
+    numbers: Vec<u32>,
+    groups: Vec<Group<DVec3>>,
+    union: Option<UnionVecs>,
     lists: Lists,
-    unions: Unions,
 }
 
 impl Worker {
-    /// Numbers that a worker holds.
-    pub fn needed(grid: &Grid<f64>) -> usize {
-        Scratch::needed(grid) + 2 * Fields::<f64>::needed(grid)
-    }
-
-    /// For layers of grids with as many cells along x and y.
-    #[must_use]
-    pub fn new(grid: &Grid<f64>, options: Options) -> Self {
+    fn new(layers: &Layers<DVec3>) -> Self {
+        let needed = layers.memory_needed();
         Worker {
-            options,
-            scratch: vec![0.0; Scratch::needed(grid)],
-            sum: vec![0.0; Fields::<f64>::needed(grid)],
-            marks: vec![0; Fields::<u8>::needed(grid)],
-            spare: vec![0.0; Fields::<f64>::needed(grid)],
+            needed,
+            reals: vec![0.0; needed.reals],
+            flags: vec![0; needed.flags],
+            numbers: Vec::new(),
+            groups: Vec::new(),
+            union: None,
             lists: Lists::default(),
-            unions: Unions::new(options),
         }
     }
 
-    /// Allow that many divisions of cells, counted by axis.
-    pub fn may_halve(&mut self, halvings: u32) {
-        self.unions.may_halve(halvings);
-    }
-
-    /// Compute layer `k`: bounds body by body, unions where they differ. `target` holds zeros before.
-    pub fn layer(&mut self, grid: &Grid<f64>, bins: &Bins, convex: &Road, k: usize, target: Target) -> Summary {
-        let mut out = Summary::default();
-        let Target { beta: Slices { v, x, y, z, top }, mut bounds } = target;
-        let mut layer = Layer {
-            lower: Fields::within(grid, &mut self.spare).expect(FITS),
-            sum: Fields::within(grid, &mut self.sum).expect(FITS),
-            marks: Fields::within(grid, &mut self.marks).expect(FITS),
-        };
-        layer.marks.fill(0);
-        if self.options.areas {
-            layer.lower = Fields::new(grid, v, x, y, z).expect(FITS);
-        } else {
-            for faces in [&mut layer.lower, &mut layer.sum] {
-                [&mut faces.x, &mut faces.y, &mut faces.z].into_iter().for_each(|f| f.fill(0.0));
-            }
-            layer.lower.cell = v;
+    /// Compute layer `k`.
+    fn layer(&mut self, grid: &Grid<f64>, layers: &Layers<DVec3>, road: &Road, k: usize, target: Target) -> Summary {
+        // Only bodies that share cells ask for more than sums.
+        if layers.bodies_in(k) > usize::from(road.is_empty()) && self.union.is_none() {
+            self.numbers = vec![0; self.needed.numbers];
+            self.groups = vec![Group::default(); self.needed.groups];
+            self.union = Some(UnionVecs::new());
         }
-        let mut scratch = Scratch::new(grid, &mut self.scratch).expect(FITS);
-        for (body, ids) in bins.layer(k) {
-            let mut defects = add_body(grid, k, bins.triangles(), ids, &mut scratch, &mut layer);
-            if self.options.areas {
-                let leak = add_section(grid, k, Side::Above, bins.triangles(), ids, &mut scratch, &mut layer);
-                defects.leak = defects.leak.max(leak);
-            }
-            out.winding = out.winding.max(defects.winding);
+        let Worker { reals, flags, numbers, groups, union, lists, .. } = self;
+        let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
+        let mut memory = LayerMemory::new(grid, reals, flags, numbers, groups, union).expect(FITS);
+        let mut others = road.with(grid, lists);
+        let mut leaks = Vec::new();
+        let note_leak = |body, defects: voidage_core::surface::cells::Defects<f64>| {
             if !(defects.leak <= LEAK) {
-                out.leaks.push((body, defects.leak));
+                leaks.push((body, defects.leak));
             }
-        }
-        out.tally = convex.add(grid, k, &mut self.lists, &mut layer);
-        if bins.groups(k).len() > usize::from(convex.is_empty()) {
-            (out.cells.ambiguous, out.divided) = self.unions.resolve(grid, bins, convex, k, &mut layer);
-        }
-        let end = self.options.solid_end();
-        tally(grid, k, &layer, end, &mut out);
-        let Layer { lower, sum, .. } = &mut layer;
-        let [mut low, mut high] = split_bounds(&mut bounds);
-        settle(lower.cell, sum.cell, low.as_mut().map(|s| &mut *s.v), high.as_mut().map(|s| &mut *s.v), end, &mut out);
-        if self.options.areas {
-            settle(lower.x, sum.x, low.as_mut().map(|s| &mut *s.x), high.as_mut().map(|s| &mut *s.x), end, &mut out);
-            settle(lower.y, sum.y, low.as_mut().map(|s| &mut *s.y), high.as_mut().map(|s| &mut *s.y), end, &mut out);
-            settle(lower.z, sum.z, low.as_mut().map(|s| &mut *s.z), high.as_mut().map(|s| &mut *s.z), end, &mut out);
-        }
-        if !top.is_empty() {
-            let low = low.as_mut().map(|s| &mut *s.top);
-            let high = high.as_mut().map(|s| &mut *s.top);
-            self.top(grid, bins, convex, k, top, low, high, &mut out);
-        }
-        out
-    }
-
-    /// The z faces above the topmost layer.
-    fn top(
-        &mut self,
-        grid: &Grid<f64>,
-        bins: &Bins,
-        convex: &Road,
-        k: usize,
-        beta: &mut [f64],
-        low: Option<&mut [f64]>,
-        high: Option<&mut [f64]>,
-        out: &mut Summary,
-    ) {
-        let mut layer = Layer {
-            lower: Fields::within(grid, &mut self.spare).expect(FITS),
-            sum: Fields::within(grid, &mut self.sum).expect(FITS),
-            marks: Fields::within(grid, &mut self.marks).expect(FITS),
         };
-        layer.lower.z.fill(0.0);
-        layer.marks.z.fill(0);
-        let mut scratch = Scratch::new(grid, &mut self.scratch).expect(FITS);
-        for (_, ids) in bins.layer(k) {
-            add_section(grid, k + 1, Side::Below, bins.triangles(), ids, &mut scratch, &mut layer);
-        }
-        out.tally = joined(out.tally, convex.add_top(grid, k + 1, &mut self.lists, &mut layer));
-        self.unions.resolve_top(grid, bins, convex, k, &mut layer);
-        settle(layer.lower.z, layer.sum.z, low, high, self.options.solid_end(), out);
-        beta.copy_from_slice(layer.lower.z);
+        let Target { beta, bounds } = target;
+        let bounds = bounds.map(|both| both.map(Slices::for_core));
+        let report = layers.zeroed_layer(k, beta.for_core(), bounds, &mut memory, &mut others, note_leak).expect(FITS);
+        Summary::new(report, others.tally(), leaks)
     }
 }
 
-/// The lower and the upper slices, each if there are any.
-fn split_bounds<'b, 'a>(bounds: &'b mut Option<[Slices<'a>; 2]>) -> [Option<&'b mut Slices<'a>>; 2] {
-    match bounds {
-        Some([low, high]) => [Some(low), Some(high)],
-        None => [None, None],
-    }
+/// Pieces of surface that one cell may hold before it is divided: beyond, trees cost more than smaller cells.
+const MAX_PIECES: usize = 1024;
+
+/// Memory for unions.
+struct UnionVecs {
+    pieces: Vec<Piece<f64>>,
+    split_pieces: Vec<Piece<f64>>,
+    order: Vec<u32>,
+    nodes: Vec<Node<f64>>,
+    parts: Vec<Part>,
+    fragments: Vec<Fragment<f64>>,
+    pending: Vec<PendingNode>,
 }
 
-/// Count the cells of a layer and add up their solid volume.
-fn tally(grid: &Grid<f64>, k: usize, layer: &Layer<f64>, end: f64, out: &mut Summary) {
-    let [nx, ny, _] = grid.cells();
-    let width = |axis: usize, i: usize| grid.edges(axis)[i + 1] - grid.edges(axis)[i];
-    for j in 0..ny {
-        let row = j * nx..(j + 1) * nx;
-        let (lower, sum, marks) =
-            (&layer.lower.cell[row.clone()], &layer.sum.cell[row.clone()], &layer.marks.cell[row]);
-        if marks.iter().all(|&m| m == 0) && sum.iter().all(|&s| s == 0.0) {
-            out.cells.open += nx;
-            continue;
+impl UnionVecs {
+    fn new() -> Self {
+        UnionVecs {
+            pieces: vec![Piece::default(); MAX_PIECES],
+            split_pieces: vec![Piece::default(); 4 * MAX_PIECES],
+            order: vec![0; 4 * MAX_PIECES],
+            nodes: vec![Node::default(); 4 * MAX_PIECES],
+            parts: vec![Part::default(); MAX_PIECES / 4],
+            fragments: vec![Fragment::default(); MAX_PIECES],
+            pending: vec![PendingNode::default(); MAX_PIECES],
         }
-        let mut volume = 0.0;
-        for i in 0..nx {
-            let upper = sum[i].min(1.0);
-            volume += (lower[i] * (1.0 - end) + upper * end) * width(0, i);
-            if lower[i] == 1.0 {
-                out.cells.closed += 1;
-            } else if upper == 0.0 && marks[i] == 0 {
-                out.cells.open += 1;
-            } else {
-                out.cells.cut += 1;
-            }
-        }
-        out.volume += volume * width(1, j) * width(2, k);
     }
-}
 
-/// Turn solid bounds into open fractions: the value, a share `end` of the way between them, goes to `lower`, the bounds to `low` and
-/// `high` if wanted. Leaves zeros in `sum` for the next layer.
-fn settle(
-    lower: &mut [f64],
-    sum: &mut [f64],
-    low: Option<&mut [f64]>,
-    high: Option<&mut [f64]>,
-    end: f64,
-    out: &mut Summary,
-) {
-    if let Some(low) = low {
-        low.iter_mut().zip(&*sum).for_each(|(low, sum)| *low = 1.0 - sum.min(1.0));
-    }
-    if let Some(high) = high {
-        high.iter_mut().zip(&*lower).for_each(|(high, lower)| *high = 1.0 - lower);
-    }
-    let settle = |l: &mut f64, s: &mut f64, widest: &mut f64| {
-        let upper = if *s < 1.0 { *s } else { 1.0 };
-        let gap = upper - *l;
-        *widest = if gap > *widest { gap } else { *widest };
-        (*l, *s) = (1.0 - (*l * (1.0 - end) + upper * end), 0.0);
-    };
-    // Eight running maxima need no order, so the loop is done by vectors.
-    let mut widest = [0.0_f64; 8];
-    let ((lower, lower_rest), (sum, sum_rest)) = (lower.as_chunks_mut::<8>(), sum.as_chunks_mut::<8>());
-    for (l, s) in lower.iter_mut().zip(sum) {
-        for n in 0..8 {
-            settle(&mut l[n], &mut s[n], &mut widest[n]);
+    fn memory(&mut self) -> UnionMemory<'_, f64> {
+        UnionMemory {
+            pieces: &mut self.pieces,
+            split_pieces: &mut self.split_pieces,
+            order: &mut self.order,
+            nodes: &mut self.nodes,
+            parts: &mut self.parts,
+            fragments: &mut self.fragments,
+            pending: &mut self.pending,
         }
     }
-    for (l, s) in lower_rest.iter_mut().zip(sum_rest) {
-        settle(l, s, &mut widest[0]);
-    }
-    out.max_gap = widest.into_iter().fold(out.max_gap, f64::max);
 }

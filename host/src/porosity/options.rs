@@ -1,6 +1,7 @@
 //! What to compute, and how far to go.
 
 use voidage_core::subdivide;
+use voidage_core::surface::layer::LayerOptions;
 
 /// How volumes are found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -65,8 +66,15 @@ pub struct Options {
 
 impl Options {
     /// Where between its bounds a value lies: in the middle; by the paper's rule at the solid end.
-    pub(super) fn solid_end(&self) -> f64 {
+    fn solid_end(&self) -> f64 {
         if self.leaf == Leaf::Solid { 1.0 } else { 0.5 }
+    }
+}
+
+impl From<Options> for LayerOptions<f64> {
+    fn from(options: Options) -> Self {
+        let Options { tol, depth, areas, .. } = options;
+        LayerOptions { tol, depth, areas, solid_end: options.solid_end() }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Every query in both precisions behind a C symbol, without std: what is left after linking is what they need.
 #![no_std]
 
+mod layers;
+
 use glam::{DVec3, Vec3};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::convex::containment::{Containment, Contains, contains};

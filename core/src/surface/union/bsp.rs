@@ -1,6 +1,6 @@
 //! The binary space partition of a cell by the surface of one body.
 
-use super::NoProof::{self, Doubt, Full};
+use super::NoProof::{self, Ambiguous, Full};
 use super::piece::{Piece, Place, Plane, cut};
 use crate::number::real::Real;
 
@@ -23,26 +23,26 @@ pub struct Node<R: Real> {
 
 /// A list of pieces still to be made a subtree.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Task {
+pub struct PendingNode {
     first: usize,
     end: usize,
     parent: Option<(u32, bool)>,
 }
 
 /// Memory in which a tree grows.
-pub(super) struct Soil<'a, R: Real> {
-    pub shards: &'a mut [Piece<R>],
+pub(super) struct BspMemory<'a, R: Real> {
+    pub split_pieces: &'a mut [Piece<R>],
     pub order: &'a mut [u32],
-    pub tasks: &'a mut [Task],
+    pub pending: &'a mut [PendingNode],
     pub nodes: &'a mut [Node<R>],
     /// So many nodes there are.
     pub node_count: &'a mut usize,
 }
 
 /// Build the tree of a body, which has surface in the cell: the largest piece divides, the others go to its sides.
-pub(super) fn grow<R: Real>(pieces: &[Piece<R>], soil: Soil<R>, thickness: R) -> Result<Branch, NoProof> {
-    let Soil { shards, order, tasks, nodes, node_count } = soil;
-    let mut growing = Growing { pieces, shards, used: 0, thickness };
+pub(super) fn build_bsp<R: Real>(pieces: &[Piece<R>], memory: BspMemory<R>, thickness: R) -> Result<Branch, NoProof> {
+    let BspMemory { split_pieces, order, pending, nodes, node_count } = memory;
+    let mut builder = BspBuilder { pieces, split_pieces, used: 0, thickness };
     let all = order.get_mut(..pieces.len()).ok_or(Full)?;
     let mut largest = Largest::among(0);
     for (id, (place, piece)) in all.iter_mut().zip(pieces).enumerate() {
@@ -50,24 +50,25 @@ pub(super) fn grow<R: Real>(pieces: &[Piece<R>], soil: Soil<R>, thickness: R) ->
         largest.see(piece.area, id);
     }
     all.swap(0, largest.at);
-    *tasks.first_mut().ok_or(Full)? = Task { first: 0, end: pieces.len(), parent: None };
-    let (mut open_tasks, root) = (1, *node_count as u32);
-    while open_tasks > 0 {
-        open_tasks -= 1;
-        let Task { first, end, parent } = tasks[open_tasks];
+    *pending.first_mut().ok_or(Full)? = PendingNode { first: 0, end: pieces.len(), parent: None };
+    let (mut open_nodes, root) = (1, *node_count as u32);
+    while open_nodes > 0 {
+        open_nodes -= 1;
+        let PendingNode { first, end, parent } = pending[open_nodes];
         let number = *node_count as u32;
         *nodes.get_mut(*node_count).ok_or(Full)? =
-            Node { plane: growing.piece(order[first]).plane, positive: Branch::Open, negative: Branch::Solid };
+            Node { plane: builder.piece(order[first]).plane, positive: Branch::Open, negative: Branch::Solid };
         *node_count += 1;
         if let Some((node, positive)) = parent {
             let node = &mut nodes[node as usize];
             *(if positive { &mut node.positive } else { &mut node.negative }) = Branch::Node(number);
         }
-        let (middle, end) = growing.divide(order, first, end)?;
+        let (middle, end) = builder.divide(order, first, end)?;
         for (first, end, positive) in [(first, middle, false), (middle, end, true)] {
             if end > first {
-                *tasks.get_mut(open_tasks).ok_or(Full)? = Task { first, end, parent: Some((number, positive)) };
-                open_tasks += 1;
+                *pending.get_mut(open_nodes).ok_or(Full)? =
+                    PendingNode { first, end, parent: Some((number, positive)) };
+                open_nodes += 1;
             }
         }
     }
@@ -144,18 +145,18 @@ impl<'a, R: Real> Sorted<'a, R> {
 }
 
 /// The pieces of a body while its tree grows, by number: first those of the cell, then the parts of those that were cut.
-struct Growing<'a, R: Real> {
+struct BspBuilder<'a, R: Real> {
     pieces: &'a [Piece<R>],
-    shards: &'a mut [Piece<R>],
-    /// So many shards there are.
+    split_pieces: &'a mut [Piece<R>],
+    /// So many split pieces there are.
     used: usize,
     thickness: R,
 }
 
-impl<R: Real> Growing<'_, R> {
+impl<R: Real> BspBuilder<'_, R> {
     #[inline(always)]
     fn piece(&self, id: u32) -> &Piece<R> {
-        piece(self.pieces, self.shards, id)
+        piece(self.pieces, self.split_pieces, id)
     }
 
     /// Sort the pieces after `order[first]`, the divider, by the sides of its plane: `first..a` behind, `a..b` before, the largest
@@ -169,7 +170,7 @@ impl<R: Real> Growing<'_, R> {
             let piece = self.piece(id);
             match piece.place(&plane, self.thickness) {
                 // Solid thinner than rounding: which side of the plane holds it cannot be told.
-                Place::On if piece.backs(self.piece(divider), self.thickness) => return Err(Doubt),
+                Place::On if piece.backs(self.piece(divider), self.thickness) => return Err(Ambiguous),
                 Place::On => {}
                 Place::Negative => sorted.behind(id, piece.area, p)?,
                 Place::Positive => sorted.before(id, piece.area)?,
@@ -186,7 +187,7 @@ impl<R: Real> Growing<'_, R> {
 
     /// Sort the parts of a piece that is not full, at place `p`; parts without area are dropped.
     fn cut(&mut self, id: u32, plane: &Plane<R>, p: usize, sorted: &mut Sorted<R>) -> Result<(), NoProof> {
-        let (whole, [negative, positive], numbers) = self.two_shards(id)?;
+        let (whole, [negative, positive], numbers) = self.two_parts(id)?;
         cut(&whole.polygon, plane, &mut negative.polygon, &mut positive.polygon);
         negative.become_part_of(whole);
         positive.become_part_of(whole);
@@ -201,18 +202,18 @@ impl<R: Real> Growing<'_, R> {
 
     /// The two halves of a piece with too many corners to be cut.
     fn halve(&mut self, id: u32) -> Result<[u32; 2], NoProof> {
-        let (whole, shards, numbers) = self.two_shards(id)?;
-        for (shard, half) in shards.iter_mut().zip(whole.polygon.halves()) {
-            shard.polygon = half;
-            shard.become_part_of(whole);
+        let (whole, split_pieces, numbers) = self.two_parts(id)?;
+        for (part, half) in split_pieces.iter_mut().zip(whole.polygon.halves()) {
+            part.polygon = half;
+            part.become_part_of(whole);
         }
         Ok(numbers)
     }
 
-    /// A piece, two new shards, and their numbers.
+    /// A piece, two new split pieces, and their numbers.
     #[expect(clippy::type_complexity, reason = "a name would say no more")]
-    fn two_shards(&mut self, id: u32) -> Result<(&Piece<R>, &mut [Piece<R>; 2], [u32; 2]), NoProof> {
-        let (made, free) = self.shards.split_at_mut(self.used);
+    fn two_parts(&mut self, id: u32) -> Result<(&Piece<R>, &mut [Piece<R>; 2], [u32; 2]), NoProof> {
+        let (made, free) = self.split_pieces.split_at_mut(self.used);
         let two = free.first_chunk_mut().ok_or(Full)?;
         let number = (self.pieces.len() + self.used) as u32;
         self.used += 2;
@@ -221,7 +222,7 @@ impl<R: Real> Growing<'_, R> {
 }
 
 #[inline(always)]
-fn piece<'a, R: Real>(pieces: &'a [Piece<R>], shards: &'a [Piece<R>], id: u32) -> &'a Piece<R> {
+fn piece<'a, R: Real>(pieces: &'a [Piece<R>], split_pieces: &'a [Piece<R>], id: u32) -> &'a Piece<R> {
     let id = id as usize;
-    pieces.get(id).unwrap_or_else(|| &shards[id - pieces.len()])
+    pieces.get(id).unwrap_or_else(|| &split_pieces[id - pieces.len()])
 }

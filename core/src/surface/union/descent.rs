@@ -1,8 +1,8 @@
 //! Polygons on their way down the trees of a cell.
 
-use super::NoProof::{self, Doubt, Full};
+use super::NoProof::{self, Ambiguous, Full};
 use super::bsp::{Branch, Node};
-use super::piece::{Ball, DOUBT, Place, cut, place, span};
+use super::piece::{AMBIGUITY_BAND, Ball, Place, cut, place, span};
 use crate::number::real::Real;
 use crate::surface::clip::{Polygon, dot};
 
@@ -34,7 +34,7 @@ pub struct Fragment<R: Real> {
 
 /// How a polygon goes down.
 #[derive(Clone, Copy)]
-pub(super) struct Way<R> {
+pub(super) struct DescentRule<R> {
     /// Where it lies in a plane of a tree, it follows this direction.
     pub toward: [R; 3],
     /// The body whose tree it does not meet.
@@ -58,12 +58,12 @@ impl<R: Real> Descent<'_, R> {
         &mut self,
         polygon: &Polygon<R>,
         ball: Ball<R>,
-        way: Way<R>,
+        rule: DescentRule<R>,
         mut keep: impl FnMut(&Polygon<R>),
     ) -> Result<(), NoProof> {
         let parts = self.parts;
         let enter = |f: &mut Fragment<R>, part: usize| {
-            f.part = if Some(part) == way.own { part + 1 } else { part };
+            f.part = if Some(part) == rule.own { part + 1 } else { part };
             f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
             (f.inward, f.twin) = (false, false);
         };
@@ -84,7 +84,7 @@ impl<R: Real> Descent<'_, R> {
                     waiting = top;
                     continue;
                 }
-                Branch::Open if f.twin && !f.inward && way.own.is_some_and(|own| f.part < own) => {
+                Branch::Open if f.twin && !f.inward && rule.own.is_some_and(|own| f.part < own) => {
                     (f.inward, f.branch) = (true, part.root);
                     continue;
                 }
@@ -98,9 +98,9 @@ impl<R: Real> Descent<'_, R> {
                 Place::Positive => f.branch = node.positive,
                 Place::Negative => f.branch = node.negative,
                 Place::On => {
-                    let along = dot(node.plane.normal, way.toward) > R::ZERO;
+                    let along = dot(node.plane.normal, rule.toward) > R::ZERO;
                     f.twin |= along;
-                    let positive = along != (f.inward || (way.both_sides && part.below));
+                    let positive = along != (f.inward || (rule.both_sides && part.below));
                     f.branch = if positive { node.positive } else { node.negative };
                 }
                 Place::Across => {
@@ -131,16 +131,16 @@ impl<R: Real> Descent<'_, R> {
 impl<R: Real> Fragment<R> {
     #[inline(always)]
     fn place(&self, node: &Node<R>, thickness: R) -> Result<Place, NoProof> {
-        let doubt = thickness * R::from_f64(DOUBT);
-        if let Some(place) = self.ball.place(&node.plane, doubt) {
+        let ambiguous = thickness * R::from_f64(AMBIGUITY_BAND);
+        if let Some(place) = self.ball.place(&node.plane, ambiguous) {
             return Ok(place);
         }
         let span = span(&self.polygon, &node.plane);
         let found = place(span, thickness);
         // Not quite one plane, not clearly two: another piece of the same faces may be judged otherwise.
         let unsure = found != Place::On
-            && place(span, doubt) == Place::On
+            && place(span, ambiguous) == Place::On
             && self.polygon.doubled_area().iter().any(|a| a.abs() > R::from_f64(SLIVER));
-        if unsure { Err(Doubt) } else { Ok(found) }
+        if unsure { Err(Ambiguous) } else { Ok(found) }
     }
 }

@@ -4,7 +4,7 @@ use crate::number::real::Real;
 use crate::surface::clip::{Polygon, dot, sub};
 
 /// Planes of two bodies between one and so many thicknesses apart are neither one nor two for certain.
-pub(super) const DOUBT: f64 = 4.0;
+pub(super) const AMBIGUITY_BAND: f64 = 4.0;
 
 /// The plane `normal·p = offset`; the solid lies on its negative side.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,7 +62,7 @@ impl<R: Real> Piece<R> {
     /// Its place relative to a plane.
     #[inline(always)]
     pub(super) fn place(&self, plane: &Plane<R>, thickness: R) -> Place {
-        let clear = thickness * R::from_f64(DOUBT);
+        let clear = thickness * R::from_f64(AMBIGUITY_BAND);
         self.ball.place(plane, clear).unwrap_or_else(|| place(span(&self.polygon, plane), thickness))
     }
 

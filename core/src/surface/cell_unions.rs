@@ -1,0 +1,430 @@
+//! Cells that several bodies share: their exact union, or division until bounds are close.
+
+use crate::grid::Grid;
+use crate::grid::bounds::Bounds;
+use crate::grid::fields::{Layer, gap};
+use crate::number::aabb::Aabb;
+use crate::number::real::{Real, Vector};
+use crate::surface::bins::{Bins, Group, Row};
+use crate::surface::union::{CellFractions, CellUnion, NoProof, UnionMemory};
+use core::ops::Range;
+
+/// Bodies that enter a layer by another road than their triangles: known by formula, or subdivided. Their shares of a cell or face are
+/// given as bounds of their union, and they take no part in exact unions: a cell that they share with a surface is divided.
+///
+/// The unit type stands for none.
+pub trait OtherBodies<V: Vector> {
+    /// There are none.
+    fn is_empty(&self) -> bool;
+    /// A box around each.
+    fn boxes(&self) -> impl Iterator<Item = Aabb<V>>;
+    /// Add them to the cells of layer `k` of a grid, and with `areas` to its x and y faces and to the z faces below.
+    fn add(&mut self, grid: &Grid<V::Scalar>, k: usize, areas: bool, layer: &mut Layer<V::Scalar>);
+    /// Add them to the z faces in plane `plane` of a grid, which are the z faces of `layer`.
+    fn add_plane(&mut self, grid: &Grid<V::Scalar>, plane: usize, layer: &mut Layer<V::Scalar>);
+    /// May one of them reach a cell or its sides?
+    fn reach(&mut self, cell: Aabb<V>) -> bool;
+}
+
+impl<V: Vector> OtherBodies<V> for () {
+    fn is_empty(&self) -> bool {
+        true
+    }
+    fn boxes(&self) -> impl Iterator<Item = Aabb<V>> {
+        core::iter::empty()
+    }
+    fn add(&mut self, _: &Grid<V::Scalar>, _: usize, _: bool, _: &mut Layer<V::Scalar>) {}
+    fn add_plane(&mut self, _: &Grid<V::Scalar>, _: usize, _: &mut Layer<V::Scalar>) {}
+    fn reach(&mut self, _: Aabb<V>) -> bool {
+        false
+    }
+}
+
+/// What all levels of division share.
+pub(super) struct Shared<'s, V: Vector, O> {
+    /// Bounds this close need no division.
+    pub tol: V::Scalar,
+    /// Bodies beside those of triangles.
+    pub others: &'s mut O,
+    /// Memory for one exact union at a time.
+    pub union: UnionMemory<'s, V::Scalar>,
+    /// How the parts of a cell are found. It stands above this file, which it uses.
+    pub parts: FindParts<V, O>,
+}
+
+/// Finds the bounds of a small grid of at most 2 × 2 × 2 cells from the triangles of some layers of a site; none if depth or memory
+/// is spent.
+pub(super) type FindParts<V, O> = fn(
+    &mut Shared<V, O>,
+    &Site<V>,
+    &Grid<<V as Vector>::Scalar>,
+    Range<usize>,
+    Room<V>,
+) -> Option<Parts<<V as Vector>::Scalar>>;
+
+/// A layer of a grid, the triangles sorted into it, and how often its cells may still be halved along some axis.
+#[derive(Clone, Copy)]
+pub(super) struct Site<'a, V: Vector> {
+    pub grid: &'a Grid<'a, V::Scalar>,
+    pub bins: &'a Bins<'a, V>,
+    pub k: usize,
+    pub halvings: u32,
+    /// Faces are wanted.
+    pub areas: bool,
+}
+
+/// Memory of one level of division; what it leaves serves the levels below.
+pub(super) struct Room<'m, V: Vector> {
+    pub reals: &'m mut [V::Scalar],
+    pub flags: &'m mut [u8],
+    pub numbers: &'m mut [u32],
+    pub groups: &'m mut [Group<V>],
+}
+
+impl<V: Vector> Room<'_, V> {
+    /// The same memory for a shorter time.
+    pub fn reborrow(&mut self) -> Room<'_, V> {
+        Room { reals: self.reals, flags: self.flags, numbers: self.numbers, groups: self.groups }
+    }
+}
+
+/// Bounds of the solid fractions of a small grid: of the whole, and means over all faces in each of its planes, `[axis][plane]`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts<R> {
+    pub cell: Bounds<R>,
+    pub planes: [[Bounds<R>; 3]; 3],
+}
+
+/// Bounds of the solid fractions of a cell and of its sides, low and high along each axis.
+pub(super) struct Refined<R> {
+    pub cell: Bounds<R>,
+    pub low: [Bounds<R>; 3],
+    pub high: [Bounds<R>; 3],
+}
+
+impl<R: Real> Refined<R> {
+    fn from_union(u: CellFractions<R>) -> Self {
+        let known = |v: R| Bounds::around(v, u.error);
+        Refined { cell: known(u.cell), low: u.low.map(known), high: u.high.map(known) }
+    }
+
+    /// From the parts of a cell, in number `cells` along each axis.
+    fn from_parts(parts: &Parts<R>, cells: [usize; 3]) -> Self {
+        let high = |axis: usize| if cells[axis] > 1 { parts.planes[axis][2] } else { parts.planes[axis][1] };
+        Refined { cell: parts.cell, low: parts.planes.map(|planes| planes[0]), high: [high(0), high(1), high(2)] }
+    }
+}
+
+/// Planes of different bodies may miss each other by so much, in cells, and be taken for one where that gives a proof:
+/// parts that were meant to touch, in coordinates that were rounded.
+const BLURS: [f64; 5] = [0.0, 1e-12, 1e-10, 1e-8, 1e-6];
+
+/// What an attempt finds with the least blur that gives a proof and an error within the tolerance. An attempt returns its error as well.
+pub(super) fn with_least_blur<T, R: Real>(tol: R, mut attempt: impl FnMut(R) -> Result<(T, R), NoProof>) -> Option<T> {
+    for blur in BLURS.map(R::from_f64).into_iter().filter(|&blur| blur == R::ZERO || blur < tol) {
+        match attempt(blur) {
+            Ok((found, error)) if blur == R::ZERO || R::TWO * error <= tol => return Some(found),
+            Err(NoProof::Full) => return None,
+            Ok(_) | Err(NoProof::Ambiguous) => {}
+        }
+    }
+    None
+}
+
+/// By how much a union may leave the bounds given by the bodies' own shares and still be rounding: 10⁻⁹, more in `f32`.
+pub(super) fn rounding<R: Real>() -> R {
+    R::from_f64(1e-9).max(R::EPSILON * R::from_f64(64.0))
+}
+
+/// Bounds this close are one value, what remains is rounding: 10⁻¹³, more in `f32`.
+pub(super) fn known<R: Real>() -> R {
+    R::from_f64(1e-13).max(R::EPSILON * R::from_f64(256.0))
+}
+
+/// Narrow the bounds of a cell or face. Both pairs hold, so does their intersection, unless rounding has crossed it; a pair that
+/// contradicts the bodies' own shares is not believed.
+pub(super) fn narrow<R: Real>(lower: &mut R, sum: &mut R, found: Bounds<R>) {
+    let (l, u) = (lower.max(found.lower), sum.min(R::ONE).min(found.upper));
+    if l <= u {
+        (*lower, *sum) = (l, u);
+    } else if l - u <= rounding() {
+        (*lower, *sum) = (u, l);
+    }
+}
+
+/// Does a union lie within the bounds given by the bodies' own shares?
+fn fits<R: Real>(lower: R, sum: R, found: Bounds<R>) -> bool {
+    found.upper >= lower - rounding() && found.lower <= sum.min(R::ONE) + rounding()
+}
+
+/// What became of the shared cells of a layer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Resolved {
+    /// Cells whose union had to be found.
+    pub ambiguous: usize,
+    /// Cells divided.
+    pub divided: usize,
+}
+
+/// Narrow the bounds of the cells that bodies share in a layer, of their x and y faces and of the z faces below.
+pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    layer: &mut Layer<V::Scalar>,
+    room: Room<V>,
+) -> Resolved {
+    let [nx, ny, _] = site.grid.cells();
+    let mut resolved = Resolved::default();
+    let Room { reals, flags, numbers, groups } = room;
+    let Some((rows, numbers)) = numbers.split_at_mut_checked(2 * (ny + 1)) else { return resolved };
+    let Some((columns, numbers)) = numbers.split_at_mut_checked(2 * (nx + 1)) else { return resolved };
+    count_reaching(site.grid.edges(1), boxes(shared, site).map(|(b, s)| ([b.min.y(), b.max.y()], s)), rows);
+    let mut rows = SharedCells::new(rows);
+    for j in 0..ny {
+        if !rows.next_is_shared() {
+            continue;
+        }
+        let Some(cell) = site.grid.cell_box([0, j, site.k]) else { continue };
+        let [lo, hi] = [cell.min.y(), cell.max.y()];
+        let here = boxes(shared, site).filter(|(b, _)| b.min.y() <= hi && b.max.y() >= lo);
+        count_reaching(site.grid.edges(0), here.map(|(b, s)| ([b.min.x(), b.max.x()], s)), columns);
+        let mut columns = SharedCells::new(columns);
+        let mut row = None;
+        for i in 0..nx {
+            if !columns.next_is_shared() {
+                continue;
+            }
+            let at = At { i, j, cells: [nx, ny] };
+            resolved.ambiguous += usize::from(at.cell_gap(layer) > V::Scalar::ZERO);
+            let open = at.largest_gap(layer);
+            if !(open > known()) {
+                continue;
+            }
+            if row.is_none() {
+                row = Row::new(site.bins, site.k, [lo, hi], (&mut *numbers, &mut *groups));
+            }
+            let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
+            let believed = |u: &Refined<V::Scalar>| at.agrees(layer, u, site.areas);
+            let refined = match union(shared, site, cell, row, believed) {
+                None if open > shared.tol => {
+                    resolved.divided += 1;
+                    let rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
+                    divide(shared, site, cell, rest)
+                }
+                found => found,
+            };
+            if let Some(refined) = refined {
+                at.store(layer, &refined);
+            }
+        }
+    }
+    resolved
+}
+
+/// Narrow the bounds of the z faces above a layer, held in `layer`, in whose plane no surface lies.
+pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    layer: &mut Layer<V::Scalar>,
+    room: Room<V>,
+) {
+    let [nx, ny, _] = site.grid.cells();
+    let Room { reals, flags, numbers, groups } = room;
+    for j in 0..ny {
+        let mut row = None;
+        for i in 0..nx {
+            let c = j * nx + i;
+            let (Some(lower), Some(sum)) = (layer.lower.z.get_mut(c), layer.sum.z.get_mut(c)) else { continue };
+            let open = gap(*lower, *sum);
+            if !(open > known()) || layer.has_surface.z.get(c) != Some(&0) {
+                continue;
+            }
+            let Some(cell) = site.grid.cell_box([i, j, site.k]) else { continue };
+            if row.is_none() {
+                row = Row::new(site.bins, site.k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
+            }
+            let Some(row) = &mut row else { continue };
+            let refined = match union(shared, site, cell, row, |_| true) {
+                None if open > shared.tol => {
+                    divide(shared, site, cell, Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 })
+                }
+                found => found,
+            };
+            if let Some(refined) = refined {
+                narrow(lower, sum, refined.high[2]);
+            }
+        }
+    }
+}
+
+/// Boxes around what each body has in a layer; true for bodies of triangles.
+fn boxes<'i, V: Vector, O: OtherBodies<V>>(
+    shared: &'i Shared<V, O>,
+    site: &Site<'i, V>,
+) -> impl Iterator<Item = (Aabb<V>, bool)> + 'i {
+    let [below, above] = [site.k, site.k + 1].map(|n| site.grid.edges(2).get(n).copied().unwrap_or_default());
+    let surfaces = site.bins.groups(site.k).iter().map(|g| (g.bounds, true));
+    let others = shared.others.boxes().filter(move |b| b.min.z() <= above && b.max.z() >= below);
+    surfaces.chain(others.map(|b| (b, false)))
+}
+
+/// The union in a cell: exact, or with the least blur that gives a proof; of triangles only.
+fn union<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    cell: Aabb<V>,
+    row: &Row<V>,
+    believed: impl Fn(&Refined<V::Scalar>) -> bool,
+) -> Option<Refined<V::Scalar>> {
+    if shared.others.reach(cell) {
+        return None;
+    }
+    with_least_blur(shared.tol, |blur| {
+        let mut union = CellUnion::new(shared.union.reborrow(), cell, blur);
+        for group in row.groups {
+            if group.bounds.max.x() > cell.min.x() && group.bounds.min.x() < cell.max.x() {
+                union.add(cell, false, site.bins.triangles(group), row.ids(group))?;
+            }
+        }
+        let found = union.cell()?;
+        let refined = Refined::from_union(found);
+        if believed(&refined) { Ok((refined, found.error)) } else { Err(NoProof::Ambiguous) }
+    })
+}
+
+/// Bounds of a cell from its parts, halves along the axes in which it is longest; none if the depth is spent.
+fn divide<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    cell: Aabb<V>,
+    room: Room<V>,
+) -> Option<Refined<V::Scalar>> {
+    let size = cell.size().to_array();
+    let longest = size.into_iter().fold(V::Scalar::ZERO, Real::max);
+    let halved = size.map(|s| s > longest * V::Scalar::HALF);
+    let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
+    let edges = [0, 1, 2].map(|a| [lo[a], if halved[a] { lo[a] + size[a] * V::Scalar::HALF } else { hi[a] }, hi[a]]);
+    let list = |a: usize| if halved[a] { &edges[a][..] } else { &edges[a][..2] };
+    let grid = Grid::new(list(0), list(1), list(2)).ok()?;
+    let halvings = halved.iter().map(|&h| u32::from(h)).sum();
+    let part = Site { halvings: site.halvings.checked_sub(halvings)?, ..*site };
+    let parts = (shared.parts)(shared, &part, &grid, site.k..site.k + 1, room)?;
+    Some(Refined::from_parts(&parts, grid.cells()))
+}
+
+/// A cell of a layer.
+#[derive(Clone, Copy)]
+struct At {
+    i: usize,
+    j: usize,
+    cells: [usize; 2],
+}
+
+impl At {
+    fn cell(self) -> usize {
+        self.j * self.cells[0] + self.i
+    }
+
+    /// The faces that the cell decides: its low ones, and at the upper ends of the grid the high ones; axis, position, and whether high.
+    fn faces(self) -> impl Iterator<Item = (usize, usize, bool)> {
+        let At { i, j, cells: [nx, ny] } = self;
+        let (c, x) = (self.cell(), j * (nx + 1) + i);
+        let low = [(0, x, false), (1, c, false), (2, c, false)].into_iter();
+        let right = (i + 1 == nx).then_some((0, x + 1, true));
+        low.chain(right).chain((j + 1 == ny).then_some((1, c + nx, true)))
+    }
+
+    fn cell_gap<R: Real>(self, layer: &Layer<R>) -> R {
+        let (lower, sum) = (layer.lower.cell.get(self.cell()), layer.sum.cell.get(self.cell()));
+        gap(lower.copied().unwrap_or_default(), sum.copied().unwrap_or_default())
+    }
+
+    /// The largest gap of the cell and of the faces that it decides, but for those in whose plane surface lies.
+    fn largest_gap<R: Real>(self, layer: &Layer<R>) -> R {
+        self.faces()
+            .filter_map(|(axis, at, _)| free_face(layer, axis, at))
+            .fold(self.cell_gap(layer), |most, (l, s)| most.max(gap(l, s)))
+    }
+
+    /// Does a union agree with the bodies' own shares of the cell and of those low faces that lie in no wall?
+    /// Without `areas` nothing is known of z faces.
+    fn agrees<R: Real>(self, layer: &Layer<R>, u: &Refined<R>, areas: bool) -> bool {
+        let (Some(&lower), Some(&sum)) = (layer.lower.cell.get(self.cell()), layer.sum.cell.get(self.cell())) else {
+            return false;
+        };
+        let low = self.faces().take(if areas { 3 } else { 2 });
+        fits(lower, sum, u.cell)
+            && low.zip(u.low).all(|((axis, at, _), found)| {
+                free_face(layer, axis, at).is_none_or(|(lower, sum)| fits(lower, sum, found))
+            })
+    }
+
+    /// Store what is known of the cell and of those of its faces that it decides.
+    fn store<R: Real>(self, layer: &mut Layer<R>, refined: &Refined<R>) {
+        let c = self.cell();
+        if let (Some(lower), Some(sum)) = (layer.lower.cell.get_mut(c), layer.sum.cell.get_mut(c)) {
+            narrow(lower, sum, refined.cell);
+        }
+        for (axis, at, high) in self.faces() {
+            let side = if high { &refined.high } else { &refined.low };
+            let (Some((lower, sum)), Some(&found)) = (free_face(layer, axis, at), side.get(axis)) else { continue };
+            if !(gap(lower, sum) > R::ZERO) {
+                continue;
+            }
+            let (lowers, sums) = layer.faces_mut(axis);
+            if let (Some(lower), Some(sum)) = (lowers.get_mut(at), sums.get_mut(at)) {
+                narrow(lower, sum, found);
+            }
+        }
+    }
+}
+
+/// Lower bound and sum of a face in whose plane no surface lies.
+fn free_face<R: Real>(layer: &Layer<R>, axis: usize, at: usize) -> Option<(R, R)> {
+    let free = layer.has_surface.faces(axis).get(at) == Some(&0);
+    free.then_some((*layer.lower.faces(axis).get(at)?, *layer.sum.faces(axis).get(at)?))
+}
+
+/// Along one axis, by how many the bodies and the surfaces among them that reach or touch a cell are more than in the cell before:
+/// two entries a cell and two beyond, in two's complement.
+fn count_reaching<R: Real>(edges: &[R], extents: impl Iterator<Item = ([R; 2], bool)>, steps: &mut [u32]) {
+    let cells = edges.len() - 1;
+    steps.fill(0);
+    for ([lo, hi], surface) in extents {
+        let first = edges.partition_point(|&e| e < lo).saturating_sub(1);
+        let end = edges.partition_point(|&e| e <= hi).min(cells);
+        if first >= end {
+            continue;
+        }
+        for (at, sign) in [(first, 1), (end, u32::MAX)] {
+            if let Some([bodies, surfaces]) = steps.get_mut(2 * at..).and_then(|s| s.first_chunk_mut()) {
+                *bodies = bodies.wrapping_add(sign);
+                *surfaces = surfaces.wrapping_add(if surface { sign } else { 0 });
+            }
+        }
+    }
+}
+
+/// The cells along one axis that two bodies or more reach or touch, one of them by its surface: among themselves, bodies that are
+/// subdivided have been joined already.
+struct SharedCells<'a> {
+    steps: &'a [u32],
+    bodies: u32,
+    surfaces: u32,
+}
+
+impl<'a> SharedCells<'a> {
+    /// From the steps of [`count_reaching`].
+    fn new(steps: &'a [u32]) -> Self {
+        SharedCells { steps, bodies: 0, surfaces: 0 }
+    }
+
+    /// Go on to the next cell.
+    fn next_is_shared(&mut self) -> bool {
+        let [bodies, surfaces, rest @ ..] = self.steps else { return false };
+        self.steps = rest;
+        self.bodies = self.bodies.wrapping_add(*bodies);
+        self.surfaces = self.surfaces.wrapping_add(*surfaces);
+        self.bodies > 1 && self.surfaces > 0
+    }
+}

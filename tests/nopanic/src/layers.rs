@@ -1,0 +1,50 @@
+//! The grid, and triangles sorted into its layers.
+
+use glam::{DVec3, Vec3};
+use voidage_core::grid::{Grid, Located};
+use voidage_core::number::real::{Real, Vector};
+use voidage_core::surface::bins::{Group, Surface};
+use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerSlices, Layers};
+use voidage_core::surface::union::UnionMemory;
+
+fn asked<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], at: usize, r: V::Scalar) -> usize {
+    let rest = edges.get(at..).unwrap_or(edges);
+    let Ok(grid) = Grid::new(edges, rest, edges) else { return 1 };
+    let cell = grid.cell_box([at, at, at]).map_or(0, |cell| usize::from(cell.is_empty()));
+    let place = match grid.locate(at, r) {
+        Located::Below => 1,
+        Located::Cell(i) => i,
+        Located::Above => 2,
+    };
+    let face = grid.face_shape(at)[0] ^ grid.edges(at).len() ^ usize::from(grid.bounds().is_empty());
+    cell ^ place ^ face ^ sorted(&grid, triangles, at)
+}
+
+fn sorted<V: Vector>(grid: &Grid<V::Scalar>, triangles: &[[V; 3]], at: usize) -> usize {
+    let (mut numbers, mut groups) = ([0; 99], [Group::default(); 9]);
+    let bodies = [Surface::new(triangles), Surface::sheet(triangles)];
+    let needed = Layers::needed(grid, &bodies);
+    match Layers::new(grid, &bodies, LayerOptions::default(), &mut numbers, &mut groups) {
+        Ok(layers) => layers.memory_needed().numbers ^ layers.bodies_in(at) ^ cut(grid, at),
+        Err(_) => needed.numbers,
+    }
+}
+
+fn cut<R: Real>(grid: &Grid<R>, at: usize) -> usize {
+    let (mut reals, mut flags, mut field) = ([R::ZERO; 99], [0; 99], [R::ZERO; 99]);
+    let memory = LayerMemory::<R::Vector>::new(grid, &mut reals, &mut flags, &mut [], &mut [], UnionMemory::default());
+    let slices = LayerSlices::of_fields(grid, at, &mut field, [&mut [], &mut [], &mut []]);
+    usize::from(memory.is_ok()) ^ usize::from(slices.is_ok())
+}
+
+/// In double precision.
+#[unsafe(no_mangle)]
+pub extern "C" fn nopanic_layers_f64(edges: &[f64; 9], n: usize, triangles: &[[DVec3; 3]; 9], r: f64) -> usize {
+    asked(edges.get(..n).unwrap_or(edges), triangles.get(n..).unwrap_or(triangles), n, r)
+}
+
+/// In single precision.
+#[unsafe(no_mangle)]
+pub extern "C" fn nopanic_layers_f32(edges: &[f32; 9], n: usize, triangles: &[[Vec3; 3]; 9], r: f32) -> usize {
+    asked(edges.get(..n).unwrap_or(edges), triangles.get(n..).unwrap_or(triangles), n, r)
+}
