@@ -11,7 +11,7 @@ const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivi
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 7] = [
+const CIRCLES: [(&[&str], &str); 6] = [
     (
         &[
             "core/convex/exact.rs",
