@@ -11,17 +11,7 @@ const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivi
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 3] = [
-    (
-        &[
-            "core/flow/kernel/long_line.rs",
-            "core/flow/kernel/scratch.rs",
-            "core/flow/kernel/sweep.rs",
-            "core/flow/step.rs",
-            "core/flow/step_report.rs",
-        ],
-        "the problem, its sweep and what it reports are methods of one type",
-    ),
+const CIRCLES: [(&[&str], &str); 2] = [
     (
         &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
         "union.rs is the door and defines the pieces that its parts sort",
