@@ -11,7 +11,7 @@ const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivi
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 7] = [
+const CIRCLES: [(&[&str], &str); 6] = [
     (
         &[
             "core/convex/exact.rs",
@@ -26,16 +26,6 @@ const CIRCLES: [(&[&str], &str); 7] = [
     (
         &["core/convex/shape/adjacency.rs", "core/convex/shape/hull.rs"],
         "a hull keeps its neighbours, which are found by its scan",
-    ),
-    (
-        &[
-            "core/flow/kernel/long_line.rs",
-            "core/flow/kernel/scratch.rs",
-            "core/flow/kernel/sweep.rs",
-            "core/flow/step.rs",
-            "core/flow/step_report.rs",
-        ],
-        "the problem, its sweep and what it reports are methods of one type",
     ),
     (
         &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
