@@ -5,6 +5,7 @@
 //! axis: x faces `(k*ny + j)*(nx+1) + i`, y faces `(k*(ny+1) + j)*nx + i`, z faces `(k*ny + j)*nx + i`.
 
 pub mod bounds;
+pub mod cell_range;
 pub mod fields;
 
 use crate::number::aabb::Aabb;

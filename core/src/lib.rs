@@ -10,6 +10,19 @@
 //!    in [`surface`]
 //! 5. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
 //! 6. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//!
+//! # Two convex bodies
+//!
+//! ```
+//! use glam::DVec3;
+//! use voidage_core::convex::{self, AnyBody, exact::Contact, shape::Cylinder};
+//! use voidage_core::number::aabb::Aabb;
+//!
+//! let cell = AnyBody::new(Aabb { min: DVec3::ZERO, max: DVec3::ONE })?;
+//! let pipe = AnyBody::new(Cylinder::new(DVec3::new(0.5, 0.5, -1.0), DVec3::new(0.5, 0.5, 2.0), 0.25))?;
+//! assert_eq!(convex::meets(&cell, &pipe).contact(), Some(Contact::Overlapping));
+//! # Ok::<(), convex::BodyError>(())
+//! ```
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 

@@ -343,8 +343,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             return Ok(rate);
         }
         let mut state = std::mem::replace(&mut self.state, Field::new(0, self.gas));
-        self.with_problem(|problem, _, _, _, _| problem.settle(&mut state.view_mut()));
+        let prepared = self.with_problem(|problem, _, _, _, _| problem.prepare(&mut state.view_mut()));
         self.state = state;
+        prepared?;
         let rate = self.with_problem(|problem, old, _, _, _| problem.rate(&old.view()))?;
         self.rate = Some(rate);
         Ok(rate)

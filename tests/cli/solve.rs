@@ -180,7 +180,8 @@ fn a_scene_and_its_arrays_give_the_same_flow() {
         assert!(a == b, "{field}");
     }
     let report = json(&at.file("scene/report.json"));
-    assert!(report["porosity"]["jump_faces"].as_u64().expect("a count") > 100, "{report}");
+    // Most of its walls are round, and cells cut by them have no jumps.
+    assert!(report["porosity"]["jump_faces"].as_u64().expect("a count") > 20, "{report}");
     for drift in ["mass_drift", "energy_drift"] {
         assert!(report[drift].as_f64().expect("a number").abs() < 1e-12, "{drift}: {}", report[drift]);
     }
@@ -215,7 +216,7 @@ probes = [{ name = "corner", at = [8.9, 4.9, 3.9] }, { name = "middle", at = [4,
     };
     let steps = report["steps"].as_u64().expect("a count") as usize;
     let (head, log) = table("log.csv");
-    assert_eq!(head, "step,time,dt,mass,energy,max_mach,floors");
+    assert_eq!(head, "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy");
     assert_eq!(log.len(), steps + 1);
     assert!(log.iter().enumerate().all(|(n, row)| row[0] == n as f64));
     let mass = log[0][3];

@@ -1,6 +1,6 @@
 //! Runs that stop and go on: at a number of steps, by Ctrl-C, by a kill. They end with the same bits as a run that never stopped.
 
-use crate::kit::{Scratch, fixture, program, solve, solved, stderr};
+use crate::kit::{Scratch, fixture, json, program, solve, solved, stderr};
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -182,4 +182,73 @@ fn checkpoints_that_do_not_fit_are_refused() {
     fs::write(&path, &whole).expect("a checkpoint");
     refused(&case.replace("name = \"P\"", "name = \"Q\""), "probes.csv: has other columns");
     solved(&at, &case, "out", &["--resume", "-q"]);
+}
+
+/// Gas, half of it thin and cold, falls against `gravity`, at last faster than the energy of the cold half allows.
+fn falling(gravity: f64, steps: usize) -> String {
+    format!(
+        r#"
+[grid]
+x = {{ points = [0, 1], cells = [32] }}
+[gas]
+model = "ideal"
+gamma = 1.4
+[initial]
+uniform = {{ rho = 1, u = 0, p = 1 }}
+regions = [{{ min = [0.5], rho = 1e-9, p = 1e-15 }}]
+[boundary]
+x_min = {{ type = "periodic" }}
+x_max = {{ type = "periodic" }}
+[gravity]
+g = [{gravity}, 0, 0]
+[time]
+max_steps = {steps}
+[output]
+checkpoint_every = 0
+"#
+    )
+}
+
+#[test]
+fn floors_are_booked_and_the_state_before_the_first_one_stays() {
+    let at = Scratch::new();
+    solved(&at, &falling(-14.0, 3), "out", &["-q"]);
+    let report = json(&at.file("out/report.json"));
+    assert!(report["floors"].as_u64().expect("a count") > 0, "no floor was visited");
+    let changed = report["floor_change"]["momentum"][0].as_f64().expect("a momentum");
+    assert!(changed > 0.0 && changed < 1e-7, "{changed}");
+    let log = fs::read_to_string(at.file("out/log.csv")).expect("a log");
+    let last: Vec<f64> = log.lines().last().expect("lines").split(',').map(|x| x.parse().expect("a number")).collect();
+    assert_eq!((last[6], last[8]), (report["floors"].as_f64().expect("a count"), changed));
+    // The state before the first floor takes the place of the last one, and the run ends as it did.
+    let results = || ["rho", "u", "p"].map(|f| fs::read(at.file(&format!("out/final/{f}.npy"))).expect("a file"));
+    let (before, checkpoint) = (results(), at.file("out/checkpoint_before_floors.bin"));
+    fs::copy(&checkpoint, at.file("out/checkpoint.bin")).expect("a copy");
+    solved(&at, &falling(-14.0, 3), "out", &["-q", "--resume"]);
+    assert!(results() == before);
+    assert_eq!(fs::read_to_string(at.file("out/log.csv")).expect("a log"), log);
+    // A new run without floors leaves no copy of an old one behind.
+    solved(&at, &falling(-1.0, 3), "out", &["-q"]);
+    assert!(!checkpoint.exists() && json(&at.file("out/report.json"))["floors"] == 0);
+}
+
+#[test]
+fn floors_that_matter_stop_the_run() {
+    let at = Scratch::new();
+    let output = solve(&at, &falling(-1e9, 3), "out", &["-q"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let text = stderr(&output);
+    for part in [
+        "step 1, t = ",
+        "floors have changed",
+        "of its mass",
+        "of its momentum",
+        "of its energy",
+        "cell [",
+        "rho = ",
+        "p = ",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    assert!(text.trim_end().ends_with("checkpoint.bin") && !at.file("out/final").exists(), "{text}");
 }

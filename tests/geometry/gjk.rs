@@ -229,9 +229,9 @@ fn climbing_finds_what_scanning_finds() {
         assert_eq!(broken.farthest(d).point.dot(d), scan.support(d, 0).point.dot(d));
         let away = d * random.between(1.5, 2.5);
         let cell = Aabb { min: away - DVec3::splat(0.5), max: away + DVec3::splat(0.5) };
-        let plain = exact::settle(&cell, &scan, None);
-        assert_eq!(exact::settle(&cell, &climb, None), plain);
-        assert_eq!(exact::settle(&cell, &broken, None), plain);
+        let plain = exact::contact(&cell, &scan, None);
+        assert_eq!(exact::contact(&cell, &climb, None), plain);
+        assert_eq!(exact::contact(&cell, &broken, None), plain);
     }
 }
 
@@ -253,7 +253,7 @@ fn what_is_not_finite_is_refused() {
             for t in [[p, cube.min, cube.max], [cube.min, p, cube.max], [cube.max, cube.min, p]] {
                 assert!(unsure(intersect(&cube, &Triangle { a: t[0], b: t[1], c: t[2] }, None)));
                 assert!(unsure(intersect(&cube, &Hull::new(&t), None)));
-                assert_eq!(exact::settle(&cube, &Hull::new(&t), None), Err(exact::NotFinite));
+                assert_eq!(exact::contact(&cube, &Hull::new(&t), None), Err(exact::NotFinite));
                 assert!(exact::distance(&cube, &Hull::new(&t), None).is_err());
             }
             assert!(unsure(intersect(&cube, &Sphere { center: p, radius: 1.0 }, None)));
@@ -277,7 +277,7 @@ fn what_is_not_finite_is_refused() {
     }
     let none: [DVec3; 0] = [];
     assert!(matches!(intersect(&cube, &Hull::new(&none), None), Intersection::Undecided { .. }));
-    assert_eq!(exact::settle(&cube, &Hull::new(&none), None), Err(exact::NotFinite));
+    assert_eq!(exact::contact(&cube, &Hull::new(&none), None), Err(exact::NotFinite));
     assert!(matches!(
         intersect(&cube, &Sphere { center: DVec3::ONE, radius: -1.0 }, None),
         Intersection::Undecided { .. }
@@ -298,7 +298,7 @@ fn nonfinite_inputs_of_the_shared_data() {
         let (a, b) = points.split_at(m);
         let (a, b) = (Hull::new(a), Hull::new(b));
         let first = intersect(&a, &b, None);
-        let settled = exact::settle(&a, &b, None);
+        let settled = exact::contact(&a, &b, None);
         println!("{line}\n  {settled:?}");
         match first {
             Intersection::Apart { .. } => assert_eq!(settled, Ok(Contact::Disjoint)),

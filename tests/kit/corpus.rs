@@ -8,7 +8,7 @@ use std::fmt;
 
 use serde_json::Value;
 use voidage_core::convex::exact::{self, Contact, Relation};
-use voidage_core::convex::gjk::{self, Distance, Intersection, Overlap, Reason};
+use voidage_core::convex::gjk::{self, Distance, Intersection, OverlapProof, Reason};
 use voidage_core::convex::shape::Hull;
 use voidage_core::number::real::{Real, Vector};
 
@@ -141,7 +141,7 @@ pub fn score<V: Vector>(case: &Case, factor: f64) -> Score {
     let first = gjk::intersect(&a, &b, None);
     let sound = match first {
         Intersection::Apart { axis } => case.contact != Contact::Overlapping && gjk::separates(&a, &b, axis),
-        Intersection::Overlapping { proof: Overlap::Inside(simplex) } => {
+        Intersection::Overlapping { proof: OverlapProof::Inside(simplex) } => {
             let of = |vertices: &[V], points: &[V]| points.iter().all(|p| vertices.contains(p));
             case.contact == Contact::Overlapping
                 && simplex.holds_origin(Real::ZERO)
@@ -155,7 +155,7 @@ pub fn score<V: Vector>(case: &Case, factor: f64) -> Score {
         score.wrong = 1;
     }
     // Both stages, and the second one with its own proofs where the first gave up.
-    let settled = exact::settle(&a, &b, None);
+    let settled = exact::contact(&a, &b, None);
     match settled {
         Ok(contact) if contact == case.contact => {}
         Ok(_) => score.wrong = 1,

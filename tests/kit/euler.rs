@@ -6,6 +6,7 @@
 pub mod cases;
 pub mod expression;
 pub mod property;
+pub mod space;
 
 use voidage_core::flow::Primitive;
 

@@ -19,14 +19,23 @@ use crate::recipe::Recipe;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets by name.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 7] = [
     ("intersect", intersect),
     ("distance", distance),
     ("containment", containment),
     ("certificates", certificates),
     ("raw", raw),
     ("subdivide", subdivide),
+    ("layers", layers),
 ];
+
+/// Porosity of layers of any triangles in any memory.
+pub fn layers(bytes: &[u8]) {
+    let Some((seed, _)) = bytes.split_first_chunk() else { return };
+    let seed = u64::from_le_bytes(*seed);
+    crate::door::never_panics::<DVec3>(seed);
+    crate::door::never_panics::<Vec3>(seed);
+}
 
 /// Booleans of both stages against the oracle.
 pub fn intersect(bytes: &[u8]) {

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use voidage_core::convex::containment::{Containment, contains};
 use voidage_core::convex::exact::{self, Contact, Relation};
-use voidage_core::convex::gjk::{self, Distance, Intersection, Overlap};
+use voidage_core::convex::gjk::{self, Distance, Intersection, OverlapProof};
 use voidage_core::convex::sat::{BoxTriangle, box_triangle};
 use voidage_core::convex::shape::{Hull, Triangle, Vertices};
 use voidage_core::number::aabb::Aabb;
@@ -25,7 +25,7 @@ pub fn booleans_are_true<V: Vector>((a, b): &Pair, truth: Contact) -> &'static s
             assert!(gjk::separates(&a, &b, axis), "unproved axis {axis:?}");
             "apart"
         }
-        Intersection::Overlapping { proof: Overlap::Inside(simplex) } => {
+        Intersection::Overlapping { proof: OverlapProof::Inside(simplex) } => {
             assert_eq!(truth, Contact::Overlapping, "said overlapping by {simplex:?}");
             assert!(simplex.holds_origin(Real::ZERO), "unproved {simplex:?}");
             assert!(simplex.a.iter().all(|p| a.vertices().contains(p)), "not of the first body: {simplex:?}");
@@ -35,7 +35,7 @@ pub fn booleans_are_true<V: Vector>((a, b): &Pair, truth: Contact) -> &'static s
         Intersection::Overlapping { proof } => panic!("a proof for rounded bodies: {proof:?}"),
         Intersection::Undecided { .. } => "undecided",
     };
-    assert_eq!(exact::settle(&a, &b, None), Ok(truth));
+    assert_eq!(exact::contact(&a, &b, None), Ok(truth));
     let relation = exact::relation(&a, &b, None).expect("finite");
     assert_eq!(relation.contact(), truth);
     match relation {
@@ -50,7 +50,7 @@ pub fn booleans_are_true<V: Vector>((a, b): &Pair, truth: Contact) -> &'static s
 pub fn changes_do_not_matter((a, b): &Pair, truth: Contact) {
     let settle = |a: &[[f64; 3]], b: &[[f64; 3]], hint: Option<DVec3>| {
         let (a, b) = (vectors::<DVec3>(a), vectors::<DVec3>(b));
-        exact::settle(&Hull::new(&a), &Hull::new(&b), hint)
+        exact::contact(&Hull::new(&a), &Hull::new(&b), hint)
     };
     assert_eq!(settle(b, a, None), Ok(truth), "swapped");
     let backwards = |p: &[[f64; 3]]| p.iter().rev().copied().collect::<Vec<_>>();
@@ -151,7 +151,7 @@ pub fn box_and_triangle_agree(cell: [[f64; 3]; 2], triangle: [[f64; 3]; 3]) -> B
     let cell = Aabb::around(&cell.map(DVec3::from_array));
     let [a, b, c] = triangle.map(DVec3::from_array);
     let triangle = Triangle { a, b, c };
-    let truth = exact::settle(&cell, &triangle, None);
+    let truth = exact::contact(&cell, &triangle, None);
     let said = box_triangle(&cell, &triangle);
     match said {
         BoxTriangle::Apart { axis } => {

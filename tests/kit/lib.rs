@@ -5,6 +5,7 @@ pub mod boxes;
 pub mod convex;
 pub mod corpus;
 pub mod dirty;
+pub mod door;
 pub mod euler;
 pub mod fields;
 pub mod fuzzed;

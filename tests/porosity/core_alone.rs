@@ -14,6 +14,7 @@ use voidage_core::surface::layer::{
 };
 use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 use voidage_core::surface::z_faces::{Side, add_section};
+use voidage_tests::door::never_panics;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{cuboid, scene, sphere, turned_box, volume};
 use voidage_tests::truth::fixture;
@@ -218,6 +219,13 @@ fn single_precision_holds_double_precision() {
     }
     let widest = found.reports.iter().fold(0.0, |m: f32, r| m.max(r.max_gap));
     assert!(widest < 0.02, "{widest}");
+}
+
+#[test]
+fn no_input_panics() {
+    let double = (0..50_000).filter(|&seed| never_panics::<DVec3>(seed)).count();
+    let single = (0..50_000).filter(|&seed| never_panics::<Vec3>(seed)).count();
+    assert!(double > 4000 && single > 2000, "{double} and {single} scenes came as far as their layers");
 }
 
 /// Solid volume of one closed surface in the unit cube, and the largest leak.

@@ -11,32 +11,7 @@ const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivi
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 6] = [
-    (
-        &[
-            "core/convex/exact.rs",
-            "core/convex/exact/lattice.rs",
-            "core/convex/exact/search.rs",
-            "core/convex/exact/simplex.rs",
-        ],
-        "exact.rs is the door and defines the answers that its parts give",
-    ),
-    (&["core/convex/gjk.rs", "core/convex/gjk/distance.rs", "core/convex/gjk/pair.rs"], "likewise"),
-    (&["core/convex/shape.rs", "core/convex/shape/curved.rs", "core/convex/shape/plane.rs"], "likewise"),
-    (
-        &["core/convex/shape/adjacency.rs", "core/convex/shape/hull.rs"],
-        "a hull keeps its neighbours, which are found by its scan",
-    ),
-    (
-        &[
-            "core/flow/kernel/long_line.rs",
-            "core/flow/kernel/scratch.rs",
-            "core/flow/kernel/sweep.rs",
-            "core/flow/step.rs",
-            "core/flow/step_report.rs",
-        ],
-        "the problem, its sweep and what it reports are methods of one type",
-    ),
+const CIRCLES: [(&[&str], &str); 1] = [
     (
         &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
         "union.rs is the door and defines the pieces that its parts sort",
@@ -88,13 +63,10 @@ fn only_the_command_speaks_to_a_terminal() {
 }
 
 /// Types of the same name in different files, each with its reason.
-const SHARED_NAMES: [(&str, &str); 8] = [
-    ("Body", "the trait of what is subdivided; a body of the host has a name and a place in a file"),
-    ("Convex", "the trait of chords; the host's enum of all convex bodies implements it"),
+const SHARED_NAMES: [(&str, &str); 5] = [
     ("Error", "that of the flow is a value without text; that of the host names file, place and reason"),
     ("Fields", "fields of a gas and of a layer"),
-    ("Leaf", "that of the host has a default and a name in reports"),
-    ("Mesh", "cells of a flow; triangles that are subdivided; triangles of a file"),
+    ("Mesh", "cells of a flow; triangles of a file"),
     ("Porosity", "what a flow takes; what was found"),
     ("Report", "of a step; of a run"),
 ];

@@ -9,9 +9,9 @@ use voidage::grid::Edges;
 use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::subdivide::mesh::Mesh;
-use voidage_core::subdivide::place::Tally;
-use voidage_core::subdivide::{Candidate, Leaf as Rest, Memory, Rule, share};
+use voidage_core::subdivide::{
+    Candidate, ClosedSurface, LeafRule, QueryCount, SubdivisionMemory, SubdivisionRule, share,
+};
 use voidage_tests::convex::{run, small_grid};
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, sphere, turned_box, volume};
@@ -189,9 +189,10 @@ fn bits_do_not_depend_on_threads() {
 /// Bounds of the share of a cube, which may be a face of it.
 fn measured<V: Vector>(triangles: &[[V; 3]], cell: &Aabb<V>) -> [f64; 2] {
     let (mut candidates, mut facets) = (vec![Candidate::default(); 64], vec![0; 8 * triangles.len()]);
-    let mut memory = Memory { candidates: &mut candidates, facets: &mut facets };
-    let rule = Rule { leaf: Rest::Half, depth: 3, tol: V::Scalar::ZERO };
-    let found = share(cell, &[Mesh::new(triangles)], rule, &mut memory, &mut Tally::default()).expect("room");
+    let mut memory = SubdivisionMemory { candidates: &mut candidates, facets: &mut facets };
+    let rule = SubdivisionRule { leaf: LeafRule::Half, depth: 3, tol: V::Scalar::ZERO };
+    let found =
+        share(cell, &[ClosedSurface::new(triangles)], rule, &mut memory, &mut QueryCount::default()).expect("room");
     [found.lower.to_f64(), found.upper.to_f64()]
 }
 

@@ -1,7 +1,7 @@
 //! Corners of the input: tiny cells, blocked space, hardly any cells, states that are none.
 
 use voidage::flow::{Flow, Treatment};
-use voidage_core::flow::{Boundary, Error, Gas, Primitive};
+use voidage_core::flow::{Boundary, Clusters, Conserved, Error, Gas, Mesh, Primitive, Problem, Report};
 use voidage_tests::euler::property::Source;
 use voidage_tests::euler::{Riemann, State};
 
@@ -229,4 +229,92 @@ fn channel_with_a_box_is_symmetric_and_still_in_the_box() {
         }
     }
     assert!(flow.get((4 * 9 + 4) * 20 + 12).velocity[0] < 9.0, "no wake");
+}
+
+/// A box of 5 × 5 cells of gas at rest in which only the middle one has been through something: the pressure it had, and the kinetic and
+/// total energy it has now. Returns its state after the floor, and what the floor changed.
+fn floored_middle(pressure: f64, kinetic: f64, total: f64) -> (Primitive<f64, 2>, Conserved<f64, 2>) {
+    const MIDDLE: usize = 12;
+    let mut flow: Flow<f64, 2> = Flow::uniform([5, 5], [0.5; 2], IDEAL, [[Boundary::Periodic; 2]; 2]);
+    flow.fill(|_| Primitive { density: 1.0, velocity: [0.0; 2], pressure: 1.0 });
+    flow.set(MIDDLE, &Primitive { density: 1.0, velocity: [0.0; 2], pressure });
+    let old = flow.state.clone();
+    let momentum = [(2.0 * kinetic).sqrt(), 0.0];
+    flow.state.view_mut().set(MIDDLE, &Conserved { density: 1.0, momentum, energy: total });
+    let widths = [0.5; 5];
+    let problem = Problem {
+        mesh: Mesh { widths: [&widths, &widths] },
+        gas: IDEAL,
+        boundaries: flow.boundaries,
+        scheme: flow.scheme,
+        porosity: None,
+        clusters: Clusters(&[]),
+        drag: None,
+        gravity: [0.0; 2],
+    };
+    let mut report = Report::new();
+    problem.apply_floors(&old.view(), &mut flow.state.view_mut(), &mut report).unwrap();
+    assert_eq!((report.floored, report.floored_cell), (1, Some(MIDDLE)));
+    (flow.get(MIDDLE), report.floor_change)
+}
+
+#[test]
+fn a_floor_takes_from_the_kinetic_energy_what_the_pressure_lacks() {
+    let (w, change) = floored_middle(1.0, 2.0, 1.9);
+    let energy = w.pressure / 0.4 + 0.5 * w.density * w.velocity[0].powi(2);
+    assert!((energy - 1.9).abs() < 1e-14 && w.pressure >= 1e-3 * (1.0 - 1e-12), "{w:?}");
+    assert!(change.density == 0.0 && change.energy.abs() < 1e-14, "{change:?}");
+    // A quarter of the momentum that is gone: the cells are 0.5 × 0.5.
+    assert!((change.momentum[0] - 0.25 * (2.0 - w.velocity[0])).abs() < 1e-14, "{change:?}");
+}
+
+#[test]
+fn a_floor_that_must_add_adds_a_share_of_what_is_around() {
+    for total in [-1.0, -1e-9, f64::NAN] {
+        let (w, change) = floored_middle(1.0, 2.0, total);
+        assert!((w.pressure - 1e-3).abs() < 1e-12 && w.velocity == [0.0; 2], "{w:?}");
+        let before = if total.is_nan() { 2.5 } else { total };
+        assert!((change.energy - 0.25 * (1e-3 / 0.4 - before).abs()).abs() < 1e-12, "{change:?}");
+    }
+}
+
+#[test]
+fn floors_do_not_repeat_into_nothing() {
+    // What an earlier floor has left counts for one of five.
+    let (w, _) = floored_middle(1e-30, 2.0, 1.9);
+    assert!((w.pressure - 0.8e-3).abs() < 1e-9, "{w:?}");
+}
+
+#[test]
+fn energy_grows_by_what_is_booked_for_floors() {
+    let mut floors = 0;
+    for (mach, seed) in [3.0, 30.0, 1e3].into_iter().flat_map(|mach| (0..4).map(move |seed| (mach, seed))) {
+        // Random gas in a periodic box, at a step so much too long that now and then only a floor helps.
+        let mut s = Source::seeded(seed);
+        let mut flow: Flow<f64, 2> = Flow::uniform([12, 12], [1.0; 2], IDEAL, [[Boundary::Periodic; 2]; 2]);
+        for cell in 0..144 {
+            let (density, pressure) = (s.scale(1e-2, 1.0), s.scale(1e-2, 1.0));
+            let speed = mach * f64::sqrt(1.4 * pressure / density);
+            let velocity = std::array::from_fn(|_| speed * (2.0 * s.unit() - 1.0));
+            flow.set(cell, &Primitive { density, velocity, pressure });
+        }
+        let begin = flow.content();
+        for _ in 0..60 {
+            let dt = flow.stable_dt(1.5).unwrap();
+            flow.step(dt).unwrap();
+            assert!(finite(&flow));
+        }
+        let (end, change) = (flow.content(), flow.total.floor_change);
+        let grown = |a: f64, b: f64, booked: f64| (b - a - booked).abs() < 1e-11 * a;
+        assert!(
+            grown(begin.energy, end.energy, change.energy),
+            "Mach {mach} seed {seed}: {begin:?} {end:?} {change:?}"
+        );
+        assert!(
+            grown(begin.density, end.density, change.density),
+            "Mach {mach} seed {seed}: {begin:?} {end:?} {change:?}"
+        );
+        floors += flow.total.floored;
+    }
+    assert!(floors > 0, "no floor was visited");
 }

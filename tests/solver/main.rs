@@ -1,9 +1,12 @@
 //! Tests of the PDR Euler kernel: invariances to the bit, conservation, convergence, extremes, reference cases.
 
 mod balance;
+mod contracts;
 mod convergence;
 mod extremes;
+mod inclined;
 mod invariance;
 mod reference;
 mod stress;
+mod throat;
 mod walls;

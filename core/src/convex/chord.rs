@@ -5,10 +5,10 @@
 //! shrunk by it lies inside the true one. The quadratic forms below are arranged for that: each term is rounded relative to a
 //! length of the body, none by cancellation of squares.
 
-use crate::convex::exact::{Contact, settle};
-pub use crate::convex::shape::Plane;
-use crate::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Frame, OrientedBox, Sphere, normalized};
-use crate::convex::support::{ScalarOf, Support, Transformed};
+use crate::convex::exact::{Contact, contact};
+pub use crate::convex::shape::FacetPlane;
+use crate::convex::shape::{AxisFrame, Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere};
+use crate::convex::support::{ScalarOf, Support, Transformed, normalized};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
@@ -16,14 +16,14 @@ use crate::number::real::{Real, Vector};
 pub type Chord<V> = [<V as Vector>::Scalar; 2];
 
 /// A convex body that knows its chords.
-pub trait Convex: Support {
+pub trait Chords: Support {
     /// How many flat sides it has.
-    fn facets(&self) -> usize {
+    fn facet_count(&self) -> usize {
         0
     }
 
-    /// A flat side, by an index below [`Convex::facets`].
-    fn facet(&self, index: usize) -> Plane<Self::Vector>;
+    /// A flat side, by an index below [`Chords::facet_count`].
+    fn facet(&self, index: usize) -> FacetPlane<Self::Vector>;
 
     /// A box around the part of the surface that lies in a facet, if it is known.
     fn facet_bounds(&self, index: usize) -> Option<Aabb<Self::Vector>> {
@@ -37,7 +37,7 @@ pub trait Convex: Support {
     }
 
     /// How far a point is from the surface, negative inside the body: two bounds, but for rounding.
-    fn height(&self, point: Self::Vector) -> [ScalarOf<Self>; 2] {
+    fn signed_distance(&self, point: Self::Vector) -> [ScalarOf<Self>; 2] {
         let _ = point;
         endless()
     }
@@ -55,7 +55,7 @@ pub trait Convex: Support {
     }
 
     /// The parameters `t` for which `origin + t direction` lies in the body grown by `grow`, none if it misses. `near` lists the facets
-    /// that matter where the caller looks; of a body that [is no polytope](Convex::is_polytope) all matter.
+    /// that matter where the caller looks; of a body that [is no polytope](Chords::is_polytope) all matter.
     fn chord(
         &self,
         origin: Self::Vector,
@@ -65,7 +65,7 @@ pub trait Convex: Support {
     ) -> Option<Chord<Self::Vector>>;
 
     /// How it lies to a box with volume, decided exactly; nothing if it cannot be.
-    fn settled(&self, cell: &Aabb<Self::Vector>) -> Option<Contact> {
+    fn exact_contact(&self, cell: &Aabb<Self::Vector>) -> Option<Contact> {
         let _ = cell;
         None
     }
@@ -82,7 +82,7 @@ pub trait Convex: Support {
             min[axis] = self.farthest(-along).point.to_array()[axis] - room;
             max[axis] = self.farthest(along).point.to_array()[axis] + room;
         }
-        for plane in (0..self.facets()).map(|i| self.facet(i)).filter(|p| p.exact) {
+        for plane in (0..self.facet_count()).map(|i| self.facet(i)).filter(|p| p.exact) {
             for (axis, n) in plane.normal.to_array().into_iter().enumerate() {
                 if n > zero {
                     max[axis] = plane.offset;
@@ -180,8 +180,8 @@ fn moved<R: Real>(t: [R; 2], by: R) -> [R; 2] {
 }
 
 /// No flat side.
-fn no_facet<V: Vector>() -> Plane<V> {
-    Plane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false }
+fn no_facet<V: Vector>() -> FacetPlane<V> {
+    FacetPlane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false }
 }
 
 #[inline(always)]
@@ -198,8 +198,8 @@ fn ball<V: Vector>(center: V, radius: V::Scalar, origin: V, direction: V) -> Opt
     Some([nearest - half, nearest + half])
 }
 
-impl<V: Vector> Convex for Sphere<V> {
-    fn facet(&self, _: usize) -> Plane<V> {
+impl<V: Vector> Chords for Sphere<V> {
+    fn facet(&self, _: usize) -> FacetPlane<V> {
         no_facet()
     }
     #[inline(always)]
@@ -207,7 +207,7 @@ impl<V: Vector> Convex for Sphere<V> {
         ball(self.center, self.radius + grow, origin, direction)
     }
     #[inline(always)]
-    fn height(&self, point: V) -> [V::Scalar; 2] {
+    fn signed_distance(&self, point: V) -> [V::Scalar; 2] {
         [length(point - self.center) - self.radius; 2]
     }
     #[inline(always)]
@@ -233,8 +233,8 @@ fn divided<V: Vector>(a: V, b: V) -> V {
     V::new(a.x() / b.x(), a.y() / b.y(), a.z() / b.z())
 }
 
-impl<V: Vector> Convex for Ellipsoid<V> {
-    fn facet(&self, _: usize) -> Plane<V> {
+impl<V: Vector> Chords for Ellipsoid<V> {
+    fn facet(&self, _: usize) -> FacetPlane<V> {
         no_facet()
     }
     #[inline(always)]
@@ -247,7 +247,7 @@ impl<V: Vector> Convex for Ellipsoid<V> {
     }
 }
 
-impl<V: Vector> Frame<V> {
+impl<V: Vector> AxisFrame<V> {
     /// The components of a vector across the axis.
     #[inline(always)]
     fn lateral(&self, v: V) -> V {
@@ -264,12 +264,12 @@ impl<V: Vector> Frame<V> {
     }
 }
 
-impl<V: Vector> Convex for Cylinder<V> {
-    fn facets(&self) -> usize {
+impl<V: Vector> Chords for Cylinder<V> {
+    fn facet_count(&self) -> usize {
         2
     }
     #[inline(always)]
-    fn facet(&self, index: usize) -> Plane<V> {
+    fn facet(&self, index: usize) -> FacetPlane<V> {
         self.0.ends[index & 1]
     }
     #[inline(always)]
@@ -278,7 +278,7 @@ impl<V: Vector> Convex for Cylinder<V> {
         self.0.ends.iter().all(|end| end.clip(origin, direction, grow, &mut t)).then_some(t)
     }
     #[inline(always)]
-    fn height(&self, point: V) -> [V::Scalar; 2] {
+    fn signed_distance(&self, point: V) -> [V::Scalar; 2] {
         let zero = V::Scalar::ZERO;
         let [down, up] = self.0.ends.map(|end| end.normal.dot(point) - end.offset);
         let (along, across) = (down.max(up), length(self.0.lateral(point - self.0.base)) - self.0.radius);
@@ -286,7 +286,7 @@ impl<V: Vector> Convex for Cylinder<V> {
     }
     #[inline(always)]
     fn nearest(&self, point: V) -> Option<V> {
-        let Frame { base, across: [u1, u2], height, radius, ends: [_, top], .. } = self.0;
+        let AxisFrame { base, across: [u1, u2], height, radius, ends: [_, top], .. } = self.0;
         let flat = out_to(self.0.lateral(point - base), radius);
         let along = top.normal.dot(point - base).max(V::Scalar::ZERO).min(height);
         Some(base + top.normal * along + (u1 * flat.x() + u2 * flat.y()))
@@ -314,13 +314,13 @@ impl<V: Vector> Capsule<V> {
         let (at, p) = beside(origin, direction, self.center());
         let mut t = moved(within(across(p - self.from), across(direction), self.radius + grow)?, at);
         let ends = [(-unit, self.from), (unit, self.to)];
-        let plane = |(normal, end): (V, V)| Plane { normal, offset: normal.dot(end), exact: false };
+        let plane = |(normal, end): (V, V)| FacetPlane { normal, offset: normal.dot(end), exact: false };
         ends.into_iter().all(|end| plane(end).clip(origin, direction, grow, &mut t)).then_some(t)
     }
 }
 
-impl<V: Vector> Convex for Capsule<V> {
-    fn facet(&self, _: usize) -> Plane<V> {
+impl<V: Vector> Chords for Capsule<V> {
+    fn facet(&self, _: usize) -> FacetPlane<V> {
         no_facet()
     }
     #[inline(always)]
@@ -330,7 +330,7 @@ impl<V: Vector> Convex for Capsule<V> {
         balls.into_iter().chain([self.middle(origin, direction, grow)]).flatten().reduce(join)
     }
     #[inline(always)]
-    fn height(&self, point: V) -> [V::Scalar; 2] {
+    fn signed_distance(&self, point: V) -> [V::Scalar; 2] {
         [length(self.off_core(point)) - self.radius; 2]
     }
     #[inline(always)]
@@ -340,17 +340,17 @@ impl<V: Vector> Convex for Capsule<V> {
     }
 }
 
-impl<V: Vector> Convex for Cone<V> {
-    fn facets(&self) -> usize {
+impl<V: Vector> Chords for Cone<V> {
+    fn facet_count(&self) -> usize {
         1
     }
     #[inline(always)]
-    fn facet(&self, _: usize) -> Plane<V> {
+    fn facet(&self, _: usize) -> FacetPlane<V> {
         self.0.ends[0]
     }
     #[inline(always)]
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
-        let Frame { base, top, across: [u1, u2], radius, .. } = self.0;
+        let AxisFrame { base, top, across: [u1, u2], radius, .. } = self.0;
         let (at, p) = beside(origin, direction, (base + top) * V::Scalar::HALF);
         let axis = u1.cross(u2);
         let slope = radius / (top - base).length();
@@ -361,8 +361,8 @@ impl<V: Vector> Convex for Cone<V> {
         self.0.ends[0].clip(origin, direction, grow, &mut t).then_some(t)
     }
     #[inline(always)]
-    fn height(&self, point: V) -> [V::Scalar; 2] {
-        let Frame { ends: [base, top], radius, height, .. } = self.0;
+    fn signed_distance(&self, point: V) -> [V::Scalar; 2] {
+        let AxisFrame { ends: [base, top], radius, height, .. } = self.0;
         let below = base.normal.dot(point) - base.offset;
         // Of the side, in the plane through the axis and the point.
         let (left, out) = (top.offset - top.normal.dot(point), length(self.0.lateral(point - self.0.base)));
@@ -372,15 +372,15 @@ impl<V: Vector> Convex for Cone<V> {
     }
 }
 
-impl<V: Vector> Convex for Aabb<V> {
-    fn facets(&self) -> usize {
+impl<V: Vector> Chords for Aabb<V> {
+    fn facet_count(&self) -> usize {
         6
     }
     #[inline(always)]
-    fn facet(&self, index: usize) -> Plane<V> {
+    fn facet(&self, index: usize) -> FacetPlane<V> {
         let (high, mut normal) = (index & 1 == 1, [V::Scalar::ZERO; 3]);
         normal[(index >> 1) % 3] = if high { V::Scalar::ONE } else { -V::Scalar::ONE };
-        Plane::new(V::from_array(normal), if high { self.max } else { self.min })
+        FacetPlane::new(V::from_array(normal), if high { self.max } else { self.min })
     }
     fn is_polytope(&self) -> bool {
         true
@@ -389,24 +389,24 @@ impl<V: Vector> Convex for Aabb<V> {
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, near: &[u32]) -> Option<Chord<V>> {
         through_facets(self, origin, direction, grow, near)
     }
-    fn settled(&self, cell: &Aabb<V>) -> Option<Contact> {
-        settle(cell, self, None).ok()
+    fn exact_contact(&self, cell: &Aabb<V>) -> Option<Contact> {
+        contact(cell, self, None).ok()
     }
 }
 
-impl<V: Vector> Convex for OrientedBox<V> {
-    fn facets(&self) -> usize {
+impl<V: Vector> Chords for OrientedBox<V> {
+    fn facet_count(&self) -> usize {
         6
     }
     #[inline(always)]
-    fn facet(&self, index: usize) -> Plane<V> {
+    fn facet(&self, index: usize) -> FacetPlane<V> {
         let axis = (index >> 1) % 3;
         let [out, u, v] = [0, 1, 2].map(|i| self.half_axes[(axis + i) % 3]);
         let normal = u.cross(v);
         let outward = if (normal.dot(out) > V::Scalar::ZERO) == (index & 1 == 1) { normal } else { -normal };
-        let plane = Plane::new(outward, self.support(outward, 0).point);
+        let plane = FacetPlane::new(outward, self.support(outward, 0).point);
         // Its corners are rounded, even if its axes are not.
-        Plane { exact: false, ..plane }
+        FacetPlane { exact: false, ..plane }
     }
     fn is_polytope(&self) -> bool {
         true
@@ -419,7 +419,7 @@ impl<V: Vector> Convex for OrientedBox<V> {
 
 /// The chord of a polytope.
 #[inline(always)]
-pub(crate) fn through_facets<B: Convex>(
+pub(crate) fn through_facets<B: Chords>(
     body: &B,
     origin: B::Vector,
     direction: B::Vector,
@@ -435,17 +435,17 @@ pub(crate) fn through_facets<B: Convex>(
     Some(t)
 }
 
-impl<S: Convex> Convex for Transformed<S> {
-    fn facets(&self) -> usize {
-        self.shape.facets()
+impl<S: Chords> Chords for Transformed<S> {
+    fn facet_count(&self) -> usize {
+        self.shape.facet_count()
     }
-    fn facet(&self, index: usize) -> Plane<S::Vector> {
+    fn facet(&self, index: usize) -> FacetPlane<S::Vector> {
         let plane = self.shape.facet(index);
         let [n1, n2, n3] = plane.normal.to_array();
         let [x, y, z] = self.inverse();
         let normal = x * n1 + y * n2 + z * n3;
         let inner = normalized(normal);
-        Plane { normal: inner, offset: inner.dot(self.farthest(inner).point) + self.radius(), exact: false }
+        FacetPlane { normal: inner, offset: inner.dot(self.farthest(inner).point) + self.radius(), exact: false }
     }
     fn is_polytope(&self) -> bool {
         self.shape.is_polytope()

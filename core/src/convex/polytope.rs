@@ -6,10 +6,10 @@
 //! In a box that holds an inner point of the body, only facets whose surface reaches the box matter: from that point a segment to a point
 //! beyond another facet's plane, which stays in the box, leaves the body through one of them.
 
-use crate::convex::chord::{Chord, Convex, Plane, rounding, through_facets};
-use crate::convex::exact::{Contact, settle};
+use crate::convex::chord::{Chord, Chords, FacetPlane, rounding, through_facets};
+use crate::convex::exact::{Contact, contact};
 use crate::convex::shape::Hull;
-use crate::convex::support::{Support, SupportPoint};
+use crate::convex::support::{Support, delegate_support};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
@@ -17,7 +17,7 @@ use crate::number::real::{Real, Vector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet<V: Vector> {
     /// Its plane.
-    pub plane: Plane<V>,
+    pub plane: FacetPlane<V>,
     /// Around the surface in it.
     pub bounds: Aabb<V>,
 }
@@ -25,7 +25,7 @@ pub struct Facet<V: Vector> {
 impl<V: Vector> Facet<V> {
     /// No plane and no surface, to fill memory.
     pub fn none() -> Self {
-        let plane = Plane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
+        let plane = FacetPlane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
         Facet { plane, bounds: Aabb::empty() }
     }
 
@@ -44,8 +44,9 @@ pub struct Polytope<'a, V: Vector> {
 
 /// Why some triangles are not the surface of a convex body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NotConvex {
-    /// No triangles, or a coordinate is not finite.
+    /// No triangles, no volume, or a coordinate is not finite.
     NoBody,
     /// The slice for the facets is too short.
     Full,
@@ -61,6 +62,21 @@ pub enum NotConvex {
     },
 }
 
+impl core::fmt::Display for NotConvex {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            NotConvex::NoBody => f.write_str("no body: no triangles, no volume, or a coordinate that is not finite"),
+            NotConvex::Full => f.write_str("the slice for the facets is too short"),
+            NotConvex::Beyond { triangle } => write!(f, "a vertex lies beyond the plane of triangle {triangle}"),
+            NotConvex::Unknown { triangle } => {
+                write!(f, "triangle {triangle} is too thin, and lies in no plane of the others")
+            }
+        }
+    }
+}
+
+impl core::error::Error for NotConvex {}
+
 /// Finds the planes of a closed surface's triangles, outward, and certifies that the body is convex. Writes the facets into the slice and
 /// returns their number, not more than that of the triangles. `vertices` holds all corners, each at least once. Takes time in proportion to
 /// vertices times facets.
@@ -69,12 +85,12 @@ pub enum NotConvex {
 /// [`NotConvex`] tells the first triangle that contradicts.
 pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet<V>]) -> Result<usize, NotConvex> {
     let hull = Hull::new(vertices);
-    // What is said later of points inside all facets has roundings of its own.
+    // A quarter of `rounding`: the subdivision spends the rest when it tests points against these planes.
     let room = rounding(&hull) * V::Scalar::from_f64(0.25);
     if triangles.is_empty() || !room.is_finite() {
         return Err(NotConvex::NoBody);
     }
-    let lies_in = |plane: &Plane<V>, corners: &[V; 3]| {
+    let lies_in = |plane: &FacetPlane<V>, corners: &[V; 3]| {
         let limit = if plane.exact { V::Scalar::ZERO } else { room };
         corners.iter().all(|c| (c.dot(plane.normal) - plane.offset).abs() <= limit)
     };
@@ -91,13 +107,13 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet
             facet.join(corners);
             continue;
         }
-        let plane = Plane::new(normal, a);
+        let plane = FacetPlane::new(normal, a);
         let highest = hull.support(plane.normal, 0).point.dot(plane.normal);
-        let plane = Plane { offset: highest, ..plane };
+        let plane = FacetPlane { offset: highest, ..plane };
         if lies_in(&plane, corners) {
             *into.get_mut(count).ok_or(NotConvex::Full)? = Facet { plane, bounds: Aabb::around(corners) };
             count += 1;
-        } else if lies_in(&Plane::new(normal, a), corners) {
+        } else if lies_in(&FacetPlane::new(normal, a), corners) {
             return Err(NotConvex::Beyond { triangle });
         }
     }
@@ -105,7 +121,7 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet
     for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
-        if normal == V::ZERO || !lies_in(&Plane::new(normal, a), corners) {
+        if normal == V::ZERO || !lies_in(&FacetPlane::new(normal, a), corners) {
             let facet = known.iter_mut().find(|f| lies_in(&f.plane, corners));
             facet.ok_or(NotConvex::Unknown { triangle })?.join(corners);
         }
@@ -128,31 +144,15 @@ impl<'a, V: Vector> Polytope<'a, V> {
 }
 
 impl<V: Vector> Support for Polytope<'_, V> {
-    type Vector = V;
-    #[inline(always)]
-    fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
-        self.hull.support(direction, start)
-    }
-    #[inline(always)]
-    fn farther(&self, direction: V, found: u32) -> Option<SupportPoint<V>> {
-        self.hull.farther(direction, found)
-    }
-    #[inline(always)]
-    fn center(&self) -> V {
-        self.hull.center()
-    }
-    #[inline(always)]
-    fn extent(&self) -> V::Scalar {
-        self.hull.extent()
-    }
+    delegate_support!(self, V => self.hull);
 }
 
-impl<V: Vector> Convex for Polytope<'_, V> {
-    fn facets(&self) -> usize {
+impl<V: Vector> Chords for Polytope<'_, V> {
+    fn facet_count(&self) -> usize {
         self.facets.len()
     }
     #[inline(always)]
-    fn facet(&self, index: usize) -> Plane<V> {
+    fn facet(&self, index: usize) -> FacetPlane<V> {
         self.facets.get(index).map_or(Facet::none().plane, |f| f.plane)
     }
     #[inline(always)]
@@ -173,7 +173,7 @@ impl<V: Vector> Convex for Polytope<'_, V> {
     fn bounds(&self) -> Aabb<V> {
         self.bounds
     }
-    fn settled(&self, cell: &Aabb<V>) -> Option<Contact> {
-        settle(cell, &self.hull, None).ok()
+    fn exact_contact(&self, cell: &Aabb<V>) -> Option<Contact> {
+        contact(cell, &self.hull, None).ok()
     }
 }

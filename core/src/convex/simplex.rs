@@ -16,7 +16,7 @@ pub struct Simplex<V> {
 
 /// Where the origin lies with respect to a tetrahedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Side {
+pub(crate) enum OriginSide {
     /// Strictly inside, proved.
     Inside,
     /// Beyond the face opposite to this vertex, or too close to it to tell.
@@ -35,7 +35,7 @@ fn cross_abs<V: Vector>(a: V, b: V) -> V {
 
 /// The origin against a tetrahedron of differences, each component off by at most `slack` (besides one rounding).
 #[inline(always)]
-pub(crate) fn side<V: Vector>(w: [V; 4], slack: V::Scalar) -> Side {
+pub(crate) fn side<V: Vector>(w: [V; 4], slack: V::Scalar) -> OriginSide {
     let [a, b, c, d] = w;
     let real = V::Scalar::from_f64;
     let zero = V::Scalar::ZERO;
@@ -52,18 +52,18 @@ pub(crate) fn side<V: Vector>(w: [V; 4], slack: V::Scalar) -> Side {
         let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs()).norm_max() + slack;
         let coarse = real(6.0) * (rounding * size + real(4.0) * slack) * size * size;
         if least > coarse + V::Scalar::UNDERFLOW {
-            return Side::Inside;
+            return OriginSide::Inside;
         }
         if surely_inside(w, weight, slack) {
-            return Side::Inside;
+            return OriginSide::Inside;
         }
     }
     if weight[1] <= weight[2] && weight[1] <= weight[3] {
-        Side::Beyond(1)
+        OriginSide::Beyond(1)
     } else if weight[2] <= weight[3] {
-        Side::Beyond(2)
+        OriginSide::Beyond(2)
     } else {
-        Side::Beyond(3)
+        OriginSide::Beyond(3)
     }
 }
 
@@ -110,13 +110,13 @@ impl<V: Vector> Simplex<V> {
         let factor = V::Scalar::ONE / unit;
         let lifted = |x: V::Scalar| x * lift * factor;
         let two = V::Scalar::TWO;
-        side(w.map(|w| w * lift * factor), lifted(two * slack)) == Side::Inside
+        side(w.map(|w| w * lift * factor), lifted(two * slack)) == OriginSide::Inside
     }
 }
 
 /// The point of a simplex nearest to the origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Nearest<V: Vector> {
+pub(crate) struct NearestPoint<V: Vector> {
     /// The point.
     pub point: V,
     /// Its barycentric weights, not negative, of the first `count` vertices in the new order.
@@ -127,13 +127,13 @@ pub(crate) struct Nearest<V: Vector> {
     pub order: [usize; 4],
 }
 
-impl<V: Vector> Nearest<V> {
+impl<V: Vector> NearestPoint<V> {
     fn closer(self, other: Self) -> Self {
         if other.point.dot(other.point) < self.point.dot(self.point) { other } else { self }
     }
 }
 
-fn nearest_of_segment<V: Vector>(w: [V; 4], i: usize, j: usize) -> Nearest<V> {
+fn nearest_of_segment<V: Vector>(w: [V; 4], i: usize, j: usize) -> NearestPoint<V> {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
     let (a, b) = (w[i & 3], w[j & 3]);
     let e = b - a;
@@ -144,18 +144,18 @@ fn nearest_of_segment<V: Vector>(w: [V; 4], i: usize, j: usize) -> Nearest<V> {
     };
     let [k, l] = rest(i, j);
     if !(from_a > zero) || !(sq > V::Scalar::UNDERFLOW) {
-        return Nearest { point: a, weights: [one, zero, zero, zero], count: 1, order: [i, j, k, l] };
+        return NearestPoint { point: a, weights: [one, zero, zero, zero], count: 1, order: [i, j, k, l] };
     }
     if !(from_b > zero) {
-        return Nearest { point: b, weights: [one, zero, zero, zero], count: 1, order: [j, i, k, l] };
+        return NearestPoint { point: b, weights: [one, zero, zero, zero], count: 1, order: [j, i, k, l] };
     }
     let total = from_a + from_b;
     // Through the cross product: the part across the line keeps its digits when the line is long and passes close by.
     let point = e.cross(a.cross(e)) * (one / sq);
-    Nearest { point, weights: [from_b / total, from_a / total, zero, zero], count: 2, order: [i, j, k, l] }
+    NearestPoint { point, weights: [from_b / total, from_a / total, zero, zero], count: 2, order: [i, j, k, l] }
 }
 
-fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> Nearest<V> {
+fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> NearestPoint<V> {
     let zero = V::Scalar::ZERO;
     let (a, b, c) = (w[i & 3], w[j & 3], w[k & 3]);
     let normal = (b - a).cross(c - a);
@@ -167,7 +167,7 @@ fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> Ne
         let weights = weights.map(|weight| weight * inv);
         let height = normal.dot(a) * weights[0] + normal.dot(b) * weights[1] + normal.dot(c) * weights[2];
         let [weight_a, weight_b, weight_c] = weights;
-        return Nearest {
+        return NearestPoint {
             point: normal * (height / sq),
             weights: [weight_a, weight_b, weight_c, zero],
             count: 3,
@@ -177,7 +177,7 @@ fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> Ne
     // The nearest edge is one that the origin lies beyond. With a degenerate triangle it may be any.
     let sides = [(1, 2), (0, 2), (0, 1)].map(|(p, q)| ([i, j, k][p], [i, j, k][q]));
     let any = !(sq > V::Scalar::UNDERFLOW) || beyond == [false; 3];
-    let mut nearest: Option<Nearest<V>> = None;
+    let mut nearest: Option<NearestPoint<V>> = None;
     for ((p, q), beyond) in sides.into_iter().zip(beyond) {
         if beyond || any {
             let found = nearest_of_segment(w, p, q);
@@ -189,11 +189,11 @@ fn nearest_of_triangle<V: Vector>(w: [V; 4], i: usize, j: usize, k: usize) -> Ne
 
 /// The point nearest to the origin among the first `count` vertices, the newest first. Of four, the origin is taken to be outside.
 #[inline(always)]
-pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> Nearest<V> {
+pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> NearestPoint<V> {
     match count {
         0 | 1 => {
             let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-            Nearest { point: w[0], weights: [one, zero, zero, zero], count: 1, order: [0, 1, 2, 3] }
+            NearestPoint { point: w[0], weights: [one, zero, zero, zero], count: 1, order: [0, 1, 2, 3] }
         }
         2 => nearest_of_segment(w, 0, 1),
         3 => nearest_of_triangle(w, 0, 1, 2),
@@ -202,7 +202,7 @@ pub(crate) fn nearest<V: Vector>(w: [V; 4], count: usize) -> Nearest<V> {
             let (ab, ac, ad) = (w[1] - w[0], w[2] - w[0], w[3] - w[0]);
             // Faces at the newest vertex; each is seen if the origin and the vertex it lacks are on different sides.
             let faces = [(ab.cross(ac), ad, [0, 1, 2]), (ab.cross(ad), ac, [0, 1, 3]), (ac.cross(ad), ab, [0, 2, 3])];
-            let mut nearest: Option<Nearest<V>> = None;
+            let mut nearest: Option<NearestPoint<V>> = None;
             for (normal, other, [i, j, k]) in faces {
                 let (origin, other) = (-normal.dot(w[0]), normal.dot(other));
                 if origin * other <= zero {

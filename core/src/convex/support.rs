@@ -19,6 +19,12 @@ pub struct SupportPoint<V> {
     pub index: u32,
 }
 
+/// The point of a body that has no numbered vertices.
+#[inline(always)]
+pub(crate) fn only<V>(point: V) -> SupportPoint<V> {
+    SupportPoint { point, index: 0 }
+}
+
 /// A convex body: a core, given by its support mapping, thickened by a radius.
 ///
 /// For any finite direction `d` that is not zero, with `p` the point of the core that [`Support::farthest`] returns:
@@ -64,33 +70,42 @@ pub trait Support {
     }
 }
 
+/// The methods of [`Support`] for a body that wraps another one: `delegate_support!(self, V => self.inner)` inside its `impl`.
+/// [`Support::ROUNDED`] is not forwarded.
+macro_rules! delegate_support {
+    ($self:ident, $vector:ty => $inner:expr) => {
+        type Vector = $vector;
+        #[inline(always)]
+        fn support(&$self, direction: $vector, start: u32) -> $crate::convex::support::SupportPoint<$vector> {
+            $inner.support(direction, start)
+        }
+        #[inline(always)]
+        fn farther(&$self, direction: $vector, found: u32) -> Option<$crate::convex::support::SupportPoint<$vector>> {
+            $inner.farther(direction, found)
+        }
+        #[inline(always)]
+        fn center(&$self) -> $vector {
+            $inner.center()
+        }
+        #[inline(always)]
+        fn extent(&$self) -> <$vector as $crate::number::real::Vector>::Scalar {
+            $inner.extent()
+        }
+        #[inline(always)]
+        fn radius(&$self) -> <$vector as $crate::number::real::Vector>::Scalar {
+            $inner.radius()
+        }
+        #[inline(always)]
+        fn slack(&$self) -> <$vector as $crate::number::real::Vector>::Scalar {
+            $inner.slack()
+        }
+    };
+}
+pub(crate) use delegate_support;
+
 impl<S: Support> Support for &S {
-    type Vector = S::Vector;
     const ROUNDED: bool = S::ROUNDED;
-    #[inline(always)]
-    fn support(&self, direction: S::Vector, start: u32) -> SupportPoint<S::Vector> {
-        (**self).support(direction, start)
-    }
-    #[inline(always)]
-    fn farther(&self, direction: S::Vector, found: u32) -> Option<SupportPoint<S::Vector>> {
-        (**self).farther(direction, found)
-    }
-    #[inline(always)]
-    fn center(&self) -> S::Vector {
-        (**self).center()
-    }
-    #[inline(always)]
-    fn extent(&self) -> ScalarOf<S> {
-        (**self).extent()
-    }
-    #[inline(always)]
-    fn radius(&self) -> ScalarOf<S> {
-        (**self).radius()
-    }
-    #[inline(always)]
-    fn slack(&self) -> ScalarOf<S> {
-        (**self).slack()
-    }
+    delegate_support!(self, S::Vector => (**self));
 }
 
 /// Largest absolute component; NaN if any component is NaN or infinite.
@@ -266,4 +281,14 @@ pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
     let direction = if subnormal { direction * (V::Scalar::ONE / V::Scalar::EPSILON) } else { direction };
     let unit = direction.norm_max().binade();
     if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
+}
+
+/// A vector divided by its length, whatever its size; zero for zero and for vectors that are not finite.
+pub(crate) fn normalized<V: Vector>(v: V) -> V {
+    let unit = v.norm_max().binade();
+    if !(unit > V::Scalar::ZERO) || !unit.is_finite() {
+        return V::ZERO;
+    }
+    let v = v * (V::Scalar::ONE / unit);
+    v * (V::Scalar::ONE / v.dot(v).sqrt())
 }

@@ -38,7 +38,7 @@ pub enum Boundary<R, const D: usize> {
 impl<R: Real, const D: usize> Boundary<R, D> {
     /// The ghost state beside an inner state, both in the frame of axis `d`; `low` is the low side of the axis. Periodic
     /// sides have no ghost of their own: the inner state comes back.
-    pub(crate) fn ghost(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
+    pub(crate) fn ghost_face(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
         let outward = |f: &dyn Fn(Primitive<R, D>) -> Primitive<R, D>| {
             let turn = |mut w: Primitive<R, D>| {
                 if low {
@@ -66,7 +66,7 @@ impl<R: Real, const D: usize> Boundary<R, D> {
     /// The same for a state that is not turned.
     pub(crate) fn ghost_cell(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
         let turned = Primitive { velocity: rotate(inner.velocity, d), ..*inner };
-        let ghost = self.ghost(&turned, d, low, gas);
+        let ghost = self.ghost_face(&turned, d, low, gas);
         Primitive { velocity: rotate_back(ghost.velocity, d), ..ghost }
     }
 

@@ -1,121 +1,135 @@
-//! The whole step on one thread, and what happens where a new state leaves the physical set: first order around it, at last
-//! a floor.
+//! What happens where a new state leaves the physical set: first order around it, at last a floor.
 
-use crate::flow::state::{Conserved, Fields, FieldsMut, Gas, sum};
-use crate::flow::step::{Error, Problem};
+use crate::flow::error::{Error, fits};
+use crate::flow::problem::Problem;
+use crate::flow::state::{Conserved, Fields, FieldsMut, Gas, Primitive, sum};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
+
+/// Share of the density and pressure around a cell that a floor leaves in it at least. Smaller: hotter or emptier cells, shorter
+/// steps.
+const FLOOR_SHARE: f64 = 1e-3;
 
 /// Rounds of the first-order fallback: the marked region grows by one cell each.
 pub const FALLBACKS: usize = 4;
 
 impl<R: Real, const D: usize> Problem<'_, R, D> {
-    /// Positive density and pressure, all finite.
-    pub fn is_physical(&self, u: &Conserved<R, D>) -> bool {
-        let w = self.gas.primitive(u);
-        let finite = u.momentum.iter().all(|m| m.is_finite()) && u.density.is_finite() && w.pressure.is_finite();
-        finite && u.density > R::ZERO && w.pressure > R::ZERO
-    }
-
-    /// Marks every unphysical cell of a new field and its neighbours for a first-order step; returns how many marks are new.
-    pub fn mark_troubled(&self, new: &Fields<'_, R, D>, first_order: &mut [u8]) -> usize {
-        let cells = self.mesh.cells();
-        let periodic = self.periodic();
-        let mut added = 0;
-        for cell in 0..self.mesh.len() {
-            if self.is_physical(&new.get(cell)) {
-                continue;
-            }
-            let at = self.mesh.coordinates(cell);
-            let mut set = |i: usize| {
-                if let Some(mark) = first_order.get_mut(i) {
-                    added += usize::from(*mark == 0);
-                    *mark = 1;
-                }
-            };
-            set(cell);
-            for d in 0..D {
-                let mut next = at;
-                if at[d] > 0 || periodic[d] {
-                    next[d] = (at[d] + cells[d] - 1) % cells[d];
-                    set(self.mesh.index(next));
-                }
-                if at[d] + 1 < cells[d] || periodic[d] {
-                    next[d] = (at[d] + 1) % cells[d];
-                    set(self.mesh.index(next));
+    /// The cells beside a cell: the axis, whether on its high side, and the flat index of each.
+    fn each_beside(&self, cell: usize, mut f: impl FnMut(usize, bool, usize)) {
+        let (cells, periodic, at) = (self.mesh.cells(), self.periodic(), self.mesh.coordinates(cell));
+        for d in 0..D {
+            for (high, edge, step) in [(false, 0, cells[d] - 1), (true, cells[d] - 1, 1)] {
+                if at[d] != edge || periodic[d] {
+                    let mut next = at;
+                    next[d] = (at[d] + step) % cells[d];
+                    f(d, high, self.mesh.index(next));
                 }
             }
         }
-        added
     }
 
-    /// The last resort: gives every unphysical cell a positive state scaled to its old one. Returns how many.
-    pub fn apply_floors(&self, old: &Fields<'_, R, D>, new: &mut FieldsMut<'_, R, D>, report: &mut Report<R, D>) {
-        // Share of the old density or pressure that a floor keeps. Smaller: hotter or emptier cells, shorter steps.
-        let share = R::from_f64(1e-3);
+    /// Marks every unphysical cell of a new field and its neighbours for a first-order step; returns how many marks are new.
+    ///
+    /// # Errors
+    /// A slice does not fit the mesh.
+    pub fn mark_troubled(&self, new: &Fields<'_, R, D>, first_order: &mut [u8]) -> Result<usize, Error> {
+        self.check_fields(new)?;
+        fits(self.mesh.len(), first_order.len())?;
+        let mut added = 0;
+        let mut set = |i: usize| {
+            let mark = &mut first_order[i];
+            added += usize::from(*mark == 0);
+            *mark = 1;
+        };
+        for cell in 0..self.mesh.len() {
+            if !self.is_physical(&new.get(cell)) {
+                set(cell);
+                self.each_beside(cell, |_, _, beside| set(beside));
+            }
+        }
+        Ok(added)
+    }
+
+    /// Mean density and pressure of the cell and of those behind its open faces.
+    fn surroundings(&self, field: &Fields<'_, R, D>, cell: usize) -> (R, R) {
+        let at = self.mesh.coordinates(cell);
+        let (mut density, mut pressure, mut count) = (R::ZERO, R::ZERO, R::ZERO);
+        let mut add = |cell: usize| {
+            let w = self.gas.primitive(&field.get(cell));
+            density += w.density;
+            pressure += w.pressure;
+            count += R::ONE;
+        };
+        add(cell);
+        self.each_beside(cell, |d, high, beside| {
+            let face = self.mesh.face(d, at) + if high { self.mesh.face_stride(d) } else { 0 };
+            if self.porosity.is_none_or(|p| p.faces[d][face] > R::ZERO) {
+                add(beside);
+            }
+        });
+        (density / count, pressure / count)
+    }
+
+    /// The state that takes the place of an unphysical one, `u`, in a cell where there was `before`.
+    ///
+    /// Density and pressure become at least a share of those around. Mass and energy are kept where they are more: if the kinetic
+    /// energy does not leave enough of the total, the gas loses speed rather than winning energy.
+    fn floored(&self, u: &Conserved<R, D>, before: &Primitive<R, D>, (density, pressure): (R, R)) -> Conserved<R, D> {
+        let least = |around: R| R::larger(R::from_f64(FLOOR_SHARE) * around, R::MIN_POSITIVE);
+        // What fits the scalar with room for what a step multiplies it by.
+        let fits = |x: R| x.abs() < R::MAX * R::EPSILON;
+        let kinetic_of = |rho: R, v: [R; D]| R::HALF * rho * sum::<R, D>(v.map(|v| v * v));
+        let sound =
+            u.density > R::ZERO && fits(u.density) && fits(kinetic_of(u.density, u.momentum.map(|m| m / u.density)));
+        let density = if sound { R::larger(u.density, least(density)) } else { least(density) };
+        let velocity = if sound { u.momentum.map(|m| m / density) } else { before.velocity };
+        let Gas::Ideal { gamma } = self.gas else {
+            return self.gas.conserved(&Primitive { density, velocity, pressure });
+        };
+        let total = if fits(u.energy) { R::larger(u.energy, R::ZERO) } else { R::ZERO };
+        // Above the rounding of the total energy that it is a part of.
+        let internal = R::larger(least(pressure) / (gamma - R::ONE), R::from_f64(64.0) * R::EPSILON * total);
+        let energy = R::larger(total, internal);
+        let (kinetic, most) = (kinetic_of(density, velocity), energy - internal);
+        let slower = if kinetic > most { (most / kinetic).sqrt() } else { R::ONE };
+        Conserved { density, momentum: velocity.map(|v| density * (slower * v)), energy }
+    }
+
+    /// The last resort: gives every unphysical cell a positive state, scaled to the old states around it. Adds to the report how many
+    /// these are, and what of mass, momentum and energy they changed.
+    ///
+    /// # Errors
+    /// A slice does not fit the mesh.
+    pub fn apply_floors(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        report: &mut Report<R, D>,
+    ) -> Result<(), Error> {
+        self.check_fields(old)?;
+        self.fits(&new.as_fields(), self.mesh.len())?;
         for cell in 0..self.mesh.len() {
             let u = new.get(cell);
             if self.is_physical(&u) {
                 continue;
             }
-            let before = self.gas.primitive(&old.get(cell));
-            // The kinetic energy must fit the scalar with room for what a step multiplies it by.
-            let kinetic = u.density * sum::<R, D>(u.momentum.map(|m| (m / u.density) * (m / u.density)));
-            let sound = u.density > R::ZERO && u.density.is_finite() && kinetic < R::MAX * R::EPSILON;
-            let mut w = if sound { self.gas.primitive(&u) } else { before };
-            if !sound {
-                w.density = R::larger(before.density * share, R::MIN_POSITIVE);
-            }
-            w.pressure = match self.gas {
-                // Above the rounding of the kinetic energy it is stored with.
-                Gas::Ideal { gamma } => {
-                    let kinetic = w.density * sum::<R, D>(w.velocity.map(|u| u * u));
-                    let least = R::from_f64(64.0) * R::EPSILON * (gamma - R::ONE) * kinetic;
-                    R::larger(R::larger(before.pressure * share, least), R::MIN_POSITIVE)
-                }
-                gas => gas.pressure(w.density, R::ZERO),
-            };
-            let floored = self.gas.conserved(&w);
+            let before = old.get(cell);
+            let floored = self.floored(&u, &self.gas.primitive(&before), self.surroundings(old, cell));
             new.set(cell, &floored);
+            let open = self.porosity.map_or(R::ONE, |p| p.volume[cell]);
+            let volume = open * self.mesh.volume(self.mesh.coordinates(cell));
+            // What cannot be counted with counts as if the cell had kept its old state.
+            let change = |now: R, was: R, old: R| volume * (now - if was.is_finite() { was } else { old }).abs();
+            report.floor_change.add(&Conserved {
+                density: change(floored.density, u.density, before.density),
+                momentum: core::array::from_fn(|c| change(floored.momentum[c], u.momentum[c], before.momentum[c])),
+                energy: change(floored.energy, u.energy, before.energy),
+            });
             report.floored += 1;
+            report.floored_cell = Some(cell);
             report.rate = R::larger(self.cell_rate(&floored, cell), report.rate);
         }
         report.unphysical = 0;
-    }
-
-    /// One step on one thread: slab, merging, and, if a state came out unphysical, again with first order around it, at last
-    /// with floors. `marks` is one byte per cell of scratch. A caller with threads does the same with its own slabs.
-    ///
-    /// `old` must be physical; it is untouched, so a caller may repeat a step that had to be floored with a smaller `dt`.
-    pub fn step(
-        &self,
-        old: &Fields<'_, R, D>,
-        new: &mut FieldsMut<'_, R, D>,
-        dt: R,
-        marks: &mut [u8],
-        scratch: &mut [R],
-    ) -> Result<Report<R, D>, Error> {
-        if marks.len() != self.mesh.len() {
-            return Err(Error::ShapeMismatch { expected: self.mesh.len(), found: marks.len() });
-        }
-        let all = 0..self.mesh.cells()[D - 1];
-        let mut report = self.advance_slab(old, new, all.clone(), dt, None, scratch)?;
-        self.merge(old, new, &mut report);
-        if report.unphysical == 0 {
-            return Ok(report);
-        }
-        marks.fill(0);
-        for _ in 0..FALLBACKS {
-            if self.mark_troubled(&new.as_fields(), marks) == 0 {
-                break;
-            }
-            report = self.advance_slab(old, new, all.clone(), dt, Some(marks), scratch)?;
-            self.merge(old, new, &mut report);
-            if report.unphysical == 0 {
-                return Ok(report);
-            }
-        }
-        self.apply_floors(old, new, &mut report);
-        Ok(report)
+        Ok(())
     }
 }

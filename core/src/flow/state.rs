@@ -84,6 +84,17 @@ pub struct Conserved<R, const D: usize> {
     pub energy: R,
 }
 
+impl<R: Real, const D: usize> Conserved<R, D> {
+    /// Adds another amount.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.density += other.density;
+        self.energy += other.energy;
+        for c in 0..D {
+            self.momentum[c] += other.momentum[c];
+        }
+    }
+}
+
 /// Where the pressure comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Gas<R> {

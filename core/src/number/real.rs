@@ -167,6 +167,19 @@ pub trait Vector:
     fn norm_max(self) -> Self::Scalar {
         self.x().abs().larger(self.y().abs()).larger(self.z().abs())
     }
+    /// The unit vector along the coordinate axis that this vector has the least component of, the first of equals.
+    #[inline(always)]
+    fn least_axis(self) -> Self {
+        let [x, y, z] = self.abs().to_array();
+        let (zero, one) = (Self::Scalar::ZERO, Self::Scalar::ONE);
+        if x <= y && x <= z {
+            Self::new(one, zero, zero)
+        } else if y <= z {
+            Self::new(zero, one, zero)
+        } else {
+            Self::new(zero, zero, one)
+        }
+    }
     /// Length, free of overflow and underflow.
     fn length(self) -> Self::Scalar {
         let unit = self.norm_max().binade();

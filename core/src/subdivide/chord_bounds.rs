@@ -1,19 +1,17 @@
-//! Certified bounds of the volume that a convex body has of a box, or the area of a face, from chords.
+//! Certified bounds of a convex body's share of a box's volume, or of a face's area, from chords.
 //!
-//! Over the base of a box stand columns; lines through them leave the body at a height `h`, a concave function wherever they meet it, and
-//! enter it at a convex one. What fills the box is `h` kept within it. Over a rectangle of the base, with values `h_i` at the corners
-//! and `m` in the middle:
+//! The base of the box, one of its sides, is divided into rectangles, and a column stands on each. The line up from a point `p` of the base
+//! leaves the body at a height `h(p)`, which is a concave function of `p` wherever the line meets the body, and enters it at a convex one. The
+//! body fills a column up to the mean of `h`, clamped to the box. Over a rectangle with values `h_i` at its corners and `m` in its middle:
 //!
-//! - the triangles through the corners lie below `h`: they are spanned by inner points;
-//! - `h(p) <= 2 m - h(p')` for the opposite point `p'`, so the triangles turned over about `m` lie above it;
-//! - where neither leaves the box, the mean of `h` lies between the mean of the `h_i` and `m`, which is the mean of the body's support
-//!   plane there (the inequality of Hermite and Hadamard).
+//! - `h` is not below the two triangles through its values at the corners, as they are spanned by points of the body;
+//! - `h(p) <= 2 m - h(p')`, where `p'` is opposite to `p` about the middle; so it is not above those triangles turned over about `m`;
+//! - where neither leaves the box, the mean of `h` lies between the mean of the `h_i` and `m` (the inequality of Hermite and Hadamard).
 //!
-//! All are of second order, and piecewise linear functions kept within limits are integrated exactly.
-//!
-//! A face is the same with one dimension less.
+//! The gap between these bounds is of second order in the size of the rectangle. Means of piecewise linear functions, clamped, are exact.
+//! A face is measured the same way with one dimension less.
 
-use crate::convex::chord::{Convex, rounding};
+use crate::convex::chord::{Chords, rounding};
 use crate::convex::support::ScalarOf;
 use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
@@ -22,7 +20,7 @@ use crate::number::real::{Real, Vector};
 /// How finely to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Columns<R> {
-    /// Stop when the bounds are this close.
+    /// Bounds this close will do, as a share.
     pub enough: R,
     /// Divide each side of the base into this many parts at most; not more than [`MAX_PARTS`].
     pub parts: usize,
@@ -31,7 +29,7 @@ pub struct Columns<R> {
 /// Most parts of a side: beyond, dividing the box is better, as only part of it is hard.
 pub const MAX_PARTS: usize = 32;
 
-/// More parts than theory asks for, as a factor: the next division should be the last.
+/// How many more parts are made than the gap so far asks for, as a factor, so that the next division is the last.
 const MARGIN: f64 = 1.08;
 
 /// Rounding of the sums over columns, in units of ε: two rows of [`MAX_PARTS`] additions and some products.
@@ -39,19 +37,19 @@ const SUM_ROUNDINGS: f64 = 256.0;
 
 impl<R: Real> Columns<R> {
     /// Bounds of the share of `cell` that `body` fills; `near` lists the facets that matter in it.
-    pub fn measure<B>(&self, body: &B, cell: &Aabb<B::Vector>, near: &[u32]) -> Bounds<R>
+    pub fn share_bounds<B>(&self, body: &B, cell: &Aabb<B::Vector>, near: &[u32]) -> Bounds<R>
     where
-        B: Convex,
+        B: Chords,
         B::Vector: Vector<Scalar = R>,
     {
-        let view = View::new(body, cell, near);
-        let first = (0..3).filter(|&axis| view.hi[axis] > view.lo[axis]).map(|axis| (axis, view.along(axis, 1)));
+        let place = BoxInBody::new(body, cell, near);
+        let first = (0..3).filter(|&axis| place.hi[axis] > place.lo[axis]).map(|axis| (axis, place.along(axis, 1)));
         let closest = first.reduce(|a, b| if b.1.gap() < a.1.gap() { b } else { a });
         let Some((axis, mut best)) = closest else { return Bounds::UNKNOWN };
         let mut parts = 1;
         while best.gap() > self.enough && parts < self.parts.min(MAX_PARTS) {
             let finer_parts = if parts == 1 { 2 } else { self.wanted(best.gap(), parts) };
-            let finer = view.along(axis, finer_parts);
+            let finer = place.along(axis, finer_parts);
             // What a smooth surface would gain, with room for its rim.
             let gain = R::from_usize(parts * parts) / R::from_usize(finer_parts * finer_parts);
             let smooth = finer.gap() <= best.gap() * gain.sqrt().max(gain * R::TWO);
@@ -64,7 +62,8 @@ impl<R: Real> Columns<R> {
         best
     }
 
-    /// So many parts will do if the surface is smooth, judging by the gap of some.
+    /// How many parts a side needs for bounds that are close enough, if the gap shrinks with their square as for a smooth surface; `gap` is that of
+    /// `parts`.
     fn wanted(&self, gap: R, parts: usize) -> usize {
         let wanted = (gap / self.enough).sqrt() * R::from_usize(parts) * R::from_f64(MARGIN);
         (wanted.to_f64() as usize).saturating_add(1).max(parts + 1 + parts / 8).min(self.parts.min(MAX_PARTS))
@@ -72,7 +71,7 @@ impl<R: Real> Columns<R> {
 }
 
 /// A body in a box.
-struct View<'a, B: Convex> {
+struct BoxInBody<'a, B: Chords> {
     body: &'a B,
     near: &'a [u32],
     lo: [ScalarOf<B>; 3],
@@ -83,24 +82,28 @@ struct View<'a, B: Convex> {
     grow: ScalarOf<B>,
 }
 
-/// How far a line fills a box, from either end: from the lower side up to where it leaves the body, and from the upper side down to
-/// where it enters it. Beyond the box both go on.
+/// Where a line along an axis of the box `lo..hi` passes the body: `up` = exit − lo, `down` = hi − entry, not clamped. With L = hi − lo the length
+/// inside both is min(up, L) + min(down, L) − L, at least 0.
 #[derive(Clone, Copy)]
-struct Heights<R> {
+struct ChordHeights<R> {
     up: R,
     down: R,
 }
 
-impl<'a, B: Convex> View<'a, B> {
+impl<'a, B: Chords> BoxInBody<'a, B> {
     fn new(body: &'a B, cell: &Aabb<B::Vector>, near: &'a [u32]) -> Self {
         let bounds = body.bounds();
         let [lo, hi] = [cell.min.to_array(), cell.max.to_array()];
-        View { body, near, lo, hi, min: bounds.min.to_array(), max: bounds.max.to_array(), grow: rounding(body) }
+        BoxInBody { body, near, lo, hi, min: bounds.min.to_array(), max: bounds.max.to_array(), grow: rounding(body) }
     }
 
-    /// The heights over a point of the base, of the body grown or shrunk; none where the line may miss it.
+    /// The heights of the line over a point of the base, for the body grown by `grow`; none where the line may miss it.
     #[inline(always)]
-    fn heights<const AXIS: usize>(&self, [u, v]: [ScalarOf<B>; 2], grow: ScalarOf<B>) -> Option<Heights<ScalarOf<B>>> {
+    fn heights<const AXIS: usize>(
+        &self,
+        [u, v]: [ScalarOf<B>; 2],
+        grow: ScalarOf<B>,
+    ) -> Option<ChordHeights<ScalarOf<B>>> {
         let (zero, one) = (Real::ZERO, Real::ONE);
         let (origin, direction) = match AXIS {
             0 => ([zero, u, v], [one, zero, zero]),
@@ -110,7 +113,7 @@ impl<'a, B: Convex> View<'a, B> {
         let chord = self.body.chord(Vector::from_array(origin), Vector::from_array(direction), grow, self.near)?;
         // NaN tells nothing.
         let known = chord[0] <= chord[1];
-        known.then(|| Heights { up: chord[1] - self.lo[AXIS], down: self.hi[AXIS] - chord[0] })
+        known.then(|| ChordHeights { up: chord[1] - self.lo[AXIS], down: self.hi[AXIS] - chord[0] })
     }
 
     /// The bounds from columns along `axis`, the base divided into `parts` by `parts`.
@@ -122,67 +125,104 @@ impl<'a, B: Convex> View<'a, B> {
         }
     }
 
+    /// The heights over a row of points: those of `u` at the same `v`, of the body shrunk.
+    #[inline(always)]
+    fn fill_row<const AXIS: usize>(&self, u: &BaseAxis<ScalarOf<B>>, v: ScalarOf<B>, row: &mut HeightRow<ScalarOf<B>>) {
+        for (to, &at) in row.iter_mut().zip(&u.at).take(u.parts + 1) {
+            *to = self.heights::<AXIS>([at, v], -self.grow);
+        }
+    }
+
+    /// [`BoxInBody::along`] for an axis known when the program is built.
     fn columns<const AXIS: usize>(&self, parts: usize) -> Bounds<ScalarOf<B>> {
-        type R<B> = ScalarOf<B>;
-        let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
-        let (u, v) = (Side::new(self, (AXIS + 1) % 3, parts), Side::new(self, (AXIS + 2) % 3, parts));
+        let (zero, half) = (ScalarOf::<B>::ZERO, ScalarOf::<B>::HALF);
+        let (u, v) = (BaseAxis::new(self, (AXIS + 1) % 3, parts), BaseAxis::new(self, (AXIS + 2) % 3, parts));
         let (Some(u), Some(v)) = (u, v) else { return Bounds::OPEN };
         let full = self.hi[AXIS] - self.lo[AXIS];
-        let inner = |i: usize, j: usize| self.heights::<AXIS>([u.at[i], v.at[j]], -self.grow);
         let mut rows = [[None; MAX_PARTS + 1]; 2];
-        let (mut lower, mut upper, mut all, mut none) = (zero, zero, true, true);
-        for i in 0..=u.parts {
-            rows[0][i] = inner(i, 0);
-        }
-        for j in 0..v.parts {
-            let (mut row_lower, mut row_upper, middle) = (zero, zero, v.middle(j));
-            let [below, above] = &mut rows;
+        let [below, above] = &mut rows;
+        let (mut below, mut above) = (below, above);
+        self.fill_row::<AXIS>(&u, v.at[0], below);
+        let mut sum = ColumnSum { lower: zero, upper: zero, all: true, none: true };
+        for ends in v.at.windows(2).take(v.parts) {
+            let &[v_low, v_high] = ends else { continue };
             if v.flat {
                 *above = *below;
             } else {
-                for i in 0..=u.parts {
-                    above[i] = inner(i, j + 1);
-                }
+                self.fill_row::<AXIS>(&u, v_high, above);
             }
-            for i in 0..u.parts {
-                let corners = [below[i], below[i + 1], above[i], above[i + 1]];
-                let middle = || self.heights::<AXIS>([u.middle(i), middle], self.grow);
-                let [low, high] = filled(corners, middle, full);
+            let (mut row_lower, mut row_upper, v_middle) = (zero, zero, (v_low + v_high) * half);
+            let squares = below.windows(2).zip(above.windows(2)).zip(u.at.windows(2)).take(u.parts);
+            for square in squares {
+                let ((&[a, b], &[c, d]), &[u_low, u_high]) = square else { continue };
+                let middle = || self.heights::<AXIS>([(u_low + u_high) * half, v_middle], self.grow);
+                let [low, high] = mean_fill([a, b, c, d], middle, full);
                 row_lower += low;
                 row_upper += high;
-                all = all && low == full;
-                none = none && high == zero;
+                sum.all = sum.all && low == full;
+                sum.none = sum.none && high == zero;
             }
-            lower += row_lower;
-            upper += row_upper;
-            rows.swap(0, 1);
+            sum.lower += row_lower;
+            sum.upper += row_upper;
+            core::mem::swap(&mut below, &mut above);
         }
-        if none {
+        self.share_of(&sum, [&u, &v], full)
+    }
+
+    /// The sum over all columns, of height `full`, as a share of the box; wider by its rounding.
+    #[inline(always)]
+    fn share_of(
+        &self,
+        sum: &ColumnSum<ScalarOf<B>>,
+        [u, v]: [&BaseAxis<ScalarOf<B>>; 2],
+        full: ScalarOf<B>,
+    ) -> Bounds<ScalarOf<B>> {
+        type R<B> = ScalarOf<B>;
+        let (zero, one) = (R::<B>::ZERO, R::<B>::ONE);
+        if sum.none {
             return Bounds::OPEN;
         }
         let share = u.share * v.share / (full * R::<B>::from_usize(u.parts * v.parts));
         let relative = R::<B>::EPSILON * R::<B>::from_f64(SUM_ROUNDINGS);
         // Heights are differences of coordinates.
         let room = relative + self.grow / full;
-        let lower = if all { u.share * v.share } else { lower * share * (one - relative) - room };
-        let whole = all && u.share == one && v.share == one;
+        let lower = if sum.all { u.share * v.share } else { sum.lower * share * (one - relative) - room };
+        let whole = sum.all && u.share == one && v.share == one;
         let lower = if whole { one } else { (lower - relative).max(zero) };
-        Bounds { lower, upper: (upper * share * (one + relative) + room).min(one) }
+        Bounds { lower, upper: (sum.upper * share * (one + relative) + room).min(one) }
     }
 }
 
-/// Bounds of the mean filling over a rectangle, from its corners and, if need be, its middle.
+/// Heights over the points of a row; none where a line may miss the body.
+type HeightRow<R> = [Option<ChordHeights<R>>; MAX_PARTS + 1];
+
+/// Sums over columns, each a mean height.
+struct ColumnSum<R> {
+    lower: R,
+    upper: R,
+    /// All columns are full.
+    all: bool,
+    /// No column has anything.
+    none: bool,
+}
+
+/// Bounds of the mean height to which the body fills the columns on a rectangle, from the lines at its corners and, if need be, in its middle.
+/// `full` is the height of the box.
 #[inline(always)]
-fn filled<R: Real>(corners: [Option<Heights<R>>; 4], middle: impl FnOnce() -> Option<Heights<R>>, full: R) -> [R; 2] {
-    let [Some(a), Some(b), Some(c), Some(d)] = corners else { return partly(corners, full) };
+fn mean_fill<R: Real>(
+    corners: [Option<ChordHeights<R>>; 4],
+    middle: impl FnOnce() -> Option<ChordHeights<R>>,
+    full: R,
+) -> [R; 2] {
+    let [Some(a), Some(b), Some(c), Some(d)] = corners else { return partial_fill(corners, full) };
     let (up, down) = ([a.up, b.up, c.up, d.up], [a.down, b.down, c.down, d.down]);
     let (up_full, down_full) = (all_above(up, full), all_above(down, full));
     if up_full && down_full {
         return [full, full];
     }
     let Some(m) = middle() else { return [R::ZERO, full] };
-    let up = if up_full { [full, full] } else { kept(up, m.up, full) };
-    let down = if down_full { [full, full] } else { kept(down, m.down, full) };
+    let up = if up_full { [full, full] } else { clamped_mean(up, m.up, full) };
+    let down = if down_full { [full, full] } else { clamped_mean(down, m.down, full) };
     [(up[0] + (down[0] - full)).max(R::ZERO), (up[1] + (down[1] - full)).max(R::ZERO)]
 }
 
@@ -191,9 +231,9 @@ fn all_above<R: Real>(h: [R; 4], limit: R) -> bool {
     h[0] >= limit && h[1] >= limit && h[2] >= limit && h[3] >= limit
 }
 
-/// Bounds of the mean of a concave function kept within `0..=full`, from its values at the corners and in the middle.
+/// Bounds of the mean of a concave function clamped to `0..=full`, from its values at the corners and in the middle.
 #[inline(always)]
-fn kept<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
+fn clamped_mean<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
     let least = h[0].min(h[1]).min(h[2].min(h[3]));
     let most = middle + middle - least;
     if most <= R::ZERO {
@@ -202,18 +242,18 @@ fn kept<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
         [(h[0] + h[1] + (h[2] + h[3])) * R::from_f64(0.25), middle]
     } else {
         let over = h.map(|h| middle + middle - h);
-        [over_triangles(h, full), over_triangles(over, full)]
+        [mean_over_triangles(h, full), mean_over_triangles(over, full)]
     }
 }
 
-/// The mean over a square of the two triangles through its corners, kept within `0..=full`.
-fn over_triangles<R: Real>([a, b, c, d]: [R; 4], full: R) -> R {
-    let triangle = |x: R, y: R, z: R| positive(x, y, z) - positive(x - full, y - full, z - full);
+/// The mean over a square of the two triangles through its corners, clamped to `0..=full`.
+fn mean_over_triangles<R: Real>([a, b, c, d]: [R; 4], full: R) -> R {
+    let triangle = |x: R, y: R, z: R| mean_positive_part(x, y, z) - mean_positive_part(x - full, y - full, z - full);
     ((triangle(a, b, c) + triangle(d, b, c)) * R::HALF).max(R::ZERO).min(full)
 }
 
 /// The mean over a triangle of the positive part of a linear function with these values at the corners.
-fn positive<R: Real>(x: R, y: R, z: R) -> R {
+fn mean_positive_part<R: Real>(x: R, y: R, z: R) -> R {
     let (low, high) = (x.min(y).min(z), x.max(y).max(z));
     let middle = x.min(y).max(x.max(y).min(z));
     let third = R::from_f64(1.0 / 3.0);
@@ -230,20 +270,20 @@ fn positive<R: Real>(x: R, y: R, z: R) -> R {
     }
 }
 
-/// Where a column may miss the body: three corners make half the rectangle.
+/// [`mean_fill`] where a line at a corner may miss the body: any three corners that do not are half the rectangle.
 #[cold]
-fn partly<R: Real>(corners: [Option<Heights<R>>; 4], full: R) -> [R; 2] {
+fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> [R; 2] {
     // Within the box and the body both are concave; below zero there is nothing inside.
-    let depth = |h: Heights<R>| h.up.min(full) + h.down.min(full) - full;
+    let depth = |h: ChordHeights<R>| h.up.min(full) + h.down.min(full) - full;
     let [a, b, c, d] = corners.map(|h| h.map(depth).filter(|&h| h >= R::ZERO));
     let third = |x: Option<R>, y: Option<R>, z: Option<R>| Some((x? + y? + z?) * R::from_f64(1.0 / 6.0));
     let half = third(a, b, c).or(third(b, d, a)).or(third(c, a, d)).or(third(d, b, c));
     [half.unwrap_or(R::ZERO), full]
 }
 
-/// A side of the base, as far as the body reaches it.
-struct Side<R> {
-    /// Where its parts begin and end.
+/// A side of the base, as far as the body reaches along it, divided into parts.
+struct BaseAxis<R> {
+    /// Where its parts begin and end; as many as there are parts, and one.
     at: [R; MAX_PARTS + 1],
     /// Length as a share of the cell's.
     share: R,
@@ -252,31 +292,26 @@ struct Side<R> {
     flat: bool,
 }
 
-impl<R: Real> Side<R> {
+impl<R: Real> BaseAxis<R> {
     /// None if the body does not reach it.
     #[inline(always)]
-    fn new<B>(view: &View<B>, axis: usize, parts: usize) -> Option<Self>
+    fn new<B>(place: &BoxInBody<B>, axis: usize, parts: usize) -> Option<Self>
     where
-        B: Convex,
+        B: Chords,
         B::Vector: Vector<Scalar = R>,
     {
-        let (lo, hi) = (view.lo[axis].max(view.min[axis]), view.hi[axis].min(view.max[axis]));
+        let (lo, hi) = (place.lo[axis].max(place.min[axis]), place.hi[axis].min(place.max[axis]));
         if !(lo <= hi) {
             return None;
         }
-        if view.lo[axis] == view.hi[axis] {
-            return Some(Side { at: [lo; MAX_PARTS + 1], share: R::ONE, parts: 1, flat: true });
+        if place.lo[axis] == place.hi[axis] {
+            return Some(BaseAxis { at: [lo; MAX_PARTS + 1], share: R::ONE, parts: 1, flat: true });
         }
-        let (share, parts) = ((hi - lo) / (view.hi[axis] - view.lo[axis]), parts.min(MAX_PARTS));
+        let (share, parts) = ((hi - lo) / (place.hi[axis] - place.lo[axis]), parts.min(MAX_PARTS));
         let mut at = [hi; MAX_PARTS + 1];
         for i in 0..parts {
             at[i] = lo + (hi - lo) * (R::from_usize(i) / R::from_usize(parts));
         }
-        (share > R::ZERO).then_some(Side { at, share, parts, flat: false })
-    }
-
-    #[inline(always)]
-    fn middle(&self, i: usize) -> R {
-        (self.at[i] + self.at[i + 1]) * R::HALF
+        (share > R::ZERO).then_some(BaseAxis { at, share, parts, flat: false })
     }
 }

@@ -1,43 +1,46 @@
-//! A closed surface of triangles, convex or not, as the subdivision sees it: the paper's road triangle by triangle.
+//! A body bounded by a closed surface of triangles, convex or not, as the subdivision sees it.
 //!
-//! A box is cut if a triangle meets it ([`box_triangle`]); what no triangle meets is inside or outside as a whole. Which of the two is
-//! found by counting: a box hands its parts a point in it with the winding number of the surface there, and along a segment to a point of a
-//! part, which stays in the box, only the triangles that cut the box can cross. Every crossing has certified signs; where one is in doubt
-//! another point is tried, and without any the part counts as cut. So on a surface that closes edge by edge no count is wrong.
+//! A box is cut if a triangle meets it ([`box_triangle`]). A box that no triangle meets is inside or outside as a whole, and the winding number
+//! of the surface around any of its points tells which. A box hands its parts such a point and number as warm start; the segment from there to
+//! a point of a part stays in the box, so only triangles that cut the box can cross it, and each crossing changes the number by one. The signs
+//! of every crossing are certified. Where one is in doubt another point is tried, and if all are, the part counts as cut. So on a surface
+//! that closes edge by edge no number is wrong.
 //!
 //! Reference: D. Sunday, "Inclusion of a point in a polygon", 2001, for winding numbers; here along segments in space.
 
+use super::chord_bounds::Columns;
+use super::local_planes::LocalPlanes;
+use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
+use super::place::Subdividable;
 use crate::convex::chord::rounded;
 use crate::convex::sat::{BoxTriangle, box_triangle};
 use crate::convex::shape::Triangle;
 use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::subdivide::chord_bounds::Columns;
-use crate::subdivide::place::{Body, Near, Occupancy, Seen, Tally, Trace};
 
-/// A surface in the caller's memory, counter-clockwise from outside; every edge must have its reverse. Of a larger one it may hold those
-/// triangles only that some slab of space across the y or z axis meets, [`slab`] included, for boxes in that slab.
+/// A closed surface in the caller's memory. Triangles are counter-clockwise seen from outside, and every edge has its reverse. For boxes within
+/// a slab of space across the y or z axis, those triangles suffice that meet the slab made thicker by [`slab`] on each side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mesh<'a, V: Vector> {
+pub struct ClosedSurface<'a, V: Vector> {
     triangles: &'a [[V; 3]],
     bounds: Aabb<V>,
 }
 
-impl<'a, V: Vector> Mesh<'a, V> {
-    /// A surface; finite.
+impl<'a, V: Vector> ClosedSurface<'a, V> {
+    /// The surface made of these triangles, whose corners are finite.
     pub fn new(triangles: &'a [[V; 3]]) -> Self {
-        Mesh { triangles, bounds: Aabb::around(triangles.as_flattened()) }
+        ClosedSurface { triangles, bounds: Aabb::around(triangles.as_flattened()) }
     }
 
-    /// What it was made of.
+    /// The triangles it was made of.
     pub fn triangles(&self) -> &'a [[V; 3]] {
         self.triangles
     }
 
-    /// The winding number at some point of a box, with that point; none if every segment to the box meets the surface in a way that
-    /// cannot be told.
-    fn count(&self, cell: &Aabb<V>, near: &[u32], trace: &Trace<V>) -> Option<(V, i32)> {
+    /// A point of a box and the winding number of the surface there. `near` lists the triangles that cut the box around, in which the point
+    /// of `warm` lies. None if every point tried is in doubt.
+    fn winding(&self, cell: &Aabb<V>, near: &[u32], warm: &WarmStart<V>) -> Option<(V, i32)> {
         let size = cell.size();
         let inside = |[x, y, z]: [f64; 3]| {
             let [x, y, z] = [x, y, z].map(V::Scalar::from_f64);
@@ -45,8 +48,8 @@ impl<'a, V: Vector> Mesh<'a, V> {
         };
         for fractions in POINTS {
             let to = inside(fractions);
-            let added = match trace.winding {
-                Some(winding) => self.crossings(trace.vector, to, near.iter().copied()).map(|n| winding + n),
+            let added = match warm.winding {
+                Some(winding) => self.crossings(warm.vector, to, near.iter().copied()).map(|n| winding + n),
                 None => {
                     // Nothing is wound around a point beyond the surface; such a line stays in the slab of the box.
                     let mut from = to.to_array();
@@ -61,7 +64,7 @@ impl<'a, V: Vector> Mesh<'a, V> {
         None
     }
 
-    /// How often a segment enters through some triangles, less how often it leaves; none in doubt.
+    /// How often the segment `from`–`to` enters the body through some triangles, less how often it leaves; none in doubt.
     fn crossings(&self, from: V, to: V, mut ids: impl Iterator<Item = u32>) -> Option<i32> {
         ids.try_fold(0, |sum, id| {
             Some(sum + self.triangles.get(id as usize).map_or(Some(0), |t| crossing(from, to, t))?)
@@ -69,17 +72,17 @@ impl<'a, V: Vector> Mesh<'a, V> {
     }
 }
 
-/// Where in a box the winding is asked: no fractions that a mesh would be made of.
+/// Points of a box for its winding number, as fractions of its size: odd ones, so that no edge of a usual mesh passes through them.
 const POINTS: [[f64; 3]; 4] =
     [[0.4813, 0.5437, 0.4591], [0.3127, 0.6211, 0.5739], [0.6893, 0.4119, 0.3347], [0.5527, 0.2753, 0.7129]];
 
-/// Half the thickness of the slab that stands for a flat box, far above rounding and far below any size: points beside the face are told
-/// apart from surface in its plane.
+/// Half the thickness of the slab that stands for a flat box, a length: far above rounding and far below the size of any cell, so that surface
+/// in the plane of a face lies inside the slab and surface beside it does not.
 pub fn slab<V: Vector>(cell: &Aabb<V>) -> V::Scalar {
     rounded(cell.min.abs().max(cell.max.abs()).norm_max()) * V::Scalar::from_f64(16.0)
 }
 
-/// The axis along which a box has no thickness, and the box with some.
+/// The axis along which a box has no thickness, if any, and the box made as thick as a [`slab`] along it.
 fn thick<V: Vector>(cell: &Aabb<V>) -> (Option<usize>, Aabb<V>) {
     let Some(axis) = cell.size().to_array().iter().position(|&s| s == V::Scalar::ZERO) else { return (None, *cell) };
     let (mut min, mut max, half) = (cell.min.to_array(), cell.max.to_array(), slab(cell));
@@ -90,7 +93,7 @@ fn thick<V: Vector>(cell: &Aabb<V>) -> (Option<usize>, Aabb<V>) {
 /// Roundings of a product of three lengths, in units of ε and of the sum of its absolute terms.
 const VOLUME_ROUNDINGS: f64 = 12.0;
 
-/// The sign of `d·(p × q)`: of numbers that are differences, rounded. None if it may be another.
+/// Whether `d·(p × q)` is positive, for vectors that are rounded differences. None if rounding may have changed the sign, or if it is zero.
 #[inline(always)]
 fn side<V: Vector>(d: V, p: V, q: V) -> Option<bool> {
     let volume = d.dot(p.cross(q));
@@ -131,37 +134,37 @@ fn crossing<V: Vector>(from: V, to: V, &[a, b, c]: &[V; 3]) -> Option<i32> {
     }
 }
 
-impl<V: Vector> Body for Mesh<'_, V> {
+impl<V: Vector> Subdividable for ClosedSurface<'_, V> {
     type Vector = V;
 
     fn bounds(&self) -> Aabb<V> {
         self.bounds
     }
 
-    fn facets(&self) -> usize {
+    fn facet_count(&self) -> usize {
         self.triangles.len()
     }
 
-    fn place(
+    fn occupancy(
         &self,
         cell: &Aabb<V>,
         near: &[u32],
-        keep: &mut Near,
-        trace: &mut Trace<V>,
-        tally: &mut Tally,
+        active: &mut ActiveFacets,
+        warm: &mut WarmStart<V>,
+        count: &mut QueryCount,
     ) -> Occupancy {
         let (flat, space) = thick(cell);
         let (mut wall, mut others, mut kept) = (false, false, false);
         for &id in near {
             let Some(&[a, b, c]) = self.triangles.get(id as usize) else { continue };
-            tally.queries += 1;
+            count.queries += 1;
             let found = box_triangle(&space, &Triangle { a, b, c });
             if let BoxTriangle::Apart { .. } = found {
                 continue;
             }
-            keep.push(id);
+            active.push(id);
             kept = true;
-            tally.undecided += u64::from(found == BoxTriangle::Undecided);
+            count.undecided += u64::from(found == BoxTriangle::Undecided);
             let in_plane =
                 flat.is_some_and(|axis| [a, b, c].iter().all(|p| p.to_array()[axis] == cell.min.to_array()[axis]));
             others = others || !in_plane;
@@ -171,25 +174,21 @@ impl<V: Vector> Body for Mesh<'_, V> {
         if wall && !others {
             return Occupancy::Closed;
         }
-        let counted = self.count(&space, near, trace);
-        *trace = counted.map_or(Trace::default(), |(point, winding)| Trace { vector: point, winding: Some(winding) });
-        match counted {
-            Some((_, winding)) if !kept => {
-                if winding > 0 {
-                    Occupancy::Closed
-                } else {
-                    Occupancy::Open
-                }
-            }
+        let wound = self.winding(&space, near, warm);
+        *warm =
+            wound.map_or(WarmStart::default(), |(point, winding)| WarmStart { vector: point, winding: Some(winding) });
+        match wound {
+            Some((_, winding)) if !kept && winding > 0 => Occupancy::Closed,
+            Some(_) if !kept => Occupancy::Open,
             _ => Occupancy::Cut,
         }
     }
 
-    fn planes(&self, _: &Aabb<V>, _: &[u32]) -> Option<Seen<V::Scalar>> {
+    fn local_planes(&self, _: &Aabb<V>, _: &[u32]) -> Option<LocalPlanes<V::Scalar>> {
         None
     }
 
-    fn measure(&self, _: &Aabb<V>, _: &[u32], _: &Columns<V::Scalar>) -> Bounds<V::Scalar> {
+    fn share_bounds(&self, _: &Aabb<V>, _: &[u32], _: &Columns<V::Scalar>) -> Bounds<V::Scalar> {
         Bounds::UNKNOWN
     }
 }

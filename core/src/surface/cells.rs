@@ -285,11 +285,11 @@ fn slab_part<R: Real>(corners: &[[R; 3]; 3], lo: R, hi: R, slab: &mut Polygon<R>
     }
     *slab = Polygon::new(corners);
     if min < lo {
-        let whole = *slab;
+        let whole = slab.clone();
         split(&whole, 2, lo, spare, slab);
     }
     if max > hi {
-        let whole = *slab;
+        let whole = slab.clone();
         split(&whole, 2, hi, slab, spare);
     }
     true
@@ -330,7 +330,7 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
         let mut row = self.y.cell(min);
         if min == max && self.y.opens(row, min) {
             let begins = b.slab.doubled_area()[1] < R::ZERO;
-            b.row = b.slab;
+            b.row.assign(&b.slab);
             return self.scatter_row(if begins { row - 1 } else { row }, Some(row), b);
         }
         while row < self.y.count && max > self.y.upper(row) {

@@ -3,23 +3,18 @@
 //! A crossing is always computed from the lower end of the edge, so two polygons that share an edge get bitwise the same
 //! point: a closed surface stays closed whatever it is cut by.
 
+use heapless::Vec;
+
 use crate::number::real::Real;
 
 /// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is room for the cuts by
 /// other bodies' planes in one cell. A full polygon is halved before the next cut.
 pub const MAX_CORNERS: usize = 16;
 
-/// A convex polygon in space; fewer than three corners means empty.
-#[derive(Clone, Copy, Debug)]
+/// A convex polygon in space, by its corners in order; fewer than three corners mean that it is empty.
+#[derive(Clone, Debug, Default)]
 pub struct Polygon<R> {
-    len: usize,
-    corners: [[R; 3]; MAX_CORNERS],
-}
-
-impl<R: Real> Default for Polygon<R> {
-    fn default() -> Self {
-        Polygon { len: 0, corners: [[R::ZERO; 3]; MAX_CORNERS] }
-    }
+    corners: Vec<[R; 3], MAX_CORNERS>,
 }
 
 impl<R: Real> Polygon<R> {
@@ -50,32 +45,26 @@ impl<R: Real> Polygon<R> {
     #[must_use]
     #[inline(always)]
     pub fn corners(&self) -> &[[R; 3]] {
-        // `len` never exceeds the capacity; `min` lets the compiler see it.
-        &self.corners[..self.len.min(MAX_CORNERS)]
+        &self.corners
     }
 
     /// No area: fewer than three corners.
     #[must_use]
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
-        self.len < 3
+        self.corners.len() < 3
     }
 
     /// Add a corner; false if there is no room.
     #[inline(always)]
     pub fn push(&mut self, corner: [R; 3]) -> bool {
-        let room = self.len < MAX_CORNERS;
-        if room {
-            self.corners[self.len] = corner;
-            self.len += 1;
-        }
-        room
+        self.corners.push(corner).is_ok()
     }
 
     /// No corners any more.
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.len = 0;
+        self.corners.clear();
     }
 
     /// Lowest and highest coordinate along an axis.
@@ -111,7 +100,7 @@ impl<R: Real> Polygon<R> {
     #[must_use]
     #[inline(always)]
     pub fn is_full(&self) -> bool {
-        self.len >= MAX_CORNERS
+        self.corners.is_full()
     }
 
     /// Twice the area vector (its direction by the right-hand rule).

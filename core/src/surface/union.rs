@@ -100,12 +100,12 @@ pub struct UnionBuffers<R: Real, const N: usize> {
 impl<R: Real, const N: usize> Default for UnionBuffers<R, N> {
     fn default() -> Self {
         UnionBuffers {
-            pieces: [Piece::default(); N],
-            split_pieces: [[Piece::default(); 4]; N],
+            pieces: core::array::from_fn(|_| Piece::default()),
+            split_pieces: core::array::from_fn(|_| core::array::from_fn(|_| Piece::default())),
             order: [[0; 4]; N],
             nodes: [[Node::default(); 4]; N],
             parts: [Part::default(); N],
-            fragments: [Fragment::default(); N],
+            fragments: core::array::from_fn(|_| Fragment::default()),
             pending: [PendingNode::default(); N],
         }
     }
@@ -197,7 +197,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
         let first = self.piece_count;
         let mut filling = R::ZERO;
-        let mut scratch = [Polygon::default(); 2];
+        let mut scratch = [Polygon::default(), Polygon::default()];
         for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
             let triangle = triangle.map(Vector::to_array);
             if !reaches(&triangle, lo, hi) {

@@ -47,7 +47,7 @@ pub(super) fn step<R: Scalar, const D: usize>(
             .map(|((range, mut slab), scratch)| problem.advance_slab(&old.view(), &mut slab, range, dt, marks, scratch))
             .collect();
         let mut report = reports?.iter().fold(Report::new(), |a, b| a.and(b));
-        problem.merge(&old.view(), &mut new.view_mut(), &mut report);
+        problem.merge(&old.view(), &mut new.view_mut(), &mut report)?;
         Ok(report)
     };
     let mut report = attempt(new, scratch, None)?;
@@ -56,7 +56,7 @@ pub(super) fn step<R: Scalar, const D: usize>(
     }
     marks.fill(0);
     for _ in 0..voidage_core::flow::fallback::FALLBACKS {
-        if problem.mark_troubled(&new.view(), marks) == 0 {
+        if problem.mark_troubled(&new.view(), marks)? == 0 {
             break;
         }
         report = attempt(new, scratch, Some(marks))?;
@@ -64,6 +64,6 @@ pub(super) fn step<R: Scalar, const D: usize>(
             return Ok(report);
         }
     }
-    problem.apply_floors(&old.view(), &mut new.view_mut(), &mut report);
+    problem.apply_floors(&old.view(), &mut new.view_mut(), &mut report)?;
     Ok(report)
 }

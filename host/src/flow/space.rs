@@ -3,7 +3,7 @@
 use super::field::Scalar;
 use crate::huge::HugeVec;
 use voidage_core::flow::porosity::{clusters, flags, fractions};
-use voidage_core::flow::{Clusters, Error, Mesh};
+use voidage_core::flow::{Clusters, Error, Mesh, mark};
 use voidage_core::number::real::Real;
 
 /// Open fractions with what the solver derives from them.
@@ -52,11 +52,6 @@ impl<R: Scalar, const D: usize> Space<R, D> {
         mut faces: [HugeVec<R>; D],
         treatment: Treatment<R>,
     ) -> Result<(Self, Tidied), Error> {
-        let fits = |expected: usize, found: usize| {
-            if expected == found { Ok(()) } else { Err(Error::ShapeMismatch { expected, found }) }
-        };
-        fits(mesh.len(), volume.len())?;
-        (0..D).try_for_each(|d| fits(mesh.faces(d), faces[d].len()))?;
         let mut tidied = Tidied {
             dust_cells: without_dust(&mut volume),
             dust_faces: faces.iter_mut().map(|f| without_dust(f)).sum(),
@@ -65,11 +60,11 @@ impl<R: Scalar, const D: usize> Space<R, D> {
         loop {
             let mut space = Space { marks: HugeVec::zeros(volume.len()), clusters: Vec::new(), volume, faces };
             let views = space.faces.each_ref().map(|f| &**f);
-            fractions::mark(mesh, &space.volume, &views, periodic, treatment.jump, &mut space.marks);
+            mark(mesh, &space.volume, &views, periodic, treatment.jump, &mut space.marks)?;
             if !treatment.merge || !space.marks.iter().any(|&m| flags::is(m, flags::SMALL)) {
                 return Ok((space, tidied));
             }
-            space.cluster(mesh, periodic);
+            space.cluster(mesh, periodic)?;
             let alone = space.small_cells_alone();
             let outside = space.outside_of_small_clusters(mesh, periodic, &alone);
             if outside.is_empty() {
@@ -88,15 +83,17 @@ impl<R: Scalar, const D: usize> Space<R, D> {
     }
 
     /// Groups small cells with neighbours.
-    fn cluster(&mut self, mesh: &Mesh<'_, R, D>, periodic: [bool; D]) {
+    fn cluster(&mut self, mesh: &Mesh<'_, R, D>, periodic: [bool; D]) -> Result<(), Error> {
         let n = self.volume.len();
         let mut parent = vec![0; n];
         let mut work = vec![R::ZERO; clusters::cluster_scratch(n)];
         self.clusters = vec![0; n];
         let views = self.faces.each_ref().map(|f| &**f);
-        let used = clusters::clusters(mesh, &self.volume, &views, periodic, &mut self.clusters, &mut parent, &mut work);
+        let used =
+            clusters::clusters(mesh, (&self.volume, &views), periodic, &mut self.clusters, &mut parent, &mut work)?;
         self.clusters.truncate(used);
         self.clusters.shrink_to_fit();
+        Ok(())
     }
 
     /// Small cells that belong to no cluster.

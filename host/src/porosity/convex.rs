@@ -13,13 +13,13 @@ use voidage_core::convex::polytope::{Facet, Polytope, facets};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::convex::support::Transformed;
 use voidage_core::grid::Grid;
-use voidage_core::grid::bounds::Bounds;
+use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
-use voidage_core::subdivide::chord_bounds::Columns;
-use voidage_core::subdivide::mesh::{Mesh, slab};
-use voidage_core::subdivide::place::{self, Near, Occupancy, Seen, Tally, Trace};
-use voidage_core::subdivide::{Candidate, Memory, Places, Range, Rule, share, subdivide};
+use voidage_core::subdivide::{
+    self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, QueryCount, Subdividable,
+    SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
+};
 use voidage_core::surface::OtherBodies;
 
 /// A body in its place, convex but for the last kind.
@@ -38,7 +38,7 @@ pub enum Convex<'a> {
     /// A hull and its facets.
     Polytope(Polytope<'a, DVec3>),
     /// A closed surface.
-    Mesh(Mesh<'a, DVec3>),
+    Mesh(ClosedSurface<'a, DVec3>),
 }
 
 /// The same expression for the shape of any kind.
@@ -56,29 +56,29 @@ macro_rules! of_shape {
     };
 }
 
-impl place::Body for Convex<'_> {
+impl Subdividable for Convex<'_> {
     type Vector = DVec3;
     fn bounds(&self) -> Aabb<DVec3> {
-        of_shape!(self, s => place::Body::bounds(s))
+        of_shape!(self, s => Subdividable::bounds(s))
     }
-    fn facets(&self) -> usize {
-        of_shape!(self, s => place::Body::facets(s))
+    fn facet_count(&self) -> usize {
+        of_shape!(self, s => Subdividable::facet_count(s))
     }
-    fn place(
+    fn occupancy(
         &self,
         cell: &Aabb<DVec3>,
         near: &[u32],
-        keep: &mut Near,
-        trace: &mut Trace<DVec3>,
-        tally: &mut Tally,
+        active: &mut ActiveFacets,
+        warm: &mut WarmStart<DVec3>,
+        count: &mut QueryCount,
     ) -> Occupancy {
-        of_shape!(self, s => s.place(cell, near, keep, trace, tally))
+        of_shape!(self, s => s.occupancy(cell, near, active, warm, count))
     }
-    fn planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<Seen<f64>> {
-        of_shape!(self, s => s.planes(cell, near))
+    fn local_planes(&self, cell: &Aabb<DVec3>, near: &[u32]) -> Option<LocalPlanes<f64>> {
+        of_shape!(self, s => s.local_planes(cell, near))
     }
-    fn measure(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
-        of_shape!(self, s => place::Body::measure(s, cell, near, columns))
+    fn share_bounds(&self, cell: &Aabb<DVec3>, near: &[u32], columns: &Columns<f64>) -> Bounds<f64> {
+        of_shape!(self, s => s.share_bounds(cell, near, columns))
     }
 }
 
@@ -159,7 +159,7 @@ impl Known {
     fn body<'a>(&'a self, triangles: &'a [[DVec3; 3]]) -> Convex<'a> {
         match self {
             Known::Round(body) => *body,
-            Known::Closed(run) => Convex::Mesh(Mesh::new(&triangles[run.clone()])),
+            Known::Closed(run) => Convex::Mesh(ClosedSurface::new(&triangles[run.clone()])),
             Known::Faceted(f) => Convex::Polytope(Polytope::new(Hull::new(&f.vertices), &f.facets)),
         }
     }
@@ -209,7 +209,7 @@ fn is_closed(triangles: &[[DVec3; 3]]) -> bool {
 #[derive(Debug)]
 pub struct Road<'a> {
     bodies: Vec<(Aabb<DVec3>, Convex<'a>)>,
-    rule: Rule<f64>,
+    rule: SubdivisionRule<f64>,
 }
 
 /// A thread's memory for subdivision.
@@ -223,12 +223,12 @@ pub struct Lists {
 
 impl Lists {
     /// Enough for some bodies at once; as much for the same bodies whatever was there before, so that the bits are the same.
-    fn memory(&mut self, bodies: &[Convex]) -> Memory<'_, DVec3> {
-        let facets: usize = bodies.iter().map(place::Body::facets).sum();
+    fn memory(&mut self, bodies: &[Convex]) -> SubdivisionMemory<'_, DVec3> {
+        let facets: usize = bodies.iter().map(Subdividable::facet_count).sum();
         let (candidates, facets) = (8 * bodies.len() + 1024, 8 * facets + (1 << 14));
         self.candidates.resize(self.candidates.len().max(candidates), Candidate::default());
         self.facets.resize(self.facets.len().max(facets), 0);
-        Memory { candidates: &mut self.candidates[..candidates], facets: &mut self.facets[..facets] }
+        SubdivisionMemory { candidates: &mut self.candidates[..candidates], facets: &mut self.facets[..facets] }
     }
 }
 
@@ -239,8 +239,8 @@ impl<'a> Road<'a> {
     /// Some bodies.
     #[must_use]
     pub fn new(bodies: Vec<Convex<'a>>, options: Options) -> Self {
-        let rule = Rule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
-        let bodies = bodies.into_iter().map(|b| (place::Body::bounds(&b), b)).collect();
+        let rule = SubdivisionRule { leaf: options.leaf.into(), depth: options.depth, tol: options.tol };
+        let bodies = bodies.into_iter().map(|b| (Subdividable::bounds(&b), b)).collect();
         Road { bodies, rule }
     }
 
@@ -252,7 +252,7 @@ impl<'a> Road<'a> {
 
     /// The bodies and a thread's memory for them, as the layers of a grid in the core take them.
     pub fn with<'r>(&'r self, grid: &'r Grid<'r, f64>, lists: &'r mut Lists) -> RoadWithLists<'r, 'a> {
-        RoadWithLists { road: self, grid, lists, tally: Tally::default() }
+        RoadWithLists { road: self, grid, lists, tally: QueryCount::default() }
     }
 
     /// Work with what lies between two z planes of the grid: the bodies that do, and of surfaces the triangles.
@@ -283,8 +283,8 @@ impl<'a> Road<'a> {
             .collect();
         let part = |(bounds, body, run): (Aabb<DVec3>, Convex<'a>, ops::Range<usize>)| match body {
             Convex::Mesh(_) => {
-                let mesh = Mesh::new(&triangles[run]);
-                (place::Body::bounds(&mesh), Convex::Mesh(mesh))
+                let mesh = ClosedSurface::new(&triangles[run]);
+                (Subdividable::bounds(&mesh), Convex::Mesh(mesh))
             }
             _ => (bounds, body),
         };
@@ -296,20 +296,20 @@ impl<'a> Road<'a> {
     fn places(
         &self,
         grid: &Grid<f64>,
-        places: Places,
+        places: RangeKind,
         k: usize,
         lists: &mut Lists,
         row: usize,
         lower: &mut [f64],
         sum: &mut [f64],
-    ) -> Tally {
-        let only = Range { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
-        let touched = |bounds: &Aabb<DVec3>| Range::touched(grid, places, bounds).common(only);
+    ) -> QueryCount {
+        let only = CellRange { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
+        let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, places, bounds).intersection(only);
         let reaching = self.bodies.iter().map(|(bounds, body)| (touched(bounds), *body));
         let (ranges, bodies): (Vec<_>, Vec<_>) = reaching.filter(|(range, _)| !range.is_empty()).unzip();
-        let Some(range) = ranges.into_iter().reduce(around) else { return Tally::default() };
+        let Some(range) = ranges.into_iter().reduce(CellRange::union) else { return QueryCount::default() };
         let mut memory = lists.memory(&bodies);
-        let fill = |range: Range, bounds: Bounds<f64>| {
+        let fill = |range: CellRange, bounds: Bounds<f64>| {
             for j in range.lo[1]..range.hi[1] {
                 for at in (range.lo[0]..range.hi[0]).map(|i| j as usize * row + i as usize) {
                     lower[at] = lower[at].max(bounds.lower);
@@ -328,34 +328,34 @@ pub struct RoadWithLists<'r, 'a> {
     /// The whole grid, not that of a divided cell.
     grid: &'r Grid<'r, f64>,
     lists: &'r mut Lists,
-    tally: Tally,
+    tally: QueryCount,
 }
 
 impl RoadWithLists<'_, '_> {
     /// How often GJK was asked for shares of the cells and faces of the whole grid.
     #[must_use]
-    pub fn tally(&self) -> Tally {
+    pub fn tally(&self) -> QueryCount {
         self.tally
     }
 
     /// Add to some places of a layer what lies between two z planes.
-    fn add_between(&mut self, grid: &Grid<f64>, planes: [usize; 2], wanted: &[Places], layer: &mut Layer<f64>) {
+    fn add_between(&mut self, grid: &Grid<f64>, planes: [usize; 2], wanted: &[RangeKind], layer: &mut Layer<f64>) {
         let found = self.road.between(grid, planes, self.lists, |road, lists| {
-            let place = |&places: &Places| {
+            let place = |&places: &RangeKind| {
                 let [row, _, _] = match places {
-                    Places::Cells => grid.cells(),
-                    Places::Faces(axis) => grid.face_shape(axis),
+                    RangeKind::Cells => grid.cells(),
+                    RangeKind::Faces(axis) => grid.face_shape(axis),
                 };
                 let (lower, sum) = match places {
-                    Places::Cells => layer.cells_mut(),
-                    Places::Faces(axis) => layer.faces_mut(axis),
+                    RangeKind::Cells => layer.cells_mut(),
+                    RangeKind::Faces(axis) => layer.faces_mut(axis),
                 };
                 road.places(grid, places, planes[0], lists, row, lower, sum)
             };
-            wanted.iter().map(place).fold(Tally::default(), joined)
+            wanted.iter().map(place).fold(QueryCount::default(), ops::Add::add)
         });
         if grid.cells() == self.grid.cells() && grid.bounds() == self.grid.bounds() {
-            self.tally = joined(self.tally, found);
+            self.tally = self.tally + found;
         }
     }
 }
@@ -370,12 +370,12 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
     }
 
     fn add(&mut self, grid: &Grid<f64>, k: usize, areas: bool, layer: &mut Layer<f64>) {
-        let all = [Places::Cells, Places::Faces(0), Places::Faces(1), Places::Faces(2)];
+        let all = [RangeKind::Cells, RangeKind::Faces(0), RangeKind::Faces(1), RangeKind::Faces(2)];
         self.add_between(grid, [k, k + 1], if areas { &all } else { &all[..1] }, layer);
     }
 
     fn add_plane(&mut self, grid: &Grid<f64>, plane: usize, layer: &mut Layer<f64>) {
-        self.add_between(grid, [plane, plane], &[Places::Faces(2)], layer);
+        self.add_between(grid, [plane, plane], &[RangeKind::Faces(2)], layer);
     }
 
     fn reach(&mut self, cell: Aabb<DVec3>) -> bool {
@@ -383,24 +383,12 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
         let cell = Aabb { min: cell.min - room, max: cell.max + room };
         let near = self.road.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
         let bodies: Vec<_> = near.map(|(_, body)| *body).collect();
-        let rule = Rule { leaf: voidage_core::subdivide::Leaf::Half, depth: 0, tol: 1.0 };
+        let rule = SubdivisionRule { leaf: subdivide::LeafRule::Half, depth: 0, tol: 1.0 };
         !bodies.is_empty()
-            && share(&cell, &bodies, rule, &mut self.lists.memory(&bodies), &mut Tally::default()).expect(FITS)
+            && share(&cell, &bodies, rule, &mut self.lists.memory(&bodies), &mut QueryCount::default()).expect(FITS)
                 != Bounds::OPEN
     }
 }
 
 /// What is so near a cell counts as reaching its sides, in cells.
 const ROOM: f64 = 1.0 / 1024.0;
-
-/// The smallest range around both.
-fn around(a: Range, b: Range) -> Range {
-    let both = |f: fn(u32, u32) -> u32, p: [u32; 3], q: [u32; 3]| [f(p[0], q[0]), f(p[1], q[1]), f(p[2], q[2])];
-    Range { lo: both(u32::min, a.lo, b.lo), hi: both(u32::max, a.hi, b.hi) }
-}
-
-/// Both counts.
-#[must_use]
-pub fn joined(a: Tally, b: Tally) -> Tally {
-    Tally { queries: a.queries + b.queries, undecided: a.undecided + b.undecided }
-}

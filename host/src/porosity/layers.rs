@@ -1,12 +1,12 @@
 //! The layers of the core in a thread's memory.
 
 use super::CellCounts;
-use super::convex::{Lists, Road, joined};
+use super::convex::{Lists, Road};
 use super::fields::Slices;
 use glam::DVec3;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
-use voidage_core::subdivide::place::Tally;
+use voidage_core::subdivide::QueryCount;
 use voidage_core::surface::bins::Group;
 use voidage_core::surface::layer::{CellKinds, LayerMemory, LayerReport, Layers, MemoryNeeded};
 use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
@@ -31,13 +31,13 @@ pub struct Summary {
     /// By how much a body's share left 0..1.
     pub winding: f64,
     /// Queries of GJK.
-    pub tally: Tally,
+    pub tally: QueryCount,
     /// Body and residual of rows that leak.
     pub leaks: Vec<(usize, f64)>,
 }
 
 impl Summary {
-    fn new(report: LayerReport<f64>, tally: Tally, leaks: Vec<(usize, f64)>) -> Self {
+    fn new(report: LayerReport<f64>, tally: QueryCount, leaks: Vec<(usize, f64)>) -> Self {
         let CellKinds { open, cut, closed, ambiguous } = report.cells;
         Summary {
             cells: CellCounts { open, cut, closed, ambiguous },
@@ -53,7 +53,7 @@ impl Summary {
     /// The same without the work, for a layer that is copied.
     #[must_use]
     pub fn copied(&self) -> Self {
-        Summary { divided: 0, tally: Tally::default(), ..self.clone() }
+        Summary { divided: 0, tally: QueryCount::default(), ..self.clone() }
     }
 
     /// Join totals in the order of layers, so that sums keep their bits for any number of threads.
@@ -67,7 +67,7 @@ impl Summary {
         self.max_gap = self.max_gap.max(other.max_gap);
         self.divided += other.divided;
         self.winding = self.winding.max(other.winding);
-        self.tally = joined(self.tally, other.tally);
+        self.tally = self.tally + other.tally;
         self
     }
 }

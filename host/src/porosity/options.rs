@@ -37,12 +37,12 @@ impl Leaf {
     }
 }
 
-impl From<Leaf> for subdivide::Leaf {
+impl From<Leaf> for subdivide::LeafRule {
     fn from(leaf: Leaf) -> Self {
         match leaf {
-            Leaf::Solid => subdivide::Leaf::Solid,
-            Leaf::Half => subdivide::Leaf::Half,
-            Leaf::Plane => subdivide::Leaf::Plane,
+            Leaf::Solid => subdivide::LeafRule::Solid,
+            Leaf::Half => subdivide::LeafRule::Half,
+            Leaf::Plane => subdivide::LeafRule::Plane,
         }
     }
 }

@@ -1,15 +1,14 @@
 //! The exact distance, rounded at the end.
 
-use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, cross, dot, is_zero, minus};
-use super::lattice::{Lattice, one, times_power};
-use super::search::Pair;
-use super::{NotFinite, V1, V2};
+use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, V1, V2, cross, dot, is_zero, minus};
+use super::lattice::{CoordinateLattice, NotFinite, one, times_power};
+use super::search::LatticePair;
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
 
 /// An exact distance, rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct ExactDistance {
     /// The distance, to a relative error of 16 ε or a step of the subnormal numbers; 0 exactly if a point is shared.
     pub distance: f64,
     /// The nearest point of the first body, to rounding.
@@ -20,14 +19,14 @@ pub struct Nearest {
 
 /// The distance of two bodies, from exact signs and exact products: right to the last digits however the vertices lie. A distance beyond
 /// the largest number is infinite.
-pub fn distance<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Nearest, NotFinite>
+pub fn distance<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<ExactDistance, NotFinite>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
 {
-    let pair = Pair { a, b, lattice: Lattice::new(a, b)? };
+    let pair = LatticePair { a, b, lattice: CoordinateLattice::new(a, b)? };
     let search = pair.search(hint, false);
-    let points = search.simplex.points();
+    let points = search.simplex.as_slice();
     let (sq, weights) = match points {
         [p] => (Ratio::new(dot::<_, _, DEGREE_4>(&p.w, &p.w), one()), [one(), Int::ZERO, Int::ZERO]),
         [p, q] => {
@@ -46,15 +45,16 @@ where
         _ => (Ratio { m: 0.0, e: 0 }, [one(), Int::ZERO, Int::ZERO]),
     };
     // Only the ratios of the weights count.
-    let top = weights.iter().filter(|w| !w.is_zero()).map(|w| w.to_float().1).max().unwrap_or(0);
+    let top = weights.iter().filter(|w| !w.is_zero()).map(|w| w.as_float().1).max().unwrap_or(0);
     let weights = weights.map(|w| {
-        let (m, e) = w.to_float();
+        let (m, e) = w.as_float();
         times_power(m, e - top)
     });
     let total: f64 = weights.iter().sum();
     // No gap is so small that it may pass for a shared point.
     let least = if is_zero(&search.direction) { 0.0 } else { f64::from_bits(1) };
-    let mut nearest = Nearest { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
+    let mut nearest =
+        ExactDistance { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
     for (p, weight) in points.iter().zip(weights) {
         let (i, j) = p.pair;
         let (u, v) = (a.vertex(i as usize).to_array(), b.vertex(j as usize).to_array());
@@ -74,12 +74,12 @@ struct Ratio {
 
 impl Ratio {
     fn new(numerator: Int<DEGREE_4>, denominator: Int<DEGREE_4>) -> Self {
-        let ((m, e), (n, f)) = (numerator.to_float(), denominator.to_float());
+        let ((m, e), (n, f)) = (numerator.as_float(), denominator.as_float());
         Ratio { m: m / n, e: e - f }
     }
 
     fn square_over(root: Int<DEGREE_3>, denominator: Int<DEGREE_4>) -> Self {
-        let ((m, e), (n, f)) = (root.to_float(), denominator.to_float());
+        let ((m, e), (n, f)) = (root.as_float(), denominator.as_float());
         Ratio { m: m * m / n, e: 2 * e - f }
     }
 

@@ -28,6 +28,13 @@ pub struct Int<const N: usize> {
 /// Three such integers.
 pub type Vec3<const N: usize> = [Int<N>; 3];
 
+/// A vector of degree 1: a difference of vertices.
+pub type V1 = Vec3<DEGREE_1>;
+/// A vector of degree 2: a product of differences.
+pub type V2 = Vec3<DEGREE_2>;
+/// A vector of degree 3: a direction.
+pub type V3 = Vec3<DEGREE_3>;
+
 impl<const N: usize> Int<N> {
     /// 0.
     pub const ZERO: Self = Int { negative: false, len: 0, words: [0; N] };
@@ -163,7 +170,7 @@ impl<const N: usize> Int<N> {
     }
 
     /// As `m · 2^e` with 1 ≤ |m| < 2, to a relative error of 2⁻⁵²; zero is `(0, 0)`.
-    pub fn to_float(&self) -> (f64, i32) {
+    pub fn as_float(&self) -> (f64, i32) {
         let (mut high, mut low) = (0, 0);
         for &word in self.words.iter().take(self.len) {
             (high, low) = (word, high);

@@ -1,13 +1,24 @@
 //! From floating point to integers and back: the unit of a query, and directions back.
 
-use super::integer::{Int, Vec3, minus};
-use super::{NotFinite, V1};
+use super::integer::{Int, V1, Vec3, minus};
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
 
+/// A vertex is NaN or infinite, or there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotFinite;
+
+impl core::fmt::Display for NotFinite {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("a body has no vertices, or one that is not finite")
+    }
+}
+
+impl core::error::Error for NotFinite {}
+
 /// The unit in which all coordinates of a query are integers.
 #[derive(Clone, Copy)]
-pub(super) struct Lattice {
+pub(super) struct CoordinateLattice {
     /// Its exponent.
     pub(super) unit: i32,
     /// Exponent of the largest coordinate.
@@ -24,9 +35,9 @@ pub(super) fn parts(x: f64) -> (bool, u64, i32) {
     (x.is_sign_negative(), m >> zeros, e + zeros as i32)
 }
 
-impl Lattice {
+impl CoordinateLattice {
     pub(super) fn new<A: Vertices, B: Vertices<Vector = A::Vector>>(a: &A, b: &B) -> Result<Self, NotFinite> {
-        let mut lattice = Lattice { unit: i32::MAX, top: i32::MIN };
+        let mut lattice = CoordinateLattice { unit: i32::MAX, top: i32::MIN };
         if a.count() == 0 || b.count() == 0 {
             return Err(NotFinite);
         }
@@ -51,7 +62,7 @@ impl Lattice {
             include(b.vertex(j))?;
         }
         if lattice.unit > lattice.top {
-            lattice = Lattice { unit: 0, top: 0 };
+            lattice = CoordinateLattice { unit: 0, top: 0 };
         }
         Ok(lattice)
     }
@@ -68,15 +79,15 @@ impl Lattice {
         a: &A,
         b: &B,
         pair: (u32, u32),
-    ) -> Difference {
+    ) -> ExactDifference {
         let w = minus(&self.point(b.vertex(pair.1 as usize)), &self.point(a.vertex(pair.0 as usize)));
-        Difference { pair, w }
+        ExactDifference { pair, w }
     }
 }
 
 /// A point `b - a` of the difference.
 #[derive(Clone, Copy)]
-pub(super) struct Difference {
+pub(super) struct ExactDifference {
     pub(super) pair: (u32, u32),
     pub(super) w: V1,
 }
@@ -96,7 +107,7 @@ pub(super) fn times_power(m: f64, e: i32) -> f64 {
 
 /// Rounded to floating point, the largest component between 1 and 2; each to a relative error of 2⁻⁵², or below 2⁻⁹⁹⁹.
 pub(super) fn direction<const N: usize>(d: &Vec3<N>) -> [f64; 3] {
-    let parts = [d[0].to_float(), d[1].to_float(), d[2].to_float()];
+    let parts = [d[0].as_float(), d[1].as_float(), d[2].as_float()];
     let top = parts.iter().filter(|p| p.0 != 0.0).map(|p| p.1).max().unwrap_or(0);
     parts.map(|(m, e)| if e - top > -1000 { times_power(m, e - top) } else { 0.0 })
 }

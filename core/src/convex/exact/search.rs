@@ -2,9 +2,8 @@
 
 use core::cmp::Ordering;
 
-use super::V3;
-use super::integer::{DEGREE_4, Int, dot, is_zero, minus, negated};
-use super::lattice::{Difference, Lattice, direction, exponent, parts, times_power};
+use super::integer::{DEGREE_4, Int, V3, dot, is_zero, minus, negated};
+use super::lattice::{CoordinateLattice, ExactDifference, direction, exponent, parts, times_power};
 use super::simplex::{Points, nearest};
 use crate::convex::shape::Vertices;
 use crate::number::real::{Real, Vector};
@@ -20,17 +19,17 @@ pub(super) struct Search {
 }
 
 /// Two bodies on their lattice.
-pub(super) struct Pair<'a, A, B> {
+pub(super) struct LatticePair<'a, A, B> {
     pub(super) a: &'a A,
     pub(super) b: &'a B,
-    pub(super) lattice: Lattice,
+    pub(super) lattice: CoordinateLattice,
 }
 
 /// Rounding of a scalar product of a rounded direction and a vertex, in units of ε |d|₁ (largest coordinate): three roundings of the product,
 /// two of the direction; twice, as two of them are compared; the rest is room.
 const FILTER_ROUNDINGS: f64 = 16.0;
 
-impl<A, B> Pair<'_, A, B>
+impl<A, B> LatticePair<'_, A, B>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
@@ -79,13 +78,14 @@ where
     }
 
     /// The point of the difference that lies lowest along a direction.
-    pub(super) fn lowest(&self, d: &V3) -> Difference {
+    pub(super) fn lowest(&self, d: &V3) -> ExactDifference {
         let pair = (self.farthest(self.a, d), self.farthest(self.b, &negated(d)));
         self.lattice.difference(self.a, self.b, pair)
     }
 
-    /// Towards the nearest point. With `any` the search ends at the first axis that separates strictly.
-    pub(super) fn search(&self, hint: Option<A::Vector>, any: bool) -> Search {
+    /// GJK in exact arithmetic: each round replaces the simplex by a strictly nearer one, so it ends. `hint` is a direction from the first body to
+    /// the second. With `stop_when_separated` it returns at the first strictly separating axis, else at the nearest point.
+    pub(super) fn search(&self, hint: Option<A::Vector>, stop_when_separated: bool) -> Search {
         let first = match hint {
             Some(hint) if hint.is_finite() => {
                 let d = hint.to_array().map(|x| {
@@ -98,7 +98,7 @@ where
             }
             _ => self.lattice.difference(self.a, self.b, (0, 0)),
         };
-        let mut simplex = Points { items: [first; 4], count: 1 };
+        let mut simplex: Points = Points::from_array([first]);
         let mut weak = None;
         loop {
             let (kept, direction) = nearest(&simplex);
@@ -109,16 +109,15 @@ where
             let new = self.lowest(&direction);
             let along: Int<DEGREE_4> = dot(&direction, &new.w);
             match along.sign() {
-                Ordering::Greater if any => return Search { simplex, direction, weak },
+                Ordering::Greater if stop_when_separated => return Search { simplex, direction, weak },
                 Ordering::Equal => weak = Some(direction),
                 _ => {}
             }
-            let start = simplex.items[0].w;
-            let progress: Int<DEGREE_4> = dot(&direction, &minus(&new.w, &start));
-            if !progress.is_negative() {
+            let nearer = |p: &ExactDifference| dot::<_, _, DEGREE_4>(&direction, &minus(&new.w, &p.w)).is_negative();
+            // A simplex of four points holds the origin, so that there always is room.
+            if !simplex.first().is_some_and(nearer) || simplex.push(new).is_err() {
                 return Search { simplex, direction, weak };
             }
-            simplex.push(new);
         }
     }
 }

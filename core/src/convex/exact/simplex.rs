@@ -2,29 +2,13 @@
 
 use core::cmp::Ordering;
 
-use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, cross, dot, minus, negated, resized};
-use super::lattice::Difference;
-use super::{V1, V2, V3};
+use heapless::Vec;
 
-/// Up to four of them.
-#[derive(Clone, Copy)]
-pub(super) struct Points {
-    pub(super) items: [Difference; 4],
-    pub(super) count: usize,
-}
+use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, V1, V2, V3, cross, dot, minus, negated, resized};
+use super::lattice::ExactDifference;
 
-impl Points {
-    pub(super) fn points(&self) -> &[Difference] {
-        self.items.get(..self.count).unwrap_or(&[])
-    }
-
-    pub(super) fn push(&mut self, p: Difference) {
-        if let Some(to) = self.items.get_mut(self.count) {
-            *to = p;
-            self.count += 1;
-        }
-    }
-}
+/// Up to four points of the difference: a simplex, or the edges of a cone.
+pub(super) type Points = Vec<ExactDifference, 4>;
 
 /// Whether `q` follows `p` by less than a half turn about `e` (`Greater`), by more (`Less`), or neither.
 pub(super) fn turn(e: &V1, p: &V1, q: &V1) -> Ordering {
@@ -55,28 +39,28 @@ const SUBSETS: [&[usize]; 15] = [
 pub(super) fn nearest(simplex: &Points) -> (Points, V3) {
     for subset in SUBSETS {
         let Some(part) = chosen(simplex, subset) else { continue };
-        let Some(direction) = towards(part.points()) else { continue };
-        let start = part.items[0].w;
-        let beyond = |p: &Difference| dot::<_, _, DEGREE_4>(&direction, &minus(&p.w, &start)).is_negative();
-        if !simplex.points().iter().any(beyond) {
+        let (Some(direction), Some(start)) = (towards(&part), part.first()) else { continue };
+        let beyond = |p: &ExactDifference| dot::<_, _, DEGREE_4>(&direction, &minus(&p.w, &start.w)).is_negative();
+        if !simplex.iter().any(beyond) {
             return (part, direction);
         }
     }
     // Exact arithmetic always finds one.
     debug_assert!(false, "a simplex without a nearest point");
-    (*simplex, [Int::ZERO; 3])
+    (simplex.clone(), [Int::ZERO; 3])
 }
 
+/// The points of a subset, given by their positions; none if there are not so many.
 fn chosen(from: &Points, subset: &[usize]) -> Option<Points> {
-    let mut part = Points { items: from.items, count: 0 };
+    let mut part = Points::new();
     for &i in subset {
-        part.push(*from.points().get(i)?);
+        part.push(*from.get(i)?).ok()?;
     }
     Some(part)
 }
 
 /// From the origin to the nearest point of the hull of some points, if that lies strictly inside it.
-fn towards(points: &[Difference]) -> Option<V3> {
+fn towards(points: &[ExactDifference]) -> Option<V3> {
     match points {
         [p] => Some(resized(&p.w)),
         [p, q] => {
@@ -116,25 +100,24 @@ fn towards(points: &[Difference]) -> Option<V3> {
 
 /// The part of a cone nearest to `target`, and what remains from there to the target.
 pub(super) fn nearest_in_cone(target: &V1, cone: &Points) -> (Points, V3) {
-    let none = Points { items: cone.items, count: 0 };
-    let fits = |residual: &V3| !cone.points().iter().any(|p| dot::<_, _, DEGREE_4>(residual, &p.w).is_positive());
+    let fits = |residual: &V3| !cone.iter().any(|p| dot::<_, _, DEGREE_4>(residual, &p.w).is_positive());
     let whole = resized(target);
     if fits(&whole) {
-        return (none, whole);
+        return (Points::new(), whole);
     }
     for subset in SUBSETS {
         let Some(part) = chosen(cone, subset) else { continue };
-        let Some(residual) = beside(target, part.points()) else { continue };
+        let Some(residual) = beside(target, &part) else { continue };
         if fits(&residual) {
             return (part, residual);
         }
     }
     debug_assert!(false, "a cone without a nearest point");
-    (none, [Int::ZERO; 3])
+    (Points::new(), [Int::ZERO; 3])
 }
 
 /// What remains of `target` across the cone of some points, if its foot lies strictly inside that cone.
-fn beside(target: &V1, points: &[Difference]) -> Option<V3> {
+fn beside(target: &V1, points: &[ExactDifference]) -> Option<V3> {
     match points {
         [p] => {
             let along: Int<DEGREE_2> = dot(target, &p.w);

@@ -2,20 +2,20 @@
 
 use core::cmp::Ordering;
 
-use super::integer::{DEGREE_4, Int, cross, dot, is_zero, minus, negated, resized};
-use super::lattice::{Difference, one};
-use super::search::Pair;
+use super::integer::{DEGREE_4, Int, V1, V2, V3, cross, dot, is_zero, minus, negated, resized};
+use super::lattice::{ExactDifference, one};
+use super::relation::{ExactAxis, Relation, Surround};
+use super::search::LatticePair;
 use super::simplex::{Points, nearest_in_cone, turn};
-use super::{Axis, Relation, Surround, V1, V2, V3};
 use crate::convex::shape::Vertices;
 
-impl<A, B> Pair<'_, A, B>
+impl<A, B> LatticePair<'_, A, B>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
 {
     /// The origin is inside the triangle: are there points on both sides of its plane?
-    pub(super) fn about_face(&self, p: &Difference, q: &Difference, r: &Difference) -> Relation {
+    pub(super) fn about_face(&self, p: &ExactDifference, q: &ExactDifference, r: &ExactDifference) -> Relation {
         let normal: V2 = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
         match self.both_sides(&resized(&normal)) {
             Ok((low, high)) => Relation::Overlapping(Surround::of(&[p, q, r, &low, &high])),
@@ -25,21 +25,21 @@ where
 
     /// Points strictly on both sides of the plane through the origin across `d`, or the axis that has none below.
     #[expect(clippy::result_large_err, reason = "as large as the other outcome")]
-    fn both_sides(&self, d: &V3) -> Result<(Difference, Difference), Axis> {
+    fn both_sides(&self, d: &V3) -> Result<(ExactDifference, ExactDifference), ExactAxis> {
         let low = self.lowest(d);
         if !dot::<_, _, DEGREE_4>(d, &low.w).is_negative() {
-            return Err(Axis(*d));
+            return Err(ExactAxis::new(*d));
         }
         let opposite = negated(d);
         let high = self.lowest(&opposite);
         if !dot::<_, _, DEGREE_4>(&opposite, &high.w).is_negative() {
-            return Err(Axis(opposite));
+            return Err(ExactAxis::new(opposite));
         }
         Ok((low, high))
     }
 
     /// The origin is between two points: seen along that edge, are there points in every half plane?
-    pub(super) fn about_edge(&self, p: &Difference, q: &Difference) -> Relation {
+    pub(super) fn about_edge(&self, p: &ExactDifference, q: &ExactDifference) -> Relation {
         let e = minus(&q.w, &p.w);
         let (mut first, mut last) = match self.both_sides(&across(&e)) {
             Ok(found) => found,
@@ -60,7 +60,7 @@ where
             let inward = negated(&resized(&outward));
             let new = self.lowest(&inward);
             if !dot::<_, _, DEGREE_4>(&inward, &new.w).is_negative() {
-                return Relation::Touching(Axis(inward));
+                return Relation::Touching(ExactAxis::new(inward));
             }
             if turn(&e, &first.w, &new.w) == Ordering::Less {
                 return Relation::Overlapping(Surround::of(&[p, q, &first, &last, &new]));
@@ -77,24 +77,27 @@ where
             Err(axis) => return Relation::Touching(axis),
         };
         let target = negated(&anchor.w);
-        let mut cone = Points { items: [anchor; 4], count: 0 };
+        let mut cone = Points::new();
         loop {
             let (kept, residual) = nearest_in_cone(&target, &cone);
             cone = kept;
             if is_zero(&residual) {
-                return match cone.points() {
+                return match cone.as_slice() {
                     [p] => self.about_edge(&anchor, p),
                     [p, q] => self.about_face(&anchor, p, q),
                     [p, q, r] => Relation::Overlapping(Surround::of(&[&anchor, p, q, r])),
-                    _ => Relation::Touching(Axis(axis)),
+                    _ => Relation::Touching(ExactAxis::new(axis)),
                 };
             }
             let down = negated(&residual);
             let new = self.lowest(&down);
             if !dot::<_, _, DEGREE_4>(&down, &new.w).is_negative() {
-                return Relation::Touching(Axis(down));
+                return Relation::Touching(ExactAxis::new(down));
             }
-            cone.push(new);
+            // The part that is kept has three edges at most, so that there always is room.
+            if cone.push(new).is_err() {
+                return Relation::Touching(ExactAxis::new(down));
+            }
         }
     }
 }

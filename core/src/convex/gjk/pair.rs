@@ -2,9 +2,37 @@
 //!
 //! Points stay as the bodies give them, so that a proof names points of the bodies to the last bit; only their differences are scaled.
 
-use super::{Reason, SUPPORT_ROUNDINGS};
+use super::outcome::Reason;
 use crate::convex::support::{Support, SupportPoint, lengthened};
 use crate::number::real::{Real, Vector};
+
+/// A direction of a size that one can compute with, and its 1-norm; or, if it has none (zero, NaN or infinite), the direction alone.
+#[inline(always)]
+pub(super) fn sized<V: Vector>(axis: V) -> Result<(V, V::Scalar), V> {
+    let size = axis.norm_1();
+    if size > V::Scalar::SCALE_MIN {
+        return Ok((axis, size));
+    }
+    let axis = lengthened(axis);
+    let size = axis.norm_1();
+    if size >= V::Scalar::ONE && size.is_finite() { Ok((axis, size)) } else { Err(axis) }
+}
+
+/// The support points of two bodies across a direction: of the first farthest along it, of the second farthest against it.
+pub(super) struct Probe<V> {
+    pub a: SupportPoint<V>,
+    pub b: SupportPoint<V>,
+    /// From the first to the second, scaled: the point of the difference that lies lowest along the direction.
+    pub w: V,
+}
+
+impl<V> Probe<V> {
+    /// Where the next search for support points may start.
+    #[inline(always)]
+    pub fn starts(&self) -> (u32, u32) {
+        (self.a.index, self.b.index)
+    }
+}
 
 /// The power of two to multiply two bodies with, so that their extents add to something near one.
 pub(super) enum Scale<R> {
@@ -28,8 +56,12 @@ pub(super) fn scale<R: Real>(extent: R) -> Scale<R> {
     Scale::Multiply(R::ONE / unit)
 }
 
+/// Rounding of `d·(b - a)` against the true least value over both bodies, in units of ε |d|₁ (extents): two scalar products of the scan on
+/// each side (3), the difference and its product (2); rounded up for second-order terms and the bound's own rounding.
+const SUPPORT_ROUNDINGS: f64 = 8.0;
+
 /// Two bodies. Lengths and differences come in units of `1 / factor`, which is 1 unless `SCALED`.
-pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
+pub(super) struct BodyPair<'a, A, B, R, const SCALED: bool> {
     a: &'a A,
     b: &'a B,
     factor: R,
@@ -39,7 +71,7 @@ pub(super) struct Pair<'a, A, B, R, const SCALED: bool> {
     pub slack: R,
 }
 
-impl<'a, A, B, V, const SCALED: bool> Pair<'a, A, B, V::Scalar, SCALED>
+impl<'a, A, B, V, const SCALED: bool> BodyPair<'a, A, B, V::Scalar, SCALED>
 where
     V: Vector,
     A: Support<Vector = V>,
@@ -50,9 +82,9 @@ where
         let factor = if SCALED { factor } else { V::Scalar::ONE };
         let slack = a.slack() + b.slack();
         if SCALED {
-            Pair { a, b, factor, extent: extent * factor, slack: slack * factor }
+            BodyPair { a, b, factor, extent: extent * factor, slack: slack * factor }
         } else {
-            Pair { a, b, factor, extent, slack }
+            BodyPair { a, b, factor, extent, slack }
         }
     }
 
@@ -73,7 +105,7 @@ where
         if SCALED { length * self.factor } else { length }
     }
 
-    /// A scaled length as it is.
+    /// A scaled length in the unit of the bodies.
     #[inline(always)]
     pub fn unscaled(&self, length: V::Scalar) -> V::Scalar {
         if SCALED { length * (V::Scalar::ONE / self.factor) } else { length }
@@ -86,7 +118,8 @@ where
         V::new(part(a.x(), b.x()), part(a.y(), b.y()), part(a.z(), b.z()))
     }
 
-    /// As long as the points are small, and the reverse, so that products with them neither overflow nor underflow.
+    /// `direction` times a power of two of about `factor`, clamped to the scalar's range: then `d·p` is of order one for points of size `1 / factor`,
+    /// and neither overflows nor underflows. The direction itself unless `SCALED`.
     #[inline(always)]
     fn fitted(&self, direction: V) -> V {
         let one = V::Scalar::ONE;
@@ -99,21 +132,24 @@ where
         direction * to_one * stretch
     }
 
-    /// The point of the first body farthest along `axis`, and that of the second farthest against it.
+    /// The support points across `axis`. They may be farthest only among their neighbours: see [`BodyPair::probe_surely`].
     #[inline(always)]
-    pub fn supports(&self, axis: V, starts: (u32, u32)) -> (SupportPoint<V>, SupportPoint<V>) {
+    pub fn probe(&self, axis: V, starts: (u32, u32)) -> Probe<V> {
         let along = self.fitted(axis);
-        (self.a.support(along, starts.0), self.b.support(-along, starts.1))
+        let (a, b) = (self.a.support(along, starts.0), self.b.support(-along, starts.1));
+        Probe { a, b, w: self.difference(a.point, b.point) }
     }
 
     /// The same points made sure of, for a proof.
     #[inline(always)]
-    pub fn farther(&self, axis: V, a: SupportPoint<V>, b: SupportPoint<V>) -> (SupportPoint<V>, SupportPoint<V>) {
+    pub fn probe_surely(&self, axis: V, Probe { a, b, .. }: Probe<V>) -> Probe<V> {
         let along = self.fitted(axis);
-        (self.a.farther(along, a.index).unwrap_or(a), self.b.farther(-along, b.index).unwrap_or(b))
+        let a = self.a.farther(along, a.index).unwrap_or(a);
+        let b = self.b.farther(-along, b.index).unwrap_or(b);
+        Probe { a, b, w: self.difference(a.point, b.point) }
     }
 
-    /// A first direction from `a` to `b`: never zero, always finite.
+    /// The first direction of a search, from `a` to `b`: the hint, or along the centres; never zero, always finite.
     #[inline(always)]
     pub fn seed(&self, hint: Option<V>) -> V {
         let direction = match hint {
@@ -125,7 +161,7 @@ where
         if usual { direction } else { unusual_seed(direction) }
     }
 
-    /// The bodies.
+    /// The two bodies.
     pub fn bodies(&self) -> (&'a A, &'a B) {
         (self.a, self.b)
     }
@@ -137,9 +173,8 @@ where
         if !(size >= V::Scalar::ONE) || !size.is_finite() {
             return None;
         }
-        let (a, b) = self.supports(axis, (0, 0));
-        let (a, b) = self.farther(axis, a, b);
-        let along = self.difference(a.point, b.point).dot(axis) - self.margin() * size;
+        let found = self.probe_surely(axis, self.probe(axis, (0, 0)));
+        let along = found.w.dot(axis) - self.margin() * size;
         let relative = V::Scalar::from_f64(4.0) * V::Scalar::EPSILON;
         let less = along - along.abs() * relative;
         Some(less / axis.dot(axis).sqrt() - self.radii() * (V::Scalar::ONE + relative))

@@ -4,11 +4,14 @@
 //! vertex that is not as far as some other one along all four is not the farthest along any direction in it. The few that remain are the
 //! sector's candidates. Where they are too many to list, a climb along edges finds the vertex, and a look at all vertices proves it.
 
-use super::magnitude;
+use heapless::Vec;
+
+use super::scan::scan;
+use crate::convex::support::magnitude;
 use crate::number::real::{Real, Vector};
 
 /// Which vertices of a hull share an edge, and which can be farthest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Adjacency<'a> {
     offsets: &'a [u32],
     neighbours: &'a [u32],
@@ -17,16 +20,16 @@ pub struct Adjacency<'a> {
     vertices: (usize, usize),
 }
 
-/// What a sector can see of a hull.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The vertices of a hull that can be farthest along the directions of a sector.
+#[derive(Clone, Debug, PartialEq)]
 struct Sector {
-    /// The farthest vertex along the middle, then the other candidates; repeated up to a multiple of four.
-    list: [u32; LISTED],
-    /// How much of the list is in use; 0 if there were too many.
-    count: u32,
+    /// A vertex that is far along all of them, where a climb may start.
+    start: u32,
+    /// All that can be farthest, the farthest along the middle first; then that one again, up to a multiple of four. Empty if they are too many.
+    candidates: Vec<u32, LISTED>,
 }
 
-/// Candidates of a sector that can be listed: a round hull of some hundred vertices has ten.
+/// Most candidates of a sector that are listed, a multiple of four: a round hull of some hundred vertices has ten.
 const LISTED: usize = 16;
 
 /// Four times four on each face of the cube.
@@ -41,10 +44,7 @@ impl<'a> Adjacency<'a> {
     pub fn new<V: Vector>(vertices: &'a [V], offsets: &'a [u32], neighbours: &'a [u32]) -> Self {
         let extent = vertices.iter().fold(V::Scalar::ZERO, |m, &v| m.max(magnitude(v)));
         let room = V::Scalar::from_f64(CORNER_ROUNDINGS) * (extent + V::Scalar::MIN_POSITIVE) * V::Scalar::EPSILON;
-        let mut sectors = [Sector { list: [0; LISTED], count: 0 }; SECTORS];
-        for (i, sector) in sectors.iter_mut().enumerate() {
-            *sector = Sector::new(vertices, i, room);
-        }
+        let sectors = core::array::from_fn(|i| Sector::new(vertices, i, room));
         Adjacency { offsets, neighbours, sectors, vertices: identity(vertices) }
     }
 
@@ -56,15 +56,14 @@ impl<'a> Adjacency<'a> {
     /// All vertices that can be farthest along a direction, if they are few.
     #[inline(always)]
     pub(super) fn candidates<V: Vector>(&self, direction: V) -> Option<&[u32]> {
-        let sector = self.sectors.get(sector(direction))?;
-        let list = sector.list.get(..sector.count as usize)?;
-        (!list.is_empty()).then_some(list)
+        let candidates = self.sectors.get(sector(direction))?.candidates.as_slice();
+        (!candidates.is_empty()).then_some(candidates)
     }
 
     /// A vertex that is far along a direction.
     #[inline(always)]
     pub(super) fn start<V: Vector>(&self, direction: V) -> u32 {
-        self.sectors.get(sector(direction)).map_or(0, |sector| sector.list[0])
+        self.sectors.get(sector(direction)).map_or(0, |sector| sector.start)
     }
 
     #[inline(always)]
@@ -82,48 +81,35 @@ fn identity<V>(vertices: &[V]) -> (usize, usize) {
 }
 
 impl Sector {
-    /// `room` covers what rounding does to two vertices along a corner.
+    /// The sector of a number; `room` covers the rounding of two vertices along a corner, in their unit times the cube's.
     fn new<V: Vector>(vertices: &[V], sector: usize, room: V::Scalar) -> Self {
         let (middle, corners) = cone::<V>(sector);
-        let middle = super::hull::scan(vertices, middle);
-        let mut found = Sector { list: [middle; LISTED], count: 0 };
+        let middle = scan(vertices, middle);
+        let mut found = Sector { start: middle, candidates: Vec::new() };
         // The best along the corners first: they rule most others out.
-        let best = corners.map(|corner| super::hull::scan(vertices, corner));
+        let best = corners.map(|corner| scan(vertices, corner));
         let firsts = core::iter::once(middle).chain(best);
-        for i in firsts.chain(0..vertices.len() as u32) {
-            if found.offer(vertices, i, &corners, room).is_none() {
-                found.count = 0;
-                return found;
-            }
+        let all_listed = firsts.chain(0..vertices.len() as u32).all(|i| found.offer(vertices, i, &corners, room));
+        found.start = found.candidates.first().copied().unwrap_or(middle);
+        if !all_listed {
+            found.candidates.clear();
         }
-        found.count = found.count.next_multiple_of(4).min(LISTED as u32);
+        while !found.candidates.len().is_multiple_of(4) && found.candidates.push(found.start).is_ok() {}
         found
     }
 
-    /// Lists a vertex unless another one is farther, and drops those it is farther than itself; nothing if the list is full.
-    fn offer<V: Vector>(&mut self, vertices: &[V], i: u32, corners: &[V; 4], room: V::Scalar) -> Option<()> {
+    /// Lists a vertex unless a listed one is farther, and drops those it is farther than itself; false if the list is full.
+    fn offer<V: Vector>(&mut self, vertices: &[V], i: u32, corners: &[V; 4], room: V::Scalar) -> bool {
         let at = |i: u32| vertices.get(i as usize).copied().unwrap_or(V::ZERO);
         let v = at(i);
         let reach = corners.map(|corner| v.dot(corner));
         let beyond = |p: [V::Scalar; 4], q: [V::Scalar; 4]| p.iter().zip(q).all(|(&p, q)| p > q + room);
-        let listed = self.list.get(..self.count as usize)?;
-        if listed.iter().any(|&j| at(j) == v || beyond(corners.map(|corner| at(j).dot(corner)), reach)) {
-            return Some(());
+        let reach_of = |j: u32| corners.map(|corner| at(j).dot(corner));
+        if self.candidates.iter().any(|&j| at(j) == v || beyond(reach_of(j), reach)) {
+            return true;
         }
-        let mut kept = 0;
-        for n in 0..self.count as usize {
-            let j = *self.list.get(n)?;
-            if !beyond(reach, corners.map(|corner| at(j).dot(corner))) {
-                *self.list.get_mut(kept)? = j;
-                kept += 1;
-            }
-        }
-        *self.list.get_mut(kept)? = i;
-        // What is not in use repeats the first.
-        let first = self.list[0];
-        self.list.iter_mut().skip(kept + 1).for_each(|unused| *unused = first);
-        self.count = kept as u32 + 1;
-        Some(())
+        self.candidates.retain(|&j| !beyond(reach, reach_of(j)));
+        self.candidates.push(i).is_ok()
     }
 }
 

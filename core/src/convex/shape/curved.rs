@@ -2,8 +2,9 @@
 //!
 //! Sphere and capsule are a point and a segment with a radius, which is taken off exactly; the others round, and say by how much.
 
-use super::{Plane, Point, Segment, only};
-use crate::convex::support::{Rounded, Support, SupportPoint, magnitude};
+use super::flat::{Point, Segment};
+use super::plane::FacetPlane;
+use crate::convex::support::{Rounded, Support, SupportPoint, delegate_support, magnitude, normalized, only};
 use crate::number::real::{Real, Vector};
 
 /// A ball: a point with a radius.
@@ -40,41 +41,14 @@ impl<V: Vector> Capsule<V> {
     }
 }
 
-macro_rules! support_of_rounded {
-    ($shape:ident) => {
-        impl<V: Vector> Support for $shape<V> {
-            type Vector = V;
-            const ROUNDED: bool = true;
-            #[inline(always)]
-            fn support(&self, direction: V, start: u32) -> SupportPoint<V> {
-                self.rounded().support(direction, start)
-            }
-            #[inline(always)]
-            fn center(&self) -> V {
-                self.rounded().center()
-            }
-            #[inline(always)]
-            fn extent(&self) -> V::Scalar {
-                self.rounded().extent()
-            }
-            #[inline(always)]
-            fn radius(&self) -> V::Scalar {
-                self.radius
-            }
-        }
-    };
+impl<V: Vector> Support for Sphere<V> {
+    const ROUNDED: bool = true;
+    delegate_support!(self, V => self.rounded());
 }
-support_of_rounded!(Sphere);
-support_of_rounded!(Capsule);
 
-/// `v` by its length; zero for zero. Components of any size.
-pub(crate) fn normalized<V: Vector>(v: V) -> V {
-    let unit = v.norm_max().binade();
-    if !(unit > V::Scalar::ZERO) || !unit.is_finite() {
-        return V::ZERO;
-    }
-    let v = v * (V::Scalar::ONE / unit);
-    v * (V::Scalar::ONE / v.dot(v).sqrt())
+impl<V: Vector> Support for Capsule<V> {
+    const ROUNDED: bool = true;
+    delegate_support!(self, V => self.rounded());
 }
 
 /// An ellipsoid with axes along x, y and z; see [`crate::convex::support::Transformed`] for others.
@@ -115,7 +89,7 @@ impl<V: Vector> Support for Ellipsoid<V> {
 
 /// A centre, an axis and two vectors across it: what cylinder and cone have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frame<V: Vector> {
+pub(crate) struct AxisFrame<V: Vector> {
     pub base: V,
     pub top: V,
     axis: V,
@@ -123,26 +97,16 @@ pub(crate) struct Frame<V: Vector> {
     pub radius: V::Scalar,
     pub height: V::Scalar,
     /// Across the axis through base and top.
-    pub ends: [Plane<V>; 2],
+    pub ends: [FacetPlane<V>; 2],
 }
 
-impl<V: Vector> Frame<V> {
+impl<V: Vector> AxisFrame<V> {
     pub fn new(base: V, top: V, radius: V::Scalar) -> Self {
         let axis = top - base;
         let unit = normalized(axis);
-        let [x, y, z] = unit.abs().to_array();
-        let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-        // The coordinate axis least along ours.
-        let other = if x <= y && x <= z {
-            V::new(one, zero, zero)
-        } else if y <= z {
-            V::new(zero, one, zero)
-        } else {
-            V::new(zero, zero, one)
-        };
-        let u = normalized(unit.cross(other));
-        let ends = [Plane::new(base - top, base), Plane::new(axis, top)];
-        Frame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
+        let u = normalized(unit.cross(unit.least_axis()));
+        let ends = [FacetPlane::new(base - top, base), FacetPlane::new(axis, top)];
+        AxisFrame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
     }
 
     /// From the axis to the point of the circle farthest along a direction.
@@ -168,12 +132,12 @@ impl<V: Vector> Frame<V> {
 
 /// A cylinder with flat ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cylinder<V: Vector>(pub(crate) Frame<V>);
+pub struct Cylinder<V: Vector>(pub(crate) AxisFrame<V>);
 
 impl<V: Vector> Cylinder<V> {
     /// Between the centres of its ends. With both in one place it is that point.
     pub fn new(from: V, to: V, radius: V::Scalar) -> Self {
-        Cylinder(Frame::new(from, to, radius))
+        Cylinder(AxisFrame::new(from, to, radius))
     }
 }
 
@@ -201,12 +165,12 @@ impl<V: Vector> Support for Cylinder<V> {
 
 /// A cone with a flat base.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone<V: Vector>(pub(crate) Frame<V>);
+pub struct Cone<V: Vector>(pub(crate) AxisFrame<V>);
 
 impl<V: Vector> Cone<V> {
     /// From the centre and radius of its base to its apex. With both in one place it is that point.
     pub fn new(base: V, apex: V, radius: V::Scalar) -> Self {
-        Cone(Frame::new(base, apex, radius))
+        Cone(AxisFrame::new(base, apex, radius))
     }
 }
 

@@ -1,51 +1,14 @@
 //! The convex hull of some points, by all of them or by those that can be farthest.
 
 use super::adjacency::Adjacency;
-use super::{Vertices, magnitude};
-use crate::convex::support::{ScalarOf, Support, SupportPoint};
+use super::flat::Vertices;
+use super::scan::{farthest, scan};
+use crate::convex::support::{ScalarOf, Support, SupportPoint, magnitude};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
 /// Up to this many vertices a scan is as fast as a climb, and needs no second look.
 const CLIMBED: usize = 64;
-
-/// The greatest of four values and its position, the first of equals. Selections instead of branches, two at a time.
-#[inline(always)]
-fn top<R: Real>(of: [R; 4]) -> (R, u32) {
-    let (pq, rs) = (of[1] > of[0], of[3] > of[2]);
-    let low = if pq { of[1] } else { of[0] };
-    let high = if rs { of[3] } else { of[2] };
-    if high > low { (high, 2 + u32::from(rs)) } else { (low, u32::from(pq)) }
-}
-
-/// The position of the item farthest along a direction, the first of equals; one comparison in a chain for every four items.
-#[inline(always)]
-fn farthest<T: Copy, R: Real>(items: &[T], along: impl Fn(T) -> R) -> u32 {
-    let (mut best, mut index) = (-R::INFINITY, 0);
-    let mut fours = items.chunks_exact(4);
-    let mut first = 0;
-    for four in &mut fours {
-        if let [p, q, r, s] = *four {
-            let (top, which) = top([along(p), along(q), along(r), along(s)]);
-            index = if top > best { first + which } else { index };
-            best = if top > best { top } else { best };
-        }
-        first += 4;
-    }
-    for &item in fours.remainder() {
-        let there = along(item);
-        index = if there > best { first } else { index };
-        best = if there > best { there } else { best };
-        first += 1;
-    }
-    index
-}
-
-/// The farthest vertex.
-#[inline(always)]
-pub(super) fn scan<V: Vector>(vertices: &[V], direction: V) -> u32 {
-    farthest(vertices, |v| v.dot(direction))
-}
 
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,13 +1,12 @@
 //! Flat parts of surfaces.
 
-use super::normalized;
-use crate::convex::support::Support;
+use crate::convex::support::{Support, normalized};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
 /// A flat part of a body's surface: no point of the body has `normal·p > offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane<V: Vector> {
+pub struct FacetPlane<V: Vector> {
     /// Outward, of length one.
     pub normal: V,
     /// Where it stands along the normal.
@@ -16,7 +15,7 @@ pub struct Plane<V: Vector> {
     pub exact: bool,
 }
 
-impl<V: Vector> Plane<V> {
+impl<V: Vector> FacetPlane<V> {
     /// Across `normal`, of any length, through a point farthest along it.
     pub fn new(normal: V, through: V) -> Self {
         let [x, y, z] = normal.to_array();
@@ -24,7 +23,7 @@ impl<V: Vector> Plane<V> {
         let exact = [x, y, z].iter().filter(|&&c| c != zero).count() == 1;
         let sign = |c: V::Scalar| if c == zero { zero } else { V::Scalar::ONE.copysign(c) };
         let normal = if exact { V::new(sign(x), sign(y), sign(z)) } else { normalized(normal) };
-        Plane { normal, offset: normal.dot(through), exact }
+        FacetPlane { normal, offset: normal.dot(through), exact }
     }
 
     /// Lowest and highest `normal·p - offset` over a box, rounded unless the plane is exact.

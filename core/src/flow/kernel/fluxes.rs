@@ -1,277 +1,345 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
-use crate::flow::kernel::rows::{self, Openings, var};
+use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
-use crate::flow::kernel::sweep::{Row, Sweep};
+use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
+use crate::flow::problem::PressureForm;
 use crate::flow::riemann::Solver;
-use crate::flow::step::PressureForm;
+use crate::flow::state::{Conserved, rotate_back};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
+use core::ops::Range;
 
-impl<R: Real, const D: usize> Sweep<'_, R, D> {
-    /// Face states of the present row on one side of axis `d`, from index `offset` of a block of rows `stride` long.
-    fn states(&self, high: bool, d: usize, work: (&[R], &[R], &[R]), out: &mut [R], stride: usize, offset: usize) {
-        let (half, slope, weight) = work;
-        let weight = if self.problem.gravity[d] != R::ZERO { Some(weight) } else { None };
-        rows::face_states::<R, D>(high, d, half, slope, self.size.n, weight, out, stride, offset);
-    }
+/// Face states of the present row on the low or high side of its cells along axis `d`.
+fn states<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    high: bool,
+    d: usize,
+    (half, slope, weight): (&[R], &[R], &[R]),
+    out: Faces<'_, R>,
+) {
+    let weight = if slab.problem.gravity[d] != R::ZERO { Some(weight) } else { None };
+    rows::face_states::<R, D>(high, d, half, slope, slab.size.n, weight, out);
+}
 
-    /// Fluxes through the faces inside and at both ends of a row, and their differences.
-    pub(in crate::flow) fn cross_row<S: Solver, const ENERGY: bool>(
-        &self,
-        row: Row<D>,
-        j: isize,
-        work: &mut Work<'_, R, D>,
-        report: &mut Report<R, D>,
-    ) {
-        let s = self.size;
-        let (n, m) = (s.n, s.m);
-        let from = (&*work.half, &*work.slope[0], &*work.metric.weight[0]);
-        self.states(true, 0, from, work.left, m, 1);
-        self.states(false, 0, from, work.right, m, 0);
-        let gas = self.problem.gas;
-        let inner_low = rows::face_state::<R, D>(work.right, m, 0);
-        let inner_high = rows::face_state::<R, D>(work.left, m, n);
-        let (low, high) = if self.periodic[0] {
-            (inner_high, inner_low)
-        } else {
-            let [a, b] = &self.problem.boundaries[0];
-            (a.ghost(&inner_low, 0, true, gas), b.ghost(&inner_high, 0, false, gas))
-        };
-        rows::put_state(work.left, m, 0, &low);
-        work.left[(D + 2) * m] = low.pressure;
-        rows::put_state(work.right, m, n, &high);
-        work.right[(D + 2) * m + n] = high.pressure;
+/// Fluxes through the faces inside and at both ends of a row, and their differences; `place` is that of the row in its tile.
+pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    place: usize,
+    work: &mut Work<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let (n, m) = (slab.size.n, slab.size.m);
+    let from = (&*work.half, &*work.slope[0], &*work.coefficients.weight[0]);
+    states(slab, true, 0, from, Faces { block: work.left, stride: m, offset: 1 });
+    states(slab, false, 0, from, Faces { block: work.right, stride: m, offset: 0 });
+    states_at_ends(slab, work);
 
-        let openings = match &self.medium {
-            None => Openings::None,
-            Some(medium) => {
-                let face = &medium.porosity.faces[0][medium.mesh.face(0, row.at)..][..m];
-                match self.problem.scheme.pressure {
-                    PressureForm::Geometric => Openings::Geometric(face),
-                    PressureForm::Paper => {
-                        let volume = &medium.porosity.volume[row.start..][..n];
-                        work.metric.vol_left[1..].copy_from_slice(volume);
-                        work.metric.vol_right[..n].copy_from_slice(volume);
-                        work.metric.vol_left[0] = if self.periodic[0] { volume[n - 1] } else { volume[0] };
-                        work.metric.vol_right[n] = if self.periodic[0] { volume[0] } else { volume[n - 1] };
-                        Openings::Paper(face, work.metric.vol_left, work.metric.vol_right)
-                    }
+    let openings = match &slab.medium {
+        None => Openings::None,
+        Some(medium) => {
+            let face = &medium.porosity.faces[0][medium.mesh.face(0, row.at)..][..m];
+            match slab.problem.scheme.pressure {
+                PressureForm::Geometric => Openings::Geometric(face),
+                PressureForm::Paper => {
+                    let volume = &medium.porosity.volume[row.start..][..n];
+                    let (left, right) = (&mut *work.coefficients.vol_left, &mut *work.coefficients.vol_right);
+                    left[1..].copy_from_slice(volume);
+                    right[..n].copy_from_slice(volume);
+                    left[0] = if slab.periodic[0] { volume[n - 1] } else { volume[0] };
+                    right[n] = if slab.periodic[0] { volume[0] } else { volume[n - 1] };
+                    Openings::Paper(face, left, right)
                 }
             }
-        };
-        rows::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &self.face_gas, work.flux, m);
-        if let Some(medium) = &self.medium {
-            let marks = &medium.porosity.marks[row.start..][..n];
-            let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
-            let broken = marked(marks, break_low(0)).chain(last);
-            self.fluxes_at_breaks::<S>(medium, 0, row.at, broken, [work.left, work.right], work.flux, m);
         }
-        let flux = &*work.flux;
-        for (side, i) in [(0, 0), (1, n)] {
-            let wall = if side == 0 { &*work.right } else { &*work.left };
-            self.count_inflow::<ENERGY>(0, side, row, (flux, wall), m, i, 1, report);
+    };
+    rows::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &slab.face_gas, work.flux, m);
+    if let Some(medium) = &slab.medium {
+        let marks = &medium.porosity.marks[row.start..][..n];
+        let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
+        let broken = marked(marks, break_low(0)).chain(last);
+        let flux = FluxBlock { values: work.flux, n: m };
+        fluxes_at_breaks::<R, D, S>(slab, 0, row.at, broken, [work.left, work.right], flux);
+    }
+    let flux = &*work.flux;
+    count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
+    count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
+    let inv = &*work.coefficients.inv_width;
+    let weight = half_weight(slab, 0, 0, &mut *work.coefficients.spare);
+    rows::differences::<R, D, ENERGY>(
+        0,
+        |v| &var(flux, v, m)[..n],
+        |v| &var(flux, v, m)[1..],
+        |i| inv[i],
+        weight,
+        &mut work.change[0][slab.changes(0, place)],
+        n,
+    );
+}
+
+/// The states beyond both ends of a row: of the other end, or ghosts.
+fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, work: &mut Work<'_, R, D>) {
+    let (n, m, gas) = (slab.size.n, slab.size.m, slab.problem.gas);
+    let inner_low = rows::face_state::<R, D>(work.right, m, 0);
+    let inner_high = rows::face_state::<R, D>(work.left, m, n);
+    let (low, high) = if slab.periodic[0] {
+        (inner_high, inner_low)
+    } else {
+        let [a, b] = &slab.problem.boundaries[0];
+        (a.ghost_face(&inner_low, 0, true, gas), b.ghost_face(&inner_high, 0, false, gas))
+    };
+    rows::put_state(work.left, m, 0, &low);
+    work.left[(D + 2) * m] = low.pressure;
+    rows::put_state(work.right, m, n, &high);
+    work.right[(D + 2) * m + n] = high.pressure;
+}
+
+/// ½ g dx of the cells of a row along `d`, where its place is `k`, if gravity acts there.
+fn half_weight<'s, R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    d: usize,
+    k: usize,
+    spare: &'s mut [R],
+) -> Option<&'s [R]> {
+    let half_g = R::HALF * slab.problem.gravity[d];
+    if half_g == R::ZERO {
+        return None;
+    }
+    let spare = &mut spare[..slab.size.n];
+    let widths = slab.problem.mesh.widths[d];
+    for (i, s) in spare.iter_mut().enumerate() {
+        *s = half_g * widths[if d == 0 { i } else { k }];
+    }
+    Some(spare)
+}
+
+/// Fluxes of a row of faces across axis `d` > 0 between `left` and `right`, into `flux`. `at` names the row of cells above the faces,
+/// with `at[d]` one past the end at the upper boundary.
+fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    d: usize,
+    at: [usize; D],
+    left: &[R],
+    right: &[R],
+    flux: &mut [R],
+) {
+    let n = slab.size.n;
+    let (k, cells) = (at[d], slab.problem.mesh.cells()[d]);
+    let row_of = |k: usize| {
+        let mut a = at;
+        a[d] = k;
+        slab.problem.mesh.index(a)
+    };
+    // Beyond an end lies the other one of a periodic axis, else the row at this one.
+    let beyond = |other: usize, own: usize| if slab.periodic[d] { other } else { own };
+    let above = row_of(if k < cells { k } else { beyond(0, cells - 1) });
+    let below = row_of(if k > 0 { k - 1 } else { beyond(cells - 1, 0) });
+    let openings = match &slab.medium {
+        None => Openings::None,
+        Some(medium) => {
+            let face = &medium.porosity.faces[d][medium.mesh.face(d, at)..][..n];
+            match slab.problem.scheme.pressure {
+                PressureForm::Geometric => Openings::Geometric(face),
+                PressureForm::Paper => {
+                    let volume = medium.porosity.volume;
+                    Openings::Paper(face, &volume[below..][..n], &volume[above..][..n])
+                }
+            }
         }
-        let inv = &*work.metric.inv_width;
-        let weight = self.half_weight(0, 0, &mut *work.metric.spare);
+    };
+    rows::fluxes::<R, S, D, ENERGY>(left, right, openings, &slab.face_gas, flux, n);
+    if let Some(medium) = &slab.medium {
+        let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
+        let broken = marked(&medium.porosity.marks[start..][..n], bit);
+        fluxes_at_breaks::<R, D, S>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
+    }
+}
+
+/// Ghost states beside the boundary faces of axis `d`, from the inner face states.
+fn ghosts<R: Real, const D: usize>(slab: &Slab<'_, R, D>, d: usize, low: bool, inner: &[R], out: &mut [R]) {
+    let n = slab.size.n;
+    let boundary = &slab.problem.boundaries[d][usize::from(!low)];
+    for i in 0..n {
+        let w = boundary.ghost_face(&rows::face_state::<R, D>(inner, n, i), d, low, slab.problem.gas);
+        rows::put_state(out, n, i, &w);
+        out[(D + 2) * n + i] = w.pressure;
+    }
+}
+
+/// Faces between row `j` and the row below it along axis 1 of a 3D mesh; `present` tells whether there is a row `j`.
+pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    (layer, j): (usize, isize),
+    present: bool,
+    work: &mut Work<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let d = 1 % D;
+    let mut at = [0; D];
+    at[D - 1] = layer;
+    at[d] = j as usize;
+    let mut below = core::mem::take(&mut work.below_row);
+    let changed = (j > slab.rows.start as isize).then(|| slab.place(j - 1));
+    let faces = FacesUnder { d, at, present, changed };
+    fluxes_under::<R, D, S, ENERGY>(slab, faces, (below.state, below.flux), work, report);
+    core::mem::swap(&mut below, &mut work.below_row);
+}
+
+/// Faces between row `j` of layer `l` and of the layer below; `present` tells whether there is a layer `l`.
+pub(in crate::flow) fn fluxes_across_layers<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    (l, j): (isize, isize),
+    present: bool,
+    work: &mut Work<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let f = (D + 3) * slab.size.n;
+    let mut at = [0; D];
+    if D == 3 {
+        at[1] = j as usize;
+    }
+    at[D - 1] = l as usize;
+    let mut below = core::mem::take(&mut work.below_layer);
+    let place = slab.place(j);
+    let own = (&mut below.state[place * f..][..f], &mut below.flux[place * f..][..f]);
+    let changed = (l > slab.layers.start as isize).then_some(place);
+    let faces = FacesUnder { d: D - 1, at, present, changed };
+    fluxes_under::<R, D, S, ENERGY>(slab, faces, own, work, report);
+    core::mem::swap(&mut below, &mut work.below_layer);
+}
+
+/// The faces under a row along an axis other than its own.
+struct FacesUnder<const D: usize> {
+    /// Axis, above 0.
+    d: usize,
+    /// Indices of the row, `at[d]` one past the end at the upper boundary.
+    at: [usize; D],
+    /// The row exists; else the boundary does.
+    present: bool,
+    /// Place in the tile of the row below, if that is advanced: it now has the fluxes on both of its sides.
+    changed: Option<usize>,
+}
+
+/// Fluxes through the faces under a row, from the high face states of the row below; then, if that row is advanced, the changes they make
+/// in it. `below_flux` holds the fluxes under that row, and afterwards the new ones.
+fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    FacesUnder { d, at, present, changed }: FacesUnder<D>,
+    (below_state, below_flux): (&mut [R], &mut [R]),
+    work: &mut Work<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let (n, f) = (slab.size.n, (D + 3) * slab.size.n);
+    let mesh = &slab.problem.mesh;
+    if present {
+        let from = (&*work.half, &*work.slope[d], &*work.coefficients.weight[d]);
+        states(slab, false, d, from, Faces { block: &mut work.right[..f], stride: n, offset: 0 });
+        if at[d] == 0 && !slab.periodic[d] {
+            ghosts(slab, d, true, &work.right[..f], below_state);
+        }
+    } else {
+        ghosts(slab, d, false, below_state, &mut work.right[..f]);
+    }
+    fluxes_of_faces::<R, D, S, ENERGY>(slab, d, at, below_state, &work.right[..f], &mut work.flux[..f]);
+    let last = mesh.cells()[d];
+    for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
+        if at[d] == edge {
+            let mut of_row = at;
+            of_row[d] = inside;
+            let row = RowAt { start: mesh.index(of_row), at: of_row };
+            let wall = if side == 0 { &work.right[..f] } else { &*below_state };
+            count_inflow::<R, D, ENERGY>(slab, (d, side), row, (&work.flux[..f], wall), 0..n, report);
+        }
+    }
+    if let Some(place) = changed {
+        let below = at[d] - 1;
+        let inv = R::ONE / mesh.widths[d][below];
+        let weight = half_weight(slab, d, below, &mut *work.coefficients.spare);
+        let (low, high) = (&*below_flux, &work.flux[..f]);
         rows::differences::<R, D, ENERGY>(
-            0,
-            |v| &var(flux, v, m)[..n],
-            |v| &var(flux, v, m)[1..],
-            |i| inv[i],
+            d,
+            |v| var(low, v, n),
+            |v| var(high, v, n),
+            |_| inv,
             weight,
-            &mut work.change[0][self.changes(0, self.place(j))],
+            &mut work.change[d][slab.changes(d, place)],
             n,
         );
     }
+    below_flux.copy_from_slice(&work.flux[..f]);
+}
 
-    /// ½ g dx of the cells of a row along `d`, where its place is `k`, if gravity acts there.
-    fn half_weight<'s>(&self, d: usize, k: usize, spare: &'s mut [R]) -> Option<&'s [R]> {
-        let half_g = R::HALF * self.problem.gravity[d];
-        if half_g == R::ZERO {
-            return None;
-        }
-        let spare = &mut spare[..self.size.n];
-        let widths = self.problem.mesh.widths[d];
-        for (i, s) in spare.iter_mut().enumerate() {
-            *s = half_g * widths[if d == 0 { i } else { k }];
-        }
-        Some(spare)
-    }
+/// Leaves the high face states of the present row for the row above it.
+pub(in crate::flow) fn keep_for_row_above<R: Real, const D: usize>(slab: &Slab<'_, R, D>, work: &mut Work<'_, R, D>) {
+    let (n, d) = (slab.size.n, 1 % D);
+    let from = (&*work.half, &*work.slope[d], &*work.coefficients.weight[d]);
+    let block = &mut work.below_row.state[..(D + 3) * n];
+    states(slab, true, d, from, Faces { block, stride: n, offset: 0 });
+}
 
-    /// Fluxes of a row of faces across axis `d` > 0 between `left` and `work.right`, into `work.flux`. `at` names the row of
-    /// cells above the faces, with `at[d]` one past the end at the upper boundary.
-    fn cross_faces<S: Solver, const ENERGY: bool>(
-        &self,
-        d: usize,
-        at: [usize; D],
-        left: &[R],
-        right: &[R],
-        flux: &mut [R],
-    ) {
-        let n = self.size.n;
-        let cells = self.problem.mesh.cells()[d];
-        let row_of = |k: usize| {
-            let mut a = at;
-            a[d] = k;
-            self.problem.mesh.index(a)
-        };
-        let k = at[d];
-        let above = row_of(if k < cells {
-            k
-        } else if self.periodic[d] {
-            0
-        } else {
-            cells - 1
-        });
-        let below = row_of(if k > 0 {
-            k - 1
-        } else if self.periodic[d] {
-            cells - 1
-        } else {
-            0
-        });
-        let openings = match &self.medium {
-            None => Openings::None,
+/// Leaves the high face states of the present row, at a place of its tile, for the layer above it.
+pub(in crate::flow) fn keep_for_layer_above<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    place: usize,
+    work: &mut Work<'_, R, D>,
+) {
+    let (n, f) = (slab.size.n, (D + 3) * slab.size.n);
+    let from = (&*work.half, &*work.slope[D - 1], &*work.coefficients.weight[D - 1]);
+    let block = &mut work.below_layer.state[place * f..][..f];
+    states(slab, true, D - 1, from, Faces { block, stride: n, offset: 0 });
+}
+
+/// Adds what enters through some boundary faces of a flux block, beside cells of `row` on a side (axis, 0 low or 1 high) of the domain;
+/// `wall` is the block of face states inside, whose reference pressure the flux is counted from.
+fn count_inflow<R: Real, const D: usize, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    (d, side): (usize, usize),
+    row: RowAt<D>,
+    (flux, wall): (&[R], &[R]),
+    faces: Range<usize>,
+    report: &mut Report<R, D>,
+) {
+    let m = if d == 0 { slab.size.m } else { slab.size.n };
+    let sign = if side == 0 { slab.dt } else { -slab.dt };
+    let normal = if side == 0 { D + 2 } else { 1 };
+    let mut total = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
+    for face in faces {
+        let mut at = row.at;
+        if d != 0 {
+            at[0] = face;
+        } else if side == 1 {
+            at[0] = slab.size.n - 1;
+        }
+        let area = slab.problem.mesh.volume(at) / slab.problem.mesh.widths[d][at[d]];
+        let weight = sign * area;
+        let open = match &slab.medium {
+            None => R::ONE,
             Some(medium) => {
-                let face = &medium.porosity.faces[d][medium.mesh.face(d, at)..][..n];
-                match self.problem.scheme.pressure {
-                    PressureForm::Geometric => Openings::Geometric(face),
-                    PressureForm::Paper => {
-                        let volume = medium.porosity.volume;
-                        Openings::Paper(face, &volume[below..][..n], &volume[above..][..n])
-                    }
-                }
+                let (low, high) = medium.ducts(d, at, slab.periodic[d]).openings(0);
+                if side == 0 { low } else { high }
             }
         };
-        rows::fluxes::<R, S, D, ENERGY>(left, right, openings, &self.face_gas, flux, n);
-        if let Some(medium) = &self.medium {
-            let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
-            let broken = marked(&medium.porosity.marks[start..][..n], bit);
-            self.fluxes_at_breaks::<S>(medium, d, at, broken, [left, right], flux, n);
+        // A closed face is a wall, not a side to come in by.
+        if open == R::ZERO {
+            continue;
+        }
+        let through = |v: usize| weight * flux[v * m + face];
+        total.density += through(0);
+        let mut momentum = [R::ZERO; D];
+        momentum[0] = weight * (flux[normal * m + face] + open * wall[(D + 2) * m + face]);
+        for c in 1..D {
+            momentum[c] = through(1 + c);
+        }
+        let momentum = rotate_back(momentum, d);
+        for c in 0..D {
+            total.momentum[c] += momentum[c];
+        }
+        if ENERGY {
+            total.energy += through(D + 1);
         }
     }
-
-    /// Ghost states beside the boundary faces of axis `d`, from the inner face states.
-    fn ghosts(&self, d: usize, low: bool, inner: &[R], out: &mut [R]) {
-        let n = self.size.n;
-        let boundary = &self.problem.boundaries[d][usize::from(!low)];
-        for i in 0..n {
-            let w = boundary.ghost(&rows::face_state::<R, D>(inner, n, i), d, low, self.problem.gas);
-            rows::put_state(out, n, i, &w);
-            out[(D + 2) * n + i] = w.pressure;
-        }
-    }
-
-    /// Faces between row `j` and the row below it along axis 1 of a 3D mesh; `present` tells whether there is a row `j`.
-    pub(in crate::flow) fn cross_middle<S: Solver, const ENERGY: bool>(
-        &self,
-        layer: usize,
-        j: isize,
-        present: bool,
-        work: &mut Work<'_, R, D>,
-        report: &mut Report<R, D>,
-    ) {
-        let d = 1 % D;
-        let mut at = [0; D];
-        at[D - 1] = layer;
-        at[d] = j as usize;
-        let mut lag = core::mem::take(&mut work.middle);
-        let differ = j > self.rows.start as isize;
-        let below_in_tile = if differ { self.place(j - 1) } else { 0 };
-        self.cross_below::<S, ENERGY>(d, at, present, differ, below_in_tile, (lag.state, lag.flux), work, report);
-        core::mem::swap(&mut lag, &mut work.middle);
-    }
-
-    /// Faces between row `j` of layer `l` and of the layer below; `present` tells whether there is a layer `l`.
-    pub(in crate::flow) fn cross_last<S: Solver, const ENERGY: bool>(
-        &self,
-        l: isize,
-        j: isize,
-        present: bool,
-        work: &mut Work<'_, R, D>,
-        report: &mut Report<R, D>,
-    ) {
-        let f = Self::F * self.size.n;
-        let mut at = [0; D];
-        if D == 3 {
-            at[1] = j as usize;
-        }
-        at[D - 1] = l as usize;
-        let mut lag = core::mem::take(&mut work.last);
-        let place = self.place(j);
-        let own = (&mut lag.state[place * f..][..f], &mut lag.flux[place * f..][..f]);
-        let differ = l > self.slab.start as isize;
-        self.cross_below::<S, ENERGY>(D - 1, at, present, differ, place, own, work, report);
-        core::mem::swap(&mut lag, &mut work.last);
-    }
-
-    /// Fluxes through the faces under a row along axis `d` > 0; `at` names the row, `present` tells whether it exists (else the
-    /// boundary does). If `differ`, the changes of the row below follow, that row's place in the tile is `below_in_tile`.
-    fn cross_below<S: Solver, const ENERGY: bool>(
-        &self,
-        d: usize,
-        at: [usize; D],
-        present: bool,
-        differ: bool,
-        below_in_tile: usize,
-        (lag_state, lag_flux): (&mut [R], &mut [R]),
-        work: &mut Work<'_, R, D>,
-        report: &mut Report<R, D>,
-    ) {
-        let (n, f) = (self.size.n, Self::F * self.size.n);
-        let mesh = &self.problem.mesh;
-        if present {
-            let from = (&*work.half, &*work.slope[d], &*work.metric.weight[d]);
-            self.states(false, d, from, &mut work.right[..f], n, 0);
-            if at[d] == 0 && !self.periodic[d] {
-                self.ghosts(d, true, &work.right[..f], lag_state);
-            }
-        } else {
-            self.ghosts(d, false, lag_state, &mut work.right[..f]);
-        }
-        self.cross_faces::<S, ENERGY>(d, at, lag_state, &work.right[..f], &mut work.flux[..f]);
-        let last = mesh.cells()[d];
-        for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
-            if at[d] == edge {
-                let mut of_row = at;
-                of_row[d] = inside;
-                let row = Row { start: mesh.index(of_row), at: of_row };
-                let wall = if side == 0 { &work.right[..f] } else { &*lag_state };
-                self.count_inflow::<ENERGY>(d, side, row, (&work.flux[..f], wall), n, 0, n, report);
-            }
-        }
-        if differ {
-            let below = at[d] - 1;
-            let inv = R::ONE / mesh.widths[d][below];
-            let weight = self.half_weight(d, below, &mut *work.metric.spare);
-            let (low, high) = (&*lag_flux, &work.flux[..f]);
-            rows::differences::<R, D, ENERGY>(
-                d,
-                |v| var(low, v, n),
-                |v| var(high, v, n),
-                |_| inv,
-                weight,
-                &mut work.change[d][self.changes(d, below_in_tile)],
-                n,
-            );
-        }
-        lag_flux.copy_from_slice(&work.flux[..f]);
-    }
-
-    /// Leaves the high face states of the present row for the row above it.
-    pub(in crate::flow) fn keep_middle(&self, work: &mut Work<'_, R, D>) {
-        let n = self.size.n;
-        let d = 1 % D;
-        let from = (&*work.half, &*work.slope[d], &*work.metric.weight[d]);
-        self.states(true, d, from, &mut work.middle.state[..Self::F * n], n, 0);
-    }
-
-    /// Leaves the high face states of the present row for the layer above it.
-    pub(in crate::flow) fn keep_last(&self, j: isize, work: &mut Work<'_, R, D>) {
-        let n = self.size.n;
-        let from = (&*work.half, &*work.slope[D - 1], &*work.metric.weight[D - 1]);
-        self.states(true, D - 1, from, &mut work.last.state[self.place(j) * Self::F * n..][..Self::F * n], n, 0);
-    }
+    report.inflow[d][side].add(&total);
 }

@@ -6,168 +6,153 @@
 
 use crate::flow::boundary::Boundary;
 use crate::flow::drag::Drag;
+use crate::flow::kernel::scratch::PIECE;
+use crate::flow::kernel::slab::Part;
+use crate::flow::kernel::sweep;
 use crate::flow::porosity::fractions::{Mesh, Porosity};
+use crate::flow::problem::Problem;
 use crate::flow::state::{Fields, FieldsMut};
-use crate::flow::step::Problem;
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
 
-/// Cells of a piece, those on its sides included.
-pub(in crate::flow) const PIECE: usize = 256;
 /// Cells that a piece holds beyond its own on each side.
 const BESIDE: usize = 2;
 /// Cells around the seam of a periodic line; the middle half is advanced.
 const SEAM: usize = 4 * BESIDE;
 
-/// A line of so many cells goes in pieces.
-pub(in crate::flow) const fn in_pieces<const D: usize>(cells: usize) -> bool {
-    D == 1 && cells > PIECE
+/// Advances a line piece by piece. `scratch` holds the new state of a piece and then what a piece needs.
+pub(in crate::flow) fn advance<R: Real, const D: usize>(
+    line: &Problem<'_, R, D>,
+    whole: &Part<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    scratch: &mut [R],
+) -> Report<R, D> {
+    let n = line.mesh.len();
+    let periodic = line.periodic()[0];
+    let mut report = Report::new();
+    let (mut begin, end) = if periodic { (BESIDE, n - BESIDE) } else { (0, n) };
+    while begin < end {
+        let own = begin..end.min(begin + PIECE - 2 * BESIDE);
+        let cells = own.start.saturating_sub(BESIDE)..n.min(own.end + BESIDE);
+        let reported = own.start - cells.start..own.end - cells.start;
+        let old = part_of(whole.old, cells.clone());
+        let first_order = whole.first_order.map(|f| &f[cells.clone()]);
+        let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported };
+        let mut of_piece = advance_piece(&piece(line, cells.clone()), &part, own.clone(), new, scratch);
+        for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
+            if !outer || periodic {
+                of_piece.inflow[0][side] = Report::new().inflow[0][side];
+            }
+        }
+        report = report.and(&of_piece);
+        begin = own.end;
+    }
+    if periodic {
+        report = report.and(&advance_seam(line, whole, new, scratch));
+    }
+    report
 }
 
-impl<R: Real, const D: usize> Problem<'_, R, D> {
-    /// Advances a line piece by piece. `scratch` holds the new state of a piece and then what a piece needs.
-    pub(in crate::flow) fn advance_line(
-        &self,
-        old: &Fields<'_, R, D>,
-        new: &mut FieldsMut<'_, R, D>,
-        dt: R,
-        first_order: Option<&[u8]>,
-        scratch: &mut [R],
-    ) -> Report<R, D> {
-        let n = self.mesh.len();
-        let periodic = self.periodic()[0];
-        let mut report = Report::new();
-        let (mut begin, end) = if periodic { (BESIDE, n - BESIDE) } else { (0, n) };
-        while begin < end {
-            let own = begin..end.min(begin + PIECE - 2 * BESIDE);
-            let cells = own.start.saturating_sub(BESIDE)..n.min(own.end + BESIDE);
-            let piece = self.piece(cells.clone());
-            let asked = first_order.map(|f| &f[cells.clone()]);
-            let mut part = piece.advance_piece(&part_of(old, cells.clone()), &cells, &own, new, dt, asked, scratch);
-            for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
-                if !outer || periodic {
-                    part.inflow[0][side] = Report::new().inflow[0][side];
-                }
-            }
-            report = report.and(&part);
-            begin = own.end;
+/// The problem on a range of the cells of a line.
+fn piece<'p, R: Real, const D: usize>(line: &Problem<'p, R, D>, cells: Range<usize>) -> Problem<'p, R, D> {
+    let n = line.mesh.len();
+    let part = |s: &'p [R]| if s.is_empty() { s } else { &s[cells.clone()] };
+    let mut boundaries = line.boundaries;
+    for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
+        if !outer || boundaries[0][side] == Boundary::Periodic {
+            boundaries[0][side] = Boundary::ZeroGradient;
         }
-        if periodic {
-            report = report.and(&self.advance_seam(old, new, dt, first_order, scratch));
-        }
-        report
     }
+    Problem {
+        mesh: Mesh { widths: line.mesh.widths.map(|w| &w[cells.clone()]) },
+        boundaries,
+        porosity: line.porosity.map(|p| Porosity {
+            volume: &p.volume[cells.clone()],
+            faces: p.faces.map(|f| &f[cells.start..=cells.end]),
+            marks: &p.marks[cells.clone()],
+        }),
+        drag: line.drag.map(|d| Drag { quadratic: d.quadratic.map(part), linear: d.linear.map(part) }),
+        ..*line
+    }
+}
 
-    /// The problem on a range of the cells of a line.
-    fn piece(&self, cells: Range<usize>) -> Problem<'_, R, D> {
-        let n = self.mesh.len();
-        let part = |s: &'_ [R]| -> Range<usize> { if s.is_empty() { 0..0 } else { cells.clone() } };
-        let mut boundaries = self.boundaries;
-        for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
-            if !outer || boundaries[0][side] == Boundary::Periodic {
-                boundaries[0][side] = Boundary::ZeroGradient;
-            }
-        }
-        Problem {
-            mesh: Mesh { widths: self.mesh.widths.map(|w| &w[cells.clone()]) },
-            boundaries,
-            porosity: self.porosity.map(|p| Porosity {
-                volume: &p.volume[cells.clone()],
-                faces: p.faces.map(|f| &f[cells.start..=cells.end]),
-                marks: &p.marks[cells.clone()],
-            }),
-            drag: self
-                .drag
-                .map(|d| Drag { quadratic: d.quadratic.map(|s| &s[part(s)]), linear: d.linear.map(|s| &s[part(s)]) }),
-            ..*self
-        }
+/// Advances a piece that is a problem of its own and keeps the new states of its `own` cells of the line, which are those it
+/// reports of.
+fn advance_piece<R: Real, const D: usize>(
+    piece: &Problem<'_, R, D>,
+    part: &Part<'_, R, D>,
+    own: Range<usize>,
+    new: &mut FieldsMut<'_, R, D>,
+    scratch: &mut [R],
+) -> Report<R, D> {
+    let inner = &part.reported;
+    let (mut held, scratch) = take_field::<R, D>(scratch, piece.mesh.len(), !part.old.energy.is_empty());
+    let report = sweep::advance(piece, part, &mut held, scratch);
+    let energy = if new.energy.is_empty() { 0..0 } else { own.clone() };
+    new.density[own.clone()].copy_from_slice(&held.density[inner.clone()]);
+    for (new, held) in new.momentum.iter_mut().zip(&held.momentum) {
+        new[own.clone()].copy_from_slice(&held[inner.clone()]);
     }
+    let held_energy = if energy.is_empty() { 0..0 } else { inner.clone() };
+    new.energy[energy].copy_from_slice(&held.energy[held_energy]);
+    report
+}
 
-    /// Advances a piece that is a problem of its own on `cells` of the line and keeps the new states of its `own` cells.
-    fn advance_piece(
-        &self,
-        old: &Fields<'_, R, D>,
-        cells: &Range<usize>,
-        own: &Range<usize>,
-        new: &mut FieldsMut<'_, R, D>,
-        dt: R,
-        first_order: Option<&[u8]>,
-        scratch: &mut [R],
-    ) -> Report<R, D> {
-        let n = self.mesh.len();
-        let (mut held, scratch) = take_field::<R, D>(scratch, n, !old.energy.is_empty());
-        let inner = own.start - cells.start..own.end - cells.start;
-        let report = self.sweep(old, &mut held, 0..1, dt, first_order, inner.clone(), scratch);
-        let energy = if new.energy.is_empty() { 0..0 } else { own.clone() };
-        new.density[own.clone()].copy_from_slice(&held.density[inner.clone()]);
-        for (new, held) in new.momentum.iter_mut().zip(&held.momentum) {
-            new[own.clone()].copy_from_slice(&held[inner.clone()]);
-        }
-        new.energy[energy.clone()].copy_from_slice(&held.energy[if energy.is_empty() { 0..0 } else { inner }]);
-        report
+/// Advances the cells on both sides of the seam of a periodic line.
+fn advance_seam<R: Real, const D: usize>(
+    line: &Problem<'_, R, D>,
+    whole: &Part<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    scratch: &mut [R],
+) -> Report<R, D> {
+    let n = line.mesh.len();
+    let half = SEAM / 2;
+    let place = |i: usize| (n - half + i) % n;
+    let gather =
+        |s: &[R]| -> [R; SEAM] { if s.is_empty() { [R::ZERO; SEAM] } else { core::array::from_fn(|i| s[place(i)]) } };
+    let bytes = |s: &[u8]| -> [u8; SEAM] { core::array::from_fn(|i| s[place(i)]) };
+    let present = |s: &[R]| if s.is_empty() { 0 } else { SEAM };
+    let widths = line.mesh.widths.map(gather);
+    let old = whole.old;
+    let (density, momentum, energy) = (gather(old.density), old.momentum.map(gather), gather(old.energy));
+    let none = (&[][..], [&[][..]; D], &[][..]);
+    let (volume, faces, marks) = line.porosity.map_or(none, |p| (p.volume, p.faces, p.marks));
+    let (porous, volume) = (!volume.is_empty(), gather(volume));
+    let faces: [[R; SEAM + 1]; D] = faces.map(|f| {
+        let of = |i: usize| if i < half { n - half + i } else { i - half };
+        core::array::from_fn(|i| if porous { f[of(i)] } else { R::ZERO })
+    });
+    let marks = if porous { bytes(marks) } else { [0; SEAM] };
+    let lengths = line.drag.map(|d| (d.quadratic.map(present), d.linear.map(present)));
+    let drags = line.drag.map(|d| (d.quadratic.map(gather), d.linear.map(gather)));
+    let drag = drags.as_ref().zip(lengths).map(|((q, l), (some_q, some_l))| Drag {
+        quadratic: core::array::from_fn(|d| &q[d][..some_q[d]]),
+        linear: core::array::from_fn(|d| &l[d][..some_l[d]]),
+    });
+    let seam = Problem {
+        mesh: Mesh { widths: widths.each_ref().map(|w| &w[..]) },
+        boundaries: line.boundaries.map(|_| [Boundary::ZeroGradient; 2]),
+        porosity: porous.then(|| Porosity { volume: &volume, faces: faces.each_ref().map(|f| &f[..]), marks: &marks }),
+        drag,
+        ..*line
+    };
+    let old = Fields {
+        density: &density,
+        momentum: momentum.each_ref().map(|m| &m[..]),
+        energy: &energy[..present(old.energy)],
+    };
+    let asked = whole.first_order.map(bytes);
+    let first_order = asked.as_ref().map(|a| &a[..]);
+    let (mut held, scratch) = take_field::<R, D>(scratch, SEAM, !old.energy.is_empty());
+    let inner = BESIDE..SEAM - BESIDE;
+    let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported: inner.clone() };
+    let mut report = sweep::advance(&seam, &part, &mut held, scratch);
+    for i in inner {
+        new.set(place(i), &held.get(i));
     }
-
-    /// Advances the cells on both sides of the seam of a periodic line.
-    fn advance_seam(
-        &self,
-        old: &Fields<'_, R, D>,
-        new: &mut FieldsMut<'_, R, D>,
-        dt: R,
-        first_order: Option<&[u8]>,
-        scratch: &mut [R],
-    ) -> Report<R, D> {
-        let n = self.mesh.len();
-        let half = SEAM / 2;
-        let place = |i: usize| (n - half + i) % n;
-        let gather = |s: &[R]| -> [R; SEAM] {
-            if s.is_empty() { [R::ZERO; SEAM] } else { core::array::from_fn(|i| s[place(i)]) }
-        };
-        let bytes = |s: &[u8]| -> [u8; SEAM] { core::array::from_fn(|i| s[place(i)]) };
-        let present = |s: &[R]| if s.is_empty() { 0 } else { SEAM };
-        let widths = self.mesh.widths.map(gather);
-        let (density, momentum, energy) = (gather(old.density), old.momentum.map(gather), gather(old.energy));
-        let none = (&[][..], [&[][..]; D], &[][..]);
-        let (volume, faces, marks) = self.porosity.map_or(none, |p| (p.volume, p.faces, p.marks));
-        let (porous, volume) = (!volume.is_empty(), gather(volume));
-        let faces: [[R; SEAM + 1]; D] = faces.map(|f| {
-            let of = |i: usize| if i < half { n - half + i } else { i - half };
-            core::array::from_fn(|i| if porous { f[of(i)] } else { R::ZERO })
-        });
-        let marks = if porous { bytes(marks) } else { [0; SEAM] };
-        let lengths = self.drag.map(|d| (d.quadratic.map(present), d.linear.map(present)));
-        let drags = self.drag.map(|d| (d.quadratic.map(gather), d.linear.map(gather)));
-        let drag = drags.as_ref().zip(lengths).map(|((q, l), (some_q, some_l))| Drag {
-            quadratic: core::array::from_fn(|d| &q[d][..some_q[d]]),
-            linear: core::array::from_fn(|d| &l[d][..some_l[d]]),
-        });
-        let seam = Problem {
-            mesh: Mesh { widths: widths.each_ref().map(|w| &w[..]) },
-            boundaries: self.boundaries.map(|_| [Boundary::ZeroGradient; 2]),
-            porosity: porous.then(|| Porosity {
-                volume: &volume,
-                faces: faces.each_ref().map(|f| &f[..]),
-                marks: &marks,
-            }),
-            drag,
-            ..*self
-        };
-        let old = Fields {
-            density: &density,
-            momentum: momentum.each_ref().map(|m| &m[..]),
-            energy: &energy[..present(old.energy)],
-        };
-        let asked = first_order.map(bytes);
-        let asked = asked.as_ref().map(|a| &a[..]);
-        let (mut held, scratch) = take_field::<R, D>(scratch, SEAM, !old.energy.is_empty());
-        let inner = BESIDE..SEAM - BESIDE;
-        let mut report = seam.sweep(&old, &mut held, 0..1, dt, asked, inner.clone(), scratch);
-        for i in inner {
-            new.set(place(i), &held.get(i));
-        }
-        report.inflow = Report::new().inflow;
-        report
-    }
+    report.inflow = Report::new().inflow;
+    report
 }
 
 /// A range of a field.

@@ -1,7 +1,6 @@
 //! The scratch of a sweep, cut from one slice: a window of layers, the buffers of one row, and what rows leave behind for the
 //! faces above them.
 
-use crate::flow::kernel::long_line;
 use crate::flow::porosity::fractions::Mesh;
 use crate::number::real::Real;
 use core::ops::Range;
@@ -19,6 +18,14 @@ impl<'s, R: Real> Arena<'s, R> {
     fn axes<const D: usize>(&mut self, n: usize) -> [&'s mut [R]; D] {
         core::array::from_fn(|_| self.take(n))
     }
+}
+
+/// Cells of a piece of a long line, those on its sides included.
+pub(in crate::flow) const PIECE: usize = 256;
+
+/// A line of so many cells goes in pieces.
+pub(in crate::flow) const fn in_pieces<const D: usize>(cells: usize) -> bool {
+    D == 1 && cells > PIECE
 }
 
 /// Rows that a tile of a 3D mesh holds beyond its own on each side.
@@ -50,7 +57,7 @@ pub(in crate::flow) struct Sizes {
 impl Sizes {
     pub fn new<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> Self {
         let cells = mesh.cells();
-        let n = if long_line::in_pieces::<D>(cells[0]) { long_line::PIECE } else { cells[0] };
+        let n = if in_pieces::<D>(cells[0]) { PIECE } else { cells[0] };
         let rows = if D == 3 { cells[1].div_ceil(tiles(n, cells[1])) } else { 1 };
         Sizes {
             n,
@@ -106,22 +113,22 @@ pub(in crate::flow) struct Work<'s, R, const D: usize> {
     pub right: &'s mut [R],
     pub flux: &'s mut [R],
     /// What the row below left for the faces along axis 1 of a 3D mesh.
-    pub middle: Lag<'s, R>,
+    pub below_row: FacesBelow<'s, R>,
     /// What the rows of the layer below left for the faces along the last axis.
-    pub last: Lag<'s, R>,
+    pub below_layer: FacesBelow<'s, R>,
     pub change: [&'s mut [R]; D],
-    pub metric: Metric<'s, R, D>,
+    pub coefficients: RowCoefficients<'s, R, D>,
 }
 
 /// High face states of rows below, and the fluxes through the faces under them.
 #[derive(Default)]
-pub(in crate::flow) struct Lag<'s, R> {
+pub(in crate::flow) struct FacesBelow<'s, R> {
     pub state: &'s mut [R],
     pub flux: &'s mut [R],
 }
 
-/// Row buffers of cell metrics.
-pub(in crate::flow) struct Metric<'s, R, const D: usize> {
+/// Coefficients of the cells of a row.
+pub(in crate::flow) struct RowCoefficients<'s, R, const D: usize> {
     pub inv_width: &'s mut [R],
     pub rate: [&'s mut [R]; D],
     pub widening: [&'s mut [R]; D],
@@ -142,11 +149,12 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
         let (v, f) = (D + 2, D + 3);
         let mut arena = Arena(scratch);
         let (middle, last) = s.lagged::<D>();
-        let mut lag = |rows: usize| Lag { state: arena.take(rows * f * s.n), flux: arena.take(rows * f * s.n) };
-        let (middle, last) = (lag(middle), lag(last));
+        let mut faces =
+            |rows: usize| FacesBelow { state: arena.take(rows * f * s.n), flux: arena.take(rows * f * s.n) };
+        let (below_row, below_layer) = (faces(middle), faces(last));
         Work {
-            middle,
-            last,
+            below_row,
+            below_layer,
             window: arena.take(s.layers * s.rows_padded * v * s.padded),
             slope: arena.axes(v * s.n),
             half: arena.take(v * s.n),
@@ -154,7 +162,7 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
             right: arena.take(f * s.m),
             flux: arena.take(f * s.m),
             change: core::array::from_fn(|d| arena.take(s.change_rows::<D>(d) * v * s.n)),
-            metric: Metric {
+            coefficients: RowCoefficients {
                 inv_width: arena.take(s.n),
                 rate: arena.axes(s.n),
                 widening: arena.axes(s.n),

@@ -5,232 +5,203 @@
 //! itself, so that what a sweep keeps stays in a cache. A cell's new state depends on the old field alone, by the same
 //! operations wherever the slab is cut, so slabs advanced by any number of threads give the same bits.
 
+use crate::flow::kernel::fluxes::{
+    fluxes_across_layers, fluxes_across_rows, fluxes_x, keep_for_layer_above, keep_for_row_above,
+};
+use crate::flow::kernel::reconstruct::reconstruct;
 use crate::flow::kernel::rows;
-use crate::flow::kernel::scratch::{ROWS_BESIDE, Sizes, Work};
-use crate::flow::porosity::fractions::Medium;
-use crate::flow::porosity::throat::ThroatGas;
-use crate::flow::riemann::{FaceGas, Solver};
-use crate::flow::state::{Fields, FieldsMut};
-use crate::flow::step::Problem;
+use crate::flow::kernel::scratch::{Sizes, Work};
+use crate::flow::kernel::slab::{Part, RowAt, Slab};
+use crate::flow::kernel::update::{update, update_below};
+use crate::flow::problem::Problem;
+use crate::flow::riemann::{Hllc, Hlle, Riemann, Rusanov, Solver};
+use crate::flow::state::FieldsMut;
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
 
-/// A row of cells: its index along axis 1 (3D) and along the last axis, inside the domain.
-#[derive(Clone, Copy)]
-pub(in crate::flow) struct Row<const D: usize> {
-    /// Flat index of its first cell.
-    pub start: usize,
-    /// Indices of its first cell.
-    pub at: [usize; D],
+/// Advances a part of a problem into `new`, tile by tile. Slices and scratch must fit.
+pub(in crate::flow) fn advance<R: Real, const D: usize>(
+    problem: &Problem<'_, R, D>,
+    part: &Part<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    scratch: &mut [R],
+) -> Report<R, D> {
+    let run = match (problem.gas.has_energy(), problem.scheme.riemann) {
+        (true, Riemann::Hllc) => sweep::<R, D, Hllc, true>,
+        (true, Riemann::Hlle) => sweep::<R, D, Hlle, true>,
+        (true, Riemann::Rusanov) => sweep::<R, D, Rusanov, true>,
+        (false, Riemann::Hllc) => sweep::<R, D, Hllc, false>,
+        (false, Riemann::Hlle) => sweep::<R, D, Hlle, false>,
+        (false, Riemann::Rusanov) => sweep::<R, D, Rusanov, false>,
+    };
+    let mut slab = Slab::new(problem, part);
+    Sizes::tiles(&problem.mesh).fold(Report::new(), |report, rows| {
+        slab.rows = rows;
+        report.and(&run(&slab, new, scratch))
+    })
 }
 
-/// One slab of one step, and what it reads.
-pub(in crate::flow) struct Sweep<'p, R, const D: usize> {
-    pub problem: &'p Problem<'p, R, D>,
-    pub medium: Option<Medium<'p, R, D>>,
-    pub size: Sizes,
-    pub periodic: [bool; D],
-    pub weighted: bool,
-    /// All cells along an axis have one width.
-    pub even: [bool; D],
-    pub first_order: Option<&'p [u8]>,
-    pub face_gas: FaceGas<R>,
-    pub throat: ThroatGas<R>,
-    pub old: &'p Fields<'p, R, D>,
-    pub dt: R,
-    pub slab: Range<usize>,
-    /// Rows of a layer that are advanced: a tile of a 3D mesh, else the one row.
-    pub rows: Range<usize>,
-    /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
-    pub counted: Range<usize>,
+/// Advances a tile of a slab into `new`.
+fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    scratch: &mut [R],
+) -> Report<R, D> {
+    let mut work = Work::new(slab.size, scratch);
+    for (i, &width) in slab.problem.mesh.widths[0].iter().enumerate() {
+        work.coefficients.inv_width[i] = R::ONE / width;
+        // In a porous medium each row has its own.
+        work.coefficients.rate[0][i] = R::HALF * slab.dt / width;
+    }
+    let mut report = Report::new();
+    if D == 1 {
+        let row = RowAt { start: 0, at: [0; D] };
+        load_row(slab, 0, 0, &mut work);
+        reconstruct(slab, row, (0, 0), &mut work, &mut report.first_order);
+        fluxes_x::<R, D, S, ENERGY>(slab, row, 0, &mut work, &mut report);
+        update::<R, D, ENERGY>(slab, row, 0, &mut work, new, &mut report);
+        return report;
+    }
+    let n_last = slab.cells(D - 1);
+    let (low, high) = (slab.layers.start as isize, slab.layers.end as isize);
+    let held = slab.held_rows();
+    for l in low - 1..=high {
+        if (l < 0 || l >= n_last) && !slab.periodic[D - 1] {
+            // The ghost of a boundary: no cells, only the face beside the domain.
+            if l == high {
+                for j in slab.rows() {
+                    fluxes_across_layers::<R, D, S, ENERGY>(slab, (l, j), false, &mut work, &mut report);
+                    update_below::<R, D, ENERGY>(slab, (l, j), &mut work, new, &mut report);
+                }
+            }
+            continue;
+        }
+        if l == low - 1 || (l == low && !slab.periodic[D - 1] && low == 0) {
+            load_rows(slab, l - 1, held.clone(), &mut work);
+            load_rows(slab, l, held.clone(), &mut work);
+        }
+        sweep_layer::<R, D, S, ENERGY>(slab, l, &mut work, new, &mut report);
+    }
+    report
 }
 
-impl<R: Real, const D: usize> Sweep<'_, R, D> {
-    /// Variables of a state block, and of a face state or flux block.
-    pub(in crate::flow) const V: usize = D + 2;
-    pub(in crate::flow) const F: usize = D + 3;
-
-    /// Advances the slab into `new`.
-    pub(in crate::flow) fn run<S: Solver, const ENERGY: bool>(
-        &self,
-        new: &mut FieldsMut<'_, R, D>,
-        scratch: &mut [R],
-    ) -> Report<R, D> {
-        let s = self.size;
-        let mut work = Work::new(s, scratch);
-        for i in 0..s.n {
-            let width = self.problem.mesh.widths[0][i];
-            work.metric.inv_width[i] = R::ONE / width;
-            // In a porous medium each row has its own.
-            work.metric.rate[0][i] = R::HALF * self.dt / width;
-        }
-        let mut report = Report::new();
-        if D == 1 {
-            self.load_row(0, 0, &mut work);
-            let row = Row { start: 0, at: [0; D] };
-            self.reconstruct(row, 0, 0, &mut work, &mut report.first_order);
-            self.cross_row::<S, ENERGY>(row, 0, &mut work, &mut report);
-            self.finish::<ENERGY>(row, 0, &mut work, new, 0, &mut report);
-            return report;
-        }
-        let n_last = self.problem.mesh.cells()[D - 1] as isize;
-        let (lo, hi) = (self.slab.start as isize, self.slab.end as isize);
-        let (first, last) = (self.rows.start as isize, self.rows.end as isize);
-        let held = self.held_rows();
-        for l in lo - 1..=hi {
-            let outside = l < 0 || l >= n_last;
-            let inside = l >= lo && l < hi;
-            if outside && !self.periodic[D - 1] {
-                // The ghost of a boundary: no cells, only the face beside the domain.
-                if l == hi {
-                    for j in first..last {
-                        self.cross_last::<S, ENERGY>(l, j, false, &mut work, &mut report);
-                        self.finish_below::<ENERGY>(l, j, &mut work, new, &mut report);
-                    }
-                }
-                continue;
+/// The rows of a layer of the domain, and in 3D one more on each side for the faces between them. Loads the layer above.
+fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    l: isize,
+    work: &mut Work<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let (rows, held) = (slab.rows(), slab.held_rows());
+    let advanced = slab.layers.contains(&(l as usize));
+    let beside = isize::from(D == 3 && advanced);
+    let layer = l.rem_euclid(slab.cells(D - 1)) as usize;
+    let mut to_load = held.start;
+    for j in rows.start - beside..rows.end + beside {
+        if (j < 0 || j >= slab.all_rows()) && !slab.periodic[1 % D] {
+            if j == rows.end {
+                fluxes_across_rows::<R, D, S, ENERGY>(slab, (layer, j), false, work, report);
             }
-            if l == lo - 1 || (l == lo && !self.periodic[D - 1] && lo == 0) {
-                self.load_rows(l - 1, held.clone(), &mut work);
-                self.load_rows(l, held.clone(), &mut work);
-            }
-            let mut to_load = held.start;
-            let wrapped = l.rem_euclid(n_last) as usize;
-            let ghost_rows = isize::from(D == 3 && inside);
-            for j in first - ghost_rows..last + ghost_rows {
-                let ghost = j < first || j >= last;
-                let beyond = j < 0 || j >= self.all_rows();
-                if beyond && !self.periodic[1 % D] {
-                    if j == last {
-                        self.cross_middle::<S, ENERGY>(wrapped, j, false, &mut work, &mut report);
-                    }
-                    continue;
-                }
-                // Row by row, so that memory delivers while the processor computes.
-                self.load_rows(l + 1, to_load..j + 1, &mut work);
-                to_load = j + 1;
-                let mut at = [0; D];
-                at[D - 1] = wrapped;
-                if D == 3 {
-                    at[1] = j.rem_euclid(self.all_rows()) as usize;
-                }
-                let row = Row { start: self.problem.mesh.index(at), at };
-                let counted = inside && !ghost;
-                let mut ignored = 0;
-                self.reconstruct(row, l, j, &mut work, if counted { &mut report.first_order } else { &mut ignored });
-                if !ghost {
-                    if l == lo - 1 {
-                        self.keep_last(j, &mut work);
-                    } else {
-                        self.cross_last::<S, ENERGY>(l, j, true, &mut work, &mut report);
-                        if l > lo {
-                            self.finish_below::<ENERGY>(l, j, &mut work, new, &mut report);
-                        }
-                        if inside {
-                            self.keep_last(j, &mut work);
-                        }
-                    }
-                }
-                if D == 3 && inside {
-                    if j >= first {
-                        self.cross_middle::<S, ENERGY>(wrapped, j, true, &mut work, &mut report);
-                    }
-                    self.keep_middle(&mut work);
-                }
-                if inside && !ghost {
-                    self.cross_row::<S, ENERGY>(row, j, &mut work, &mut report);
-                }
-            }
-            self.load_rows(l + 1, to_load..held.end, &mut work);
+            continue;
         }
-        report
-    }
-
-    /// Rows of a layer of the whole mesh.
-    fn all_rows(&self) -> isize {
-        if D == 3 { self.problem.mesh.cells()[1] as isize } else { 1 }
-    }
-
-    /// Rows of a layer that the window holds: those of the tile and, in 3D, two more on each side; one beyond a side of the domain.
-    fn held_rows(&self) -> Range<isize> {
-        let (first, last) = (self.rows.start as isize, self.rows.end as isize);
-        if D < 3 {
-            return first..last;
-        }
-        let beside = |at_side: bool| if at_side && !self.periodic[1] { 1 } else { ROWS_BESIDE as isize };
-        first - beside(first == 0)..last + beside(last == self.all_rows())
-    }
-
-    /// Where row `j` of layer `l` stands in the window.
-    pub(in crate::flow) fn block(&self, l: isize, j: isize) -> Range<usize> {
-        let s = self.size;
-        let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
-        let row = if D == 3 { (j - self.rows.start as isize + ROWS_BESIDE as isize) as usize } else { 0 };
-        let len = Self::V * s.padded;
-        let start = (slot * s.rows_padded + row) * len;
-        start..start + len
-    }
-
-    /// Place of row `j` among those of the tile.
-    pub(in crate::flow) fn place(&self, j: isize) -> usize {
-        j as usize - self.rows.start
-    }
-
-    /// Where the changes of the row at a place of the tile stand along axis `d`.
-    pub(in crate::flow) fn changes(&self, d: usize, place: usize) -> Range<usize> {
-        let len = Self::V * self.size.n;
-        let row = if d == D - 1 { 0 } else { place };
-        row * len..(row + 1) * len
-    }
-
-    /// Primitive variables of rows of a layer with their ghosts.
-    fn load_rows(&self, l: isize, rows: Range<isize>, work: &mut Work<'_, R, D>) {
-        for j in rows {
-            self.load_row(l, j, work);
-        }
-    }
-
-    /// Primitive variables of a row with its ghosts. A layer or row beyond a boundary is made from that inside it.
-    fn load_row(&self, l: isize, j: isize, work: &mut Work<'_, R, D>) {
-        let s = self.size;
-        let inside = |k: isize, cells: isize, d: usize| {
-            if self.periodic[d] { k.rem_euclid(cells) } else { k.clamp(0, cells - 1) }
-        };
+        // Row by row, so that memory delivers while the processor computes.
+        load_rows(slab, l + 1, to_load..j + 1, work);
+        to_load = j + 1;
         let mut at = [0; D];
-        if D > 1 {
-            at[D - 1] = inside(l, self.problem.mesh.cells()[D - 1] as isize, D - 1) as usize;
-        }
+        at[D - 1] = layer;
         if D == 3 {
-            at[1] = inside(j, self.all_rows(), 1) as usize;
+            at[1] = j.rem_euclid(slab.all_rows()) as usize;
         }
-        let block = &mut work.window[self.block(l, j)];
-        rows::primitives(self.problem.gas, self.old, self.problem.mesh.index(at), block, s.padded);
-        let state = |block: &[R], i: usize| rows::face_state::<R, D>(block, s.padded, i);
-        let gas = self.problem.gas;
-        let [low, high] = &self.problem.boundaries[0];
-        let (a, b) = if self.periodic[0] {
-            (state(block, s.n), state(block, 1))
-        } else {
-            (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
-        };
-        rows::put_state(block, s.padded, 0, &a);
-        rows::put_state(block, s.padded, s.padded - 1, &b);
-        for (d, k) in [(D - 1, l), (1, j)] {
-            let across = d > 0 && (d == D - 1 || D == 3);
-            if across && !self.periodic[d] && (k < 0 || k >= self.problem.mesh.cells()[d] as isize) {
-                self.mirror(block, d, k < 0);
+        let row = RowAt { start: slab.problem.mesh.index(at), at };
+        sweep_row::<R, D, S, ENERGY>(slab, row, (l, j), work, new, report);
+    }
+    load_rows(slab, l + 1, to_load..held.end, work);
+}
+
+/// Row `j` of layer `l`: its cells, the faces under it, and what the faces above it need of it.
+fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    (l, j): (isize, isize),
+    work: &mut Work<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let own_row = slab.rows().contains(&j);
+    let own_layer = slab.layers.contains(&(l as usize));
+    let mut beside = 0;
+    let first_order = if own_row && own_layer { &mut report.first_order } else { &mut beside };
+    reconstruct(slab, row, (l, j), work, first_order);
+    if own_row {
+        if l >= slab.layers.start as isize {
+            fluxes_across_layers::<R, D, S, ENERGY>(slab, (l, j), true, work, report);
+            if l > slab.layers.start as isize {
+                update_below::<R, D, ENERGY>(slab, (l, j), work, new, report);
             }
         }
-    }
-
-    /// Turns a row of inner states into the ghosts beyond a boundary of axis `d`.
-    fn mirror(&self, block: &mut [R], d: usize, low: bool) {
-        let padded = self.size.padded;
-        let boundary = &self.problem.boundaries[d][usize::from(!low)];
-        for i in 0..padded {
-            let w = rows::face_state::<R, D>(block, padded, i);
-            rows::put_state(block, padded, i, &boundary.ghost_cell(&w, d, low, self.problem.gas));
+        if l < slab.layers.end as isize {
+            keep_for_layer_above(slab, slab.place(j), work);
         }
+    }
+    if D == 3 && own_layer {
+        if j >= slab.rows.start as isize {
+            fluxes_across_rows::<R, D, S, ENERGY>(slab, (row.at[D - 1], j), true, work, report);
+        }
+        keep_for_row_above(slab, work);
+    }
+    if own_row && own_layer {
+        fluxes_x::<R, D, S, ENERGY>(slab, row, slab.place(j), work, report);
+    }
+}
+
+/// Primitive variables of rows of a layer with their ghosts.
+fn load_rows<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, rows: Range<isize>, work: &mut Work<'_, R, D>) {
+    for j in rows {
+        load_row(slab, l, j, work);
+    }
+}
+
+/// Primitive variables of a row with its ghosts. A layer or row beyond a boundary is made from that inside it.
+fn load_row<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, j: isize, work: &mut Work<'_, R, D>) {
+    let s = slab.size;
+    let inside = |k: isize, cells: isize, d: usize| {
+        if slab.periodic[d] { k.rem_euclid(cells) } else { k.clamp(0, cells - 1) }
+    };
+    let mut at = [0; D];
+    if D > 1 {
+        at[D - 1] = inside(l, slab.problem.mesh.cells()[D - 1] as isize, D - 1) as usize;
+    }
+    if D == 3 {
+        at[1] = inside(j, slab.all_rows(), 1) as usize;
+    }
+    let block = &mut work.window[slab.block(l, j)];
+    rows::primitives(slab.problem.gas, slab.old, slab.problem.mesh.index(at), block, s.padded);
+    let state = |block: &[R], i: usize| rows::face_state::<R, D>(block, s.padded, i);
+    let gas = slab.problem.gas;
+    let [low, high] = &slab.problem.boundaries[0];
+    let (a, b) = if slab.periodic[0] {
+        (state(block, s.n), state(block, 1))
+    } else {
+        (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
+    };
+    rows::put_state(block, s.padded, 0, &a);
+    rows::put_state(block, s.padded, s.padded - 1, &b);
+    for (d, k) in [(D - 1, l), (1, j)] {
+        let across = d > 0 && (d == D - 1 || D == 3);
+        if across && !slab.periodic[d] && (k < 0 || k >= slab.problem.mesh.cells()[d] as isize) {
+            mirror(slab, block, d, k < 0);
+        }
+    }
+}
+
+/// Turns a row of inner states into the ghosts beyond a boundary of axis `d`.
+fn mirror<R: Real, const D: usize>(slab: &Slab<'_, R, D>, block: &mut [R], d: usize, low: bool) {
+    let padded = slab.size.padded;
+    let boundary = &slab.problem.boundaries[d][usize::from(!low)];
+    for i in 0..padded {
+        let w = rows::face_state::<R, D>(block, padded, i);
+        rows::put_state(block, padded, i, &boundary.ghost_cell(&w, d, low, slab.problem.gas));
     }
 }

@@ -1,117 +1,136 @@
 //! The new states of a row: fluxes summed, drag applied, the next stable rate found.
 
-use crate::flow::kernel::rows;
-use crate::flow::kernel::scratch::Work;
-use crate::flow::kernel::sweep::{Row, Sweep};
+use crate::flow::kernel::rows::{self, Span};
+use crate::flow::kernel::scratch::{RowCoefficients, Work};
+use crate::flow::kernel::slab::{RowAt, Slab};
 use crate::flow::porosity::clusters::least_volume;
 use crate::flow::porosity::flags::{SMALL, break_high, break_low, is, marked};
-use crate::flow::state::FieldsMut;
+use crate::flow::state::{Fields, FieldsMut};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 
-impl<R: Real, const D: usize> Sweep<'_, R, D> {
-    /// New states of row `j` of the layer below `l`.
-    pub(in crate::flow) fn finish_below<const ENERGY: bool>(
-        &self,
-        l: isize,
-        j: isize,
-        work: &mut Work<'_, R, D>,
-        new: &mut FieldsMut<'_, R, D>,
-        report: &mut Report<R, D>,
-    ) {
-        let mut at = [0; D];
-        if D == 3 {
-            at[1] = j as usize;
-        }
-        at[D - 1] = l as usize - 1;
-        let row = Row { start: self.problem.mesh.index(at), at };
-        let to = row.start - self.slab.start * self.problem.mesh.layer();
-        self.finish::<ENERGY>(row, self.place(j), work, new, to, report);
+/// New states of row `j` of the layer below `l`.
+pub(in crate::flow) fn update_below<R: Real, const D: usize, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    (l, j): (isize, isize),
+    work: &mut Work<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let mut at = [0; D];
+    if D == 3 {
+        at[1] = j as usize;
     }
+    at[D - 1] = l as usize - 1;
+    let row = RowAt { start: slab.problem.mesh.index(at), at };
+    update::<R, D, ENERGY>(slab, row, slab.place(j), work, new, report);
+}
 
-    /// New states of the row at a place of the tile, drag included; their signal rate and whether they are physical.
-    pub(in crate::flow) fn finish<const ENERGY: bool>(
-        &self,
-        row: Row<D>,
-        place: usize,
-        work: &mut Work<'_, R, D>,
-        new: &mut FieldsMut<'_, R, D>,
-        to: usize,
-        report: &mut Report<R, D>,
-    ) {
-        let n = self.size.n;
-        let mesh = &self.problem.mesh;
-        let metric = &mut work.metric;
-        let change = core::array::from_fn(|d| &work.change[d][self.changes(d, place)]);
-        let scale = if let Some(medium) = &self.medium {
-            let volume = &medium.porosity.volume[row.start..][..n];
-            let (inv, scale) = (&mut metric.spare[..n], &mut metric.scale[..n]);
-            for i in 0..n {
-                inv[i] = R::ONE / R::larger(volume[i], least_volume());
-                scale[i] = self.dt * inv[i];
-            }
-            let marks = &medium.porosity.marks[row.start..][..n];
-            for d in 0..D {
-                let ducts = medium.ducts(d, row.at, self.periodic[d]);
-                let (low, high) = ducts.rows(n);
-                let open = &mut metric.open[d][..n];
-                for i in 0..n {
-                    open[i] = R::larger(low[i], high[i]) * inv[i];
-                }
-                for i in marked(marks, break_low(d) | break_high(d) | SMALL) {
-                    open[i] = self.problem.openness(&ducts, i);
-                }
-            }
-            Some(&metric.scale[..n])
-        } else {
-            None
-        };
-        rows::update::<R, D, ENERGY>(self.old, row.start, &change, scale, self.dt, new, to, n);
-        if let Some(drag) = &self.problem.drag {
-            for i in 0..n {
-                let coefficients = drag.at(row.start + i);
-                if !coefficients.is_free() {
-                    let (before, mut after) = (self.old.get(row.start + i), new.get(to + i));
-                    let u = before.momentum.map(|m| m / before.density);
-                    let pushed = after.momentum.map(|m| m / after.density);
-                    let v = coefficients.step(u, pushed, self.dt);
-                    after.momentum = v.map(|v| after.density * v);
-                    new.set(to + i, &after);
-                }
+/// New states of the row at a place of the tile, drag included; their signal rate and whether they are physical.
+pub(in crate::flow) fn update<R: Real, const D: usize, const ENERGY: bool>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    place: usize,
+    work: &mut Work<'_, R, D>,
+    new: &mut FieldsMut<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    // A line is its own only layer.
+    let below = if D == 1 { 0 } else { slab.layers.start * slab.problem.mesh.layer() };
+    let span = Span { from: row.start, to: row.start - below, n: slab.size.n };
+    let change = core::array::from_fn(|d| &work.change[d][slab.changes(d, place)]);
+    let coefficients = &mut work.coefficients;
+    let scale = open_areas(slab, row, coefficients).then_some(&coefficients.scale[..span.n]);
+    rows::update::<R, D, ENERGY>(slab.old, new, span, &change, scale, slab.dt);
+    drag(slab, span, new);
+    report_row(slab, row, span, coefficients, &new.as_fields(), report);
+}
+
+/// dt/beta_v of the cells of a row, and open area over open volume along each axis; false where there is no porosity.
+fn open_areas<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    coefficients: &mut RowCoefficients<'_, R, D>,
+) -> bool {
+    let n = slab.size.n;
+    let Some(medium) = &slab.medium else { return false };
+    let volume = &medium.porosity.volume[row.start..][..n];
+    let (inv, scale) = (&mut coefficients.spare[..n], &mut coefficients.scale[..n]);
+    for i in 0..n {
+        inv[i] = R::ONE / R::larger(volume[i], least_volume());
+        scale[i] = slab.dt * inv[i];
+    }
+    let marks = &medium.porosity.marks[row.start..][..n];
+    for d in 0..D {
+        let ducts = medium.ducts(d, row.at, slab.periodic[d]);
+        let (low, high) = ducts.rows(n);
+        let open = &mut coefficients.open[d][..n];
+        for i in 0..n {
+            open[i] = R::larger(low[i], high[i]) * inv[i];
+        }
+        for i in marked(marks, break_low(d) | break_high(d) | SMALL) {
+            open[i] = slab.problem.openness(&ducts, i);
+        }
+    }
+    true
+}
+
+/// Drag over the step on new states.
+fn drag<R: Real, const D: usize>(slab: &Slab<'_, R, D>, span: Span, new: &mut FieldsMut<'_, R, D>) {
+    let Some(drag) = &slab.problem.drag else { return };
+    for i in 0..span.n {
+        let coefficients = drag.at(span.from + i);
+        if !coefficients.is_free() {
+            let (before, mut after) = (slab.old.get(span.from + i), new.get(span.to + i));
+            let u = before.momentum.map(|m| m / before.density);
+            let pushed = after.momentum.map(|m| m / after.density);
+            let v = coefficients.step(u, pushed, slab.dt);
+            after.momentum = v.map(|v| after.density * v);
+            new.set(span.to + i, &after);
+        }
+    }
+}
+
+/// Adds a row of new states to the report: the largest signal rate, and how many are unphysical.
+fn report_row<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    span: Span,
+    coefficients: &mut RowCoefficients<'_, R, D>,
+    new: &Fields<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let n = span.n;
+    let inv_width = &*coefficients.inv_width;
+    let across: [R; D] = core::array::from_fn(|d| R::ONE / slab.problem.mesh.widths[d][row.at[d]]);
+    let inverse = |d: usize, i: usize| if d == 0 { inv_width[i] } else { across[d] };
+    let open = coefficients.open.each_ref().map(|o| &**o);
+    let signal = &mut coefficients.signal[..n];
+    let bad = if slab.medium.is_some() {
+        rows::signal_rates::<R, D, true>(slab.problem.gas, new, span.to, inverse, &open, signal)
+    } else {
+        rows::signal_rates::<R, D, false>(slab.problem.gas, new, span.to, inverse, &open, signal)
+    };
+    // Cells of clusters are judged after merging.
+    let small = match &slab.medium {
+        Some(medium) if !slab.problem.clusters.0.is_empty() => {
+            Some(&medium.porosity.marks[row.start..][..n]).filter(|m| m.iter().any(|&b| is(b, SMALL)))
+        }
+        _ => None,
+    };
+    if let Some(marks) = small {
+        for i in 0..n {
+            if is(marks[i], SMALL) {
+                signal[i] = R::ZERO;
             }
         }
-        let inv_width = &*metric.inv_width;
-        let across: [R; D] = core::array::from_fn(|d| R::ONE / mesh.widths[d][row.at[d]]);
-        let inverse = |d: usize, i: usize| if d == 0 { inv_width[i] } else { across[d] };
-        let open = metric.open.each_ref().map(|o| &**o);
-        let signal = &mut metric.signal[..n];
-        let view = new.as_fields();
-        let bad = if self.medium.is_some() {
-            rows::signal_rates::<R, D, true>(self.problem.gas, &view, to, inverse, &open, signal)
-        } else {
-            rows::signal_rates::<R, D, false>(self.problem.gas, &view, to, inverse, &open, signal)
-        };
-        // Cells of clusters are judged after merging.
-        let small = match &self.medium {
-            Some(medium) if !self.problem.clusters.0.is_empty() => {
-                Some(&medium.porosity.marks[row.start..][..n]).filter(|m| m.iter().any(|&b| is(b, SMALL)))
-            }
-            _ => None,
-        };
-        if let Some(marks) = small {
-            for i in 0..n {
-                if is(marks[i], SMALL) {
-                    signal[i] = R::ZERO;
-                }
-            }
-        }
-        let counted = self.counted.clone();
-        report.rate = R::larger(rows::largest(&signal[counted.clone()]), report.rate);
-        if bad {
-            for i in counted {
-                let merged = small.is_some_and(|m| is(m[i], SMALL));
-                report.unphysical += usize::from(!merged && !self.problem.is_physical(&view.get(to + i)));
-            }
+    }
+    let reported = slab.reported.clone();
+    report.rate = R::larger(rows::largest(&signal[reported.clone()]), report.rate);
+    if bad {
+        for i in reported {
+            let merged = small.is_some_and(|m| is(m[i], SMALL));
+            report.unphysical += usize::from(!merged && !slab.problem.is_physical(&new.get(span.to + i)));
         }
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! Works on the live axes only: a plane flow has two axes, whichever they are.
 
-use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low};
 use crate::number::real::Real;
 
 /// Cells per live axis and their widths; axis 0 runs fastest.
@@ -86,7 +85,7 @@ pub struct Porosity<'a, R, const D: usize> {
     pub volume: &'a [R],
     /// `beta_x`, `beta_y`, `beta_z` of the live axes.
     pub faces: [&'a [R]; D],
-    /// One byte of marks per cell, written by [`mark`].
+    /// One byte of marks per cell, written by [`mark`](super::mark::mark).
     pub marks: &'a [u8],
 }
 
@@ -114,62 +113,5 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         let around = |k: usize| periodic.then(|| cell(k));
         let (i, above) = (at[d], at[d] < n);
         [if i > 0 { Some(cell(i - 1)) } else { around(n - 1) }, if above { Some(cell(i)) } else { around(0) }]
-    }
-}
-
-/// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
-/// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
-/// point has large shares of small differences: those below a fifth of the threshold do not count).
-fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
-    let (least, most) = (R::smaller(left, right), R::larger(left, right));
-    let difference = R::larger(most - least, least - face);
-    let narrow = difference > R::from_f64(3.0) * threshold * most && is_wall(difference, threshold);
-    difference > threshold || narrow
-}
-
-/// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
-fn is_wall<R: Real>(width: R, threshold: R) -> bool {
-    width > R::from_f64(0.2) * threshold
-}
-
-/// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
-/// for no jumps), which cells are small, which are sealed.
-///
-/// The slices must have the lengths of the mesh; `marks` one byte per cell.
-pub fn mark<R: Real, const D: usize>(
-    mesh: &Mesh<'_, R, D>,
-    volume: &[R],
-    faces: &[&[R]; D],
-    periodic: [bool; D],
-    threshold: R,
-    marks: &mut [u8],
-) {
-    let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
-    let ducts = |d: usize, at: [usize; D]| medium.ducts(d, at, periodic[d]);
-    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| R::larger(w, ducts(d, at).duct(0)));
-    for cell in 0..marks.len() {
-        let at = mesh.coordinates(cell);
-        let mut bits = 0;
-        for d in 0..D {
-            let own = ducts(d, at);
-            let (low, high) = own.openings(0);
-            let mut above = at;
-            above[d] += 1;
-            for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
-                let (left, right) = own.beside(0, bit == break_high(d));
-                let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
-                let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
-                if closed || is_jump(left, open, right, threshold) {
-                    bits |= bit;
-                }
-            }
-        }
-        let widest = widest(at);
-        if !(widest > R::ZERO) {
-            bits |= SEALED;
-        } else if volume[cell] < R::from_f64(SMALL_SHARE) * widest {
-            bits |= SMALL;
-        }
-        marks[cell] = bits;
     }
 }

@@ -20,7 +20,7 @@ pub(in crate::flow) struct JumpFaces<R, const D: usize, const L: usize> {
     /// Pressures that act on the walls inside each cell at this face.
     pub references: [[R; L]; 2],
     /// 1; or 0 where a step went wrong: there the Riemann problem in the throat, however weak the waves.
-    pub calm: [R; L],
+    pub acoustic_weight: [R; L],
 }
 
 /// What passes a jump face, areas included. One face, or one per lane.
@@ -36,7 +36,7 @@ pub(in crate::flow) struct JumpFlux<R, const D: usize> {
 }
 
 /// One lane, whose states have been carried to the throat.
-struct Carried<R, const D: usize> {
+struct JumpLane<R, const D: usize> {
     cell: [Primitive<R, D>; 2],
     throat: [Primitive<R, D>; 2],
     /// Areas of the throat, of the ducts, and of the streams that pass.
@@ -58,11 +58,11 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
     let to: [R; L] = each(|i| throat_area(left[i], faces.face[i], right[i]));
     let side = |s: usize| throat.carry_all(&faces.states[s], &faces.ducts[s], &to);
     let at = [side(0), side(1)];
-    let (walls, calm) = chokes(faces, &at, throat);
+    let (walls, acoustic_weight) = chokes(faces, &at, throat);
     let none = [R::ZERO; L];
     let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
     for i in 0..L {
-        let lane = Carried {
+        let lane = JumpLane {
             cell: [faces.states[0].lane(i), faces.states[1].lane(i)],
             throat: [at[0].state.lane(i), at[1].state.lane(i)],
             to: to[i],
@@ -72,7 +72,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
             walls: [walls[0][i], walls[1][i]],
         };
         let (weak, strong) = (acoustic(&lane, gas), riemann::<R, S, D>(&lane, gas));
-        let share = calm[i] * weakness(weak.mass / to[i], &lane.throat, gas);
+        let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
         let flux = weak.blend(&strong, share);
         out.mass[i] = flux.mass;
         out.energy[i] = flux.energy;
@@ -86,13 +86,13 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
     out
 }
 
-/// The forces on the walls beside streams that choke, and 1 where weak waves may pass: in calm, and where nothing chokes.
+/// The forces on the walls beside streams that choke, and 1 where weak waves may pass: in acoustic_weight, and where nothing chokes.
 fn chokes<R: Real, const D: usize, const L: usize>(
     faces: &JumpFaces<R, D, L>,
     at: &[AtThroat<[R; L], D>; 2],
     throat: &ThroatGas<R>,
 ) -> ([[R; L]; 2], [R; L]) {
-    let (mut walls, mut calm) = ([[R::ZERO; L]; 2], faces.calm);
+    let (mut walls, mut acoustic_weight) = ([[R::ZERO; L]; 2], faces.acoustic_weight);
     for s in 0..2 {
         for i in 0..L {
             let blocked = faces.ducts[s][i] - at[s].passing[i];
@@ -101,16 +101,16 @@ fn chokes<R: Real, const D: usize, const L: usize>(
                 let into_wall = if s == 0 { w.velocity[0] } else { -w.velocity[0] };
                 let force = throat.wall_pressure(w.density, w.pressure, into_wall) - faces.references[s][i];
                 walls[s][i] = blocked * force;
-                calm[i] = R::ZERO;
+                acoustic_weight[i] = R::ZERO;
             }
         }
     }
-    (walls, calm)
+    (walls, acoustic_weight)
 }
 
 /// The Riemann problem in the throat.
 #[inline(always)]
-fn riemann<R: Real, S: Solver, const D: usize>(face: &Carried<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
+fn riemann<R: Real, S: Solver, const D: usize>(face: &JumpLane<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
     let to = face.to;
     let f: Flux<R, D> = S::flux::<R, D, true>(&face.throat[0], &face.throat[1], gas);
     let through = to * f.momentum[0];
@@ -160,7 +160,7 @@ fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2]
 /// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
 /// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
 #[inline(always)]
-fn acoustic<R: Real, const D: usize>(face: &Carried<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
+fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
     let [l, r] = &face.cell;
     let (c_l, c_r) = (gas.sound_speed(l), gas.sound_speed(r));
     let mass = |s: usize| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]);

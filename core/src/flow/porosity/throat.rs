@@ -211,13 +211,19 @@ impl<R: Real> ThroatGas<R> {
             let good = bernoulli > sonic - R::ONE && slope(bernoulli, inv_power(bernoulli)) > R::HALF;
             if good { bernoulli } else { a }
         } else {
-            // Left of the minimum of the left side, t^(n+1) = n A k².
-            R::from_f64(0.8) * (n * ak_sq).pow(R::ONE / (n + R::ONE)) - R::ONE
+            // Left of the root, as the left side alone without t is 1 + A there. (A share of the sonic t may lie on its right,
+            // from where a step leads to a negative temperature.)
+            (ak_sq / (R::ONE + a)).pow(self.inv_n) - R::ONE
         };
-        let d = newton(start, a, |d| {
-            let q = inv_power(d);
-            (d + (ak_sq * q - a), slope(d, q))
-        });
+        let d = newton(
+            start,
+            a,
+            |d| R::smaller(d.abs(), R::ONE + d),
+            |d| {
+                let q = inv_power(d);
+                (d + (ak_sq * q - a), slope(d, q))
+            },
+        );
         (ratio(R::ONE + d), R::ONE + d, k)
     }
 
@@ -229,8 +235,8 @@ impl<R: Real> ThroatGas<R> {
             return (mach * largest, R::ONE, largest);
         }
         let ak_sq = a * (k * k);
-        let start = if mach_sq < R::ONE { a } else { (mach * k).ln() - R::HALF };
-        let l = newton(start, a, |l| {
+        let start = if mach_sq < R::ONE { a } else { supersonic_start(a, k) };
+        let l = newton(start, a, R::abs, |l| {
             let q = ak_sq * (-(l + l)).exp();
             (l + (q - a), R::ONE - (q + q))
         });
@@ -261,12 +267,22 @@ impl<R: Real> ThroatGas<R> {
     }
 }
 
-/// Newton's method on a convex function with a known upper bound of the root.
+/// A place left of the supersonic root of l + A k² e^-2l = A. It is ln k for a contraction. For an expansion the left side at
+/// ln k − x is at least A + ln k + (2A − 1) x + 2A x², which is A at the x taken here.
+fn supersonic_start<R: Real>(a: R, k: R) -> R {
+    let rise = R::larger(-k.ln(), R::ZERO);
+    let slope = R::TWO * a - R::ONE;
+    let root = (slope * slope + R::from_f64(8.0) * a * rise).sqrt();
+    let x = if rise > R::ZERO { R::TWO * rise / (slope + root) } else { R::ZERO };
+    k.ln() - x
+}
+
+/// Newton's method on a convex function with a known upper bound of the root; `size` is what its error is measured against.
 ///
-/// Convergence is quadratic, so a step below this share (of the square root of the rounding error) of the root is the last
+/// Convergence is quadratic, so a step below this share (of the square root of the rounding error) of the size is the last
 /// that counts. At the double root of a throat about to choke the steps halve instead, and the root itself is only known to
 /// that share.
-fn newton<R: Real>(start: R, bound: R, f: impl Fn(R) -> (R, R)) -> R {
+fn newton<R: Real>(start: R, bound: R, size: impl Fn(R) -> R, f: impl Fn(R) -> (R, R)) -> R {
     let enough = R::from_f64(0.0625) * R::EPSILON.sqrt();
     let mut x = start;
     for _ in 0..MAX_STEPS {
@@ -274,7 +290,7 @@ fn newton<R: Real>(start: R, bound: R, f: impl Fn(R) -> (R, R)) -> R {
         let step = value / slope;
         let next = x - step;
         x = if next > bound { bound } else { next };
-        if !(step.abs() > enough * x.abs()) {
+        if !(step.abs() > enough * size(x)) {
             break;
         }
     }

@@ -19,7 +19,7 @@ pub struct Part {
 }
 
 /// A polygon on its way down the trees.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Fragment<R: Real> {
     polygon: Polygon<R>,
     /// Around the polygon that it is a part of.

@@ -49,7 +49,7 @@ impl<R: Real> Ball<R> {
 }
 
 /// A polygon of surface in its plane.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Piece<R: Real> {
     pub(super) ball: Ball<R>,
     pub(super) plane: Plane<R>,

@@ -17,10 +17,35 @@ use std::path::Path;
 use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primitive, Report, Riemann, Scheme};
 
 /// First bytes of the file; the last is the version of the layout.
-const MAGIC: &[u8; 8] = b"VOIDAGE\x01";
+const MAGIC: &[u8; 8] = b"VOIDAGE\x02";
 
 /// Name of the file in the output directory.
 pub const NAME: &str = "checkpoint.bin";
+
+/// Name of the copy of the last checkpoint from before the first floor.
+pub const UNTOUCHED: &str = "checkpoint_before_floors.bin";
+
+/// Keeps the present checkpoint in `dir`, the last one before a floor: later ones take its place, not that of the copy.
+///
+/// # Errors
+/// The file cannot be copied.
+pub fn keep_untouched(dir: &Path) -> Result<()> {
+    let (from, to) = (dir.join(NAME), dir.join(UNTOUCHED));
+    let bytes = std::fs::read(&from).map_err(|e| Error::io(&from, "read", &e))?;
+    atomically(&to, |out| out.write_all(&bytes))
+}
+
+/// Removes the copy that an earlier run has left in `dir`.
+///
+/// # Errors
+/// The file cannot be removed.
+pub fn forget_untouched(dir: &Path) -> Result<()> {
+    let path = dir.join(UNTOUCHED);
+    match std::fs::remove_file(&path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Error::io(&path, "remove", &e)),
+        _ => Ok(()),
+    }
+}
 
 /// What the run has written and counted so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -48,6 +73,8 @@ struct Header {
     rate: f64,
     first_order: usize,
     floored: usize,
+    /// Changed by floors: density, momentum, energy.
+    floor_change: Vec<f64>,
     /// Through both sides of each axis: density, momentum, energy.
     inflow: Vec<f64>,
     inlet_pressures: Vec<f64>,
@@ -162,6 +189,7 @@ pub fn write<const D: usize>(
         rate: total.rate,
         first_order: total.first_order,
         floored: total.floored,
+        floor_change: through(&total.floor_change),
         inflow: total.inflow.iter().flatten().flat_map(through).collect(),
         inlet_pressures: setup.inlets.iter().map(|i| i.pressure(flow)).collect(),
     };
@@ -200,12 +228,17 @@ pub fn resume<const D: usize>(path: &Path, case: &Fingerprint, setup: &mut Setup
     let state = Field { density, momentum, energy: take(&old.energy) };
     let Header { time, steps, repeated, rate, first_order, floored, .. } = header;
     let mut total = Report { rate, first_order, floored, ..Report::new() };
-    if header.inflow.len() != 2 * D * (D + 2) || header.inlet_pressures.len() != setup.inlets.len() {
+    let lengths = header.inflow.len() == 2 * D * (D + 2) && header.floor_change.len() == D + 2;
+    if !lengths || header.inlet_pressures.len() != setup.inlets.len() {
         return Err(wrong());
     }
-    for (into, from) in total.inflow.iter_mut().flatten().zip(header.inflow.chunks_exact(D + 2)) {
+    let amount = |from: &[f64]| {
         let momentum = std::array::from_fn(|c| from[1 + c]);
-        *into = Conserved { density: from[0], momentum, energy: from[D + 1] };
+        Conserved { density: from[0], momentum, energy: from[D + 1] }
+    };
+    total.floor_change = amount(&header.floor_change);
+    for (into, from) in total.inflow.iter_mut().flatten().zip(header.inflow.chunks_exact(D + 2)) {
+        *into = amount(from);
     }
     setup.flow.resume(state, Clock { time, steps, repeated, total }).map_err(|_| wrong())?;
     let restore = |(inlet, p): (&Inlet<D>, f64)| inlet.set_pressure(&mut setup.flow, p);

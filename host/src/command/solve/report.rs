@@ -39,8 +39,9 @@ pub struct Report {
     mass_drift: f64,
     /// The same of the energy; gravity does work besides. None for a barotropic gas.
     energy_drift: Option<f64>,
-    /// Cells set to a floor, over all steps.
+    /// Cells set to a floor, over all steps, and what that changed.
     floors: usize,
+    floor_change: FloorChange,
     /// Cells whose reconstruction fell back to first order, over all steps.
     fallbacks: usize,
     /// Steps repeated with a smaller dt.
@@ -52,6 +53,16 @@ pub struct Report {
     warnings: Vec<String>,
     /// Seconds of this session by stage.
     stages: BTreeMap<&'static str, f64>,
+}
+
+/// What floors changed in the content of the domain: sums of the sizes of all changes.
+#[derive(Debug, Clone, Serialize)]
+struct FloorChange {
+    mass: f64,
+    /// Along x, y and z.
+    momentum: [f64; 3],
+    /// None for a barotropic gas.
+    energy: Option<f64>,
 }
 
 impl Report {
@@ -87,6 +98,13 @@ impl Report {
             mass_drift: drift(content.density, mass, entered(|c| c.density)),
             energy_drift: flow.gas().has_energy().then(|| drift(content.energy, energy, entered(|c| c.energy))),
             floors: flow.total.floored,
+            floor_change: FloorChange {
+                mass: flow.total.floor_change.density,
+                momentum: std::array::from_fn(|axis| {
+                    setup.live.iter().position(|&a| a == axis).map_or(0.0, |d| flow.total.floor_change.momentum[d])
+                }),
+                energy: flow.gas().has_energy().then_some(flow.total.floor_change.energy),
+            },
             fallbacks: flow.total.first_order,
             repeated_steps: flow.repeated,
             frames: journal.frames.clone(),
@@ -118,6 +136,12 @@ impl Report {
             "repairs       {} fallbacks to first order, {} floors, {} steps repeated",
             self.fallbacks, self.floors, self.repeated_steps
         ));
+        if self.floors > 0 {
+            let FloorChange { mass, momentum: [x, y, z], energy } = &self.floor_change;
+            let energy = energy.map_or_else(String::new, |e| format!(", energy by {e:.1e}"));
+            let momentum = format!("({x:.1e}, {y:.1e}, {z:.1e})");
+            progress.say(format!("floors        changed the mass by {mass:.1e}, the momentum by {momentum}{energy}"));
+        }
         progress.say(format!(
             "time          {:.3} s, {:.2} million cell updates/s",
             self.seconds,

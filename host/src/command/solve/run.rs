@@ -12,11 +12,13 @@ use crate::command::progress::Progress;
 use crate::command::stages::threads;
 use crate::error::{Error, Result};
 use crate::files::json;
+use crate::flow::Flow;
 use crate::grid::Edges;
 use indicatif::ProgressBar;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use voidage_core::flow::Primitive;
 
 /// `voidage solve`.
 ///
@@ -131,6 +133,23 @@ impl Limits {
 /// Frames of a run: more is a slip of the pen.
 const MOST_FRAMES: f64 = 1e6;
 
+/// Columns of `log.csv`. The last three are what floors have changed so far, as sums of sizes; the momentum over all axes.
+const LOG_HEAD: &str = "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy";
+
+/// Share of the mass, momentum or energy in the domain that floors may change before a run stops.
+const MOST_FLOORED: f64 = 1e-6;
+
+/// The speed by which mass becomes the momentum that changes of momentum are measured against: sqrt(E/rho), and in a barotropic gas
+/// that of sound at the mean density.
+fn typical_speed<const D: usize>(flow: &Flow<f64, D>, mass: f64, energy: f64) -> f64 {
+    let gas = flow.gas();
+    if gas.has_energy() {
+        return (energy / mass).sqrt();
+    }
+    let density = mass / (0..flow.len()).map(|cell| flow.open_volume(cell)).sum::<f64>();
+    gas.sound_speed(&Primitive { density, velocity: [0.0; D], pressure: gas.pressure(density, 0.0) })
+}
+
 /// A run in progress.
 struct Run<'a, const D: usize> {
     setup: Setup<D>,
@@ -143,6 +162,8 @@ struct Run<'a, const D: usize> {
     probes: Option<(Table, Vec<usize>)>,
     pictures: Option<Pictures>,
     done: Done,
+    /// The checkpoint on disk is from before the first floor.
+    untouched: bool,
 }
 
 impl<'a, const D: usize> Run<'a, D> {
@@ -181,15 +202,16 @@ impl<'a, const D: usize> Run<'a, D> {
             0 => Table::new(&dir.join(name), head),
             bytes => Table::resume(&dir.join(name), head, bytes),
         };
-        let log = table("log.csv", "step,time,dt,mass,energy,max_mach,floors", journal.log)?;
+        let log = table("log.csv", LOG_HEAD, journal.log)?;
         let probes = match cells.is_empty() {
             true => None,
             false => Some((table("probes.csv", &probe_head(output), journal.probes)?, cells)),
         };
         let begun = journal.log > 0;
-        let mut run =
-            Run { setup, limits, dir, output, fingerprint, journal, log, probes, pictures, done: Done::default() };
+        let (done, untouched) = (Done::default(), setup.flow.total.floored == 0);
+        let mut run = Run { setup, limits, dir, output, fingerprint, journal, log, probes, pictures, done, untouched };
         if !begun {
+            checkpoint::forget_untouched(&run.dir)?;
             run.record(0.0)?;
             run.frame()?;
             run.checkpoint()?;
@@ -234,7 +256,7 @@ impl<'a, const D: usize> Run<'a, D> {
 
     /// One step that does not pass `stop`; refuses a state that no gas has.
     fn step(&mut self, stop: f64) -> Result<f64> {
-        let before = self.setup.flow.time;
+        let (before, floors) = (self.setup.flow.time, self.setup.flow.total.floored);
         let stepped = self.setup.flow.advance(self.setup.cfl, stop);
         let flow = &self.setup.flow;
         let sound = flow.total.rate.is_finite() && flow.time > before && flow.time.is_finite();
@@ -243,7 +265,10 @@ impl<'a, const D: usize> Run<'a, D> {
                 for inlet in &self.setup.inlets {
                     inlet.relax(&mut self.setup.flow, dt);
                 }
-                Ok(dt)
+                match self.floors_matter(floors) {
+                    Some(reason) => Err(Error::new(reason)),
+                    None => Ok(dt),
+                }
             }
             other => {
                 let place = format!("step {}, t = {}", self.setup.flow.steps, self.setup.flow.time);
@@ -254,14 +279,46 @@ impl<'a, const D: usize> Run<'a, D> {
         }
     }
 
+    /// Why a run whose last step added to so many `floors` must not go on: floors have changed too much of what the domain holds.
+    fn floors_matter(&self, floors: usize) -> Option<String> {
+        let flow = &self.setup.flow;
+        let cell = flow.total.floored_cell.filter(|_| flow.total.floored > floors)?;
+        let (change, content) = (flow.total.floor_change, flow.content());
+        let momentum = content.density * typical_speed(flow, content.density, content.energy);
+        let mut shares = vec![("mass", change.density / content.density)];
+        shares.push(("momentum", change.momentum.iter().fold(0.0, |sum, m| sum + m) / momentum));
+        if flow.gas().has_energy() {
+            shares.push(("energy", change.energy / content.energy));
+        }
+        if shares.iter().all(|(_, share)| *share <= MOST_FLOORED) {
+            return None;
+        }
+        let shares: Vec<String> = shares.iter().map(|(name, share)| format!("{share:.1e} of its {name}")).collect();
+        let last = self.dir.join(if self.untouched { checkpoint::NAME } else { checkpoint::UNTOUCHED });
+        Some(format!(
+            "step {}, t = {}: floors have changed what the domain holds by {}, the last in {}; the last good state is in {}",
+            flow.steps,
+            flow.time,
+            shares.join(", "),
+            state_of(&self.setup, cell),
+            last.display()
+        ))
+    }
+
     /// Lines of the log and of the probes.
     fn record(&mut self, dt: f64) -> Result<()> {
         let flow = &self.setup.flow;
         if flow.steps.is_multiple_of(self.limits.log_every) {
             let content = flow.content();
             let energy = if flow.gas().has_energy() { content.energy.to_string() } else { String::new() };
-            let (steps, time, floors) = (flow.steps, flow.time, flow.total.floored);
-            let line = format!("{steps},{time},{dt},{},{energy},{},{floors}", content.density, flow.max_mach());
+            let (steps, time, mass, mach) = (flow.steps, flow.time, content.density, flow.max_mach());
+            let (floors, change) = (flow.total.floored, flow.total.floor_change);
+            let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
+            let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
+            let line = format!(
+                "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy}",
+                change.density
+            );
             self.log.line(&line)?;
         }
         if let Some((table, cells)) = &mut self.probes {
@@ -323,6 +380,10 @@ impl<'a, const D: usize> Run<'a, D> {
             Ok(clock) => clock,
             Err(error) => return Err(Error::new(trouble(&mut self.setup, Some(error)))),
         };
+        if self.untouched && clock.total.floored > 0 {
+            checkpoint::keep_untouched(&self.dir)?;
+            self.untouched = false;
+        }
         let path = self.dir.join(checkpoint::NAME);
         checkpoint::write(&path, &self.fingerprint, &self.setup, &clock, &journal)
     }
@@ -370,20 +431,25 @@ fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::flo
     };
     let (cell, what) = match error {
         Some(Unphysical { cell }) => (cell, "no gas has this state".to_owned()),
-        Some(other) => return format!("{other:?}"),
+        Some(other) => return other.to_string(),
         None => match (0..flow.len()).find(|&c| !physical(c)) {
             Some(cell) => (cell, "no gas has this state".to_owned()),
             None => (fastest(), "the time step has shrunk to nothing, here is the fastest signal".to_owned()),
         },
     };
-    let w = flow.get(cell);
+    format!("{}: {what}", state_of(setup, cell))
+}
+
+/// A cell, where it is, and its state.
+fn state_of<const D: usize>(setup: &Setup<D>, cell: usize) -> String {
+    let w = setup.flow.get(cell);
     let at = super::arrays::index(cell, setup.edges.cells());
     let x = super::state::centre(&setup.edges, cell);
     let mut text = format!("cell {at:?} at {x:?}: rho = {:?}, ", w.density);
     for (axis, u) in setup.live.iter().zip(w.velocity) {
         let _ = write!(text, "{} = {u:?}, ", VELOCITIES[*axis]); // a String takes anything
     }
-    format!("{text}p = {:?}: {what}", w.pressure)
+    format!("{text}p = {:?}", w.pressure)
 }
 
 /// The cells of the probes.

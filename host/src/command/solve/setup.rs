@@ -119,7 +119,7 @@ pub fn setup<const D: usize>(
 
 /// An error of the core as one of the case.
 fn refused(file: &CaseFile, error: voidage_core::flow::Error) -> Error {
-    Error::file(&file.path, format!("the flow cannot be set up: {error:?}"))
+    Error::file(&file.path, format!("the flow cannot be set up: {error}"))
 }
 
 fn gas(file: &CaseFile, keys: &GasKeys) -> Result<Gas<f64>> {

@@ -1,0 +1,197 @@
+//! The boolean search: does the difference hold the origin?
+
+use super::closest::intersect_rounded;
+use super::outcome::{Intersection, OverlapProof, Reason};
+use super::pair::{BodyPair, sized};
+use super::working_simplex::{WorkingSimplex, across};
+use crate::convex::simplex::{OriginSide, Simplex, side};
+use crate::convex::support::{ScalarOf, Support, lengthened};
+use crate::number::real::{Real, Vector};
+
+/// How many support points a search may look at. Polytopes of some hundred vertices need twenty at most; after that it is a symmetry, or a
+/// smooth body near touch, and another search takes over.
+pub const MAX_ITERATIONS: u32 = 32;
+
+/// Do the bodies of a pair share an inner point? From `hint`, or along their centres; where that cannot tell, once more and harder.
+#[inline(always)]
+pub(super) fn search<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    match attempt(pair, hint, false) {
+        Attempt::Decided(found) => found,
+        Attempt::Ended { axis, reason, deep } if deep || reason == Reason::Iterations || pair.slack > Real::ZERO => {
+            search_harder(pair, axis, reason)
+        }
+        Attempt::Ended { axis, reason, .. } => Intersection::Undecided { reason, axis },
+    }
+}
+
+/// The search with leaning directions: for bodies so placed that a symmetry keeps the origin on the rim of every simplex.
+pub(super) fn search_leaning<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    match attempt(pair, None, true) {
+        Attempt::Decided(found) => found,
+        Attempt::Ended { axis, reason, .. } => Intersection::Undecided { reason, axis },
+    }
+}
+
+/// How a run of the search ended.
+enum Attempt<V: Vector> {
+    /// With a proof.
+    Decided(Intersection<V>),
+    /// Without one.
+    Ended {
+        /// The last direction tried.
+        axis: V,
+        /// Why it ended.
+        reason: Reason,
+        /// The last support plane passes the origin on the far side by more than rounding: the bodies overlap, yet no simplex proves it.
+        deep: bool,
+    },
+}
+
+/// One run of the boolean search, with leaning directions or without.
+#[inline(always)]
+fn attempt<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+    hint: Option<A::Vector>,
+    lean: bool,
+) -> Attempt<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    // The bodies are apart if d·w exceeds this times |d|₁.
+    let margin = pair.margin();
+    let mut axis = pair.seed(hint);
+    let mut starts = (0, 0);
+    let mut simplex = WorkingSimplex::<A::Vector>::new();
+    for round in 0..MAX_ITERATIONS {
+        let surrounding = lean && round < 4;
+        if lean {
+            axis = leaning_axis(axis, round);
+        }
+        let size = match sized(axis) {
+            Ok((direction, size)) => {
+                axis = direction;
+                size
+            }
+            // The origin is a vertex of the difference, or the simplex is flat.
+            Err(axis) => return Attempt::Ended { axis, reason: Reason::Rounding, deep: false },
+        };
+        let room = margin * size;
+        let mut found = pair.probe(axis, starts);
+        if found.w.dot(axis) > room {
+            found = pair.probe_surely(axis, found);
+            if found.w.dot(axis) > room {
+                return Attempt::Decided(Intersection::Apart { axis });
+            }
+        }
+        starts = found.starts();
+        // A point again can only come where there is no progress to speak of.
+        let along = found.w.dot(axis);
+        let stalled = simplex.count > 0 && along + room >= simplex.w[0].dot(axis);
+        if stalled && simplex.holds(found.w) {
+            if surrounding {
+                continue;
+            }
+            return Attempt::Ended { axis, reason: Reason::Rounding, deep: along < -room };
+        }
+        simplex.push(&found);
+        if surrounding && round < 3 {
+            continue;
+        }
+        match simplex.step(pair.slack) {
+            Some(next) => axis = next,
+            None => return Attempt::Decided(overlapping(simplex.simplex())),
+        }
+    }
+    Attempt::Ended { axis, reason: Reason::Iterations, deep: false }
+}
+
+fn overlapping<V: Vector>(simplex: Simplex<V>) -> Intersection<V> {
+    Intersection::Overlapping { proof: OverlapProof::Inside(simplex) }
+}
+
+/// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
+/// the distance, which has more patience.
+#[cold]
+#[inline(never)]
+fn search_harder<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+    axis: A::Vector,
+    reason: Reason,
+) -> Intersection<A::Vector>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    for axis in [pair.seed(None), axis] {
+        if let Some(simplex) = surround(pair, axis) {
+            return overlapping(simplex);
+        }
+    }
+    let found = search_leaning(pair);
+    if !matches!(found, Intersection::Undecided { .. }) {
+        return found;
+    }
+    let harder = intersect_rounded(pair, Some(axis));
+    if matches!(harder, Intersection::Undecided { .. }) { Intersection::Undecided { reason, axis } } else { harder }
+}
+
+/// Points along an axis and all around it, if they surround the origin: for shallow overlaps of bodies placed symmetrically about the axis.
+fn surround<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+    axis: A::Vector,
+) -> Option<Simplex<A::Vector>>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let axis = lengthened(axis);
+    let u = lengthened(across(axis));
+    let v = lengthened(axis.cross(u));
+    let half = u * ScalarOf::<A>::HALF;
+    let mut simplex = Simplex { a: [A::Vector::ZERO; 4], b: [A::Vector::ZERO; 4] };
+    let mut w = [A::Vector::ZERO; 4];
+    for (i, direction) in [axis, u, v - half, -v - half].into_iter().enumerate() {
+        let found = pair.probe(direction, (0, 0));
+        (simplex.a[i], simplex.b[i]) = (found.a.point, found.b.point);
+        w[i] = found.w;
+    }
+    (side(w, pair.slack) == OriginSide::Inside).then_some(simplex)
+}
+
+/// Where a second try looks first: the points of a body along these surround its middle, also those of a box.
+const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+
+/// Directions to lean towards when a search has met a symmetry: none of them, nor any sum or difference of two, lies in a plane of one.
+const LEANINGS: [[f64; 3]; 5] =
+    [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
+
+/// The direction of a round of the search with leaning directions: first around a body, then near where the search would look.
+fn leaning_axis<V: Vector>(axis: V, round: u32) -> V {
+    let axis = match CORNERS.get(round as usize) {
+        Some(corner) => V::from_array(corner.map(V::Scalar::from_f64)),
+        None => axis,
+    };
+    leaning(axis, round)
+}
+
+/// A direction near another; a different one each round, and after the first five ever nearer, so that shallow overlaps are not passed over.
+fn leaning<V: Vector>(axis: V, round: u32) -> V {
+    let [x, y, z] = LEANINGS[(round % 5) as usize];
+    let real = V::Scalar::from_f64;
+    let by = axis.norm_max() * real(0.5 / f64::from(1u32 << round.clamp(3, 31)));
+    axis + V::new(real(x), real(y), real(z)) * by
+}

@@ -1,0 +1,68 @@
+//! What a caller may get wrong.
+
+use core::fmt;
+
+/// A broken contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A slice does not fit the mesh.
+    ShapeMismatch {
+        /// Length by the mesh.
+        expected: usize,
+        /// Length given.
+        found: usize,
+    },
+    /// An axis is periodic on one side only.
+    HalfPeriodic {
+        /// The axis.
+        axis: usize,
+    },
+    /// A width of a cell that is not positive and finite.
+    Width {
+        /// The axis.
+        axis: usize,
+        /// The cell along it.
+        cell: usize,
+    },
+    /// An entry of the clusters names no cell.
+    Cluster {
+        /// Which one.
+        entry: usize,
+    },
+    /// A number of the gas is not positive and finite, or its ratio of specific heats is not above 1.
+    Gas,
+    /// A cell outside the physical set (density or pressure not positive, or not finite).
+    Unphysical {
+        /// Its flat index.
+        cell: usize,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::ShapeMismatch { expected, found } => {
+                write!(f, "a slice has {found} entries where the mesh asks for {expected}")
+            }
+            Error::HalfPeriodic { axis } => write!(f, "axis {axis} is periodic on one side only"),
+            Error::Width { axis, cell } => {
+                write!(f, "the width of cell {cell} along axis {axis} is not positive and finite")
+            }
+            Error::Cluster { entry } => write!(f, "entry {entry} of the clusters names no cell of the mesh"),
+            Error::Gas => f.write_str(
+                "a number of the gas is not positive and finite, or its ratio of specific heats is not above 1",
+            ),
+            Error::Unphysical { cell } => {
+                write!(f, "the density or pressure of cell {cell} is not positive, or its state is not finite")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// Refuses a length that is not the one expected.
+pub(in crate::flow) fn fits(expected: usize, found: usize) -> Result<(), Error> {
+    if expected == found { Ok(()) } else { Err(Error::ShapeMismatch { expected, found }) }
+}

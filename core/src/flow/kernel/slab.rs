@@ -1,0 +1,124 @@
+//! A slab of layers in one step: the problem, the old field, the sizes, and where each row stands in the window.
+
+use crate::flow::kernel::scratch::{ROWS_BESIDE, Sizes};
+use crate::flow::porosity::fractions::Medium;
+use crate::flow::porosity::throat::ThroatGas;
+use crate::flow::problem::Problem;
+use crate::flow::riemann::FaceGas;
+use crate::flow::state::Fields;
+use crate::number::real::Real;
+use core::ops::Range;
+
+/// A row of cells inside the domain.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct RowAt<const D: usize> {
+    /// Flat index of its first cell.
+    pub start: usize,
+    /// Indices of its first cell.
+    pub at: [usize; D],
+}
+
+/// What one call advances of a problem, and from where.
+#[derive(Clone)]
+pub(in crate::flow) struct Part<'p, R, const D: usize> {
+    /// The old field, of the whole mesh.
+    pub old: &'p Fields<'p, R, D>,
+    /// The step.
+    pub dt: R,
+    /// One byte per cell of the mesh: not 0 for a reconstruction of first order.
+    pub first_order: Option<&'p [u8]>,
+    /// Layers along the last axis; the one layer of a line.
+    pub layers: Range<usize>,
+    /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
+    pub reported: Range<usize>,
+}
+
+/// One slab of one step, and what it reads.
+pub(in crate::flow) struct Slab<'p, R, const D: usize> {
+    pub problem: &'p Problem<'p, R, D>,
+    pub medium: Option<Medium<'p, R, D>>,
+    pub size: Sizes,
+    pub periodic: [bool; D],
+    pub weighted: bool,
+    /// All cells along an axis have one width.
+    pub even: [bool; D],
+    pub first_order: Option<&'p [u8]>,
+    pub face_gas: FaceGas<R>,
+    pub throat: ThroatGas<R>,
+    pub old: &'p Fields<'p, R, D>,
+    pub dt: R,
+    pub layers: Range<usize>,
+    /// Rows of a layer that are advanced: a tile of a 3D mesh, else the one row.
+    pub rows: Range<usize>,
+    /// Cells of a row that enter the report.
+    pub reported: Range<usize>,
+}
+
+impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
+    /// The slab of a part of a problem; its rows are to be set.
+    pub fn new(problem: &'p Problem<'p, R, D>, part: &Part<'p, R, D>) -> Self {
+        Slab {
+            problem,
+            medium: problem.porosity.map(|porosity| Medium { mesh: problem.mesh, porosity }),
+            size: Sizes::new(&problem.mesh),
+            periodic: problem.periodic(),
+            weighted: problem.gravity.iter().any(|&g| g != R::ZERO),
+            even: problem.mesh.widths.map(|w| w.iter().all(|x| *x == w[0])),
+            first_order: part.first_order,
+            face_gas: FaceGas::new(problem.gas),
+            throat: ThroatGas::new(problem.gas),
+            old: part.old,
+            dt: part.dt,
+            layers: part.layers.clone(),
+            rows: 0..1,
+            reported: part.reported.clone(),
+        }
+    }
+
+    /// Cells of the whole mesh along an axis.
+    pub fn cells(&self, d: usize) -> isize {
+        self.problem.mesh.cells()[d] as isize
+    }
+
+    /// The rows that are advanced.
+    pub fn rows(&self) -> Range<isize> {
+        self.rows.start as isize..self.rows.end as isize
+    }
+
+    /// Rows of a layer of the whole mesh.
+    pub fn all_rows(&self) -> isize {
+        if D == 3 { self.problem.mesh.cells()[1] as isize } else { 1 }
+    }
+
+    /// Rows of a layer that the window holds: those of the tile and, in 3D, two more on each side; one beyond a side of the domain.
+    pub fn held_rows(&self) -> Range<isize> {
+        let (first, last) = (self.rows.start as isize, self.rows.end as isize);
+        if D < 3 {
+            return first..last;
+        }
+        let beside = |at_side: bool| if at_side && !self.periodic[1] { 1 } else { ROWS_BESIDE as isize };
+        first - beside(first == 0)..last + beside(last == self.all_rows())
+    }
+
+    /// Where row `j` of layer `l` stands in the window.
+    pub fn block(&self, l: isize, j: isize) -> Range<usize> {
+        let s = self.size;
+        let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
+        let row = if D == 3 { (j - self.rows.start as isize + ROWS_BESIDE as isize) as usize } else { 0 };
+        let len = (D + 2) * s.padded;
+        let start = (slot * s.rows_padded + row) * len;
+        start..start + len
+    }
+
+    /// Place of row `j` among those of the tile.
+    pub fn place(&self, j: isize) -> usize {
+        j as usize - self.rows.start
+    }
+
+    /// Where the changes of the row at a place of the tile stand along axis `d`.
+    pub fn changes(&self, d: usize, place: usize) -> Range<usize> {
+        let len = (D + 2) * self.size.n;
+        let row = if d == D - 1 { 0 } else { place };
+        row * len..(row + 1) * len
+    }
+}

@@ -1,0 +1,117 @@
+//! Which faces are walls or porosity jumps, and which cells small or sealed, found once from the open fractions.
+
+use crate::flow::error::{Error, fits};
+use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low};
+use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
+use crate::number::real::Real;
+
+/// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
+/// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
+/// point has large shares of small differences: those below a fifth of the threshold do not count).
+fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
+    let (least, most) = (R::smaller(left, right), R::larger(left, right));
+    let difference = R::larger(most - least, least - face);
+    let narrow = difference > R::from_f64(3.0) * threshold * most && is_wall(difference, threshold);
+    difference > threshold || narrow
+}
+
+/// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
+fn is_wall<R: Real>(width: R, threshold: R) -> bool {
+    width > R::from_f64(0.2) * threshold
+}
+
+/// Open fractions of a cell's two faces along an axis that differ by no more than this differ by rounding: of the geometry, of
+/// fractions stored in single precision, or of the scalar. A wall so little inclined that it differs no more counts as aligned
+/// with the grid, at an error of about this share over the Mach number in units of the dynamic pressure.
+fn rounding<R: Real>() -> R {
+    R::larger(R::from_f64(1e-6), R::from_f64(16.0) * R::EPSILON)
+}
+
+impl<R: Real, const D: usize> Medium<'_, R, D> {
+    /// Whether the wall inside a cell is inclined to the grid.
+    ///
+    /// The high open face less the low one, axis by axis, is the area vector of that wall (Gauss). A duct that changes its area
+    /// has one component, along itself; a wall that cuts through the cell at an angle has more, and so has the corner of a body that
+    /// is aligned with the grid. A cell with all its volume open holds no wall: what closes its faces lies in their planes.
+    fn holds_inclined_wall(&self, at: [usize; D], periodic: [bool; D]) -> bool {
+        let least = rounding::<R>();
+        let open = self.porosity.volume[self.mesh.index(at)];
+        if open >= R::ONE - least {
+            return false;
+        }
+        let (mut components, mut product) = (0, R::ONE);
+        let (mut solid_corner, mut open_corner) = (true, true);
+        for d in 0..D {
+            let (low, high) = self.ducts(d, at, periodic[d]).openings(0);
+            let change = (high - low).abs();
+            if change > least {
+                components += 1;
+                product *= change;
+                let part = change < R::ONE - least;
+                solid_corner &= part & (R::larger(low, high) >= R::ONE - least);
+                open_corner &= part & (R::smaller(low, high) <= least);
+            }
+        }
+        // The corner of a body aligned with the grid, or the space it leaves, is a box: in a plane its area is the product of its
+        // sides, in space the square of its volume the product of its faces. A plane cuts off half of that or less.
+        let is_box = |volume: R| (if components == 3 { volume * volume } else { volume } - product).abs() <= least;
+        components > 1 && !(solid_corner && is_box(R::ONE - open)) && !(open_corner && is_box(open))
+    }
+}
+
+/// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
+/// for no jumps), which cells are small, which are sealed.
+///
+/// Both belong to ducts, layers and walls aligned with the grid. A face beside a cell that an inclined wall cuts is neither: the
+/// area of such a cell's faces changes though no duct does, and the stream runs along the wall, not against the closed face. There
+/// the geometric form is exact for a uniform stream.
+///
+/// `marks` is one byte per cell.
+///
+/// # Errors
+/// A slice does not fit the mesh.
+pub fn mark<R: Real, const D: usize>(
+    mesh: &Mesh<'_, R, D>,
+    volume: &[R],
+    faces: &[&[R]; D],
+    periodic: [bool; D],
+    threshold: R,
+    marks: &mut [u8],
+) -> Result<(), Error> {
+    fits(mesh.len(), volume.len())?;
+    fits(mesh.len(), marks.len())?;
+    for d in 0..D {
+        fits(mesh.faces(d), faces[d].len())?;
+    }
+    let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
+    let ducts = |d: usize, at: [usize; D]| medium.ducts(d, at, periodic[d]);
+    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| R::larger(w, ducts(d, at).duct(0)));
+    for cell in 0..marks.len() {
+        let at = mesh.coordinates(cell);
+        let mut bits = 0;
+        for d in 0..D {
+            let own = ducts(d, at);
+            let (low, high) = own.openings(0);
+            let mut above = at;
+            above[d] += 1;
+            for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
+                let (left, right) = own.beside(0, bit == break_high(d));
+                let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
+                let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
+                let inclined = |c: &[usize; D]| medium.holds_inclined_wall(*c, periodic);
+                let breaks = closed || is_jump(left, open, right, threshold);
+                if breaks && !medium.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
+                    bits |= bit;
+                }
+            }
+        }
+        let widest = widest(at);
+        if !(widest > R::ZERO) {
+            bits |= SEALED;
+        } else if volume[cell] < R::from_f64(SMALL_SHARE) * widest {
+            bits |= SMALL;
+        }
+        marks[cell] = bits;
+    }
+    Ok(())
+}
