@@ -11,12 +11,10 @@ const CORE: [&str; 6] = ["number", "flow", "convex", "grid", "surface", "subdivi
 const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 1] = [
-    (
-        &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
-        "union.rs is the door and defines the pieces that its parts sort",
-    ),
-];
+const CIRCLES: [(&[&str], &str); 1] = [(
+    &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
+    "union.rs is the door and defines the pieces that its parts sort",
+)];
 
 #[test]
 fn rooms_import_downwards_only() {
