@@ -1,5 +1,6 @@
 //! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
 
+mod boxes;
 mod core_alone;
 mod dirty;
 mod hulls;
