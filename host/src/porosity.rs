@@ -62,7 +62,7 @@ pub fn porosity_watched(
         found.porosity
     });
     let mut joined = levels::join(&levels, unions);
-    doubt::forget(grid, bodies, options, &mut joined);
+    doubt::widen(grid, bodies, options, &mut joined);
     Porosity { sheets_off_planes: snap::sheets_off_planes(grid, bodies, triangles), ..joined }
 }
 
@@ -105,8 +105,7 @@ fn union(
 ) -> Union {
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
     let convex = roads.road(triangles, options, counts);
-    let (surfaces, broken) =
-        surfaces(bodies, triangles, |body| counts(body) && roads.by_surface(body) && !bodies.bodies[body].doubtful);
+    let (surfaces, broken) = surfaces(bodies, triangles, |body| counts(body) && roads.by_surface(body));
     let needed = Layers::needed(grid, &surfaces);
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
     let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");

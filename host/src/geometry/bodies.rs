@@ -513,7 +513,7 @@ fn resolve(parts: &mut Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
     }
     if let [_, Some(place)] = first {
         report.warn(format!(
-            "{} surfaces cross themselves (the first near {}) so that what they hold cannot be told; cells within their boxes are anything from open to closed",
+            "{} surfaces cross themselves (the first near {}) so that what they hold cannot be told; they are measured as they wind, and the bounds of all cells within their boxes are 0 and 1",
             d.doubtful,
             show(place)
         ));
