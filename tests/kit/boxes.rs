@@ -72,9 +72,9 @@ pub struct Scene {
     pub edges: [Vec<i64>; 3],
     /// The file's triangles, in metres.
     pub triangles: Vec<Triangle>,
-    /// Where the origin is [units].
+    /// Where the origin is, in units.
     pub offset: i64,
-    /// A unit [m], a power of two.
+    /// A unit in metres, a power of two.
     pub unit: f64,
 }
 
@@ -344,6 +344,8 @@ pub struct Visited {
     pub doubtful: bool,
     /// Surface was dropped that was there twice.
     pub doubled: bool,
+    /// Some triangles have their reverse in the file.
+    pub two_sided: bool,
 }
 
 /// By how much a value may leave its bounds.
@@ -381,5 +383,6 @@ pub fn bounds_hold(seed: u64) -> Result<Visited, String> {
         hollow: d.cavities > 0,
         doubtful: d.doubtful > 0,
         doubled: d.repeated + d.doubled > 0,
+        two_sided: scene.triangles.len() > 12 * scene.bricks.len(),
     })
 }

@@ -10,8 +10,8 @@ fn random_boxes() {
     let run = |seed: u64| bounds_hold(seed).unwrap_or_else(|text| panic!("{text}"));
     let visited: Vec<Visited> = (0..1500).into_par_iter().map(run).collect();
     let count = |what: fn(&Visited) -> bool| visited.iter().filter(|v| what(v)).count();
-    let one_way = count(|v| v.defined && !v.doubled && !v.flipped);
-    let exact = count(|v| v.defined && !v.doubled && !v.flipped && v.exact);
+    let one_way = count(|v| v.defined && !v.two_sided && !v.flipped);
+    let exact = count(|v| v.defined && !v.two_sided && !v.flipped && v.exact);
     assert!(one_way > 600 && exact * 100 >= one_way * 98, "{exact} exact of {one_way}");
     assert!(count(|v| v.doubled && v.exact) > 100, "double-sided scenes");
     assert!(count(|v| v.flipped && v.exact) > 50, "scenes of both orientations");
