@@ -50,7 +50,7 @@ pub struct Problem<'a, R, const D: usize> {
     pub scheme: Scheme,
     /// Open fractions; without them nothing is read.
     pub porosity: Option<Porosity<'a, R, D>>,
-    /// Clusters of small cells, from [`clusters::clusters`]; empty for none.
+    /// Clusters of small cells, from [`crate::flow::porosity::clusters::clusters`]; empty for none.
     pub clusters: Clusters<'a>,
     /// Drag of sub-grid obstacles.
     pub drag: Option<Drag<'a, R, D>>,
