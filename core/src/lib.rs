@@ -1,15 +1,16 @@
 //! Volume and area porosity of real geometry on structured grids.
 //!
 //! The crate is `no_std`, allocates nothing, holds no `unsafe` code and works in `f32` and `f64` from one text.
-//! Six rooms; one uses only those above it:
+//! Seven rooms; one uses only those above it:
 //!
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
 //! 3. [`grid`]: cells, faces, index order; solid fractions of a layer, as bounds that bodies share
-//! 4. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
+//! 4. [`quadric`]: fractions of cylinder, cone, ball, capsule, ellipsoid by closed forms
+//! 5. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
 //!    in [`surface`]
-//! 5. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
-//! 6. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//! 6. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
+//! 7. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
 //!
 //! # Two convex bodies
 //!
@@ -30,5 +31,6 @@ pub mod convex;
 pub mod flow;
 pub mod grid;
 pub mod number;
+pub mod quadric;
 pub mod subdivide;
 pub mod surface;

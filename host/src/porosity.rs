@@ -6,16 +6,17 @@
 pub mod convex;
 mod doubt;
 mod fields;
+mod formulas;
 mod layers;
 mod levels;
 mod options;
 mod result;
+mod road;
 pub mod snap;
 mod targets;
 
 use crate::geometry::bodies::{self, Bodies};
 pub use crate::huge::HugeVec;
-use convex::Roads;
 pub use fields::FieldSet;
 use glam::DVec3;
 use layers::{Summary, Target, Workers};
@@ -23,6 +24,7 @@ pub use levels::levels;
 pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
 pub use result::{CellCounts, Gjk, Leak, Porosity};
+use road::Roads;
 use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
@@ -139,6 +141,7 @@ fn union(
         winding: total.winding,
         sheets_off_planes: snap::OffPlanes::default(),
         subdivided: roads.subdivided(),
+        by_formula: roads.by_formula(),
         gjk: Gjk { queries: total.tally.queries, undecided: total.tally.undecided },
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
     };

@@ -19,7 +19,7 @@ use crate::recipe::Recipe;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets by name.
-pub const TARGETS: [Target; 7] = [
+pub const TARGETS: [Target; 8] = [
     ("intersect", intersect),
     ("distance", distance),
     ("containment", containment),
@@ -27,6 +27,7 @@ pub const TARGETS: [Target; 7] = [
     ("raw", raw),
     ("subdivide", subdivide),
     ("layers", layers),
+    ("quadric", quadric),
 ];
 
 /// Porosity of layers of any triangles in any memory.
@@ -35,6 +36,15 @@ pub fn layers(bytes: &[u8]) {
     let seed = u64::from_le_bytes(*seed);
     crate::door::never_panics::<DVec3>(seed);
     crate::door::never_panics::<Vec3>(seed);
+}
+
+/// Shares of any solid by formula, and the sum of those of a solid of some family.
+pub fn quadric(bytes: &[u8]) {
+    let Some((seed, _)) = bytes.split_first_chunk() else { return };
+    let seed = u64::from_le_bytes(*seed);
+    crate::quadric::never_panics::<DVec3>(seed);
+    crate::quadric::never_panics::<Vec3>(seed);
+    crate::quadric::parts_sum_to_the_whole(seed);
 }
 
 /// Booleans of both stages against the oracle.

@@ -13,6 +13,8 @@ pub mod gjk;
 pub mod lattice;
 pub mod oracle;
 pub mod pairs;
+pub mod quadrature;
+pub mod quadric;
 pub mod random;
 pub mod recipe;
 pub mod solids;

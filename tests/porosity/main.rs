@@ -9,6 +9,7 @@ mod known;
 mod layers;
 mod meshes;
 mod overlap;
+mod quadric;
 mod scenes;
 mod subdivide;
 mod truth;

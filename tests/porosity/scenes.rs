@@ -223,6 +223,7 @@ fn layers_without_porous_solids_are_those_of_the_solid_ones() {
     // The second scene has a porous needle beside the others through all layers, so that every layer is computed at both levels.
     let edges = edges([10, 6, 12], 1.0);
     let parts = solid("sphere", "center = [0.3, 0.4, 0.5]\nradius = 0.25")
+        + &solid("sphere", "center = [0.35, 0.4, 0.55]\nradius = 0.2")
         + &solid("box", "min = [0.1, 0.2, 0.52]\nmax = [0.6, 0.7, 0.57]\nporosity = 0.6");
     let needle = solid("box", "min = [0.91, 0.9, -1]\nmax = [0.99, 0.99, 2]\nporosity = 0.6");
     let (few, all) = (run(&edges, &bodies(&parts)), run(&edges, &bodies(&(parts + &needle))));

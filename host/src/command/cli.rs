@@ -59,9 +59,10 @@ impl ValueEnum for Method {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         let (name, help) = match self {
-            Method::Auto => {
-                ("auto", "The cheapest for every body: sums over its surface, if it has triangles, else subdivision")
-            }
+            Method::Auto => (
+                "auto",
+                "The cheapest for every body: sums over its surface, if it has triangles, else closed forms: exact",
+            ),
             Method::Surface => ("surface", "Sums over the surface: exact for any closed surface of triangles"),
             Method::Gjk => (
                 "gjk",

@@ -1,8 +1,8 @@
 //! The layers of the core in a thread's memory.
 
 use super::CellCounts;
-use super::convex::{Lists, Road};
 use super::fields::Slices;
+use super::road::{Lists, Road};
 use glam::DVec3;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;

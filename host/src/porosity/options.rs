@@ -6,7 +6,7 @@ use voidage_core::surface::layer::LayerOptions;
 /// How volumes are found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision.
+    /// The cheapest for every body: sums over its surface, if it has triangles, else closed forms, and subdivision where those meet.
     #[default]
     Auto,
     /// Sums over the surface: exact for any closed surface of triangles

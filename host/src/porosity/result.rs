@@ -60,6 +60,8 @@ pub struct Porosity {
     pub sheets_off_planes: OffPlanes,
     /// Bodies that went by subdivision, of all.
     pub subdivided: usize,
+    /// Bodies that went by closed forms, of all.
+    pub by_formula: usize,
     /// Queries of GJK.
     pub gjk: Gjk,
     /// Bodies whose rows did not return to zero, worst first, one entry a body.

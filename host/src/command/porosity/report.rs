@@ -40,6 +40,8 @@ pub(super) struct Report {
 struct RoadReport {
     /// Sums over surfaces: exact.
     surface: usize,
+    /// Closed forms of solids by formula: exact.
+    formula: usize,
     /// Subdivision by GJK: bounds.
     subdivision: usize,
     /// Of the latter, the rule at its end.
@@ -56,8 +58,8 @@ struct GridReport {
 impl Report {
     pub(super) fn new(args: &PorosityArgs, edges: &Edges, bodies: &Bodies, result: &Porosity) -> Self {
         let mut skipped = Vec::new();
-        if result.subdivided == 0 {
-            skipped.push("gjk: every body has triangles, and their sums are exact and cheaper");
+        if result.subdivided == 0 && result.gjk.queries == 0 {
+            skipped.push("gjk: sums over triangles and closed forms are exact and cheaper");
         }
         if args.no_areas {
             skipped.push("area porosities: --no-areas");
@@ -76,7 +78,8 @@ impl Report {
             bodies: bodies.bodies.len(),
             triangles: bodies.triangles.len(),
             roads: RoadReport {
-                surface: bodies.bodies.len() - result.subdivided,
+                surface: bodies.bodies.len() - result.subdivided - result.by_formula,
+                formula: result.by_formula,
                 subdivision: result.subdivided,
                 leaf: args.leaf,
             },

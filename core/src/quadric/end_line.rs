@@ -1,0 +1,30 @@
+//! Where a grid plane meets a flat end.
+
+use super::arc::P2;
+
+/// Where a plane of the grid meets the plane of an end: a linear function, not negative inside, and the chord that the disc has there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EndLine {
+    /// The value in the plane's own foot of the end's centre.
+    pub constant: f64,
+    /// Slope along both axes.
+    pub slope: P2,
+    /// The end's centre in the plane, from the part's origin.
+    pub shift: P2,
+    pub chord: Option<[P2; 2]>,
+}
+
+impl EndLine {
+    /// In a point given from the part's origin.
+    #[inline(always)]
+    pub fn at(&self, p: P2) -> f64 {
+        let value = self.constant + (self.slope[0] * (p[0] - self.shift[0]) + self.slope[1] * (p[1] - self.shift[1]));
+        // Not a number is outside.
+        if value.is_nan() { -1.0 } else { value }
+    }
+
+    /// The complement.
+    pub fn reversed(&self) -> Self {
+        EndLine { constant: -self.constant, slope: self.slope.map(|s| -s), ..*self }
+    }
+}

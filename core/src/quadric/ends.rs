@@ -1,0 +1,123 @@
+//! Flat ends: discs across an axis.
+
+use super::arc::{Moments, P2, cross, sub, times};
+use super::end_line::EndLine;
+use super::outline::{Rectangle, Section, Side, cut};
+use super::twofold::{Twofold, difference, difference_of_squares};
+use super::wall::{Ellipse, Span, hypotenuse, others};
+use crate::number::real::Real;
+use core::f64::consts::PI;
+
+/// A flat end of a part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    /// Its centre.
+    pub center: [f64; 3],
+    /// The same, from the part's origin.
+    pub shift: [f64; 3],
+    /// Unit normal into the solid.
+    pub inward: [f64; 3],
+    pub radius: f64,
+    /// Points of its plane belong to the part.
+    pub closed: bool,
+}
+
+impl End {
+    /// Its line in the plane across axis `n` at a coordinate.
+    pub fn line(&self, n: usize, coordinate: f64) -> EndLine {
+        let [u, v] = others(n);
+        let a = self.inward;
+        let height = difference(coordinate, self.center[n]);
+        let (slope, shift) = ([a[u], a[v]], [self.shift[u], self.shift[v]]);
+        let across = hypotenuse(a[u], a[v]);
+        let mut constant = a[n] * height.value;
+        if !(across > 0.0) {
+            // The end lies in planes like this one: all of it is inside or outside.
+            let inside = constant > 0.0 || (constant == 0.0 && self.closed);
+            constant = if inside { 1.0 } else { -1.0 };
+            return EndLine { constant, slope: [0.0; 2], shift, chord: None };
+        }
+        let scaled = Twofold { value: height.value / across, rest: height.rest / across };
+        let square = difference_of_squares(self.radius, scaled);
+        let chord = (square > 0.0).then(|| {
+            let half = Real::sqrt(square);
+            let along = [-a[v] / across, a[u] / across];
+            let foot = -a[n] * (height.value / across);
+            let middle = [shift[0] + foot * (a[u] / across), shift[1] + foot * (a[v] / across)];
+            [-half, half].map(|t| [middle[0] + t * along[0], middle[1] + t * along[1]])
+        });
+        EndLine { constant, slope, shift, chord }
+    }
+
+    /// What a line along axis `m` has inside, by its other two coordinates from the part's origin.
+    pub fn span(&self, m: usize, q: P2) -> Span {
+        let [u, v] = others(m);
+        let a = self.inward;
+        let aside = a[u] * (q[0] - self.shift[u]) + a[v] * (q[1] - self.shift[v]);
+        let all = Span::ALL;
+        if a[m] == 0.0 {
+            return if aside >= 0.0 { all } else { Span::EMPTY };
+        }
+        let at = self.shift[m] - aside / a[m];
+        if a[m] > 0.0 { Span { lo: at, ..all } } else { Span { hi: at, ..all } }
+    }
+
+    /// The disc, seen along axis `xi`: area and first moments, in the other two axes and about the rectangle's middle, of what lies over
+    /// a rectangle and between two planes across `xi`, given by their lines.
+    pub fn projected(&self, xi: usize, rectangle: &Rectangle, planes: [&EndLine; 2]) -> Moments {
+        let mut corners = rectangle.corners();
+        // The lower plane's line is positive where that plane is inside; whether the end is above it depends on where inside is.
+        let up = self.inward[xi] > 0.0;
+        let [low, high] = planes;
+        let lines = if up { [low.reversed(), *high] } else { [*low, high.reversed()] };
+        for line in &lines {
+            corners = cut(&corners, line, 4);
+        }
+        if corners.is_empty() {
+            return Moments::default();
+        }
+        let section = self.seen_along(xi);
+        let region = section.pieces(&corners, |corner, to| self.piece(xi, corner.at, to));
+        section.moments(&region, rectangle)
+    }
+
+    /// The disc's outline, seen along axis `xi`.
+    fn seen_along(&self, xi: usize) -> Section {
+        let [u, v] = others(xi);
+        let a = self.inward;
+        let s = [-a[u] / a[xi], -a[v] / a[xi]];
+        let quadratic = [1.0 + s[0] * s[0], s[0] * s[1], 1.0 + s[1] * s[1]];
+        let center = [self.shift[u], self.shift[v]];
+        let linear = times(quadratic, center).map(|x| -x);
+        let area = PI * self.radius * self.radius * a[xi].abs();
+        Section { quadratic, linear, ellipse: Some(Ellipse { center, area }) }
+    }
+
+    /// What the disc, seen along axis `xi`, has of a segment.
+    fn piece(&self, xi: usize, from: P2, to: P2) -> Option<Side> {
+        let [u, v] = others(xi);
+        let a = self.inward;
+        let s = [-a[u] / a[xi], -a[v] / a[xi]];
+        let quadratic = [1.0 + s[0] * s[0], s[0] * s[1], 1.0 + s[1] * s[1]];
+        let p = sub(from, [self.shift[u], self.shift[v]]);
+        let d = sub(to, from);
+        let sd = times(quadratic, d);
+        let leading = d[0] * sd[0] + d[1] * sd[1];
+        let half = p[0] * sd[0] + p[1] * sd[1];
+        let aside = (cross(p, d) / a[xi]).abs();
+        let reach = self.radius * Real::sqrt(leading);
+        let square = (reach - aside) * (reach + aside);
+        if !(square > 0.0 && leading > 0.0) {
+            return None;
+        }
+        let root = Real::sqrt(square);
+        let (near, far) = ((-half - root) / leading, (-half + root) / leading);
+        if !(near < 1.0 && far > 0.0) {
+            return None;
+        }
+        let at = |t: f64| [from[0] + t * d[0], from[1] + t * d[1]];
+        let (from_corner, to_corner) = (near <= 0.0, far >= 1.0);
+        let (start, end) = (if from_corner { from } else { at(near) }, if to_corner { to } else { at(far) });
+        Some(Side { from: start, to: end, from_corner, to_corner })
+    }
+}

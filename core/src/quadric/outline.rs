@@ -1,0 +1,317 @@
+//! What a convex solid has of a rectangle in a grid plane: straight pieces along the rectangle's sides and along flat ends, arcs between.
+
+use super::arc::{Moments, P2, cross, lens, sub, times};
+use super::end_line::EndLine;
+use super::wall::{Ellipse, Span};
+use heapless::Vec;
+
+/// A rectangle in a plane; coordinates are relative to the part's origin.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rectangle {
+    pub u: P2,
+    pub v: P2,
+}
+
+/// Corners of a rectangle that two half planes cut: each takes away one and adds two at most.
+const MAX_CORNERS: usize = 6;
+
+/// A corner, and on which line the side after it lies: sides of the rectangle 0 to 3, ends 4 and 5.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corner {
+    pub at: P2,
+    pub side: u8,
+}
+
+/// A rectangle cut by half planes.
+pub(super) type Corners = Vec<Corner, MAX_CORNERS>;
+
+impl Rectangle {
+    /// Its middle.
+    #[inline(always)]
+    pub fn middle(&self) -> P2 {
+        [(self.u[0] + self.u[1]) * 0.5, (self.v[0] + self.v[1]) * 0.5]
+    }
+
+    /// Counter-clockwise, from the lowest corner.
+    #[inline]
+    pub fn corners(&self) -> Corners {
+        let [[u0, u1], [v0, v1]] = [self.u, self.v];
+        let mut corners = Corners::new();
+        for (at, side) in [([u0, v0], 0), ([u1, v0], 1), ([u1, v1], 2), ([u0, v1], 3)] {
+            let _ = corners.push(Corner { at, side });
+        }
+        corners
+    }
+}
+
+/// The part of a polygon where a linear function is not negative. The sides along it get the number `side`.
+pub(super) fn cut(corners: &Corners, line: &EndLine, side: u8) -> Corners {
+    let mut kept = Corners::new();
+    for (n, corner) in corners.iter().enumerate() {
+        let next = corners.get(n + 1).or(corners.first()).copied().unwrap_or_default();
+        let (here, there) = (line.at(corner.at), line.at(next.at));
+        let inside = here >= 0.0;
+        if inside {
+            let _ = kept.push(*corner);
+        }
+        if inside != (there >= 0.0) {
+            let part = here / (here - there);
+            let at = [0, 1].map(|k| corner.at[k] + part * (next.at[k] - corner.at[k]));
+            let _ = kept.push(Corner { at, side: if inside { side } else { corner.side } });
+        }
+    }
+    if kept.len() < 3 { Corners::new() } else { kept }
+}
+
+/// A straight piece of an outline; without `joined`, an arc leads to it from the piece before.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub from: P2,
+    pub to: P2,
+    pub joined: bool,
+}
+
+/// An arc may go more than half around an ellipse: that is so small that half of it fits the polygon.
+pub(super) type MayBeMajor = bool;
+
+/// What a solid has of a rectangle.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
+pub(super) enum Region {
+    Empty,
+    /// All of it.
+    Whole,
+    /// An ellipse inside it.
+    Ellipse(Ellipse),
+    /// A polygon with arcs between some of its corners. More than half of an ellipse may be among them only if that is small.
+    Pieces(Vec<Piece, MAX_CORNERS>, MayBeMajor),
+}
+
+/// A conic in a plane: `pᵀ S p + 2 l·p + c <= 0`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Section {
+    /// `S` as `[uu, uv, vv]`.
+    pub quadratic: [f64; 3],
+    /// `l`.
+    pub linear: P2,
+    /// The conic itself, if it is an ellipse with an inside.
+    pub ellipse: Option<Ellipse>,
+}
+
+impl Section {
+    /// Half the gradient in a point.
+    #[inline(always)]
+    fn gradient(&self, p: P2) -> P2 {
+        let g = times(self.quadratic, p);
+        [g[0] + self.linear[0], g[1] + self.linear[1]]
+    }
+
+    /// What lies in a rectangle and inside all ends. `spans` are those of the lines along its sides, in the order of [`Rectangle::corners`];
+    /// `ends` are lines of flat ends with the chord that the end's disc has on each.
+    #[inline]
+    pub fn region(&self, rectangle: &Rectangle, spans: &[Span; 4], ends: &[Option<EndLine>; 2]) -> Region {
+        let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
+        let mut corners = None;
+        let mut chords = [None; 2];
+        for (n, end) in ends.iter().enumerate() {
+            let Some(line) = end else { continue };
+            let values = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|p| line.at(p));
+            if values.iter().all(|&l| l >= 0.0) {
+                continue;
+            }
+            if values.iter().all(|&l| l <= 0.0) {
+                return Region::Empty;
+            }
+            let before = corners.take().unwrap_or_else(|| rectangle.corners());
+            corners = Some(cut(&before, line, 4 + n as u8));
+            chords[n] = line.chord;
+        }
+        if corners.is_none() {
+            let whole = spans[0].covers(u0, u1)
+                && spans[2].covers(u0, u1)
+                && spans[1].covers(v0, v1)
+                && spans[3].covers(v0, v1);
+            if whole {
+                return Region::Whole;
+            }
+            let apart = |s: &Span, lo: f64, hi: f64| !(s.lo < hi && s.hi > lo);
+            if apart(&spans[0], u0, u1)
+                && apart(&spans[2], u0, u1)
+                && apart(&spans[1], v0, v1)
+                && apart(&spans[3], v0, v1)
+            {
+                return self.ellipse_within(&rectangle.corners());
+            }
+        }
+        let corners = corners.unwrap_or_else(|| rectangle.corners());
+        self.pieces(&corners, |corner, to| match corner.side {
+            0 | 2 => clip(corner.at, to, 0, spans[usize::from(corner.side)]),
+            1 | 3 => clip(corner.at, to, 1, spans[usize::from(corner.side)]),
+            n => on_chord(corner.at, to, chords[usize::from(n == 5)]),
+        })
+    }
+
+    /// The straight pieces of a polygon inside the conic, of each side what `inside` tells; or the whole conic.
+    pub fn pieces(&self, corners: &Corners, inside: impl Fn(&Corner, P2) -> Option<Side>) -> Region {
+        let mut sides: Vec<Option<Side>, MAX_CORNERS> = Vec::new();
+        for (n, corner) in corners.iter().enumerate() {
+            let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
+            let _ = sides.push(inside(corner, next));
+        }
+        let mut pieces = Vec::new();
+        let mut before = sides.last().copied().flatten();
+        for side in sides {
+            if let Some(side) = side {
+                let joined = side.from_corner && before.is_some_and(|b| b.to_corner);
+                let _ = pieces.push(Piece { from: side.from, to: side.to, joined });
+            }
+            before = side;
+        }
+        if pieces.is_empty() { self.ellipse_within(corners) } else { Region::Pieces(pieces, self.half_fits(corners)) }
+    }
+
+    /// Does half of the ellipse fit a polygon? Not if the conic is none.
+    fn half_fits(&self, corners: &Corners) -> MayBeMajor {
+        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in corners {
+            for k in 0..2 {
+                (lo[k], hi[k]) = (lo[k].min(corner.at[k]), hi[k].max(corner.at[k]));
+            }
+        }
+        self.ellipse.is_some_and(|e| e.area * 0.5 <= (hi[0] - lo[0]) * (hi[1] - lo[1]) * 1.001)
+    }
+
+    /// The whole conic, if it is an ellipse about a point of a polygon.
+    fn ellipse_within(&self, corners: &Corners) -> Region {
+        let Some(ellipse) = self.ellipse else { return Region::Empty };
+        let mut inside = corners.len() > 2;
+        for (n, corner) in corners.iter().enumerate() {
+            let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
+            inside &= cross(sub(next, corner.at), sub(ellipse.center, corner.at)) > 0.0;
+        }
+        if inside { Region::Ellipse(ellipse) } else { Region::Empty }
+    }
+
+    /// Area of a region, and its first moments about the middle of the rectangle.
+    #[inline]
+    pub fn moments(&self, region: &Region, rectangle: &Rectangle) -> Moments {
+        let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
+        let middle = rectangle.middle();
+        match region {
+            Region::Empty => Moments::default(),
+            Region::Whole => Moments { area: (u1 - u0) * (v1 - v0), first: [0.0; 2] },
+            Region::Ellipse(ellipse) => {
+                Moments { area: ellipse.area, first: sub(ellipse.center, middle).map(|c| c * ellipse.area) }
+            }
+            Region::Pieces(pieces, major) => self.moments_of(pieces, *major, middle),
+        }
+    }
+
+    fn moments_of(&self, pieces: &[Piece], major: MayBeMajor, middle: P2) -> Moments {
+        let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Moments::default() };
+        let base = first.from;
+        let mut total = Moments::default();
+        let mut before = last.to;
+        let mut a = [0.0; 2];
+        for piece in pieces {
+            if !piece.joined {
+                let arc = self.arc(before, piece.from, major && self.is_major(before, piece.from));
+                let shift = sub(before, base);
+                total.area += arc.area;
+                for k in 0..2 {
+                    total.first[k] += arc.first[k] + shift[k] * arc.area;
+                }
+            }
+            for corner in [piece.from, piece.to] {
+                let b = sub(corner, base);
+                let triangle = cross(a, b) * 0.5;
+                total.area += triangle;
+                for k in 0..2 {
+                    total.first[k] += triangle * (a[k] + b[k]) / 3.0;
+                }
+                a = b;
+            }
+            before = piece.to;
+        }
+        for k in 0..2 {
+            total.first[k] += (base[k] - middle[k]) * total.area;
+        }
+        total
+    }
+
+    /// The arc from `p` to `q` goes more than half around an ellipse.
+    pub fn is_major(&self, p: P2, q: P2) -> bool {
+        let s = self.quadratic;
+        let (g, f) = (self.gradient(p), self.gradient(q));
+        s[0] * s[2] > s[1] * s[1] && cross([g[0] + f[0], g[1] + f[1]], times(s, sub(q, p))) < 0.0
+    }
+
+    /// What lies between the arc from `p` to `q` and its chord, moments about `p`.
+    fn arc(&self, p: P2, q: P2, major: bool) -> Moments {
+        let (s, gradients) = (self.quadratic, [self.gradient(p), self.gradient(q)]);
+        if major {
+            let Some(ellipse) = self.ellipse else { return Moments::default() };
+            let rest = lens(q, p, s, [gradients[1], gradients[0]]);
+            let first =
+                |k: usize| ellipse.area * (ellipse.center[k] - p[k]) - rest.first[k] - rest.area * (q[k] - p[k]);
+            return Moments { area: ellipse.area - rest.area, first: [first(0), first(1)] };
+        }
+        lens(p, q, s, gradients)
+    }
+}
+
+/// What a conic has of a polygon's side, and whether that begins and ends at its corners.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    pub from: P2,
+    pub to: P2,
+    pub from_corner: bool,
+    pub to_corner: bool,
+}
+
+/// What a span has of a side along a coordinate.
+#[inline(always)]
+fn clip(from: P2, to: P2, along: usize, span: Span) -> Option<Side> {
+    let up = to[along] >= from[along];
+    let [lo, hi] = if up { [from[along], to[along]] } else { [to[along], from[along]] };
+    let (covers_lo, covers_hi) = (span.lo <= lo, span.hi >= hi);
+    let (a, b) = (if covers_lo { lo } else { span.lo }, if covers_hi { hi } else { span.hi });
+    if !(a < b) {
+        return None;
+    }
+    let point = |t: f64, at_corner: bool, corner: P2| {
+        let mut p = corner;
+        if !at_corner {
+            p[along] = t;
+        }
+        p
+    };
+    Some(if up {
+        let (from, to) = (point(a, covers_lo, from), point(b, covers_hi, to));
+        Side { from, to, from_corner: covers_lo, to_corner: covers_hi }
+    } else {
+        let (from, to) = (point(b, covers_hi, from), point(a, covers_lo, to));
+        Side { from, to, from_corner: covers_hi, to_corner: covers_lo }
+    })
+}
+
+/// What a chord has of a side that lies on its line.
+pub(super) fn on_chord(from: P2, to: P2, chord: Option<[P2; 2]>) -> Option<Side> {
+    let chord = chord?;
+    let d = sub(to, from);
+    let square = d[0] * d[0] + d[1] * d[1];
+    let place = |p: P2| {
+        let e = sub(p, from);
+        e[0] * d[0] + e[1] * d[1]
+    };
+    let [mut near, mut far] = chord;
+    if place(near) > place(far) {
+        (near, far) = (far, near);
+    }
+    let (from_corner, to_corner) = (place(near) <= 0.0, place(far) >= square);
+    if !(place(near) < square && place(far) > 0.0) {
+        return None;
+    }
+    let (from, to) = (if from_corner { from } else { near }, if to_corner { to } else { far });
+    Some(Side { from, to, from_corner, to_corner })
+}

@@ -1,0 +1,147 @@
+//! The door of this room: solids, and what they tell of a layer.
+
+use super::ends::End;
+use super::part::Part;
+use super::spread;
+use super::wall::{Curved, UnitMap, Wall};
+use crate::grid::Grid;
+use crate::grid::cell_range::RangeKind;
+use crate::number::real::{Real, Vector};
+
+/// A solid by formula: convex, of one to three parts that share no volume.
+#[derive(Clone, Debug)]
+pub struct QuadricSolid {
+    parts: heapless::Vec<Part, 3>,
+}
+
+/// Lengths beyond these are refused: products of four of them leave the range of `f64`.
+const SIZES: core::ops::Range<f64> = 1e-60..1e60;
+
+fn wide<V: Vector>(v: V) -> Option<[f64; 3]> {
+    let a = v.to_array().map(Real::to_f64);
+    a.iter().all(|x| x.abs() < SIZES.end).then_some(a)
+}
+
+/// Length and direction between two points; none if they are too close or too far.
+fn direction(from: [f64; 3], to: [f64; 3]) -> Option<(f64, [f64; 3])> {
+    let d = [0, 1, 2].map(|n| to[n] - from[n]);
+    let largest = d.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    if !SIZES.contains(&largest) {
+        return None;
+    }
+    let scaled = d.map(|x| x / largest);
+    let length = Real::sqrt(scaled[0] * scaled[0] + scaled[1] * scaled[1] + scaled[2] * scaled[2]);
+    // A component below the smallest square would pretend a tilt that no product can hold.
+    let unit = scaled.map(|x| x / length).map(|x| if x.abs() < 1e-120 { 0.0 } else { x });
+    Some((length * largest, unit))
+}
+
+impl QuadricSolid {
+    fn of(parts: &[Part]) -> Self {
+        QuadricSolid { parts: parts.iter().copied().collect() }
+    }
+
+    /// A ball; none if its radius or centre leaves 10⁻⁶⁰ to 10⁶⁰.
+    #[must_use]
+    pub fn ball<V: Vector>(center: V, radius: V::Scalar) -> Option<Self> {
+        let (center, radius) = (wide(center)?, radius.to_f64());
+        let curved = Curved::new(Wall::Ball { radius }, [0.0, 0.0, 1.0]);
+        SIZES.contains(&radius).then(|| Self::of(&[Part::new(center, curved, [None; 2])]))
+    }
+
+    /// A cylinder between the centres of its flat ends; none if a length leaves 10⁻⁶⁰ to 10⁶⁰.
+    #[must_use]
+    pub fn cylinder<V: Vector>(from: V, to: V, radius: V::Scalar) -> Option<Self> {
+        Some(Self::of(&[tube(wide(from)?, wide(to)?, radius.to_f64())?]))
+    }
+
+    /// A capsule; none if a length leaves 10⁻⁶⁰ to 10⁶⁰. With both ends in one place it is a ball.
+    #[must_use]
+    pub fn capsule<V: Vector>(from: V, to: V, radius: V::Scalar) -> Option<Self> {
+        if from == to {
+            return Self::ball(from, radius);
+        }
+        let (from, to, radius) = (wide(from)?, wide(to)?, radius.to_f64());
+        let tube = tube(from, to, radius)?;
+        let half = |center: [f64; 3], sign: f64| {
+            let inward = tube.curved.axis.map(|a| a * sign);
+            // The disc where it meets the cylinder belongs to that.
+            let end = End { center, shift: [0.0; 3], inward, radius, closed: false };
+            Part::new(center, Curved::new(Wall::Ball { radius }, tube.curved.axis), [Some(end), None])
+        };
+        Some(Self::of(&[tube, half(from, -1.0), half(to, 1.0)]))
+    }
+
+    /// A cone from the centre and radius of its base to its apex; none if a length leaves 10⁻⁶⁰ to 10⁶⁰.
+    #[must_use]
+    pub fn cone<V: Vector>(base: V, apex: V, radius: V::Scalar) -> Option<Self> {
+        let (base, apex, radius) = (wide(base)?, wide(apex)?, radius.to_f64());
+        let (height, axis) = direction(apex, base)?;
+        if !SIZES.contains(&radius) {
+            return None;
+        }
+        let shift = [0, 1, 2].map(|n| base[n] - apex[n]);
+        let end = End { center: base, shift, inward: axis.map(|a| -a), radius, closed: true };
+        let curved = Curved::new(Wall::Cone { slope: radius / height }, axis);
+        Some(Self::of(&[Part::new(apex, curved, [Some(end), None])]))
+    }
+
+    /// An ellipsoid from its centre and half axes, which must be orthogonal; none if a length leaves 10⁻⁶⁰ to 10⁶⁰.
+    #[must_use]
+    pub fn ellipsoid<V: Vector>(center: V, half_axes: [V; 3]) -> Option<Self> {
+        let center = wide(center)?;
+        let [a, b, c] = half_axes.map(|v| (wide(v), v.length().to_f64()));
+        if ![a.1, b.1, c.1].iter().all(|length| SIZES.contains(length)) {
+            return None;
+        }
+        let axes = [a.0?, b.0?, c.0?];
+        let turn = |p: usize, q: usize| axes[0][p] * axes[1][q] - axes[0][q] * axes[1][p];
+        let right = turn(1, 2) * axes[2][0] + turn(2, 0) * axes[2][1] + turn(0, 1) * axes[2][2];
+        let axes = if right < 0.0 { [axes[0], axes[1], axes[2].map(|x| -x)] } else { axes };
+        let curved = Curved::new(Wall::Ellipsoid(UnitMap::new(axes)), [0.0, 0.0, 1.0]);
+        Some(Self::of(&[Part::new(center, curved, [None; 2])]))
+    }
+
+    /// Centres and radii of the flat ends that lie in the plane across `axis` at a coordinate.
+    pub fn ends_in_plane(&self, axis: usize, coordinate: f64) -> impl Iterator<Item = ([f64; 3], f64)> {
+        let ends = self.parts.iter().flat_map(|part| part.ends.iter().flatten()).filter(|end| end.closed);
+        let lies = move |end: &&End| {
+            let along = end.inward.get(axis).is_some_and(|a| a.abs() == 1.0);
+            along && end.center.get(axis) == Some(&coordinate)
+        };
+        ends.filter(lies).map(|end| (end.center, end.radius))
+    }
+
+    /// Tells the solid's shares in layer `k`: of cells, and with `areas` of x and y faces and of the z faces below, by their positions in
+    /// the fields of a layer ([`crate::grid::fields::Fields`]). The shares of a capsule's three parts are told one by one and add up.
+    /// Returns by how much the worst of them left 0 to 1 before it was cut; more than rounding means that it cannot be relied on.
+    pub fn layer<R: Real>(
+        &self,
+        grid: &Grid<R>,
+        k: usize,
+        areas: bool,
+        visit: &mut impl FnMut(RangeKind, usize, f64),
+    ) -> f64 {
+        let worst = |part| spread::layer(part, grid, k, areas, visit);
+        self.parts.iter().map(worst).fold(0.0, f64::max)
+    }
+
+    /// Tells its shares in the z faces of plane `plane`, likewise.
+    pub fn plane<R: Real>(&self, grid: &Grid<R>, plane: usize, visit: &mut impl FnMut(RangeKind, usize, f64)) {
+        self.parts.iter().for_each(|part| spread::plane(part, grid, plane, visit));
+    }
+}
+
+/// A cylinder.
+fn tube(from: [f64; 3], to: [f64; 3], radius: f64) -> Option<Part> {
+    let (_, axis) = direction(from, to)?;
+    let end = |center: [f64; 3], sign: f64| End {
+        center,
+        shift: [0, 1, 2].map(|n| center[n] - from[n]),
+        inward: axis.map(|a| a * sign),
+        radius,
+        closed: true,
+    };
+    let ends = [Some(end(from, 1.0)), Some(end(to, -1.0))];
+    SIZES.contains(&radius).then(|| Part::new(from, Curved::new(Wall::Cylinder { radius }, axis), ends))
+}

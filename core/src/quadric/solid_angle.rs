@@ -1,0 +1,170 @@
+//! The solid angle of a region of a plane, seen from the centre of the unit ball that bounds it.
+//!
+//! Of a ball the volume in a cell is a third of Σ h A − R³ Σ ω over the sections with the cell's planes, h the distance of a plane and ω the
+//! solid angle of its section, and R³ times the angle that the cell takes up at the centre itself: the field (p/3)(1 − R³/r³) has divergence
+//! 1 and vanishes on the sphere. So what a section misses along its rim by rounding counts with its square only.
+//!
+//! Reference for triangles: A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983).
+
+use super::arc::{P2, sub};
+use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
+use crate::number::real::Real;
+use core::f64::consts::PI;
+
+/// A plane in the space where the ball is the unit ball about the origin.
+pub(super) struct PlaneOfUnitBall<M> {
+    /// Of the plane's own coordinates and its height, a linear map; of differences, with no height.
+    pub map: M,
+    /// The height that `map` takes.
+    pub at: f64,
+    /// Unit normal; the plane's own coordinates turn to the right about it.
+    pub normal: [f64; 3],
+    /// The plane's distance from the centre, along the normal.
+    pub height: f64,
+    /// Square of the section's radius: 1 − h².
+    pub square: f64,
+    /// The section is small and far from the foot of the centre.
+    pub far: bool,
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn length(a: [f64; 3]) -> f64 {
+    Real::sqrt(dot(a, a))
+}
+
+/// The determinant of three vectors.
+fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+    a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
+/// A point in the plane, and where it is mapped. Differences are mapped as such, so that they keep their digits.
+#[derive(Clone, Copy)]
+struct Mapped {
+    plane: P2,
+    unit: [f64; 3],
+}
+
+impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
+    fn mapped(&self, plane: P2) -> Mapped {
+        Mapped { plane, unit: (self.map)(plane, self.at) }
+    }
+
+    fn difference(&self, a: Mapped, b: Mapped) -> [f64; 3] {
+        (self.map)(sub(a.plane, b.plane), 0.0)
+    }
+
+    /// Solid angle of a region, not negative.
+    pub fn solid_angle(&self, section: &Section, region: &Region, rectangle: &Rectangle) -> f64 {
+        match region {
+            Region::Empty => 0.0,
+            Region::Ellipse(_) => 2.0 * PI * self.square / (1.0 + self.height.abs()),
+            Region::Pieces(pieces, major) => self.of_pieces(section, pieces, *major),
+            Region::Whole => {
+                let corners = rectangle.corners();
+                let mut pieces = heapless::Vec::<Piece, 4>::new();
+                for (n, corner) in corners.iter().enumerate() {
+                    let to = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
+                    let _ = pieces.push(Piece { from: corner.at, to, joined: true });
+                }
+                self.of_pieces(section, &pieces, false)
+            }
+        }
+    }
+
+    fn of_pieces(&self, section: &Section, pieces: &[Piece], major: MayBeMajor) -> f64 {
+        let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return 0.0 };
+        let base = self.mapped(first.from);
+        let (mut fan, mut rest) = ([1.0, 0.0], 0.0);
+        let mut before = self.mapped(last.to);
+        let mut corner = None;
+        for piece in pieces {
+            let (from, to) = (self.mapped(piece.from), self.mapped(piece.to));
+            if !piece.joined {
+                let major = major && section.is_major(before.plane, piece.from);
+                rest += if self.far { self.lens(before, from, major) } else { self.sector(before, from, major) };
+            }
+            if self.far {
+                for next in [from, to] {
+                    if let Some(corner) = corner {
+                        fan = turned(fan, self.triangle(base, corner, next));
+                    }
+                    corner = Some(next);
+                }
+            } else {
+                rest += self.triangle_at_foot(from, to);
+            }
+            before = to;
+        }
+        rest + 2.0 * libm::atan2(fan[1], fan[0])
+    }
+
+    /// Twice the area of the triangle of the plane's foot and two of its points, and the product of their distances times the cosine.
+    fn about_foot(&self, p: Mapped, q: Mapped) -> (f64, f64) {
+        let foot = self.normal.map(|x| x * self.height);
+        let (a, b) = (minus(p.unit, foot), minus(q.unit, foot));
+        (triple(self.normal, a, self.difference(q, p)), dot(a, b))
+    }
+
+    /// Real and imaginary part of a number whose argument is half the solid angle of a triangle.
+    fn triangle(&self, a: Mapped, b: Mapped, c: Mapped) -> [f64; 2] {
+        let volume = triple(a.unit, self.difference(b, a), self.difference(c, a));
+        let (a, b, c) = (a.unit, b.unit, c.unit);
+        let (la, lb, lc) = (length(a), length(b), length(c));
+        let real = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        [real, if self.height < 0.0 { -volume } else { volume }]
+    }
+
+    /// Signed solid angle of the triangle of the plane's foot and two of its points.
+    fn triangle_at_foot(&self, p: Mapped, q: Mapped) -> f64 {
+        let (area, _) = self.about_foot(p, q);
+        let (a, b) = (length(p.unit), length(q.unit));
+        2.0 * libm::atan2(area, a * b + dot(p.unit, q.unit) + self.height.abs() * (a + b))
+    }
+
+    /// Solid angle of the sector of an arc about the foot.
+    fn sector(&self, p: Mapped, q: Mapped, major: bool) -> f64 {
+        let (area, cosine) = self.about_foot(p, q);
+        let angle = libm::atan2(area, cosine);
+        // Near nothing, half a turn and a whole one rounding may take the other side.
+        let angle = match (major, angle < -1.0, angle > 1.0) {
+            (false, true, _) | (true, _, false) if angle < 0.0 => angle + 2.0 * PI,
+            (true, _, false) => 2.0 * PI,
+            _ => angle.max(0.0),
+        };
+        angle * self.square / (1.0 + self.height.abs())
+    }
+
+    /// Solid angle between an arc and its chord: 2 (atan hτ − h atan τ), τ the tangent of half the arc's angle.
+    fn lens(&self, p: Mapped, q: Mapped, major: bool) -> f64 {
+        let (area, cosine) = self.about_foot(p, q);
+        if major || !(cosine > 0.0) {
+            return self.sector(p, q, major) - self.triangle_at_foot(p, q);
+        }
+        let (tau, h) = (area / (self.square + cosine), self.height.abs());
+        let (t, h_square) = (tau * tau, h * h);
+        if t > 0.05 {
+            return 2.0 * (libm::atan(h * tau) - h * libm::atan(tau));
+        }
+        // Σ (−t)ᵏ (1 − h²ᵏ⁺²) / (2k + 3), each 1 − h²ᵏ⁺² a multiple of 1 − h².
+        let (mut sum, mut power, mut factor, mut n) = (0.0, 1.0, 1.0, 3.0);
+        while n < 31.0 {
+            sum += power * factor / n;
+            power *= -t;
+            factor = factor * h_square + 1.0;
+            n += 2.0;
+        }
+        2.0 * h * tau * t * self.square * sum
+    }
+}
+
+/// The product of two complex numbers.
+fn turned(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}

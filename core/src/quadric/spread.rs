@@ -1,0 +1,226 @@
+//! The shares of one part in a layer of cells, row by row.
+
+use super::part::{FaceFlux, Part, Plane};
+use super::wall::Span;
+use super::window::Extent;
+use crate::grid::Grid;
+use crate::grid::cell_range::RangeKind;
+use crate::number::real::Real;
+use core::ops::Range;
+
+/// The cells along an axis that an extent reaches or touches.
+fn reached<R: Real>(edges: &[R], [lo, hi]: Extent) -> Range<usize> {
+    let first = edges.partition_point(|e| e.to_f64() < lo).saturating_sub(1);
+    first..edges.partition_point(|e| e.to_f64() <= hi).min(edges.len().saturating_sub(1))
+}
+
+/// A part over one row of cells: planes below and above along y and z, and lines along x, `[y][z]`.
+struct Row<'a> {
+    part: &'a Part,
+    y: &'a [Plane; 2],
+    z: &'a [Plane; 2],
+    x_lines: [[Span; 2]; 2],
+}
+
+/// What stands in a plane across x: lines along y by z, lines along z by y, and the face.
+#[derive(Clone, Copy)]
+struct Column {
+    plane: Plane,
+    y_lines: [Span; 2],
+    z_lines: [Span; 2],
+    face: FaceFlux,
+}
+
+/// Shares of a cell and its low faces; and the high ones.
+struct CellShares {
+    volume: f64,
+    faces: [[FaceFlux; 2]; 3],
+}
+
+impl<'a> Row<'a> {
+    fn new(part: &'a Part, y: &'a [Plane; 2], z: &'a [Plane; 2]) -> Self {
+        let x_lines = [0, 1].map(|j: usize| [0, 1].map(|k: usize| part.span(0, [&y[j], &z[k]])));
+        Row { part, y, z, x_lines }
+    }
+
+    /// The run along x, from the part's origin, in which whole cells of the row are inside.
+    fn inside(&self) -> Span {
+        let mut run = Span::ALL;
+        for j in 0..2 {
+            for k in 0..2 {
+                run = run.intersection(self.part.span_between_ends(0, [&self.y[j], &self.z[k]]));
+            }
+        }
+        run
+    }
+
+    #[inline]
+    fn column(&self, x: f64) -> Column {
+        let (part, [y0, y1], [z0, z1]) = (self.part, self.y, self.z);
+        let plane = part.plane(0, x);
+        let y_lines = [z0, z1].map(|z| part.span(1, [z, &plane]));
+        let z_lines = [y0, y1].map(|y| part.span(2, [&plane, y]));
+        let spans = [y_lines[0], z_lines[1], y_lines[1], z_lines[0]];
+        let face = part.face(&plane, [y0, y1], [z0, z1], &spans);
+        Column { plane, y_lines, z_lines, face }
+    }
+
+    #[inline]
+    fn cell(&self, low: &Column, high: &Column) -> CellShares {
+        let (part, [y0, y1], [z0, z1]) = (self.part, self.y, self.z);
+        let (x, x_lines) = ([&low.plane, &high.plane], &self.x_lines);
+        let across_y = |j: usize| {
+            let spans = [low.z_lines[j], x_lines[j][1], high.z_lines[j], x_lines[j][0]];
+            part.face(&self.y[j], [z0, z1], x, &spans)
+        };
+        let across_z = |k: usize| {
+            let spans = [x_lines[0][k], high.y_lines[k], x_lines[1][k], low.y_lines[k]];
+            part.face(&self.z[k], x, [y0, y1], &spans)
+        };
+        let faces = [[low.face, high.face], [across_y(0), across_y(1)], [across_z(0), across_z(1)]];
+        let volume = part.volume(&[x, [y0, y1], [z0, z1]], &faces);
+        CellShares { volume, faces }
+    }
+}
+
+/// The fraction of a face.
+fn fraction(face: &FaceFlux, area: f64) -> f64 {
+    if face.whole { 1.0 } else { (face.area / area).clamp(0.0, 1.0) }
+}
+
+/// Tells the shares of a part in layer `k`: of cells, and with `areas` of x and y faces and of the z faces below. Each is told once, by
+/// its position in the fields of a layer. Returns by how much the worst share left 0 to 1 before it was cut.
+pub(super) fn layer<R: Real>(
+    part: &Part,
+    grid: &Grid<R>,
+    k: usize,
+    areas: bool,
+    visit: &mut impl FnMut(RangeKind, usize, f64),
+) -> f64 {
+    let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
+    let (Some(&[z0, z1]), [nx, ny, _]) = (zs.get(k..).and_then(|e| e.first_chunk()), grid.cells()) else { return 0.0 };
+    let zs = [z0.to_f64(), z1.to_f64()];
+    let [lowest, highest] = part.extent(2);
+    if lowest > zs[1] || highest < zs[0] {
+        return 0.0;
+    }
+    let z = zs.map(|z| part.plane(2, z));
+    let rows = reached(ys, part.extent(1));
+    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, visit };
+    let Some(first) = ys.get(rows.start) else { return 0.0 };
+    let mut below = part.plane(1, first.to_f64());
+    for j in rows.clone() {
+        let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
+        let y = [below, part.plane(1, y1.to_f64())];
+        below = y[1];
+        let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
+        let last_row = j + 1 == rows.end;
+        told.row(xs, &Row::new(part, &y, &z), j, last_row, reached(xs, run));
+    }
+    told.worst
+}
+
+struct Teller<'v, F> {
+    cells: [usize; 2],
+    areas: bool,
+    worst: f64,
+    visit: &'v mut F,
+}
+
+impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
+    fn tell(&mut self, kind: RangeKind, at: usize, share: f64) {
+        if share > 0.0 {
+            (self.visit)(kind, at, share);
+        }
+    }
+
+    fn row<R: Real>(&mut self, xs: &[R], row: &Row, j: usize, last_row: bool, cells: Range<usize>) {
+        let [nx, _] = self.cells;
+        let [dy, dz] = [row.y, row.z].map(|[lo, hi]| hi.h.value - lo.h.value);
+        let inside = row.inside();
+        let from_origin = |i: usize| xs.get(i).map_or(f64::NAN, |x| x.to_f64() - row.part.origin[0]);
+        let mut before: Option<Column> = None;
+        for i in cells.clone() {
+            let last = i + 1 == cells.end;
+            let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
+            let c = j * nx + i;
+            if inside.covers(from_origin(i), from_origin(i + 1)) {
+                before = None;
+                self.closed(c, j, last, last_row);
+                continue;
+            }
+            let low = before.unwrap_or_else(|| row.column(x0.to_f64()));
+            let high = row.column(x1.to_f64());
+            before = Some(high);
+            let found = row.cell(&low, &high);
+            let dx = high.plane.h.value - low.plane.h.value;
+            let share = found.volume / (dx * dy * dz);
+            self.worst = self.worst.max(share - 1.0).max(-share);
+            if share.is_nan() {
+                self.worst = f64::INFINITY;
+            }
+            self.tell(RangeKind::Cells, c, share.min(1.0));
+            if !self.areas {
+                continue;
+            }
+            let [x, y, z] = &found.faces;
+            self.tell(RangeKind::Faces(0), c + j, fraction(&x[0], dy * dz));
+            self.tell(RangeKind::Faces(1), c, fraction(&y[0], dz * dx));
+            self.tell(RangeKind::Faces(2), c, fraction(&z[0], dx * dy));
+            if last {
+                self.tell(RangeKind::Faces(0), c + j + 1, fraction(&x[1], dy * dz));
+            }
+            if last_row {
+                self.tell(RangeKind::Faces(1), c + nx, fraction(&y[1], dz * dx));
+            }
+        }
+    }
+
+    /// A cell all inside.
+    fn closed(&mut self, c: usize, j: usize, last: bool, last_row: bool) {
+        self.tell(RangeKind::Cells, c, 1.0);
+        if !self.areas {
+            return;
+        }
+        for (axis, at) in [(0, c + j), (1, c), (2, c)] {
+            self.tell(RangeKind::Faces(axis), at, 1.0);
+        }
+        if last {
+            self.tell(RangeKind::Faces(0), c + j + 1, 1.0);
+        }
+        if last_row {
+            self.tell(RangeKind::Faces(1), c + self.cells[0], 1.0);
+        }
+    }
+}
+
+/// Tells the shares of a part in the z faces of a plane.
+pub(super) fn plane<R: Real>(part: &Part, grid: &Grid<R>, plane: usize, visit: &mut impl FnMut(RangeKind, usize, f64)) {
+    let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
+    let Some(z) = zs.get(plane).map(|z| z.to_f64()) else { return };
+    let [lowest, highest] = part.extent(2);
+    if lowest > z || highest < z {
+        return;
+    }
+    let nx = grid.cells()[0];
+    let level = part.plane(2, z);
+    for j in reached(ys, part.extent(1)) {
+        let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
+        let ys = [y0.to_f64(), y1.to_f64()];
+        let y = ys.map(|y| part.plane(1, y));
+        let Some(run) = part.run(ys, [z, z]) else { continue };
+        let x_lines = [0, 1].map(|j: usize| part.span(0, [&y[j], &level]));
+        for i in reached(xs, run) {
+            let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
+            let x = [x0.to_f64(), x1.to_f64()].map(|x| part.plane(0, x));
+            let y_lines = [0, 1].map(|i: usize| part.span(1, [&level, &x[i]]));
+            let face =
+                part.face(&level, [&x[0], &x[1]], [&y[0], &y[1]], &[x_lines[0], y_lines[1], x_lines[1], y_lines[0]]);
+            let [width, depth] = [&x, &y].map(|[lo, hi]| hi.h.value - lo.h.value);
+            let share = fraction(&face, width * depth);
+            if share > 0.0 {
+                visit(RangeKind::Faces(2), j * nx + i, share);
+            }
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! The curved surfaces: where grid lines pierce them, and the conics in which grid planes cut them.
+//!
+//! Everything is relative to the origin of a part: a point of a cylinder's axis, a cone's apex, a ball's centre. `a` is the unit vector of
+//! the axis. Discriminants are kept as products, so that a line that touches a surface is told from one that misses it by its distance.
+
+use super::arc::P2;
+use super::twofold::{Twofold, difference_of_squares, dot};
+use crate::number::real::Real;
+use core::f64::consts::PI;
+
+/// The part of a line within a solid, as coordinates along it; empty if `lo > hi`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub lo: f64,
+    pub hi: f64,
+}
+
+impl Span {
+    pub const EMPTY: Self = Span { lo: f64::INFINITY, hi: f64::NEG_INFINITY };
+    pub const ALL: Self = Span { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+
+    /// All between two coordinates lies in it.
+    #[inline(always)]
+    pub fn covers(&self, lo: f64, hi: f64) -> bool {
+        self.lo <= lo && self.hi >= hi
+    }
+
+    /// What both hold.
+    pub fn intersection(self, other: Self) -> Self {
+        Span { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
+    }
+}
+
+/// The two axes after one, so that all three turn to the right.
+#[inline(always)]
+pub(super) const fn others(axis: usize) -> [usize; 2] {
+    [[1, 2], [2, 0], [0, 1]][axis]
+}
+
+/// A whole ellipse in a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ellipse {
+    pub center: P2,
+    pub area: f64,
+}
+
+/// An ellipsoid by the map that makes it the unit ball.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UnitMap {
+    /// Images of the three axes.
+    pub columns: [[f64; 3]; 3],
+    /// The quadratic form: products of the columns.
+    pub form: [[f64; 3]; 3],
+    /// How far the ellipsoid reaches along each axis.
+    pub reach: [f64; 3],
+    /// The outermost point along each axis, divided by its reach there.
+    pub outermost: [[f64; 3]; 3],
+    /// Its volume in units of that of the unit ball.
+    pub scale: f64,
+}
+
+/// A curved surface.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
+pub(super) enum Wall {
+    Cylinder {
+        radius: f64,
+    },
+    /// Radius at unit distance from the apex, towards the axis' end.
+    Cone {
+        slope: f64,
+    },
+    Ball {
+        radius: f64,
+    },
+    Ellipsoid(UnitMap),
+}
+
+/// A curved surface along an axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Curved {
+    pub wall: Wall,
+    /// Unit vector along the axis; any for balls and ellipsoids.
+    pub axis: [f64; 3],
+    /// Length of the axis seen along each coordinate axis.
+    pub across: [f64; 3],
+}
+
+impl Curved {
+    pub fn new(wall: Wall, axis: [f64; 3]) -> Self {
+        let across = [0, 1, 2].map(|m| {
+            let [u, v] = others(m);
+            hypotenuse(axis[u], axis[v])
+        });
+        Curved { wall, axis, across }
+    }
+
+    /// What a line along axis `m` has inside, by its other two coordinates in the order of [`others`].
+    #[inline]
+    pub fn span(&self, m: usize, q: [Twofold; 2]) -> Span {
+        match &self.wall {
+            Wall::Cylinder { radius } => self.span_of_cylinder(*radius, m, q),
+            Wall::Cone { slope } => self.span_of_cone(*slope, m, q.map(|q| q.value)),
+            Wall::Ball { radius } => {
+                let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
+                let square = difference_of_squares(*radius, far) - near.value * near.value;
+                symmetric(0.0, square, 1.0)
+            }
+            Wall::Ellipsoid(map) => map.span(m, q.map(|q| q.value)),
+        }
+    }
+
+    #[inline]
+    fn span_of_cylinder(&self, radius: f64, m: usize, q: [Twofold; 2]) -> Span {
+        let [u, v] = others(m);
+        let (au, av, across) = (self.axis[u], self.axis[v], self.across[m]);
+        if !(across > 0.0) {
+            let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
+            let inside = difference_of_squares(radius, far) >= near.value * near.value;
+            return if inside { Span::ALL } else { Span::EMPTY };
+        }
+        let beside = [av / across, -au / across];
+        let mut distance = Twofold { value: beside[0] * q[0].value + beside[1] * q[1].value, rest: 0.0 };
+        if (radius - distance.value.abs()).abs() < radius * NEAR {
+            distance = dot(beside, q);
+        }
+        let foot = self.axis[m] * ((au / across) * q[0].value + (av / across) * q[1].value) / across;
+        symmetric(foot, difference_of_squares(radius, distance), across)
+    }
+
+    #[inline]
+    fn span_of_cone(&self, slope: f64, m: usize, q: P2) -> Span {
+        let [u, v] = others(m);
+        let (am, au, av) = (self.axis[m], self.axis[u], self.axis[v]);
+        let kappa = 1.0 + slope * slope;
+        let along = au * q[0] + av * q[1];
+        let radius = hypotenuse(q[0], q[1]);
+        let aside = Real::sqrt(kappa) * (av * q[0] - au * q[1]).abs();
+        let square = (slope * radius - aside) * (slope * radius + aside);
+        let leading = (self.across[m] - slope * am.abs()) * (self.across[m] + slope * am.abs());
+        if leading > 0.0 && !(square > 0.0) {
+            return Span::EMPTY;
+        }
+        let half = kappa * am * along;
+        let constant = radius * radius - kappa * along * along;
+        let root = Real::sqrt(square.max(0.0));
+        let sum = half + root.copysign(half);
+        if sum == 0.0 {
+            // The line through the apex along the axis, or a plane's worth of tangents.
+            return if leading < 0.0 { ray(0.0, am) } else { Span::EMPTY };
+        }
+        let (s, t) = (sum / leading, constant / sum);
+        let (lo, hi) = (s.min(t), s.max(t));
+        if leading < 0.0 {
+            return ray(if am > 0.0 { hi } else { lo }, am);
+        }
+        if along + am * ((lo + hi) * 0.5) > 0.0 { Span { lo, hi } } else { Span::EMPTY }
+    }
+
+    /// The conic in a plane across axis `n`: quadratic part `[uu, uv, vv]`, and the linear part at unit height.
+    #[inline(always)]
+    pub fn conic(&self, n: usize) -> ([f64; 3], P2) {
+        let [u, v] = others(n);
+        let a = &self.axis;
+        match &self.wall {
+            Wall::Cylinder { .. } => {
+                let quadratic = [a[v] * a[v] + a[n] * a[n], -a[u] * a[v], a[u] * a[u] + a[n] * a[n]];
+                (quadratic, [-a[u] * a[n], -a[v] * a[n]])
+            }
+            Wall::Cone { slope } => {
+                let (k, kappa) = (slope * slope, 1.0 + slope * slope);
+                let square = |own: f64, other: f64| other * other + a[n] * a[n] - k * own * own;
+                let quadratic = [square(a[u], a[v]), -kappa * a[u] * a[v], square(a[v], a[u])];
+                (quadratic, [-kappa * a[u] * a[n], -kappa * a[v] * a[n]])
+            }
+            Wall::Ball { .. } => ([1.0, 0.0, 1.0], [0.0; 2]),
+            Wall::Ellipsoid(map) => {
+                let form = &map.form;
+                ([form[u][u], form[u][v], form[v][v]], [form[u][n], form[v][n]])
+            }
+        }
+    }
+
+    /// The conic in a plane across axis `n`, if it is an ellipse with an inside.
+    #[inline]
+    pub fn ellipse(&self, n: usize, h: Twofold) -> Option<Ellipse> {
+        let [u, v] = others(n);
+        let a = &self.axis;
+        let positive = |area: f64| area > 0.0;
+        match &self.wall {
+            Wall::Cylinder { radius } => {
+                let center = [a[u], a[v]].map(|along| h.value * (along / a[n]));
+                (a[n] != 0.0).then(|| Ellipse { center, area: PI * radius * radius / a[n].abs() })
+            }
+            Wall::Cone { slope } => {
+                let factor = (a[n].abs() - slope * self.across[n]) * (a[n].abs() + slope * self.across[n]);
+                if !(factor > 0.0 && h.value * a[n] > 0.0) {
+                    return None;
+                }
+                let shift = (1.0 + slope * slope) * a[n] * h.value / factor;
+                let area = PI * slope * slope * h.value * h.value / (factor * Real::sqrt(factor));
+                Some(Ellipse { center: [a[u] * shift, a[v] * shift], area })
+            }
+            Wall::Ball { radius } => {
+                let area = PI * difference_of_squares(*radius, h);
+                positive(area).then_some(Ellipse { center: [0.0; 2], area })
+            }
+            Wall::Ellipsoid(map) => {
+                let reach = map.reach[n];
+                let area = PI * map.scale * difference_of_squares(reach, h) / (reach * reach * reach);
+                let center = [u, v].map(|axis| map.outermost[n][axis] * h.value);
+                positive(area).then_some(Ellipse { center, area })
+            }
+        }
+    }
+}
+
+/// Nearer to the radius than this share, distances are computed to twice the digits.
+const NEAR: f64 = 1e-4;
+
+/// `foot ± √square / scale`.
+#[inline(always)]
+fn symmetric(foot: f64, square: f64, scale: f64) -> Span {
+    if square > 0.0 {
+        let half = Real::sqrt(square) / scale;
+        Span { lo: foot - half, hi: foot + half }
+    } else {
+        Span::EMPTY
+    }
+}
+
+/// All beyond a coordinate, in the direction of a sign.
+fn ray(from: f64, sign: f64) -> Span {
+    if sign > 0.0 { Span { lo: from, ..Span::ALL } } else { Span { hi: from, ..Span::ALL } }
+}
+
+/// Length of a vector; exact if one component is zero.
+#[inline(always)]
+pub(super) fn hypotenuse(a: f64, b: f64) -> f64 {
+    let (a, b) = (a.abs(), b.abs());
+    if a == 0.0 || b == 0.0 { a + b } else { Real::sqrt(a * a + b * b) }
+}
+
+impl UnitMap {
+    /// From the inverse map, which makes the unit ball the ellipsoid: the images of the three axes; orthogonal, none of them zero.
+    pub fn new(axes: [[f64; 3]; 3]) -> Self {
+        let squares = axes.map(|a| a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+        let columns = [0, 1, 2].map(|m| [0, 1, 2].map(|r: usize| axes[r][m] / squares[r]));
+        let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let form = [0, 1, 2].map(|m: usize| [0, 1, 2].map(|n: usize| product(columns[m], columns[n])));
+        let row = |n: usize| [axes[0][n], axes[1][n], axes[2][n]];
+        let reach = [0, 1, 2].map(|n| hypotenuse(hypotenuse(axes[0][n], axes[1][n]), axes[2][n]));
+        let outermost = [0, 1, 2].map(|n| [0, 1, 2].map(|m| product(row(n), row(m)) / (reach[n] * reach[n])));
+        let lengths = squares.map(Real::sqrt);
+        UnitMap { columns, form, reach, outermost, scale: lengths[0] * lengths[1] * lengths[2] }
+    }
+
+    /// Where a point lies.
+    #[inline(always)]
+    pub fn map(&self, p: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|r| self.columns[0][r] * p[0] + self.columns[1][r] * p[1] + self.columns[2][r] * p[2])
+    }
+
+    #[inline]
+    fn span(&self, m: usize, q: P2) -> Span {
+        let [u, v] = others(m);
+        let direction = self.columns[m];
+        let at = [0, 1, 2].map(|r: usize| self.columns[u][r] * q[0] + self.columns[v][r] * q[1]);
+        let leading = self.form[m][m];
+        let half = direction[0] * at[0] + direction[1] * at[1] + direction[2] * at[2];
+        let aside = [0, 1, 2].map(|r| {
+            let [s, t] = others(r);
+            direction[s] * at[t] - direction[t] * at[s]
+        });
+        let aside = Real::sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);
+        let length = Real::sqrt(leading);
+        symmetric(-half / leading, (length - aside) * (length + aside), leading)
+    }
+}

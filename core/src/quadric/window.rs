@@ -1,0 +1,82 @@
+//! Which cells a part may reach: boxes and runs along x, a little too large rather than too small.
+
+use super::part::Part;
+use super::wall::Wall;
+use crate::number::real::Real;
+
+/// Lowest and highest coordinate.
+pub(super) type Extent = [f64; 2];
+
+/// Room for rounding, as a share of coordinates and sizes.
+const ROOM: f64 = 1e-12;
+
+fn widened([lo, hi]: Extent) -> Extent {
+    let room = (lo.abs().max(hi.abs()) + (hi - lo)) * ROOM;
+    [lo - room, hi + room]
+}
+
+impl Part {
+    /// Along an axis.
+    pub fn extent(&self, axis: usize) -> Extent {
+        let around = |reach: f64| widened([self.origin[axis] - reach, self.origin[axis] + reach]);
+        match &self.curved.wall {
+            Wall::Ball { radius } => around(*radius),
+            Wall::Ellipsoid(map) => around(map.reach[axis]),
+            Wall::Cylinder { .. } | Wall::Cone { .. } => {
+                let ([a, b], radius) = self.segment();
+                let reach = radius * self.curved.across[axis];
+                widened([a[axis].min(b[axis]) - reach, a[axis].max(b[axis]) + reach])
+            }
+        }
+    }
+
+    /// The axis between the ends, and the largest radius.
+    fn segment(&self) -> ([[f64; 3]; 2], f64) {
+        let [one, other] = self.ends;
+        let center = |end: Option<super::ends::End>| end.map_or(self.origin, |e| e.center);
+        let radius = |end: Option<super::ends::End>| end.map_or(0.0, |e| e.radius);
+        ([center(one), center(other)], radius(one).max(radius(other)))
+    }
+
+    /// Along x, of what lies between two planes across y and two across z; none if nothing does.
+    pub fn run(&self, y: Extent, z: Extent) -> Option<Extent> {
+        match &self.curved.wall {
+            Wall::Ellipsoid(_) => Some(self.extent(0)),
+            Wall::Ball { radius } => {
+                let off = |axis: usize, [lo, hi]: Extent| {
+                    let [lo, hi] = widened([lo - self.origin[axis], hi - self.origin[axis]]);
+                    if lo > 0.0 { lo } else { hi.min(0.0) }
+                };
+                let (a, b) = (off(1, y), off(2, z));
+                let square = radius * radius * (1.0 + ROOM) - a * a - b * b;
+                let reach = Real::sqrt(square.max(0.0));
+                (square >= 0.0).then(|| widened([self.origin[0] - reach, self.origin[0] + reach]))
+            }
+            Wall::Cylinder { .. } | Wall::Cone { .. } => {
+                let ([a, b], radius) = self.segment();
+                let (mut first, mut last) = (0.0_f64, 1.0_f64);
+                for (axis, extent) in [(1, y), (2, z)] {
+                    let reach = radius * self.curved.across[axis];
+                    let [lo, hi] = widened([extent[0] - reach, extent[1] + reach]);
+                    let along = b[axis] - a[axis];
+                    if along == 0.0 {
+                        if a[axis] < lo || a[axis] > hi {
+                            return None;
+                        }
+                        continue;
+                    }
+                    let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
+                    (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
+                }
+                let room = ROOM * (1.0 + first.abs() + last.abs());
+                if !(first <= last + room) {
+                    return None;
+                }
+                let at = |t: f64| a[0] + t.clamp(0.0, 1.0) * (b[0] - a[0]);
+                let (s, t) = (at(first - room), at(last + room));
+                let reach = radius * self.curved.across[0];
+                Some(widened([s.min(t) - reach, s.max(t) + reach]))
+            }
+        }
+    }
+}

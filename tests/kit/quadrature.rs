@@ -1,0 +1,290 @@
+//! Shares of cells and faces of solids by formula, by nested adaptive quadrature of chords: slow, and sharing nothing with closed forms.
+
+use glam::DVec3;
+
+/// A solid, by what a line has inside it.
+#[derive(Debug, Clone, Copy)]
+pub enum Exact {
+    /// Centre, radius.
+    Ball(DVec3, f64),
+    /// Centre, half axes (orthogonal).
+    Ellipsoid(DVec3, [DVec3; 3]),
+    /// Centres of the ends, radius.
+    Cylinder(DVec3, DVec3, f64),
+    /// Ends of the axis, radius.
+    Capsule(DVec3, DVec3, f64),
+    /// Centre of the base, apex, radius of the base.
+    Cone(DVec3, DVec3, f64),
+}
+
+/// Where `a t² + 2 b t + c <= 0`, for `a > 0`.
+fn roots(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
+    let square = b * b - a * c;
+    (square > 0.0).then(|| {
+        let q = -(b + square.sqrt().copysign(b));
+        let (s, t) = (q / a, if q == 0.0 { 0.0 } else { c / q });
+        [s.min(t), s.max(t)]
+    })
+}
+
+fn meet(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
+    let both = [a[0].max(b[0]), a[1].min(b[1])];
+    (both[0] < both[1]).then_some(both)
+}
+
+impl Exact {
+    /// What the line through `p` along axis `m` has inside, as coordinates along it.
+    #[must_use]
+    pub fn chord(&self, p: DVec3, m: usize) -> Option<[f64; 2]> {
+        let e = DVec3::AXES[m];
+        let own = p[m];
+        let found = match *self {
+            Exact::Ball(center, radius) => ball(p, e, center, radius),
+            Exact::Ellipsoid(center, axes) => {
+                let unit = |v: DVec3| DVec3::from_array(axes.map(|a| a.dot(v) / a.length_squared()));
+                let (q, d) = (unit(p - center), unit(e));
+                roots(d.dot(d), q.dot(d), q.dot(q) - 1.0)
+            }
+            Exact::Cylinder(from, to, radius) => tube(p, e, from, to, radius),
+            Exact::Capsule(from, to, radius) => {
+                let parts = [tube(p, e, from, to, radius), ball(p, e, from, radius), ball(p, e, to, radius)];
+                parts.into_iter().flatten().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+            }
+            Exact::Cone(base, apex, radius) => cone(p, e, base, apex, radius),
+        };
+        found.map(|t| t.map(|t| own + t))
+    }
+
+    /// A convex function, negative inside.
+    fn depth(&self, p: DVec3) -> f64 {
+        let along = |from: DVec3, to: DVec3| {
+            let axis = to - from;
+            let unit = axis.normalize();
+            ((p - from).dot(unit), unit.cross(p - from).length(), axis.length())
+        };
+        match *self {
+            Exact::Ball(center, radius) => (p - center).length() - radius,
+            Exact::Ellipsoid(center, axes) => {
+                let unit = axes.map(|a| a.dot(p - center) / a.length_squared());
+                (DVec3::from_array(unit).length() - 1.0) * axes[0].length()
+            }
+            Exact::Cylinder(from, to, radius) => {
+                let (at, off, length) = along(from, to);
+                (off - radius).max(-at).max(at - length)
+            }
+            Exact::Capsule(from, to, radius) => {
+                let axis = to - from;
+                let nearest = from + axis * ((p - from).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+                (p - nearest).length() - radius
+            }
+            Exact::Cone(base, apex, radius) => {
+                let (at, off, length) = along(apex, base);
+                (off - at * radius / length).max(at - length)
+            }
+        }
+    }
+
+    /// Area that the solid has of a rectangle across axis `n` at a coordinate.
+    #[must_use]
+    pub fn area(&self, n: usize, at: f64, u: [f64; 2], v: [f64; 2]) -> f64 {
+        let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
+        let place = |x: f64, y: f64| {
+            let mut p = DVec3::ZERO;
+            (p[n], p[iu], p[iv]) = (at, x, y);
+            p
+        };
+        let chord = |y: f64| self.chord(place(u[0], y), iu).map_or(0.0, |c| (c[1].min(u[1]) - c[0].max(u[0])).max(0.0));
+        let depth = |y: f64| least(&|x| self.depth(place(x, y)), u);
+        integral(&chord, &depth, v, 4e-16 * (u[1] - u[0]) * (v[1] - v[0]), 18)
+    }
+
+    /// Volume in a box. Integrated in two orders of the axes; where they disagree the middle of three.
+    #[must_use]
+    pub fn volume(&self, lo: DVec3, hi: DVec3) -> f64 {
+        let whole = (hi - lo).element_product();
+        let [one, other] = [2, 0].map(|axis| self.volume_along(axis, lo, hi));
+        if (one - other).abs() <= 4e-14 * whole {
+            return (one + other) * 0.5;
+        }
+        let mut three = [one, other, self.volume_along(1, lo, hi)];
+        three.sort_by(f64::total_cmp);
+        three[1]
+    }
+
+    /// The same, the outer integral along an axis.
+    fn volume_along(&self, n: usize, lo: DVec3, hi: DVec3) -> f64 {
+        let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
+        let (u, v) = ([lo[iu], hi[iu]], [lo[iv], hi[iv]]);
+        let depth = |at: f64| {
+            let place = |x: f64, y: f64| {
+                let mut p = DVec3::ZERO;
+                (p[n], p[iu], p[iv]) = (at, x, y);
+                p
+            };
+            least(&|y| least(&|x| self.depth(place(x, y)), u), v)
+        };
+        integral(&|at| self.area(n, at, u, v), &depth, [lo[n], hi[n]], 1e-14 * (hi - lo).element_product(), 10)
+    }
+}
+
+/// The least value of a convex function on an interval, by the golden section; of negative ones any.
+fn least(f: &dyn Fn(f64) -> f64, [mut a, mut b]: [f64; 2]) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let (mut s, mut t) = (b - (b - a) * GOLDEN, a + (b - a) * GOLDEN);
+    let (mut fs, mut ft) = (f(s), f(t));
+    let mut least = f(a).min(f(b)).min(fs).min(ft);
+    for _ in 0..60 {
+        if least < 0.0 {
+            break;
+        }
+        if fs < ft {
+            (b, t, ft) = (t, s, fs);
+            s = b - (b - a) * GOLDEN;
+            fs = f(s);
+            least = least.min(fs);
+        } else {
+            (a, s, fs) = (s, t, ft);
+            t = a + (b - a) * GOLDEN;
+            ft = f(t);
+            least = least.min(ft);
+        }
+    }
+    least
+}
+
+/// A point from another, and what the subtraction lost.
+fn apart(p: DVec3, from: DVec3) -> [DVec3; 2] {
+    let q = p - from;
+    let part = q - p;
+    [q, (p - (q - part)) - (from + part)]
+}
+
+/// Where `|b + t a| <= r`: by the distance of the line from the origin, so that lines which nearly touch keep their digits. `lost` is what `b`
+/// lacks by rounding.
+fn within(a: DVec3, [b, lost]: [DVec3; 2], r: f64) -> Option<[f64; 2]> {
+    let (square, normal) = (a.dot(a), a.cross(b));
+    let length = square.sqrt();
+    let distance = normal.length() / length;
+    let rest = if distance > 0.0 { normal.dot(a.cross(lost)) / (normal.length() * length) } else { 0.0 };
+    let left = ((r - distance) - rest) * ((r + distance) + rest);
+    (left > 0.0).then(|| [-1.0, 1.0].map(|sign| -b.dot(a) / square + sign * left.sqrt() / length))
+}
+
+fn ball(p: DVec3, e: DVec3, center: DVec3, radius: f64) -> Option<[f64; 2]> {
+    within(e, apart(p, center), radius)
+}
+
+/// Between two planes across `axis`, at its ends.
+fn between(q: DVec3, e: DVec3, axis: DVec3) -> Option<[f64; 2]> {
+    let (at, step, end) = (q.dot(axis), e.dot(axis), axis.dot(axis));
+    if step == 0.0 {
+        return (at >= 0.0 && at <= end).then_some([f64::NEG_INFINITY, f64::INFINITY]);
+    }
+    let (s, t) = (-at / step, (end - at) / step);
+    Some([s.min(t), s.max(t)])
+}
+
+fn tube(p: DVec3, e: DVec3, from: DVec3, to: DVec3, radius: f64) -> Option<[f64; 2]> {
+    let (axis, [q, lost]) = (to - from, apart(p, from));
+    let slab = between(q, e, axis)?;
+    let unit = axis.normalize();
+    let (a, b) = (unit.cross(e), unit.cross(q));
+    if a == DVec3::ZERO {
+        return (b.length() <= radius).then_some(slab);
+    }
+    meet(within(a, [b, unit.cross(lost)], radius)?, slab)
+}
+
+fn cone(p: DVec3, e: DVec3, base: DVec3, apex: DVec3, radius: f64) -> Option<[f64; 2]> {
+    let (axis, q) = (base - apex, p - apex);
+    let slab = between(q, e, axis)?;
+    let (unit, slope) = (axis.normalize(), radius / axis.length());
+    let (a, b) = (unit.cross(e), unit.cross(q));
+    let (s, t) = (unit.dot(e) * slope, unit.dot(q) * slope);
+    let (a2, a1, a0) = (a.dot(a) - s * s, a.dot(b) - s * t, b.dot(b) - t * t);
+    // Inside is where the quadratic is negative, between the base and the apex.
+    let [lo, hi] = slab;
+    let inside = |x: f64| (a2 * x + 2.0 * a1) * x + a0 <= 0.0;
+    let mut cuts = vec![lo, hi];
+    if a2 > 0.0 {
+        cuts.extend(roots(a2, a1, a0)?);
+    } else if a2 < 0.0 {
+        cuts.extend(roots(-a2, -a1, -a0).into_iter().flatten());
+    } else if a1 != 0.0 {
+        cuts.push(-a0 / (2.0 * a1));
+    }
+    cuts.retain(|x| *x >= lo && *x <= hi);
+    cuts.sort_by(f64::total_cmp);
+    let runs = cuts.windows(2).filter(|w| w[0] < w[1] && inside((w[0] + w[1]) * 0.5));
+    runs.map(|w| [w[0], w[1]]).reduce(|x, y| [x[0].min(y[0]), x[1].max(y[1])])
+}
+
+/// Inner nodes and weights of Gauss and Lobatto, ten points; the ends have the weight 1/45. A kink between an end and the next node shows at
+/// the end.
+const NODES: [(f64, f64); 4] = [
+    (0.165_278_957_666_387_03, 0.327_539_761_183_897_44),
+    (0.477_924_949_810_444_5, 0.292_042_683_679_683_8),
+    (0.738_773_865_105_505, 0.224_889_342_063_126_44),
+    (0.919_533_908_166_458_9, 0.133_305_990_851_070_12),
+];
+
+fn gauss(f: &dyn Fn(f64) -> f64, a: f64, b: f64) -> f64 {
+    let (middle, half) = ((a + b) * 0.5, (b - a) * 0.5);
+    let inner: f64 = NODES.iter().map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x))).sum();
+    (inner + (f(a) + f(b)) / 45.0) * half
+}
+
+/// The integral of a function that is 0 but for an interval, where it is smooth but for kinks and roots; `depth` is convex and negative in
+/// that interval.
+fn integral(f: &dyn Fn(f64) -> f64, depth: &dyn Fn(f64) -> f64, [a, b]: [f64; 2], tolerance: f64, ends: u32) -> f64 {
+    let Some([lo, hi]) = support(depth, a, b) else { return 0.0 };
+    // Roots at the ends become smooth: x = lo + (hi − lo) (1 − cos πt) / 2.
+    let smooth = |t: f64| {
+        let (sin, cos) = (std::f64::consts::PI * t).sin_cos();
+        let x = if t < 0.5 {
+            lo + (hi - lo) * sin * sin / (2.0 * (1.0 + cos))
+        } else {
+            hi - (hi - lo) * sin * sin / (2.0 * (1.0 - cos))
+        };
+        f(x) * sin * std::f64::consts::FRAC_PI_2 * (hi - lo)
+    };
+    refined(&smooth, [0.0, 1.0], gauss(&smooth, 0.0, 1.0), tolerance, ends, 0)
+}
+
+/// Halves until both halves agree with the whole. A kink may lie so near an end that no node sees it: there it is halved further.
+fn refined(f: &dyn Fn(f64) -> f64, [a, b]: [f64; 2], whole: f64, tolerance: f64, ends: u32, depth: u32) -> f64 {
+    let middle = (a + b) * 0.5;
+    let (left, right) = (gauss(f, a, middle), gauss(f, middle, b));
+    let least = if a == 0.0 || b == 1.0 { ends } else { 2 };
+    if depth > 30 || (depth >= least && (left + right - whole).abs() <= tolerance) {
+        return left + right;
+    }
+    refined(f, [a, middle], left, tolerance, ends, depth + 1)
+        + refined(f, [middle, b], right, tolerance, ends, depth + 1)
+}
+
+/// Where a convex function is negative.
+fn support(f: &dyn Fn(f64) -> f64, a: f64, b: f64) -> Option<[f64; 2]> {
+    let inside = std::cell::Cell::new(None);
+    let watched = |x: f64| {
+        let value = f(x);
+        if value < 0.0 {
+            inside.set(Some(x));
+        }
+        value
+    };
+    least(&watched, [a, b]);
+    let inside = inside.get()?;
+    let edge = |outside: f64| {
+        if f(outside) < 0.0 {
+            return outside;
+        }
+        let (mut out, mut own) = (outside, inside);
+        for _ in 0..60 {
+            let middle = (out + own) * 0.5;
+            if f(middle) < 0.0 { own = middle } else { out = middle }
+        }
+        own
+    };
+    Some([edge(a), edge(b)])
+}
