@@ -14,7 +14,7 @@ pub(super) fn count_cells<V: Vector>(
     report: &mut LayerReport<V::Scalar>,
 ) {
     let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    let [nx, _, _] = site.grid.cells();
+    let nx = site.grid.cells()[0].max(1);
     let [x, y, z] = [0, 1, 2].map(|axis| site.grid.edges(axis).windows(2));
     let width = |pair: &[V::Scalar]| if let [lo, hi] = pair { *hi - *lo } else { zero };
     let height = z.skip(site.k).map(width).next().unwrap_or(zero);

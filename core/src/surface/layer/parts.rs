@@ -91,7 +91,7 @@ impl<R: Real> Means<R> {
         let [nx, _] = layer.lower.cells;
         layer.lower.cell.iter().zip(&*layer.sum.cell).for_each(|share| self.cell.add(share));
         for (at, share) in layer.lower.x.iter().zip(&*layer.sum.x).enumerate() {
-            self.add_face(0, at % (nx + 1), share);
+            self.add_face(0, at.checked_rem(nx + 1).unwrap_or(0), share);
         }
         for (at, share) in layer.lower.y.iter().zip(&*layer.sum.y).enumerate() {
             self.add_face(1, at / nx.max(1), share);
