@@ -7,22 +7,25 @@
 //!
 //! A layer needs no result of another, so threads may share [`Layers`]; each has a [`LayerMemory`] of its own.
 
+mod error;
 mod fractions;
 mod memory;
 mod parts;
+mod report;
 mod slices;
 mod solid_bounds;
 
+pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};
+pub use report::{CellKinds, LayerReport};
 pub use slices::LayerSlices;
 
 use crate::grid::Grid;
-use crate::grid::fields::{Fields, Layer, ShapeMismatch};
+use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, BinsError, BinsNeeded, Group, Surface};
 use crate::surface::cell_unions::{OtherBodies, Room, Shared, Site};
 use crate::surface::cells::{Defects, Scratch};
-use core::fmt;
 use fractions::{count_cells, open_field, to_open_fractions};
 use parts::{LEVEL, parts};
 use solid_bounds::{solid_bounds, solid_bounds_on_top};
@@ -49,69 +52,6 @@ impl<R: Real> Default for LayerOptions<R> {
         LayerOptions { tol: R::from_f64(1e-4), depth: 6, areas: true, solid_end: R::HALF }
     }
 }
-
-/// Cells of a layer by kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CellKinds {
-    /// No solid.
-    pub open: usize,
-    /// Partly solid, or with surface inside.
-    pub cut: usize,
-    /// All solid.
-    pub closed: usize,
-    /// Of the cut cells: shared by several bodies, so that their union had to be found.
-    pub ambiguous: usize,
-}
-
-/// What a layer holds, and how well it is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LayerReport<R> {
-    /// Cells by kind.
-    pub cells: CellKinds,
-    /// Solid volume, in the unit of the grid.
-    pub solid_volume: R,
-    /// Largest distance of the bounds of any cell or face.
-    pub max_gap: R,
-    /// Cells divided because their union had no proof at once.
-    pub divided: usize,
-    /// The worst of the bodies' surfaces in this layer.
-    pub defects: Defects<R>,
-}
-
-/// Why there is no porosity of a layer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LayerError {
-    /// The grid has no such layer.
-    NoLayer {
-        /// The layer asked for.
-        layer: usize,
-        /// How many there are.
-        layers: usize,
-    },
-    /// A slice has the wrong length.
-    Shape(ShapeMismatch),
-    /// The memory was made for a grid with another number of cells along x and y.
-    OtherGrid,
-}
-
-impl From<ShapeMismatch> for LayerError {
-    fn from(error: ShapeMismatch) -> Self {
-        LayerError::Shape(error)
-    }
-}
-
-impl fmt::Display for LayerError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            LayerError::NoLayer { layer, layers } => write!(f, "layer {layer} of a grid of {layers} layers"),
-            LayerError::Shape(mismatch) => mismatch.fmt(f),
-            LayerError::OtherGrid => f.write_str("memory made for a grid with other numbers of cells along x and y"),
-        }
-    }
-}
-
-impl core::error::Error for LayerError {}
 
 /// Bodies in a grid, sorted by layer. Threads may share it.
 #[derive(Clone, Copy, Debug)]

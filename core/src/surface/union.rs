@@ -128,6 +128,7 @@ impl<R: Real, const N: usize> UnionBuffers<R, N> {
 
 /// Why there is no union: divide the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NoProof {
     /// The workspace is too small for what the cell holds.
     Full,

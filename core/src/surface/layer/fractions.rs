@@ -1,6 +1,6 @@
 //! From bounds of the solid to open fractions, and what is counted on the way.
 
-use super::LayerReport;
+use super::report::LayerReport;
 use super::slices::LayerSlices;
 use crate::grid::fields::Layer;
 use crate::number::real::{Real, Vector};

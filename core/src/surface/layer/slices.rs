@@ -1,6 +1,6 @@
 //! Where the values of a layer go.
 
-use super::LayerError;
+use super::error::LayerError;
 use crate::grid::Grid;
 use crate::grid::fields::{ShapeMismatch, exactly};
 use crate::number::real::Real;

@@ -1,6 +1,6 @@
 //! Bounds of the solid fractions of a layer: each body's share, narrowed where bodies share cells.
 
-use super::LayerReport;
+use super::report::LayerReport;
 use crate::grid::fields::Layer;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Group;
