@@ -14,7 +14,8 @@ use crate::number::real::{Real, Vector};
 /// What [`box_triangle`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BoxTriangle<V> {
-    /// No interior point is shared: along `axis`, from the box to the triangle, none lies beyond one of the other.
+    /// No interior point is shared: `axis` separates them and points from the box to the triangle. No point of the box projects farther
+    /// along it than any point of the triangle.
     Apart {
         /// Of any length.
         axis: V,
@@ -25,8 +26,9 @@ pub enum BoxTriangle<V> {
     Undecided,
 }
 
-/// Roundings of a projection, in units of ε and of the sum of its absolute products: two differences (1), for the normal another two and a
-/// product (2), the last product and its sums (2); doubled to cover those of the box and of the bound itself.
+/// Roundings of a projection, in units of ε and of the sum of its absolute products: 1 for the two differences that make an edge;
+/// 2 for those and the product that make a normal; 2 for the last product and its sums: 5. Doubled to cover the box and the bound itself,
+/// and rounded up.
 const PROJECTION_ROUNDINGS: f64 = 12.0;
 
 /// The order of two projections.

@@ -18,7 +18,7 @@ use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::subdivide::{
     self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, QueryCount, Subdividable,
-    SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
+    SubdivisionMemory, SubdivisionRule, WarmStart, share, slab_margin, subdivide,
 };
 use voidage_core::surface::OtherBodies;
 
@@ -266,7 +266,7 @@ impl<'a> Road<'a> {
         let end = |axis: usize| [grid.edges(axis)[0], grid.edges(axis)[grid.cells()[axis]]];
         let [x, y, z] = [0, 1, 2].map(end);
         let [min, max] = [0, 1].map(|n| DVec3::new(x[n], y[n], z[n]));
-        let room = 2.0 * slab(&Aabb { min, max });
+        let room = 2.0 * slab_margin(&Aabb { min, max });
         let [below, above] = [grid.edges(2)[planes[0]] - room, grid.edges(2)[planes[1]] + room];
         let mut triangles = std::mem::take(&mut lists.triangles);
         triangles.clear();
