@@ -268,9 +268,14 @@ fn add_shared(
                 _ => shares.push((n as usize, share)),
             }
         }
-        let matters = |pair: Pair| pair == Pair::Meeting || kind != RangeKind::Cells;
+        let range = cell(grid, kind, at, part);
+        let beside = |n: usize| ends_at(&solids[n].bounds, grid, kind, range);
         let meets = |a: usize| {
-            let with = |&(b, _): &(usize, f64)| solids[a].pair_with(solids[b].body).is_some_and(matters);
+            let with = |&(b, _): &(usize, f64)| match solids[a].pair_with(solids[b].body) {
+                None => false,
+                Some(Pair::Meeting) => true,
+                Some(Pair::Touching) => beside(a) && beside(b),
+            };
             shares.iter().any(with)
         };
         let alone = sums[number(kind)][at];
@@ -288,7 +293,6 @@ fn add_shared(
         }
         if !bodies.is_empty() {
             let known = Bounds { lower: largest, upper: sum.min(1.0) };
-            let range = cell(grid, kind, at, part);
             let known = if largest == 1.0 {
                 known
             } else if shares.len() == bodies.len()
@@ -308,6 +312,15 @@ fn add_shared(
         lower[at] = lower[at].max(found.lower);
         sum[at] += found.upper - alone;
     }
+}
+
+/// Does a solid end in the plane of a face? Where two touch without that, their sections share no area.
+fn ends_at(bounds: &Aabb<DVec3>, grid: &Grid<f64>, kind: RangeKind, range: CellRange) -> bool {
+    let RangeKind::Faces(axis) = kind else { return false };
+    let Some(&plane) = grid.edges(axis).get(range.lo[axis.min(2)] as usize) else { return true };
+    let (low, high) = (bounds.min[axis.min(2)], bounds.max[axis.min(2)]);
+    let near = TOUCHING * (high - low + plane.abs());
+    (low - plane).abs() <= near || (high - plane).abs() <= near
 }
 
 /// Are all that the solids have of a face discs about one centre, flat ends in its plane? Then the largest holds the others.
