@@ -367,7 +367,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         sum
     }
 
-    /// Largest signal rate Σ_d (|u_d| + c)/dx_d of the present state.
+    /// Largest signal rate Σ_d w_d (|u_d| + c)/dx_d of the present state, w_d its open area over its open volume along d.
     pub fn rate(&mut self) -> Result<R, Error> {
         if let Some(rate) = self.rate {
             return Ok(rate);

@@ -1,10 +1,10 @@
 //! Small cells: open faces in front of hardly any open volume.
 //!
 //! Alone such a cell would force the time step down with its volume. It is merged with its neighbours, transitively, until
-//! the cluster has half the volume that its largest open face asks for; after each step the cluster's cells share one state.
+//! the cluster has the share [`SMALL_SHARE`] (the reference takes one half) of the volume that its largest open face asks for; after each step the cluster's cells share one state.
 //! Where nothing moves a cluster is left alone, so gas at rest keeps its densities.
 //!
-//! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution and its threshold of one half).
+//! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution, threshold one half).
 
 use crate::flow::error::{Error, fits};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
@@ -25,7 +25,7 @@ pub const fn cluster_scratch(cells: usize) -> usize {
 
 /// Smoothing passes of the room of a cell: it starts as the open volume, and each pass adds the neighbours' values times the open
 /// fraction between. It ranks equal neighbours without regard to the side they stand on, so that clusters stay small.
-const ROOM: usize = 8;
+const SMOOTHING_PASSES: usize = 8;
 
 /// Finds the clusters; returns how many entries of `list` they fill.
 ///
@@ -153,7 +153,7 @@ impl<'s, R: Real> Search<'s, R> {
         for (cell, room) in room.iter_mut().enumerate() {
             *room = space.open_volume(cell);
         }
-        for _ in 0..ROOM {
+        for _ in 0..SMOOTHING_PASSES {
             before.copy_from_slice(room);
             for (cell, room) in room.iter_mut().enumerate() {
                 let mut beside = [R::ZERO; D];
