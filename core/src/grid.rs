@@ -20,6 +20,7 @@ pub struct Grid<'a, R> {
 
 /// Why three edge lists are no grid. `axis` is 0, 1, 2 for x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum GridError {
     /// Fewer than two edges.
     NoCell {

@@ -23,6 +23,47 @@
 //! assert_eq!(convex::meets(&cell, &pipe).contact(), Some(Contact::Overlapping));
 //! # Ok::<(), convex::BodyError>(())
 //! ```
+//!
+//! # One step of flow
+//!
+//! ```
+//! use voidage_core::flow::{
+//!     Boundary, Error, Fields, FieldsMut, Fractions, Gas, Merging, Mesh, Problem, Treatment, cluster_scratch, prepare,
+//!     scratch_needed,
+//! };
+//!
+//! // A shock tube of eight cells, its right half half open.
+//! let widths = [0.125; 8];
+//! let mesh = Mesh::new([&widths])?;
+//! let mut beta_v = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 0.5];
+//! let mut beta_x = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 0.5, 0.5];
+//! let (mut flags, mut list, mut parent, mut work) = ([0; 8], [0; 8], [0; 8], [0.0; cluster_scratch(8)]);
+//! let fractions = Fractions { volume: &mut beta_v[..], faces: [&mut beta_x[..]], flags: &mut flags[..] };
+//! let space = prepare(&mesh, [false], fractions, Treatment::default(), |_cells| Merging {
+//!     list: &mut list[..],
+//!     parent: &mut parent[..],
+//!     scratch: &mut work[..],
+//! })?;
+//! let gas = Gas::Ideal { gamma: 1.4 };
+//! let tube = Problem::new(mesh, gas, [[Boundary::Wall; 2]])?.with_porosity(space.view())?;
+//!
+//! let (mut density, mut momentum, mut energy) = ([1.0, 1.0, 1.0, 1.0, 0.1, 0.1, 0.1, 0.1], [0.0; 8], [2.5; 8]);
+//! let (mut new_density, mut new_momentum, mut new_energy) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+//! energy[4..].fill(0.25);
+//! let mut scratch = [0.0; scratch_needed([8])];
+//! let mut rate =
+//!     tube.start(&mut FieldsMut { density: &mut density, momentum: [&mut momentum], energy: &mut energy })?;
+//! for _ in 0..5 {
+//!     let old = Fields { density: &density, momentum: [&momentum], energy: &energy };
+//!     let mut new =
+//!         FieldsMut { density: &mut new_density, momentum: [&mut new_momentum], energy: &mut new_energy };
+//!     rate = tube.step(&old, &mut new, 0.8 / rate, &mut [0; 8], &mut scratch)?.rate;
+//!     (density, momentum, energy) = (new_density, new_momentum, new_energy);
+//! }
+//! let mass: f64 = (0..8).map(|i| space.view().volume()[i] * widths[i] * density[i]).sum();
+//! assert!((mass - 0.525).abs() < 1e-15 && momentum.iter().all(|m| *m >= 0.0));
+//! # Ok::<(), Error>(())
+//! ```
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 

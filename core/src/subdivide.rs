@@ -5,7 +5,7 @@
 //! parts, a face into four, down to `depth`. As one list holds all bodies, their union is counted once. Each part takes over from its parent
 //! the bodies that cut it, their facets that do, and the last separating axis.
 //!
-//! What becomes of the smallest parts says the [`LeafRule`]. With [`LeafRule::Solid`], the rule of the paper, parts of size δ overstate the
+//! [`LeafRule`] decides what a smallest part counts as. With [`LeafRule::Solid`], the rule of the paper, parts of size δ overstate the
 //! volume by (δ/2)∮(|n_x|+|n_y|+|n_z|)dS in all; [`LeafRule::Plane`] measures them, with an error of second order.
 //!
 //! ```
@@ -69,7 +69,7 @@ pub use crate::grid::bounds::Bounds;
 pub use chord_bounds::{Columns, MAX_PARTS};
 pub use local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
 pub use memory::{Candidate, SubdivisionMemory, TooLittleMemory};
-pub use mesh::{ClosedSurface, slab};
+pub use mesh::{ClosedSurface, slab_margin};
 pub use occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 pub use place::{BodyScalar, Subdividable};
 pub use range_stack::{MAX_RANGES, RangeStack};

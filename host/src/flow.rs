@@ -5,19 +5,21 @@
 
 mod field;
 mod slabs;
-mod space;
 
 use crate::huge::HugeVec;
 use field::Compensated;
 use rayon::prelude::*;
 use slabs::step;
-use space::Space;
 use voidage_core::flow::{
-    Boundary, Clusters, Conserved, Drag, Error, Gas, Mesh, Porosity, Primitive, Problem, Report, Scheme,
+    Boundary, Conserved, Drag, Error, Fractions, Gas, Merging, Mesh, Prepared, PreparedView, Primitive, Problem,
+    Report, Scheme, cluster_scratch, prepare,
 };
 
 pub use field::{Field, Scalar};
-pub use space::{Tidied, Treatment};
+pub use voidage_core::flow::{Tidied, Treatment};
+
+/// Open fractions that a flow owns.
+type Space<R, const D: usize> = Prepared<HugeVec<R>, HugeVec<u8>, Vec<u32>, D>;
 
 /// Drag coefficients of all cells; an empty vector stands for zero.
 #[derive(Clone, Debug)]
@@ -118,7 +120,14 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         treatment: Treatment<R>,
     ) -> Result<Tidied, Error> {
         let periodic = self.boundaries.map(|b| b[0] == Boundary::Periodic);
-        let (space, tidied) = Space::new(&self.mesh(), periodic, volume.into(), faces.map(Into::into), treatment)?;
+        let flags = HugeVec::zeros(volume.len());
+        let fractions = Fractions { volume: volume.into(), faces: faces.map(Into::into), flags };
+        let space = prepare(&self.mesh()?, periodic, fractions, treatment, |cells| Merging {
+            list: vec![0; cells],
+            parent: vec![0; cells],
+            scratch: HugeVec::zeros(cluster_scratch(cells)),
+        })?;
+        let tidied = space.tidied();
         self.space = Some(space);
         self.rate = None;
         Ok(tidied)
@@ -151,22 +160,26 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
 
     /// Cells merged into clusters.
     pub fn merged_cells(&self) -> usize {
-        self.space.as_ref().map_or(0, |s| s.clusters.len())
+        self.space.as_ref().map_or(0, Prepared::merged_cells)
     }
 
     /// Faces where the porosity jumps and the throat map acts.
     pub fn jump_faces(&self) -> usize {
-        self.space.as_ref().map_or(0, |s| s.jump_faces(&self.mesh()))
+        self.porosity().map_or(0, |p| p.jump_faces())
     }
 
     /// Open fractions of the cells, if the space has any.
     pub fn beta_v(&self) -> Option<&[R]> {
-        self.space.as_ref().map(|s| &s.volume[..])
+        self.porosity().map(|p| p.volume())
     }
 
     /// Open fractions of the faces, axis by axis, if the space has any.
     pub fn faces(&self) -> impl Iterator<Item = &[R]> {
-        self.space.iter().flat_map(|s| s.faces.iter().map(|f| &f[..]))
+        self.porosity().into_iter().flat_map(|p| p.faces())
+    }
+
+    fn porosity(&self) -> Option<PreparedView<'_, R, D>> {
+        self.space.as_ref().map(|s| s.view())
     }
 
     /// Drag coefficients, the quadratic ones of each axis first, if there are any.
@@ -213,25 +226,26 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// Runs a closure with the problem and the two fields.
     fn with_problem<T>(
         &mut self,
-        f: impl FnOnce(&Problem<'_, R, D>, &Field<R, D>, &mut Field<R, D>, &mut [u8], &mut Vec<HugeVec<R>>) -> T,
-    ) -> T {
-        let problem = Problem {
-            mesh: Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) },
-            gas: self.gas,
-            boundaries: self.boundaries,
-            scheme: self.scheme,
-            porosity: self.space.as_ref().map(|s| Porosity {
-                volume: &s.volume,
-                faces: s.faces.each_ref().map(|f| &**f),
-                marks: &s.marks,
-            }),
-            clusters: Clusters(self.space.as_ref().map_or(&[], |s| &s.clusters)),
-            drag: self.resistance.as_ref().map(|r| Drag {
+        f: impl FnOnce(
+            &Problem<'_, R, D>,
+            &Field<R, D>,
+            &mut Field<R, D>,
+            &mut [u8],
+            &mut Vec<HugeVec<R>>,
+        ) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let mesh = Mesh::new(self.widths.each_ref().map(|w| w.as_slice()))?;
+        let mut problem =
+            Problem::new(mesh, self.gas, self.boundaries)?.with_scheme(self.scheme).with_gravity(self.gravity);
+        if let Some(space) = &self.space {
+            problem = problem.with_porosity(space.view())?;
+        }
+        if let Some(r) = &self.resistance {
+            problem = problem.with_drag(Drag {
                 quadratic: r.quadratic.each_ref().map(|q| &**q),
                 linear: r.linear.each_ref().map(|q| &**q),
-            }),
-            gravity: self.gravity,
-        };
+            })?;
+        }
         f(&problem, &self.state, &mut self.next, &mut self.marks, &mut self.scratch)
     }
 
@@ -270,30 +284,46 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
 
     /// One cell.
     pub fn get(&self, cell: usize) -> Primitive<R, D> {
-        self.gas.primitive(&self.state.view().get(cell))
+        self.gas.primitive(&self.state.view().get(cell).expect("a cell of the mesh"))
     }
 
-    fn mesh(&self) -> Mesh<'_, R, D> {
-        Mesh { widths: self.widths.each_ref().map(|w| w.as_slice()) }
+    fn mesh(&self) -> Result<Mesh<'_, R, D>, Error> {
+        Mesh::new(self.widths.each_ref().map(|w| w.as_slice()))
+    }
+
+    /// Indices of a cell along each axis.
+    fn coordinates(&self, mut cell: usize) -> [usize; D] {
+        self.cells().map(|n| {
+            let i = cell % n;
+            cell /= n;
+            i
+        })
+    }
+
+    /// Volume of a cell, its obstacles included.
+    fn volume(&self, at: [usize; D]) -> R {
+        (0..D).fold(R::ONE, |v, d| v * self.widths[d][at[d]])
     }
 
     /// Open volume of a cell.
     pub fn open_volume(&self, cell: usize) -> R {
-        let mesh = self.mesh();
-        let volume = mesh.volume(mesh.coordinates(cell));
-        self.space.as_ref().map_or(volume, |s| volume * s.volume[cell])
+        let volume = self.volume(self.coordinates(cell));
+        self.beta_v().map_or(volume, |open| volume * open[cell])
     }
 
     /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there.
     pub fn side(&self, d: usize, side: usize) -> Vec<(usize, R)> {
-        let (mesh, last) = (self.mesh(), self.widths[d].len().saturating_sub(1));
-        let cells = (0..self.len()).filter(|&c| mesh.coordinates(c)[d] == side * last);
+        let (n, last) = (self.cells(), self.widths[d].len().saturating_sub(1));
+        let space = self.porosity();
+        let cells = (0..self.len()).filter(|&c| self.coordinates(c)[d] == side * last);
         cells
             .map(|cell| {
-                let at = mesh.coordinates(cell);
-                let face = mesh.face(d, at) + side * mesh.face_stride(d);
-                let open = self.space.as_ref().map_or(R::ONE, |s| s.faces[d][face]);
-                (cell, open * mesh.volume(at) / self.widths[d][at[d]])
+                let mut at = self.coordinates(cell);
+                let area = self.volume(at) / self.widths[d][at[d]];
+                at[d] += side;
+                let face = (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a]);
+                let open = space.map_or(R::ONE, |s| s.faces()[d][face]);
+                (cell, open * area)
             })
             .collect()
     }
@@ -306,7 +336,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         let of_row = |row: usize| {
             let cells = row * self.widths[0].len()..(row + 1) * self.widths[0].len();
             cells.fold(R::ZERO, |most, cell| {
-                let w = self.gas.primitive(&view.get(cell));
+                let w = self.gas.primitive(&view.get(cell).expect("a cell of the mesh"));
                 let speed_sq = w.velocity.iter().fold(R::ZERO, |s, &u| s + u * u);
                 larger(most, speed_sq * w.density / (self.gas.gamma() * w.pressure))
             })
@@ -325,28 +355,27 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     fn row_content(&self, start: usize, n: usize) -> Compensated<R, D> {
-        let (mesh, view) = (self.mesh(), self.state.view());
-        let mut at = mesh.coordinates(start);
+        let (view, space) = (self.state.view(), self.porosity());
+        let mut at = self.coordinates(start);
         let mut sum = Compensated::default();
         for i in 0..n {
             at[0] = i;
-            let open = self.space.as_ref().map_or(R::ONE, |s| s.volume[start + i]);
-            let (v, u) = (mesh.volume(at) * open, view.get(start + i));
+            let open = space.map_or(R::ONE, |s| s.volume()[start + i]);
+            let (v, u) = (self.volume(at) * open, view.get(start + i).expect("a cell of the mesh"));
             sum.add(&Conserved { density: v * u.density, momentum: u.momentum.map(|m| v * m), energy: v * u.energy });
         }
         sum
     }
 
-    /// Largest signal rate Σ_d (|u_d| + c)/dx_d of the present state.
+    /// Largest signal rate Σ_d w_d (|u_d| + c)/dx_d of the present state, w_d its open area over its open volume along d.
     pub fn rate(&mut self) -> Result<R, Error> {
         if let Some(rate) = self.rate {
             return Ok(rate);
         }
         let mut state = std::mem::replace(&mut self.state, Field::new(0, self.gas));
-        let prepared = self.with_problem(|problem, _, _, _, _| problem.prepare(&mut state.view_mut()));
+        let rate = self.with_problem(|problem, _, _, _, _| problem.start(&mut state.view_mut()));
         self.state = state;
-        prepared?;
-        let rate = self.with_problem(|problem, old, _, _, _| problem.rate(&old.view()))?;
+        let rate = rate?;
         self.rate = Some(rate);
         Ok(rate)
     }

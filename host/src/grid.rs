@@ -82,6 +82,7 @@ fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
             (format!("{}[{index}]", name(axis)), format!("edge {here} does not lie above the one before it, {before}"))
         }
         GridError::OutOfRange => ("all axes".into(), "cells are too small, too large or too many to be counted".into()),
+        other => ("all axes".into(), other.to_string()),
     }
 }
 

@@ -67,6 +67,18 @@ impl<T: Pod> Deref for HugeVec<T> {
     }
 }
 
+impl<T: Pod> AsRef<[T]> for HugeVec<T> {
+    fn as_ref(&self) -> &[T] {
+        self
+    }
+}
+
+impl<T: Pod> AsMut<[T]> for HugeVec<T> {
+    fn as_mut(&mut self) -> &mut [T] {
+        self
+    }
+}
+
 impl<T: Pod> DerefMut for HugeVec<T> {
     fn deref_mut(&mut self) -> &mut [T] {
         match &mut self.0 {

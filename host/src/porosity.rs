@@ -86,8 +86,9 @@ fn in_frame(
     let levels = levels(bodies);
     let roads = Roads::choose(bodies, triangles, options);
     let mut last: Option<Union> = None;
+    let scene = Scene { grid, bodies, triangles, roads, options };
     let unions = levels.iter().map(|&level| {
-        let found = union(grid, bodies, triangles, &roads, level, last.as_ref(), options, layer_done);
+        let found = union(&scene, level, last.as_ref(), layer_done);
         last = (levels.last() != Some(&level)).then(|| found.clone());
         found.porosity
     });
@@ -95,6 +96,15 @@ fn in_frame(
     doubt::allow_for_rounding(grid, bodies, options, &mut joined);
     doubt::widen(grid, bodies, options, &mut joined);
     joined
+}
+
+/// What all unions have in common: the bodies, their triangles as they are measured, and how each body is measured.
+struct Scene<'a> {
+    grid: &'a Grid<'a, f64>,
+    bodies: &'a Bodies,
+    triangles: &'a [[DVec3; 3]],
+    roads: Roads,
+    options: Options,
 }
 
 /// Porosities of the union up to a level, and the totals of its layers.
@@ -124,22 +134,14 @@ impl Union {
 }
 
 /// Porosities of the union of all bodies up to a level, as if they were solid; `last` is that up to the level before.
-fn union(
-    grid: &Grid<f64>,
-    bodies: &Bodies,
-    triangles: &[[DVec3; 3]],
-    roads: &Roads,
-    level: f64,
-    last: Option<&Union>,
-    options: Options,
-    layer_done: &(dyn Fn() + Sync),
-) -> Union {
+fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn() + Sync)) -> Union {
+    let Scene { grid, bodies, triangles, roads, options } = scene;
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
-    let convex = roads.road(triangles, options, counts);
+    let convex = roads.road(triangles, *options, counts);
     let (surfaces, broken) = surfaces(bodies, triangles, |body| counts(body) && roads.by_surface(body));
     let needed = Layers::needed(grid, &surfaces);
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
-    let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
+    let layers = Layers::new(grid, &surfaces, (*options).into(), &mut numbers, &mut groups).expect("memory as needed");
     let workers = Workers::new();
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);

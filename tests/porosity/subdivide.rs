@@ -11,12 +11,10 @@ use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::convex::chord::Chords;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere};
 use voidage_core::convex::support::Transformed;
-use voidage_core::grid::cell_range::CellRange;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::subdivide::{
-    Bounds, Candidate, LeafRule, MAX_DEPTH, MAX_RANGES, QueryCount, RangeStack, Subdividable, SubdivisionMemory,
-    SubdivisionRule, share,
+    Bounds, Candidate, LeafRule, MAX_DEPTH, QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, share,
 };
 use voidage_tests::convex::{Part, bounds_hold_the_union, run};
 use voidage_tests::random::Random;
@@ -360,35 +358,6 @@ fn bodies_of_all_roads_mix() {
     assert_eq!(all.subdivided, 2);
     assert_meet(&beside, &all, "a cube in a ball's side");
     assert!(beside.max_gap < 2e-3, "{}", beside.max_gap);
-}
-
-#[test]
-fn the_stack_of_ranges_is_filled_and_never_exceeded() {
-    let whole = CellRange { lo: [0; 3], hi: [u32::MAX; 3] };
-    let mut stack = RangeStack::new(whole, ());
-    let mut most = 1;
-    // Straight down to the first cell.
-    while let Some((range, ())) = stack.pop() {
-        if !stack.push_halves(range, ()) {
-            assert_eq!(range, CellRange { lo: [0; 3], hi: [1; 3] });
-            break;
-        }
-        most = most.max(stack.len());
-    }
-    assert_eq!(most, MAX_RANGES, "32 halvings of three sides of 2³² − 1");
-    let mut random = Random::new(5);
-    for _ in 0..200 {
-        let hi = [0; 3].map(|_: u32| (random.bits() >> 32 >> random.below(32)) as u32 | 1);
-        let mut stack = RangeStack::new(CellRange { lo: [0; 3], hi }, ());
-        for _ in 0..1000 {
-            let Some((range, ())) = stack.pop() else { break };
-            // Into most of them, not into some.
-            if random.below(3) > 0 {
-                stack.push_halves(range, ());
-            }
-            assert!(stack.len() <= MAX_RANGES);
-        }
-    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Corners of the input: tiny cells, blocked space, hardly any cells, states that are none.
 
 use voidage::flow::{Flow, Treatment};
-use voidage_core::flow::{Boundary, Clusters, Conserved, Error, Gas, Mesh, Primitive, Problem, Report};
+use voidage_core::flow::{Boundary, Conserved, Error, Gas, Mesh, Primitive, Problem, Report};
 use voidage_tests::euler::property::Source;
 use voidage_tests::euler::{Riemann, State};
 
@@ -242,16 +242,7 @@ fn floored_middle(pressure: f64, kinetic: f64, total: f64) -> (Primitive<f64, 2>
     let momentum = [(2.0 * kinetic).sqrt(), 0.0];
     flow.state.view_mut().set(MIDDLE, &Conserved { density: 1.0, momentum, energy: total });
     let widths = [0.5; 5];
-    let problem = Problem {
-        mesh: Mesh { widths: [&widths, &widths] },
-        gas: IDEAL,
-        boundaries: flow.boundaries,
-        scheme: flow.scheme,
-        porosity: None,
-        clusters: Clusters(&[]),
-        drag: None,
-        gravity: [0.0; 2],
-    };
+    let problem = Problem::new(Mesh::new([&widths, &widths]).unwrap(), IDEAL, flow.boundaries).unwrap();
     let mut report = Report::new();
     problem.apply_floors(&old.view(), &mut flow.state.view_mut(), &mut report).unwrap();
     assert_eq!((report.floored, report.floored_cell), (1, Some(MIDDLE)));

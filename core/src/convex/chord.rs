@@ -1,7 +1,7 @@
 //! Convex bodies as lines see them: where a line enters and leaves, which of their sides are flat, how far they reach.
 //!
 //! A chord is computed for the body grown by a length, or shrunk if that is negative. Rounding moves the ends of a chord as if the body
-//! had been moved or bent by less than [`rounding`]; so the chord of the body grown by that holds the true chord, and the chord of the body
+//! had been moved or bent by less than [`chord_rounding`]; so the chord of the body grown by that holds the true chord, and the chord of the body
 //! shrunk by it lies inside the true one. The quadratic forms below are arranged for that: each term is rounded relative to a
 //! length of the body, none by cancellation of squares.
 
@@ -36,7 +36,8 @@ pub trait Chords: Support {
         false
     }
 
-    /// How far a point is from the surface, negative inside the body: two bounds, but for rounding.
+    /// Lower and upper bound of the signed distance of a point from the surface, negative inside the body. Rounding is not in them: the caller
+    /// adds a margin. By default nothing is known.
     fn signed_distance(&self, point: Self::Vector) -> [ScalarOf<Self>; 2] {
         let _ = point;
         endless()
@@ -73,7 +74,7 @@ pub trait Chords: Support {
     /// A box around the body, exact where it ends in exact planes.
     fn bounds(&self) -> Aabb<Self::Vector> {
         let (zero, one) = (ScalarOf::<Self>::ZERO, ScalarOf::<Self>::ONE);
-        let room = self.radius() + self.slack() + if Self::ROUNDED { rounding(self) } else { zero };
+        let room = self.radius() + self.slack() + if Self::ROUNDED { chord_rounding(self) } else { zero };
         let [mut min, mut max] = [[zero; 3]; 2];
         for axis in 0..3 {
             let mut along = [zero; 3];
@@ -100,13 +101,13 @@ const MOVED_IN_EPSILONS: f64 = 64.0;
 
 /// The length by which to grow or shrink a body so that rounding cannot make its chords too short or too long.
 #[inline(always)]
-pub fn rounding<S: Support + ?Sized>(body: &S) -> ScalarOf<S> {
-    rounded(body.extent())
+pub fn chord_rounding<S: Support + ?Sized>(body: &S) -> ScalarOf<S> {
+    rounding_at(body.extent())
 }
 
 /// The same for coordinates up to `extent`.
 #[inline(always)]
-pub(crate) fn rounded<R: Real>(extent: R) -> R {
+pub(crate) fn rounding_at<R: Real>(extent: R) -> R {
     extent * R::EPSILON * R::from_f64(MOVED_IN_EPSILONS)
 }
 

@@ -80,7 +80,7 @@ where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
-    if A::ROUNDED || B::ROUNDED { intersect_rounded(pair, hint) } else { search(pair, hint) }
+    if A::ROUNDED || B::ROUNDED { intersect_rounded(pair, hint) } else { search(pair, hint, false) }
 }
 
 /// Proves that no interior point is shared: no point of `a` lies beyond any point of `b` along `axis`, whatever the rounding. It looks at

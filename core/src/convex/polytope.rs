@@ -1,12 +1,12 @@
 //! A convex polytope: a hull that knows its facets.
 //!
 //! The facets are certified when it is made: no vertex lies beyond a facet's plane, and every triangle of the surface lies in its facet's
-//! plane, both within [`rounding`]. So the body is the intersection of the facets' inner sides, within the same.
+//! plane, both within [`chord_rounding`]. So the body is the intersection of the facets' inner sides, within the same.
 //!
 //! In a box that holds an inner point of the body, only facets whose surface reaches the box matter: from that point a segment to a point
 //! beyond another facet's plane, which stays in the box, leaves the body through one of them.
 
-use crate::convex::chord::{Chord, Chords, FacetPlane, rounding, through_facets};
+use crate::convex::chord::{Chord, Chords, FacetPlane, chord_rounding, through_facets};
 use crate::convex::exact::{Contact, contact};
 use crate::convex::shape::Hull;
 use crate::convex::support::{Support, delegate_support};
@@ -86,7 +86,7 @@ impl core::error::Error for NotConvex {}
 pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet<V>]) -> Result<usize, NotConvex> {
     let hull = Hull::new(vertices);
     // A quarter of `rounding`: the subdivision spends the rest when it tests points against these planes.
-    let room = rounding(&hull) * V::Scalar::from_f64(0.25);
+    let room = chord_rounding(&hull) * V::Scalar::from_f64(0.25);
     if triangles.is_empty() || !room.is_finite() {
         return Err(NotConvex::NoBody);
     }

@@ -14,7 +14,8 @@ use crate::number::real::{Real, Vector};
 /// What [`box_triangle`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BoxTriangle<V> {
-    /// No interior point is shared: along `axis`, from the box to the triangle, none lies beyond one of the other.
+    /// No interior point is shared: `axis` separates them and points from the box to the triangle. No point of the box projects farther
+    /// along it than any point of the triangle.
     Apart {
         /// Of any length.
         axis: V,
@@ -25,8 +26,9 @@ pub enum BoxTriangle<V> {
     Undecided,
 }
 
-/// Roundings of a projection, in units of ε and of the sum of its absolute products: two differences (1), for the normal another two and a
-/// product (2), the last product and its sums (2); doubled to cover those of the box and of the bound itself.
+/// Roundings of a projection, in units of ε and of the sum of its absolute products: 1 for the two differences that make an edge;
+/// 2 for those and the product that make a normal; 2 for the last product and its sums: 5. Doubled to cover the box and the bound itself,
+/// and rounded up.
 const PROJECTION_ROUNDINGS: f64 = 12.0;
 
 /// The order of two projections.
@@ -56,6 +58,27 @@ fn order<V: Vector>(axis: V, size: V, low: V::Scalar, high: V::Scalar, reach: V:
     }
 }
 
+/// The axis of the box, towards the triangle, along which they share no more than a face of the box; none if there is no such axis.
+#[inline(always)]
+fn separating_box_axis<V: Vector>(cell: &Aabb<V>, Triangle { a, b, c }: &Triangle<V>) -> Option<V> {
+    let (low, high) = (a.min(*b).min(*c).to_array(), a.max(*b).max(*c).to_array());
+    let (min, max) = (cell.min.to_array(), cell.max.to_array());
+    (0..3).find_map(|k| {
+        let along = |s: V::Scalar| {
+            let mut axis = [V::Scalar::ZERO; 3];
+            axis[k] = s;
+            Some(V::from_array(axis))
+        };
+        if low[k] >= max[k] {
+            along(V::Scalar::ONE)
+        } else if high[k] <= min[k] {
+            along(-V::Scalar::ONE)
+        } else {
+            None
+        }
+    })
+}
+
 /// Do the interiors of a box and a triangle meet? Exact on the three axes of the box: what only touches a face of the box is apart.
 ///
 /// ```
@@ -71,24 +94,10 @@ pub fn box_triangle<V: Vector>(cell: &Aabb<V>, triangle: &Triangle<V>) -> BoxTri
     if !(extent >= V::Scalar::SCALE_MIN && extent <= V::Scalar::SCALE_MAX) {
         return BoxTriangle::Undecided;
     }
-    let (zero, one) = (V::Scalar::ZERO, V::Scalar::ONE);
-    let Triangle { a, b, c } = *triangle;
-    let (low, high) = (a.min(b).min(c).to_array(), a.max(b).max(c).to_array());
-    let (min, max) = (cell.min.to_array(), cell.max.to_array());
-    for k in 0..3 {
-        let along = |s: V::Scalar| {
-            let mut axis = [zero; 3];
-            axis[k] = s;
-            V::from_array(axis)
-        };
-        if low[k] >= max[k] {
-            return BoxTriangle::Apart { axis: along(one) };
-        }
-        if high[k] <= min[k] {
-            return BoxTriangle::Apart { axis: along(-one) };
-        }
+    if let Some(axis) = separating_box_axis(cell, triangle) {
+        return BoxTriangle::Apart { axis };
     }
-
+    let (zero, Triangle { a, b, c }) = (V::Scalar::ZERO, *triangle);
     let size = cell.size();
     let p = [a - cell.min, b - cell.min, c - cell.min];
     let edges = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];

@@ -79,7 +79,8 @@ fn surely_inside<V: Vector>(w: [V; 4], weight: [V::Scalar; 4], slack: V::Scalar)
     let products = [b.abs().dot(cd), a.abs().dot(cd), a.abs().dot(db), a.abs().dot(bc)];
     let area = |p: V, q: V| p.cross(q).norm_1();
     let [ab, ac, ad, bc, cd, db] = [area(a, b), area(a, c), area(a, d), area(b, c), area(c, d), area(d, b)];
-    // To first order a displacement moves a determinant by the area across it; then come squares and the cube.
+    // A corner that moves by `slack` changes a determinant by no more than `slack` times the area that the other two span; what goes with
+    // the square and the cube of `slack` is in `higher`.
     let areas = [bc + cd + db, cd + ac + ad, db + ab + ad, bc + ab + ac];
     let higher = real(24.0) * slack * slack * size;
     (0..4).all(|i| {

@@ -37,11 +37,12 @@ pub trait Support {
     const ROUNDED: bool = false;
 
     /// A point of the core farthest along `direction`, of any length but zero. `start` is the index of an earlier answer, or 0; it may
-    /// shorten the search. The point may be farthest only among its neighbours: see [`Support::farther`].
+    /// shorten the search. A search that climbs from vertex to vertex may stop at one that is only above its neighbours:
+    /// [`Support::farther`] checks.
     fn support(&self, direction: Self::Vector, start: u32) -> SupportPoint<Self::Vector>;
 
-    /// A point farther along `direction` than the one of index `found`, which is what [`Support::support`] returned for it; if there is
-    /// one. Asked before a proof is built on the answer.
+    /// Checks an answer of [`Support::support`], by its index `found`, against the whole body: a point farther along `direction`, or none.
+    /// Called before a proof is built on the answer.
     fn farther(&self, direction: Self::Vector, found: u32) -> Option<SupportPoint<Self::Vector>> {
         let _ = (direction, found);
         None
@@ -237,7 +238,7 @@ impl<S: Support> Support for Transformed<S> {
     }
 }
 
-/// All differences `b - a` of points of two bodies. It holds the origin exactly if they meet.
+/// All differences `b - a` of points of two bodies. It holds the origin if and only if they meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MinkowskiDifference<A, B> {
     /// What is subtracted.

@@ -9,6 +9,7 @@ use crate::number::real::Real;
 
 /// What stands outside one side of the domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Boundary<R, const D: usize> {
     /// The opposite side; must stand on both.
     Periodic,
@@ -77,7 +78,8 @@ impl<R: Real, const D: usize> Boundary<R, D> {
     pub fn relaxed(self, d: usize, velocity: R, sound_speed: R, share: R) -> Self {
         let Boundary::Inlet(mut w) = self else { return self };
         let impedance = w.density * sound_speed;
-        w.pressure += share * impedance * (w.velocity[d].abs() - velocity);
+        let wanted = w.velocity.get(d).map_or(velocity, |v| v.abs());
+        w.pressure += share * impedance * (wanted - velocity);
         Boundary::Inlet(w)
     }
 }

@@ -25,11 +25,10 @@ pub enum Error {
         /// The cell along it.
         cell: usize,
     },
-    /// An entry of the clusters names no cell.
-    Cluster {
-        /// Which one.
-        entry: usize,
-    },
+    /// More faces than a `usize` can count, or more cells than clusters of them can name.
+    TooManyCells,
+    /// The porosity was prepared for another mesh, or for one with other periodic axes.
+    OtherMesh,
     /// A number of the gas is not positive and finite, or its ratio of specific heats is not above 1.
     Gas,
     /// A cell outside the physical set (density or pressure not positive, or not finite).
@@ -49,7 +48,8 @@ impl fmt::Display for Error {
             Error::Width { axis, cell } => {
                 write!(f, "the width of cell {cell} along axis {axis} is not positive and finite")
             }
-            Error::Cluster { entry } => write!(f, "entry {entry} of the clusters names no cell of the mesh"),
+            Error::TooManyCells => f.write_str("the mesh has too many cells"),
+            Error::OtherMesh => f.write_str("the porosity was prepared for another mesh or other periodic axes"),
             Error::Gas => f.write_str(
                 "a number of the gas is not positive and finite, or its ratio of specific heats is not above 1",
             ),

@@ -42,7 +42,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             *mark = 1;
         };
         for cell in 0..self.mesh.len() {
-            if !self.is_physical(&new.get(cell)) {
+            if !self.is_physical(&new.at(cell)) {
                 set(cell);
                 self.each_beside(cell, |_, _, beside| set(beside));
             }
@@ -55,7 +55,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let at = self.mesh.coordinates(cell);
         let (mut density, mut pressure, mut count) = (R::ZERO, R::ZERO, R::ZERO);
         let mut add = |cell: usize| {
-            let w = self.gas.primitive(&field.get(cell));
+            let w = self.gas.primitive(&field.at(cell));
             density += w.density;
             pressure += w.pressure;
             count += R::ONE;
@@ -109,11 +109,11 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(old)?;
         self.fits(&new.as_fields(), self.mesh.len())?;
         for cell in 0..self.mesh.len() {
-            let u = new.get(cell);
+            let u = new.at(cell);
             if self.is_physical(&u) {
                 continue;
             }
-            let before = old.get(cell);
+            let before = old.at(cell);
             let floored = self.floored(&u, &self.gas.primitive(&before), self.surroundings(old, cell));
             new.set(cell, &floored);
             let open = self.porosity.map_or(R::ONE, |p| p.volume[cell]);

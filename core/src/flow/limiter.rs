@@ -6,6 +6,7 @@ use crate::number::real::Real;
 
 /// How a slope is limited where the solution bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Limiter {
     /// Monotonised central for pressure and velocity; of the density only the part that goes with the pressure, the rest, the
     /// entropy wave, gets a slope that keeps contacts within a few cells. A barotropic gas has no contacts: there it is the

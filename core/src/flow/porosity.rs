@@ -3,14 +3,16 @@
 //! - [`fractions`]: mesh and open fractions as the caller's slices
 //! - [`flags`]: one byte per cell: jumps, walls, small and sealed cells
 //! - `areas`: open areas along one axis at the cells of a row
-//! - [`mark`]: the flags from the open fractions
+//! - `mark`: the flags from the open fractions
 //! - [`throat`], `jump`: fluxes where the porosity jumps
 //! - [`clusters`]: small cells that share one state with a neighbour
+//! - [`mod@prepare`]: all of that in one call
 
 pub(crate) mod areas;
 pub mod clusters;
 pub mod flags;
 pub mod fractions;
 pub(crate) mod jump;
-pub mod mark;
+pub(crate) mod mark;
+pub mod prepare;
 pub mod throat;

@@ -7,6 +7,7 @@ use crate::flow::limiter::Limiter;
 use crate::flow::porosity::areas::Ducts;
 use crate::flow::porosity::clusters::{Clusters, least_volume};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
+use crate::flow::porosity::prepare::PreparedView;
 use crate::flow::riemann::Riemann;
 use crate::flow::state::{Conserved, Fields, Gas, sum};
 use crate::number::real::Real;
@@ -37,70 +38,83 @@ impl Default for Scheme {
     }
 }
 
-/// Everything that stays the same during a step.
+/// Everything that stays the same during a step. What it is made of has been checked: a step only looks at its fields.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, R, const D: usize> {
-    /// Cells and widths.
-    pub mesh: Mesh<'a, R, D>,
-    /// The gas.
-    pub gas: Gas<R>,
+    pub(in crate::flow) mesh: Mesh<'a, R, D>,
+    pub(in crate::flow) gas: Gas<R>,
     /// Low and high side of each axis.
-    pub boundaries: [[Boundary<R, D>; 2]; D],
-    /// Choices of the scheme.
-    pub scheme: Scheme,
+    pub(in crate::flow) boundaries: [[Boundary<R, D>; 2]; D],
+    pub(in crate::flow) scheme: Scheme,
     /// Open fractions; without them nothing is read.
-    pub porosity: Option<Porosity<'a, R, D>>,
-    /// Clusters of small cells, from [`crate::flow::porosity::clusters::clusters`]; empty for none.
-    pub clusters: Clusters<'a>,
-    /// Drag of sub-grid obstacles.
-    pub drag: Option<Drag<'a, R, D>>,
-    /// Acceleration of gravity; zero costs nothing.
-    pub gravity: [R; D],
+    pub(in crate::flow) porosity: Option<Porosity<'a, R, D>>,
+    /// Clusters of small cells.
+    pub(in crate::flow) clusters: Clusters<'a>,
+    pub(in crate::flow) drag: Option<Drag<'a, R, D>>,
+    pub(in crate::flow) gravity: [R; D],
 }
 
-impl<R: Real, const D: usize> Problem<'_, R, D> {
-    /// Checks the contracts between the slices once.
-    pub fn check(&self) -> Result<(), Error> {
-        let n = self.mesh.len();
-        for d in 0..D {
-            if (self.boundaries[d][0] == Boundary::Periodic) != (self.boundaries[d][1] == Boundary::Periodic) {
-                return Err(Error::HalfPeriodic { axis: d });
+impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
+    /// Gas in an open space between its sides, low and high along each axis; the default scheme, no drag, no gravity.
+    ///
+    /// # Errors
+    /// An axis is periodic on one side only, or a number of the gas makes no sense.
+    pub fn new(mesh: Mesh<'a, R, D>, gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Result<Self, Error> {
+        for (axis, [low, high]) in boundaries.iter().enumerate() {
+            if (*low == Boundary::Periodic) != (*high == Boundary::Periodic) {
+                return Err(Error::HalfPeriodic { axis });
             }
         }
-        let positive = |x: R| x > R::ZERO && x.is_finite();
-        for (axis, widths) in self.mesh.widths.iter().enumerate() {
-            if let Some(cell) = widths.iter().position(|&w| !positive(w)) {
-                return Err(Error::Width { axis, cell });
-            }
-        }
-        let gas = match self.gas {
-            Gas::Ideal { gamma } => gamma > R::ONE && gamma.is_finite(),
-            Gas::Isothermal { sound_speed } => positive(sound_speed),
-            Gas::Isentropic { gamma, density, pressure } => {
-                gamma > R::ONE && gamma.is_finite() && positive(density) && positive(pressure)
-            }
-        };
-        if !gas {
+        if !gas.is_sound() {
             return Err(Error::Gas);
         }
-        if let Some(entry) = self.clusters.cells().position(|cell| cell >= n) {
-            return Err(Error::Cluster { entry });
+        let scheme = Scheme::default();
+        let gravity = [R::ZERO; D];
+        Ok(Problem { mesh, gas, boundaries, scheme, porosity: None, clusters: Clusters(&[]), drag: None, gravity })
+    }
+
+    /// The same by other choices of the scheme.
+    #[must_use]
+    pub const fn with_scheme(self, scheme: Scheme) -> Self {
+        Problem { scheme, ..self }
+    }
+
+    /// The same under an acceleration of gravity; zero costs nothing.
+    #[must_use]
+    pub const fn with_gravity(self, gravity: [R; D]) -> Self {
+        Problem { gravity, ..self }
+    }
+
+    /// The same in a porous space.
+    ///
+    /// # Errors
+    /// The space was prepared for another mesh, or for other periodic axes.
+    pub fn with_porosity(self, space: PreparedView<'a, R, D>) -> Result<Self, Error> {
+        if space.cells != self.mesh.cells() || space.periodic != self.periodic() {
+            return Err(Error::OtherMesh);
         }
-        if let Some(p) = &self.porosity {
-            fits(n, p.volume.len())?;
-            fits(n, p.marks.len())?;
-            for d in 0..D {
-                fits(self.mesh.faces(d), p.faces[d].len())?;
-            }
+        Ok(Problem { porosity: Some(space.porosity), clusters: space.clusters, ..self })
+    }
+
+    /// The same with drag of sub-grid obstacles.
+    ///
+    /// # Errors
+    /// A slice of coefficients that is not empty does not fit the mesh.
+    pub fn with_drag(self, drag: Drag<'a, R, D>) -> Result<Self, Error> {
+        for s in drag.quadratic.iter().chain(&drag.linear).filter(|s| !s.is_empty()) {
+            fits(self.mesh.len(), s.len())?;
         }
-        if let Some(drag) = &self.drag {
-            for s in drag.quadratic.iter().chain(&drag.linear) {
-                if !s.is_empty() {
-                    fits(n, s.len())?;
-                }
-            }
-        }
-        Ok(())
+        Ok(Problem { drag: Some(drag), ..self })
+    }
+
+    /// Cells and widths.
+    pub const fn mesh(&self) -> Mesh<'a, R, D> {
+        self.mesh
+    }
+
+    /// The gas.
+    pub const fn gas(&self) -> Gas<R> {
+        self.gas
     }
 
     /// Positive density and pressure, all finite.
@@ -116,7 +130,6 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     }
 
     pub(in crate::flow) fn check_fields(&self, old: &Fields<'_, R, D>) -> Result<(), Error> {
-        self.check()?;
         self.fits(old, self.mesh.len())
     }
 
@@ -162,7 +175,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(field)?;
         let mut rate = R::ZERO;
         for cell in 0..self.mesh.len() {
-            let u = field.get(cell);
+            let u = field.at(cell);
             if !self.is_physical(&u) {
                 return Err(Error::Unphysical { cell });
             }

@@ -25,6 +25,7 @@ pub struct Flux<R, const D: usize> {
 
 /// Which approximate Riemann solver stands at the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Riemann {
     /// Three waves: keeps contacts and shear.
     Hllc,

@@ -97,6 +97,7 @@ impl<R: Real, const D: usize> Conserved<R, D> {
 
 /// Where the pressure comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Gas<R> {
     /// p = (gamma − 1) rho e, with an energy equation.
     Ideal {
@@ -132,6 +133,18 @@ impl<R: Real> Gas<R> {
         match self {
             Gas::Ideal { gamma } | Gas::Isentropic { gamma, .. } => gamma,
             Gas::Isothermal { .. } => R::ONE,
+        }
+    }
+
+    /// All numbers are positive and finite, the ratio of specific heats above 1.
+    pub(in crate::flow) fn is_sound(self) -> bool {
+        let positive = |x: R| x > R::ZERO && x.is_finite();
+        match self {
+            Gas::Ideal { gamma } => gamma > R::ONE && gamma.is_finite(),
+            Gas::Isothermal { sound_speed } => positive(sound_speed),
+            Gas::Isentropic { gamma, density, pressure } => {
+                gamma > R::ONE && gamma.is_finite() && positive(density) && positive(pressure)
+            }
         }
     }
 
@@ -196,9 +209,15 @@ pub struct Fields<'a, R, const D: usize> {
 }
 
 impl<R: Real, const D: usize> Fields<'_, R, D> {
+    /// The cell at a flat index; `None` beyond the end of a variable.
+    pub fn get(&self, cell: usize) -> Option<Conserved<R, D>> {
+        let inside = cell < self.density.len() && self.momentum.iter().all(|m| cell < m.len());
+        inside.then(|| self.at(cell))
+    }
+
     /// The cell at a flat index.
     #[inline(always)]
-    pub fn get(&self, cell: usize) -> Conserved<R, D> {
+    pub(in crate::flow) fn at(&self, cell: usize) -> Conserved<R, D> {
         Conserved {
             density: self.density[cell],
             momentum: self.momentum.map(|m| m[cell]),
@@ -233,15 +252,17 @@ impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
         Fields { density: self.density, momentum: self.momentum.each_ref().map(|m| &**m), energy: self.energy }
     }
 
-    /// Cells before `cell`, and the rest: how a caller cuts a field into slabs for its threads.
+    /// Cells before `cell` (all, if there are fewer), and the rest: how a caller cuts a field into slabs for its threads.
     pub fn split_at(self, cell: usize) -> (Self, Self) {
-        let (d0, d1) = self.density.split_at_mut(cell);
-        let at = if self.energy.is_empty() { 0 } else { cell };
-        let (e0, e1) = self.energy.split_at_mut(at);
+        fn cut<R>(s: &mut [R], cell: usize) -> (&mut [R], &mut [R]) {
+            s.split_at_mut(cell.min(s.len()))
+        }
+        let (d0, d1) = cut(self.density, cell);
+        let (e0, e1) = cut(self.energy, cell);
         let mut low = [const { None }; D];
         let mut high = [const { None }; D];
         for (c, m) in self.momentum.into_iter().enumerate() {
-            let (a, b) = m.split_at_mut(cell);
+            let (a, b) = cut(m, cell);
             low[c] = Some(a);
             high[c] = Some(b);
         }
@@ -254,7 +275,7 @@ impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
 
     /// The cell at a flat index.
     #[inline(always)]
-    pub fn get(&self, cell: usize) -> Conserved<R, D> {
+    pub(in crate::flow) fn at(&self, cell: usize) -> Conserved<R, D> {
         Conserved {
             density: self.density[cell],
             momentum: core::array::from_fn(|c| self.momentum[c][cell]),
@@ -262,15 +283,14 @@ impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
         }
     }
 
-    /// Writes the cell at a flat index.
+    /// Writes the cell at a flat index; of a field that ends before, nothing.
     #[inline(always)]
     pub fn set(&mut self, cell: usize, u: &Conserved<R, D>) {
-        self.density[cell] = u.density;
-        for c in 0..D {
-            self.momentum[c][cell] = u.momentum[c];
-        }
-        if let Some(e) = self.energy.get_mut(cell) {
-            *e = u.energy;
+        let variables = self.momentum.iter_mut().zip(&u.momentum).map(|(s, value)| (&mut **s, value));
+        for (s, value) in variables.chain([(&mut *self.density, &u.density), (&mut *self.energy, &u.energy)]) {
+            if let Some(s) = s.get_mut(cell) {
+                *s = *value;
+            }
         }
     }
 }

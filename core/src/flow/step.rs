@@ -12,11 +12,17 @@ use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
 
+/// Scalars of scratch that one call of [`Problem::advance_slab`] or [`Problem::step`] needs on a mesh of so many cells along each axis.
+pub const fn scratch_needed<const D: usize>(cells: [usize; D]) -> usize {
+    let sizes = Sizes::new(cells);
+    let pieces = if D > 0 && in_pieces::<D>(cells[0]) { (D + 2) * PIECE } else { 0 };
+    sizes.total::<D>().saturating_add(pieces)
+}
+
 impl<R: Real, const D: usize> Problem<'_, R, D> {
-    /// Scalars of scratch that one call of [`Problem::advance_slab`] needs, whatever the slab.
+    /// [`scratch_needed`] for the cells of this mesh.
     pub fn scratch_len(&self) -> usize {
-        let total = Sizes::new(&self.mesh).total::<D>();
-        if in_pieces::<D>(self.mesh.len()) { total + (D + 2) * PIECE } else { total }
+        scratch_needed(self.mesh.cells())
     }
 
     /// Advances the layers `slab` (along the last axis; all of them in 1D) by `dt`.
@@ -54,16 +60,17 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         Ok(sweep::advance(self, &part, new, scratch))
     }
 
-    /// Prepares a starting field: clusters whose cells differ much share one state. Gas at rest is left alone.
+    /// Makes a starting field ready for its first step and returns its largest signal rate: clusters whose cells differ much share
+    /// one state. Gas at rest is left alone.
     ///
     /// # Errors
-    /// A slice does not fit the mesh.
-    pub fn prepare(&self, field: &mut FieldsMut<'_, R, D>) -> Result<(), Error> {
+    /// A slice does not fit the mesh, or a cell is not physical.
+    pub fn start(&self, field: &mut FieldsMut<'_, R, D>) -> Result<R, Error> {
         self.check_fields(&field.as_fields())?;
         if let Some(p) = &self.porosity {
             clusters::average_unequal(self.clusters, &self.mesh, p.volume, self.gas, field);
         }
-        Ok(())
+        self.rate(&field.as_fields())
     }
 
     /// Merges the small cells of a new field in place; the report's rate and count cover the merged cells.
@@ -81,7 +88,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let Some(p) = &self.porosity else { return Ok(()) };
         clusters::apply(self.clusters, &self.mesh, p.volume, old, new);
         for cell in self.clusters.cells() {
-            let u = new.get(cell);
+            let u = new.at(cell);
             if self.is_physical(&u) {
                 report.rate = R::larger(self.cell_rate(&u, cell), report.rate);
             } else {

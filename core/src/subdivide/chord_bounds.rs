@@ -5,13 +5,14 @@
 //! body fills a column up to the mean of `h`, clamped to the box. Over a rectangle with values `h_i` at its corners and `m` in its middle:
 //!
 //! - `h` is not below the two triangles through its values at the corners, as they are spanned by points of the body;
-//! - `h(p) <= 2 m - h(p')`, where `p'` is opposite to `p` about the middle; so it is not above those triangles turned over about `m`;
-//! - where neither leaves the box, the mean of `h` lies between the mean of the `h_i` and `m` (the inequality of Hermite and Hadamard).
+//! - `h(p) <= 2 m - h(p')`, where `p'` is opposite to `p` about the middle; so it is not above the same triangles with the values
+//!   `2 m - h_i` at the opposite corners;
+//! - where both bounds stay within the height of the box, the mean of `h` lies between the mean of the `h_i` and `m` (the inequality of Hermite and Hadamard).
 //!
 //! The gap between these bounds is of second order in the size of the rectangle. Means of piecewise linear functions, clamped, are exact.
 //! A face is measured the same way with one dimension less.
 
-use crate::convex::chord::{Chords, rounding};
+use crate::convex::chord::{Chords, chord_rounding};
 use crate::convex::support::ScalarOf;
 use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
@@ -94,7 +95,15 @@ impl<'a, B: Chords> BoxInBody<'a, B> {
     fn new(body: &'a B, cell: &Aabb<B::Vector>, near: &'a [u32]) -> Self {
         let bounds = body.bounds();
         let [lo, hi] = [cell.min.to_array(), cell.max.to_array()];
-        BoxInBody { body, near, lo, hi, min: bounds.min.to_array(), max: bounds.max.to_array(), grow: rounding(body) }
+        BoxInBody {
+            body,
+            near,
+            lo,
+            hi,
+            min: bounds.min.to_array(),
+            max: bounds.max.to_array(),
+            grow: chord_rounding(body),
+        }
     }
 
     /// The heights of the line over a point of the base, for the body grown by `grow`; none where the line may miss it.
@@ -270,7 +279,8 @@ fn mean_positive_part<R: Real>(x: R, y: R, z: R) -> R {
     }
 }
 
-/// [`mean_fill`] where a line at a corner may miss the body: any three corners that do not are half the rectangle.
+/// [`mean_fill`] where the line at a corner may miss the body. If the lines at three corners meet it, so do all lines over their triangle,
+/// since the body is convex: half the rectangle gives the lower bound. The upper bound is `full`.
 #[cold]
 fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> [R; 2] {
     // Within the box and the body both are concave; below zero there is nothing inside.

@@ -29,8 +29,9 @@ pub struct PlaneDistances<R> {
 }
 
 impl<R: Real> LocalPlanes<R> {
-    /// Where a part of the box lies, with its distances. The part is `scale` times as large as the box; its middle lies `shift` times the
-    /// half size of the box away from that of its parent, by axis. None if several planes cut it, but perhaps not together.
+    /// Occupancy of a part of the box, and the distances of its middle from the planes. The part is `scale` times as large as the box; its middle lies `shift` times the
+    /// half size of the box away from that of its parent, by axis. None if two planes or more cut the part, and it is not
+    /// known whether any point of it lies behind all of them.
     #[inline(always)]
     pub fn part(&self, parent: &PlaneDistances<R>, shift: [R; 3], scale: R) -> (Option<Occupancy>, PlaneDistances<R>) {
         let mut part = PlaneDistances { middle: parent.middle, cut: 0 };

@@ -12,15 +12,16 @@ use super::chord_bounds::Columns;
 use super::local_planes::LocalPlanes;
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use super::place::Subdividable;
-use crate::convex::chord::rounded;
+use crate::convex::chord::rounding_at;
 use crate::convex::sat::{BoxTriangle, box_triangle};
 use crate::convex::shape::Triangle;
 use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
-/// A closed surface in the caller's memory. Triangles are counter-clockwise seen from outside, and every edge has its reverse. For boxes within
-/// a slab of space across the y or z axis, those triangles suffice that meet the slab made thicker by [`slab`] on each side.
+/// A closed surface in the caller's memory. Triangles are counter-clockwise seen from outside, and every edge has its reverse. If all boxes
+/// lie between two planes normal to y or z, the triangles between these planes, moved apart by [`slab_margin`] each, are enough: windings are
+/// counted along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedSurface<'a, V: Vector> {
     triangles: &'a [[V; 3]],
@@ -78,14 +79,14 @@ const POINTS: [[f64; 3]; 4] =
 
 /// Half the thickness of the slab that stands for a flat box, a length: far above rounding and far below the size of any cell, so that surface
 /// in the plane of a face lies inside the slab and surface beside it does not.
-pub fn slab<V: Vector>(cell: &Aabb<V>) -> V::Scalar {
-    rounded(cell.min.abs().max(cell.max.abs()).norm_max()) * V::Scalar::from_f64(16.0)
+pub fn slab_margin<V: Vector>(cell: &Aabb<V>) -> V::Scalar {
+    rounding_at(cell.min.abs().max(cell.max.abs()).norm_max()) * V::Scalar::from_f64(16.0)
 }
 
-/// The axis along which a box has no thickness, if any, and the box made as thick as a [`slab`] along it.
+/// The axis along which a box has no thickness, if any, and the box made as thick as a [`slab_margin`] along it.
 fn thick<V: Vector>(cell: &Aabb<V>) -> (Option<usize>, Aabb<V>) {
     let Some(axis) = cell.size().to_array().iter().position(|&s| s == V::Scalar::ZERO) else { return (None, *cell) };
-    let (mut min, mut max, half) = (cell.min.to_array(), cell.max.to_array(), slab(cell));
+    let (mut min, mut max, half) = (cell.min.to_array(), cell.max.to_array(), slab_margin(cell));
     (min[axis], max[axis]) = (min[axis] - half, max[axis] + half);
     (Some(axis), Aabb { min: V::from_array(min), max: V::from_array(max) })
 }
@@ -170,7 +171,7 @@ impl<V: Vector> Subdividable for ClosedSurface<'_, V> {
             others = others || !in_plane;
             wall = wall || (in_plane && found == BoxTriangle::Overlapping);
         }
-        // Surface in the plane of a face that ends nowhere within it covers all of it.
+        // Triangles in the face's plane overlap it and no other one meets it: their surface has no edge within the face, and covers it.
         if wall && !others {
             return Occupancy::Closed;
         }

@@ -46,7 +46,7 @@ fn shift_of<R: Real>(flat: [bool; 3], number: usize, scale: R) -> [R; 3] {
     })
 }
 
-/// A box, the only body that cuts it, which is a polytope, and the planes that do.
+/// A box that one body alone cuts, a polytope: that body, and those of its planes that cut the box.
 pub(super) struct PolytopeParts<'a, B: Subdividable> {
     pub body: &'a B,
     pub near: &'a [u32],

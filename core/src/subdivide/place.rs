@@ -6,7 +6,7 @@
 use super::chord_bounds::Columns;
 use super::local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
-use crate::convex::chord::{Chords, rounded, rounding};
+use crate::convex::chord::{Chords, chord_rounding, rounding_at};
 use crate::convex::exact::Contact;
 use crate::convex::gjk::{Intersection, intersect};
 use crate::convex::support::{ScalarOf, Support};
@@ -57,7 +57,7 @@ pub trait Subdividable {
 #[inline(always)]
 fn margin_of<B: Chords>(body: &B, cell: &Aabb<B::Vector>) -> ScalarOf<B> {
     let far = cell.min.abs().max(cell.max.abs()).norm_max();
-    (rounding(body) + rounded(far)) * Real::HALF
+    (chord_rounding(body) + rounding_at(far)) * Real::HALF
 }
 
 impl<B: Chords> Subdividable for B {
@@ -189,8 +189,9 @@ fn holds_inner_point<B: Chords>(body: &B, cell: &Aabb<B::Vector>, near: &[u32], 
     }
 }
 
-/// How a box lies to a body by the distance of the box's middle from the surface: the box is smaller than that, or it must be cut. If that
-/// does not decide, none, and `axis` becomes a direction that may separate.
+/// Occupancy of a box by the distance of its middle from the surface: open or closed if half its diagonal is shorter; cut if the middle is
+/// inside and the box not closed, or if it holds the body's point nearest to its middle. Else none; `axis` then points from the middle to
+/// that point, if the body knows it.
 #[inline(always)]
 fn by_signed_distance<B: Chords>(
     body: &B,
@@ -233,7 +234,7 @@ fn edges_are_inside<B: Chords>(body: &B, cell: &Aabb<B::Vector>) -> bool {
     };
     let ([first, u_lo, v_lo], [last, u_hi, v_hi]) = (turned(cell.min), turned(cell.max));
     let [_, u_center, v_center] = turned(body.center());
-    let shrink = -rounding(body);
+    let shrink = -chord_rounding(body);
     // The far corner is the likeliest to be outside.
     let far = |lo: ScalarOf<B>, hi: ScalarOf<B>, center: ScalarOf<B>| {
         if hi + lo > center + center { [hi, lo] } else { [lo, hi] }

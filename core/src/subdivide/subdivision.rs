@@ -4,7 +4,7 @@ use heapless::Vec;
 
 use super::chord_bounds::{Columns, MAX_PARTS};
 use super::memory::{Candidate, CandidateList, SubdivisionMemory, TooLittleMemory};
-use super::mesh::slab;
+use super::mesh::slab_margin;
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
 use super::parts::{PolytopeParts, flat_axes, part_of};
 use super::place::{BodyScalar, Subdividable};
@@ -152,7 +152,7 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
     pub fn refine(&mut self, cell: &Aabb<B::Vector>, list: CandidateList) -> Bounds<BodyScalar<B>> {
         let flat = flat_axes(cell);
         let parts = if flat.contains(&true) { 4 } else { 8 };
-        let whole = match self.leaf(cell, list, 0, parts) {
+        let whole = match self.leaf(cell, list, 0) {
             LeafBounds::Accept(bounds) => return bounds,
             LeafBounds::Split(bounds) => bounds,
         };
@@ -191,7 +191,7 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
             let share = match self.filter(&part, list) {
                 Filtered::Open => continue,
                 Filtered::Closed => Bounds::CLOSED,
-                Filtered::Cut(list) => match self.leaf(&part, list, level, parts) {
+                Filtered::Cut(list) => match self.leaf(&part, list, level) {
                     LeafBounds::Accept(bounds) => bounds,
                     LeafBounds::Split(_) => {
                         divided = Some(Parent { cell: part, list, next: 0, weight: weight * one_part });
@@ -204,14 +204,8 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
         }
     }
 
-    /// Bounds of the share of a box at a level without dividing it; `parts` is how many parts it would have, 4 or 8.
-    fn leaf(
-        &mut self,
-        cell: &Aabb<B::Vector>,
-        list: CandidateList,
-        level: u32,
-        parts: usize,
-    ) -> LeafBounds<BodyScalar<B>> {
+    /// Bounds of the share of a box at a level without dividing it.
+    fn leaf(&mut self, cell: &Aabb<B::Vector>, list: CandidateList, level: u32) -> LeafBounds<BodyScalar<B>> {
         let SubdivisionRule { leaf, depth, tol } = self.rule;
         let last = level >= depth;
         let alone = list.end - list.first == 1;
@@ -225,7 +219,7 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
         if !(alone || last) {
             return LeafBounds::Split(Bounds::UNKNOWN);
         }
-        let enough = allowance(tol, level, parts);
+        let enough = allowance(tol, level);
         let columns = Columns { enough, parts: (1_usize << depth.saturating_sub(level).min(5)).min(MAX_PARTS) };
         let bounds = self.measured(cell, list, &columns);
         if last || bounds.gap() <= enough { LeafBounds::Accept(bounds) } else { LeafBounds::Split(bounds) }
@@ -281,14 +275,12 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
     }
 }
 
-/// How far the bounds of a part at some level may be apart, as a share of the part, so that those of the cell are at most `tol` apart. A smooth
-/// surface cuts about `rows²` of a cell's `rows³` parts (of a face `rows` of `rows²`); each of them may use up its share of the tolerance, and
-/// below the cell itself a quarter of that.
-fn allowance<R: Real>(tol: R, level: u32, parts: usize) -> R {
+/// How far the bounds of a part at some level may be apart, as a share of the part, so that those of the cell are at most `tol` apart: `tol` for
+/// the cell itself. Below, a smooth surface cuts only one of the `rows` parts along each line, so a part may be off by `rows` times as much;
+/// a quarter of that is allowed, as surfaces are not smooth.
+fn allowance<R: Real>(tol: R, level: u32) -> R {
     let rows = R::from_usize(1 << level.min(MAX_DEPTH));
-    let on_surface = if parts == 8 { rows * rows } else { rows };
-    let spread = if level == 0 { R::ONE } else { (R::TWO + R::TWO) * on_surface };
-    tol * (on_surface * rows) / spread
+    if level == 0 { tol } else { tol * rows * R::from_f64(0.25) }
 }
 
 /// How far the box of several planes of faces reaches beyond them, as a share of its thickness.
@@ -306,7 +298,7 @@ fn box_of<V: Vector>(grid: &Grid<V::Scalar>, kind: RangeKind, range: CellRange) 
     }
     let exact = Aabb { min: V::from_array(min), max: V::from_array(max) };
     let Some(axis) = (0..3).find(|&axis| normal_to(axis) && max[axis] > min[axis]) else { return exact };
-    let room = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG) + slab(&exact);
+    let room = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG) + slab_margin(&exact);
     (min[axis], max[axis]) = (min[axis] - room, max[axis] + room);
     Aabb { min: V::from_array(min), max: V::from_array(max) }
 }

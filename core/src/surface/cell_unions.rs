@@ -48,7 +48,7 @@ pub(super) struct Shared<'s, V: Vector, O> {
     pub others: &'s mut O,
     /// Memory for one exact union at a time.
     pub union: UnionMemory<'s, V::Scalar>,
-    /// How the parts of a cell are found. It stands above this file, which it uses.
+    /// How the parts of a cell are found: a function of [`crate::surface::layer`], passed because that room uses this file.
     pub parts: FindParts<V, O>,
 }
 

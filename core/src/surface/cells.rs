@@ -146,13 +146,12 @@ impl Window {
     }
 
     fn span<R: Real>(grid: &Grid<R>, axis: usize, lo: R, hi: R) -> Option<(usize, usize)> {
-        let edges = grid.edges(axis);
-        let last = edges.len() - 1;
-        let reaches = lo <= edges[last] && hi >= edges[0];
+        let [first, between @ .., last] = grid.edges(axis) else { return None };
+        let reaches = lo <= *last && hi >= *first;
         let cell = |v| match grid.locate(axis, v) {
             Located::Below => 0,
             Located::Cell(i) => i,
-            Located::Above => last - 1,
+            Located::Above => between.len(),
         };
         reaches.then(|| (cell(lo), cell(hi) - cell(lo) + 1))
     }
@@ -181,7 +180,7 @@ impl<'a, R: Real> Axis<'a, R> {
         let mut cell = match crate::grid::locate(self.edges, value + self.origin) {
             Located::Below => -1,
             // A cut may place a corner a rounding error outside the window.
-            Located::Cell(i) => (i as isize - self.first as isize).clamp(0, self.count),
+            Located::Cell(i) => (i as isize - self.first as isize).max(0).min(self.count),
             Located::Above => self.count,
         };
         if self.origin != R::ZERO {
@@ -313,9 +312,9 @@ struct Sums<'s, 'g, 'l, R> {
 impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
     fn new(grid: &'s Grid<'g, R>, window: Window, scratch: &'s mut Scratch<R>, layer: &'s mut Layer<'l, R>) -> Self {
         let Window { i0, ni, j0, nj } = window;
-        let (flux_x, rest) = scratch.reals.split_at_mut((ni + 2) * nj);
-        let (moment, rest) = rest.split_at_mut(ni * nj);
-        let (flux_y, _) = rest.split_at_mut(ni * (nj + 2));
+        let (flux_x, rest) = scratch.reals.split_at_mut_checked((ni + 2) * nj).unwrap_or_default();
+        let (moment, rest) = rest.split_at_mut_checked(ni * nj).unwrap_or_default();
+        let (flux_y, _) = rest.split_at_mut_checked(ni * (nj + 2)).unwrap_or_default();
         for sums in [&mut *flux_x, &mut *moment, &mut *flux_y] {
             sums.fill(R::ZERO);
         }
@@ -368,7 +367,7 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
         let Window { i0, j0, .. } = self.window;
         if self.y.holds(row) {
             let nx = self.grid.cells()[0];
-            self.layer.has_surface.x[(j0 + row as usize) * (nx + 1) + i0 + c as usize] = 1;
+            mark(self.layer.has_surface.x, (j0 + row as usize) * (nx + 1) + i0 + c as usize);
         }
         let begins = piece.doubled_area()[0] < R::ZERO;
         self.integrate(row, if begins { c - 1 } else { c }, piece);
@@ -385,8 +384,8 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             let nx = self.grid.cells()[0];
             let at = |j: isize| (j0 as isize + j) as usize * nx + i0 + c as usize;
             match wall {
-                Some(face) => self.layer.has_surface.y[at(face)] = 1,
-                None if self.y.holds(row) => self.layer.has_surface.cell[at(row)] = 1,
+                Some(face) => mark(self.layer.has_surface.y, at(face)),
+                None if self.y.holds(row) => mark(self.layer.has_surface.cell, at(row)),
                 None => {}
             }
         }
@@ -410,84 +409,155 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             a = b;
         }
         if self.y.holds(row) {
-            self.flux_x[row as usize * (ni + 2) + (c + 1) as usize] += nx * R::HALF;
+            add_at(self.flux_x, row as usize * (ni + 2) + (c + 1) as usize, nx * R::HALF);
             if inside {
-                self.moment[row as usize * ni + c as usize] += moment;
+                add_at(self.moment, row as usize * ni + c as usize, moment);
             }
         }
         if inside {
-            self.flux_y[(row + 1) as usize * ni + c as usize] += ny * R::HALF;
+            add_at(self.flux_y, (row + 1) as usize * ni + c as usize, ny * R::HALF);
         }
     }
 
     /// Fractions of x faces and cells from the sums along x. `dz` is the layer's height.
     fn x_faces_and_cells(&mut self, dz: R) -> Defects<R> {
-        let Window { i0, ni, j0, nj } = self.window;
-        let (nx, x, y) = (self.grid.cells()[0], self.grid.edges(0), self.grid.edges(1));
-        let sixth = R::ONE / R::from_f64(6.0);
-        let mut defects = Defects { leak: R::ZERO, winding: R::ZERO };
-        for row in 0..nj {
-            let j = j0 + row;
-            let flux = &self.flux_x[row * (ni + 2)..][..ni + 2];
-            let moment = &self.moment[row * ni..][..ni];
-            let to_fraction = R::ONE / ((y[j + 1] - y[j]) * dz);
-            let faces = j * (nx + 1) + i0;
-            let cells = j * nx + i0;
-            let Layer { lower, sum, has_surface } = &mut *self.layer;
-            let walls = &has_surface.x[faces..][..ni + 1];
-            let (face_lower, face_sum) = (&mut lower.x[faces..][..ni + 1], &mut sum.x[faces..][..ni + 1]);
-            let (cell_lower, cell_sum) = (&mut lower.cell[cells..][..ni], &mut sum.cell[cells..][..ni]);
-            let cut = &has_surface.cell[cells..][..ni];
-            let mut area = -flux[0];
-            for c in 0..ni {
-                let face = area * to_fraction;
-                let whole = walls[c] == 0 && (cut[c] == 0 || (c > 0 && cut[c - 1] == 0));
-                accumulate_face(face, whole, &mut face_lower[c], &mut face_sum[c]);
-                area -= flux[c + 1];
-                let share = face - moment[c] * (sixth * to_fraction) / (x[i0 + c + 1] - x[i0 + c]);
-                let surface = flux[c + 1] != R::ZERO || moment[c] != R::ZERO;
-                if cut[c] == 0 {
-                    // Nothing but walls: after them the cell is open or closed as a whole.
-                    if share > R::HALF {
-                        accumulate(R::ONE, &mut cell_lower[c], &mut cell_sum[c]);
-                    }
-                } else if surface || share > noise::<R>() {
-                    defects.winding = defects.winding.max(share - R::ONE).max(-share);
-                    accumulate(share, &mut cell_lower[c], &mut cell_sum[c]);
-                }
-            }
-            let whole = walls[ni] == 0 && cut[ni - 1] == 0;
-            accumulate_face(area * to_fraction, whole, &mut face_lower[ni], &mut face_sum[ni]);
-            defects.leak = defects.leak.max(((area - flux[ni + 1]) * to_fraction).abs());
-        }
-        defects
+        (0..self.window.nj).filter_map(|row| self.x_row(row, dz)).fold(Defects::default(), Defects::worst)
     }
 
-    /// Fractions of y faces from the sums along y.
-    fn y_faces(&mut self, dz: R) -> R {
-        let Window { i0, ni, j0, nj } = self.window;
-        let (nx, x) = (self.grid.cells()[0], self.grid.edges(0));
-        let mut leak = R::ZERO;
-        for row in 0..=nj {
-            let (flux, above) = self.flux_y[row * ni..][..2 * ni].split_at_mut(ni);
-            if flux.iter().all(|&f| f == R::ZERO) {
-                continue;
-            }
-            let faces = (j0 + row) * nx + i0;
-            let Layer { lower, sum, has_surface } = &mut *self.layer;
-            let (lower, sum, walls) =
-                (&mut lower.y[faces..][..ni], &mut sum.y[faces..][..ni], &has_surface.y[faces..][..ni]);
-            let uncut = |row: usize, c: usize| has_surface.cell[(j0 + row) * nx + i0 + c] == 0;
-            for c in 0..ni {
-                let to_fraction = R::ONE / ((x[i0 + c + 1] - x[i0 + c]) * dz);
-                let whole = walls[c] == 0 && ((row < nj && uncut(row, c)) || (row > 0 && uncut(row - 1, c)));
-                accumulate_face(-flux[c] * to_fraction, whole, &mut lower[c], &mut sum[c]);
-                above[c] += flux[c];
-                if row == nj {
-                    leak = leak.max((above[c] * to_fraction).abs());
+    /// Those of one row. None is for a row that the layer does not hold.
+    #[inline(always)]
+    fn x_row(&mut self, row: usize, dz: R) -> Option<Defects<R>> {
+        let Window { i0, ni, j0, .. } = self.window;
+        let nx = self.grid.cells()[0];
+        let j = j0 + row;
+        let sixth = R::ONE / R::from_f64(6.0);
+        let x = widths(self.grid.edges(0), i0, ni)?;
+        let (&left, flux) = part(self.flux_x, row * (ni + 2), ni + 2)?.split_first()?;
+        let (&right, flux) = flux.split_last()?;
+        let moment = part(self.moment, row * ni, ni)?;
+        let to_fraction = R::ONE / (width(self.grid.edges(1), j)? * dz);
+        let (faces, cells) = (j * (nx + 1) + i0, j * nx + i0);
+        let Layer { lower, sum, has_surface } = &mut *self.layer;
+        let (walls, cut) = (part(has_surface.x, faces, ni + 1)?, part(has_surface.cell, cells, ni)?);
+        let (last_wall, walls) = walls.split_last()?;
+        let (last_lower, face_lower) = part_mut(lower.x, faces, ni + 1)?.split_last_mut()?;
+        let (last_sum, face_sum) = part_mut(sum.x, faces, ni + 1)?.split_last_mut()?;
+        let (cell_lower, cell_sum) = (part_mut(lower.cell, cells, ni)?, part_mut(sum.cell, cells, ni)?);
+        let mut winding = R::ZERO;
+        let (mut area, mut uncut_before) = (-left, false);
+        for c in 0..ni {
+            let face = area * to_fraction;
+            let whole = walls[c] == 0 && (cut[c] == 0 || uncut_before);
+            uncut_before = cut[c] == 0;
+            accumulate_face(face, whole, &mut face_lower[c], &mut face_sum[c]);
+            area -= flux[c];
+            let share = face - moment[c] * (sixth * to_fraction) / x.of(c);
+            let surface = flux[c] != R::ZERO || moment[c] != R::ZERO;
+            if cut[c] == 0 {
+                // Nothing but walls: after them the cell is open or closed as a whole.
+                if share > R::HALF {
+                    accumulate(R::ONE, &mut cell_lower[c], &mut cell_sum[c]);
                 }
+            } else if surface || share > noise::<R>() {
+                winding = winding.max(share - R::ONE).max(-share);
+                accumulate(share, &mut cell_lower[c], &mut cell_sum[c]);
             }
         }
-        leak
+        accumulate_face(area * to_fraction, *last_wall == 0 && uncut_before, last_lower, last_sum);
+        Some(Defects { leak: ((area - right) * to_fraction).abs(), winding })
+    }
+
+    /// Fractions of y faces from the sums along y; returns what is left above the last.
+    fn y_faces(&mut self, dz: R) -> R {
+        (0..=self.window.nj).filter_map(|row| self.y_row(row, dz)).fold(R::ZERO, R::max)
+    }
+
+    /// Those below one row, or above the last. None if nothing reaches them.
+    #[inline(always)]
+    fn y_row(&mut self, row: usize, dz: R) -> Option<R> {
+        let Window { i0, ni, j0, nj } = self.window;
+        let nx = self.grid.cells()[0];
+        let x = widths(self.grid.edges(0), i0, ni)?;
+        let (flux, above) = part_mut(self.flux_y, row * ni, 2 * ni)?.split_at_mut_checked(ni)?;
+        let above = above.get_mut(..ni)?;
+        if flux.iter().all(|&f| f == R::ZERO) {
+            return None;
+        }
+        let faces = (j0 + row) * nx + i0;
+        let Layer { lower, sum, has_surface } = &mut *self.layer;
+        let walls = part(has_surface.y, faces, ni)?;
+        let (lower, sum) = (part_mut(lower.y, faces, ni)?, part_mut(sum.y, faces, ni)?);
+        let cut = |row: usize| part(has_surface.cell, (j0 + row) * nx + i0, ni);
+        // Beside a row that is not there nothing is whole.
+        let below = if row > 0 { Some(cut(row - 1)?) } else { None };
+        let beyond = if row < nj { Some(cut(row)?) } else { None };
+        let mut leak = R::ZERO;
+        for c in 0..ni {
+            let to_fraction = R::ONE / (x.of(c) * dz);
+            let uncut = |cut: Option<&[u8]>| cut.is_some_and(|cut| cut.get(c) == Some(&0));
+            let whole = walls[c] == 0 && (uncut(beyond) || uncut(below));
+            accumulate_face(-flux[c] * to_fraction, whole, &mut lower[c], &mut sum[c]);
+            above[c] += flux[c];
+            if row == nj {
+                leak = leak.max((above[c] * to_fraction).abs());
+            }
+        }
+        Some(leak)
+    }
+}
+
+/// `count` entries from `first`; none if there are fewer.
+#[inline(always)]
+pub(crate) fn part<T>(all: &[T], first: usize, count: usize) -> Option<&[T]> {
+    all.get(first..)?.get(..count)
+}
+
+/// As [`part`].
+#[inline(always)]
+pub(crate) fn part_mut<T>(all: &mut [T], first: usize, count: usize) -> Option<&mut [T]> {
+    all.get_mut(first..)?.get_mut(..count)
+}
+
+/// The width of a cell between edges; none if there is no such cell.
+#[inline(always)]
+pub(crate) fn width<R: Real>(edges: &[R], cell: usize) -> Option<R> {
+    let &[lo, hi] = edges.get(cell..)?.first_chunk()?;
+    Some(hi - lo)
+}
+
+/// The widths of neighbouring cells.
+#[derive(Clone, Copy)]
+pub(crate) struct Widths<'a, R> {
+    lower: &'a [R],
+    upper: &'a [R],
+}
+
+/// The widths of `count` cells from `first` on; none if there are fewer.
+#[inline(always)]
+pub(crate) fn widths<R>(edges: &[R], first: usize, count: usize) -> Option<Widths<'_, R>> {
+    let lower = part(edges, first, count)?;
+    Some(Widths { lower, upper: part(edges, first + 1, count)? })
+}
+
+impl<R: Real> Widths<'_, R> {
+    #[inline(always)]
+    pub fn of(&self, cell: usize) -> R {
+        self.upper[cell] - self.lower[cell]
+    }
+}
+
+/// Set a flag, if there is one.
+#[inline(always)]
+pub(crate) fn mark(flags: &mut [u8], at: usize) {
+    if let Some(flag) = flags.get_mut(at) {
+        *flag = 1;
+    }
+}
+
+/// Add to a sum, if there is one.
+#[inline(always)]
+pub(crate) fn add_at<R: Real>(sums: &mut [R], at: usize, value: R) {
+    if let Some(sum) = sums.get_mut(at) {
+        *sum += value;
     }
 }

@@ -67,10 +67,11 @@ impl<R: Real> Polygon<R> {
         self.corners.clear();
     }
 
-    /// Lowest and highest coordinate along an axis.
+    /// Lowest and highest coordinate along an axis (0, 1, otherwise 2).
     #[must_use]
     #[inline(always)]
     pub fn extent(&self, axis: usize) -> (R, R) {
+        let axis = axis.min(2);
         let (mut lo, mut hi) = (R::INFINITY, -R::INFINITY);
         for c in self.corners() {
             lo = c[axis].smaller(lo);
@@ -131,9 +132,10 @@ pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The point of the edge `a`–`b` at coordinate `at` of `axis`, which lies strictly between both ends.
+/// The point of the edge `a`–`b` at coordinate `at` of `axis` (0, 1, otherwise 2), which lies strictly between both ends.
 #[inline(always)]
 pub fn crossing<R: Real>(a: [R; 3], b: [R; 3], axis: usize, at: R) -> [R; 3] {
+    let axis = axis.min(2);
     let (lo, hi) = if a[axis] < b[axis] { (a, b) } else { (b, a) };
     let t = (at - lo[axis]) / (hi[axis] - lo[axis]);
     let mut p = [lo[0] + (hi[0] - lo[0]) * t, lo[1] + (hi[1] - lo[1]) * t, lo[2] + (hi[2] - lo[2]) * t];
@@ -141,9 +143,10 @@ pub fn crossing<R: Real>(a: [R; 3], b: [R; 3], axis: usize, at: R) -> [R; 3] {
     p
 }
 
-/// Split a polygon at coordinate `at` of `axis` into the parts below and above. Corners on the plane go to both.
+/// Split a polygon at coordinate `at` of `axis` (0, 1, otherwise 2) into the parts below and above. Corners on the plane go to both.
 #[inline]
 pub fn split<R: Real>(whole: &Polygon<R>, axis: usize, at: R, below: &mut Polygon<R>, above: &mut Polygon<R>) {
+    let axis = axis.min(2);
     below.clear();
     above.clear();
     let corners = whole.corners();
@@ -164,9 +167,10 @@ pub fn split<R: Real>(whole: &Polygon<R>, axis: usize, at: R, below: &mut Polygo
     }
 }
 
-/// The part of a polygon above coordinate `at` of `axis`, or below; corners on the plane belong to it. The same points as [`split`] finds.
+/// The part of a polygon above coordinate `at` of `axis` (0, 1, otherwise 2), or below; corners on the plane belong to it. The same points as [`split`] finds.
 #[inline]
 pub fn keep<R: Real>(whole: &Polygon<R>, axis: usize, at: R, above: bool, kept: &mut Polygon<R>) {
+    let axis = axis.min(2);
     kept.clear();
     let corners = whole.corners();
     let Some(&(mut a)) = corners.last() else { return };

@@ -128,6 +128,7 @@ impl<R: Real, const N: usize> UnionBuffers<R, N> {
 
 /// Why there is no union: divide the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum NoProof {
     /// The workspace is too small for what the cell holds.
     Full,
@@ -226,11 +227,12 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// Build the trees of the bodies added since the last time; not before it is known that all their pieces find room.
     fn build_trees(&mut self) -> Result<(), NoProof> {
         for n in self.built..self.part_count {
-            let Part { first, end, .. } = self.space.parts[n];
-            if end > first {
-                let UnionMemory { pieces, split_pieces, order, nodes, pending, .. } = &mut self.space;
+            let UnionMemory { pieces, split_pieces, order, nodes, pending, parts, .. } = &mut self.space;
+            let part = parts.get_mut(n).ok_or(Full)?;
+            if part.end > part.first {
                 let memory = BspMemory { split_pieces, order, pending, nodes, node_count: &mut self.node_count };
-                self.space.parts[n].root = build_bsp(&pieces[first..end], memory, self.frame.thickness)?;
+                let pieces = pieces.get(part.first..part.end).ok_or(Full)?;
+                part.root = build_bsp(pieces, memory, self.frame.thickness)?;
             }
         }
         self.built = self.part_count;
@@ -246,7 +248,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         let (mut descent, pieces) = self.descent();
         for (own, part) in descent.parts.iter().enumerate() {
-            for Piece { polygon, ball, plane, .. } in &pieces[part.first..part.end] {
+            for Piece { polygon, ball, plane, .. } in pieces.get(part.first..part.end).ok_or(Full)? {
                 let rule = DescentRule { toward: plane.normal, own: Some(own), both_sides: false };
                 descent.send(polygon, *ball, rule, |kept| integrate(kept, &mut flux, &mut moment))?;
             }
@@ -277,17 +279,18 @@ impl<'a, R: Real> CellUnion<'a, R> {
         if !self.blurred {
             return R::ZERO;
         }
-        let pieces = self.space.pieces[..self.piece_count].iter();
+        let pieces = self.space.pieces.iter().take(self.piece_count);
         let reach = pieces.fold(R::ONE, |sum, piece| sum + piece.area.max(R::from_f64(LONGEST_EDGE)));
         reach * self.frame.thickness
     }
 
-    /// Solid fraction on the side of the cell normal to `axis` at coordinate `at` of the frame (0 or 1).
+    /// Solid fraction on the side of the cell normal to `axis` (0, 1, otherwise 2) at coordinate `at` of the frame (0 or 1).
     ///
     /// # Errors
     /// [`NoProof`], of the workspace or of planes.
     pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
         self.build_trees()?;
+        let axis = axis.min(2);
         let mut square = Polygon::default();
         for (u, v) in [(R::ZERO, R::ZERO), (R::ONE, R::ZERO), (R::ONE, R::ONE), (R::ZERO, R::ONE)] {
             let mut corner = [at; 3];
@@ -305,7 +308,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// What goes down the trees, and all pieces.
     fn descent(&mut self) -> (Descent<'_, R>, &[Piece<R>]) {
         let UnionMemory { pieces, nodes, parts, fragments, .. } = &mut self.space;
-        let parts = &parts[..self.part_count];
+        let parts = parts.get(..self.part_count).unwrap_or_default();
         (Descent { nodes, parts, fragments, spare: Polygon::default(), thickness: self.frame.thickness }, pieces)
     }
 }
@@ -327,7 +330,7 @@ impl<R: Real> Frame<R> {
     ) -> bool {
         let [mut polygon, mut kept] = scratch.each_mut();
         polygon.set(corners);
-        for axis in [2, 1, 0] {
+        for axis in (0..3).rev() {
             let (min, max) = polygon.extent(axis);
             if !(min < hi[axis] && max > lo[axis]) {
                 return false;
@@ -347,8 +350,10 @@ impl<R: Real> Frame<R> {
             piece.polygon.push(self.framed(*c));
         }
         let [a, b, c] = corners.map(|c| self.framed(c));
-        let Some(normal) = unit(cross(sub(b, a), sub(c, a))) else { return false };
-        piece.plane = Plane { normal, offset: dot(normal, piece.polygon.corners()[0]) };
+        let (Some(normal), Some(&corner)) = (unit(cross(sub(b, a), sub(c, a))), piece.polygon.corners().first()) else {
+            return false;
+        };
+        piece.plane = Plane { normal, offset: dot(normal, corner) };
         piece.area = dot(piece.polygon.doubled_area(), normal);
         piece.ball = Ball::around(&piece.polygon);
         piece.area > R::ZERO

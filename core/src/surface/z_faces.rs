@@ -13,7 +13,7 @@
 use crate::grid::Grid;
 use crate::grid::fields::{Layer, accumulate_face};
 use crate::number::real::{Real, Vector};
-use crate::surface::cells::{Axis, Scratch, SurfaceError, Window};
+use crate::surface::cells::{Axis, Scratch, SurfaceError, Window, add_at, mark, part, part_mut, width, widths};
 use crate::surface::clip::{Polygon, crossing, split};
 
 /// The side of a plane on which its section is taken.
@@ -100,9 +100,9 @@ struct Sums<'s, 'g, R> {
 impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
     fn new(grid: &'s Grid<'g, R>, window: Window, scratch: &'s mut Scratch<R>) -> Self {
         let Window { i0, ni, j0, nj } = window;
-        let (flux, rest) = scratch.reals.split_at_mut((ni + 2) * nj);
-        let (moment, rest) = rest.split_at_mut(ni * nj);
-        let (walls, _) = rest.split_at_mut(ni * nj);
+        let (flux, rest) = scratch.reals.split_at_mut_checked((ni + 2) * nj).unwrap_or_default();
+        let (moment, rest) = rest.split_at_mut_checked(ni * nj).unwrap_or_default();
+        let (walls, _) = rest.split_at_mut_checked(ni * nj).unwrap_or_default();
         for sums in [&mut *flux, &mut *moment, &mut *walls] {
             sums.fill(R::ZERO);
         }
@@ -148,10 +148,10 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
     fn add(&mut self, row: isize, c: isize, positive: bool, left: [R; 3], right: [R; 3]) {
         let dy = if positive { right[1] - left[1] } else { left[1] - right[1] };
         let (row, ni) = (row as usize, self.window.ni);
-        self.flux[row * (ni + 2) + (c + 1) as usize] += dy;
+        add_at(self.flux, row * (ni + 2) + (c + 1) as usize, dy);
         if self.x.holds(c) {
             let hi = self.x.upper(c);
-            self.moment[row * ni + c as usize] += dy * ((hi - left[0]) + (hi - right[0]));
+            add_at(self.moment, row * ni + c as usize, dy * ((hi - left[0]) + (hi - right[0])));
         }
     }
 
@@ -181,34 +181,36 @@ impl<'s, 'g, R: Real> Sums<'s, 'g, R> {
 
     fn add_wall(&mut self, row: usize, c: usize, area: R, has_surface: &mut [u8]) {
         let Window { i0, ni, j0, .. } = self.window;
-        self.walls[row * ni + c] += area;
-        has_surface[(j0 + row) * self.grid.cells()[0] + i0 + c] = 1;
+        add_at(self.walls, row * ni + c, area);
+        mark(has_surface, (j0 + row) * self.grid.cells()[0] + i0 + c);
     }
 
     /// Fractions of the faces from the sums along x.
     fn faces(&self, side: Side, layer: &mut Layer<R>) -> R {
-        let Window { i0, ni, j0, nj } = self.window;
-        let (nx, x, y) = (self.grid.cells()[0], self.grid.edges(0), self.grid.edges(1));
-        let mut leak = R::ZERO;
-        for row in 0..nj {
-            let j = j0 + row;
-            let flux = &self.flux[row * (ni + 2)..][..ni + 2];
-            let (moment, walls) = (&self.moment[row * ni..][..ni], &self.walls[row * ni..][..ni]);
-            let height = y[j + 1] - y[j];
-            let faces = j * nx + i0;
-            let (lower, sum) = (&mut layer.lower.z[faces..][..ni], &mut layer.sum.z[faces..][..ni]);
-            let (walls_seen, cut) = (&layer.has_surface.z[faces..][..ni], &layer.has_surface.cell[faces..][..ni]);
-            let mut length = -flux[0];
-            for c in 0..ni {
-                let width = x[i0 + c + 1] - x[i0 + c];
-                let share = (length * width - moment[c] * R::HALF + walls[c]) / (width * height);
-                // The layer's cells are those above the plane.
-                let whole = side == Side::Above && walls_seen[c] == 0 && cut[c] == 0;
-                accumulate_face(share, whole, &mut lower[c], &mut sum[c]);
-                length -= flux[c + 1];
-            }
-            leak = leak.max(((length - flux[ni + 1]) / height).abs());
+        (0..self.window.nj).filter_map(|row| self.row(row, side, layer)).fold(R::ZERO, R::max)
+    }
+
+    /// Those of one row. None is for a row that the layer does not hold.
+    #[inline(always)]
+    fn row(&self, row: usize, side: Side, layer: &mut Layer<R>) -> Option<R> {
+        let Window { i0, ni, j0, .. } = self.window;
+        let j = j0 + row;
+        let faces = j * self.grid.cells()[0] + i0;
+        let (x, height) = (widths(self.grid.edges(0), i0, ni)?, width(self.grid.edges(1), j)?);
+        let (&left, flux) = part(self.flux, row * (ni + 2), ni + 2)?.split_first()?;
+        let (&right, flux) = flux.split_last()?;
+        let (moment, walls) = (part(self.moment, row * ni, ni)?, part(self.walls, row * ni, ni)?);
+        let (lower, sum) = (part_mut(layer.lower.z, faces, ni)?, part_mut(layer.sum.z, faces, ni)?);
+        let (walls_seen, cut) = (part(layer.has_surface.z, faces, ni)?, part(layer.has_surface.cell, faces, ni)?);
+        let mut length = -left;
+        for c in 0..ni {
+            let width = x.of(c);
+            let share = (length * width - moment[c] * R::HALF + walls[c]) / (width * height);
+            // The layer's cells are those above the plane.
+            let whole = side == Side::Above && walls_seen[c] == 0 && cut[c] == 0;
+            accumulate_face(share, whole, &mut lower[c], &mut sum[c]);
+            length -= flux[c];
         }
-        leak
+        Some(((length - right) / height).abs())
     }
 }

@@ -216,7 +216,7 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
     if result.winding > WINDING_TO_WARN {
         let files = bodies.files();
         progress.warn(format!(
-            "{files}: a surface cuts through itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
+            "{files}: a surface crosses itself (self-intersection): it encloses a cell {:.3} times too often or too seldom; such values were limited to 0..1",
             result.winding
         ));
     }

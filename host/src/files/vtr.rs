@@ -35,6 +35,7 @@ pub struct NamedField<'a> {
 
 /// What every cell has.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum CellField<'a> {
     /// One tuple for each cell.
     Values(NamedField<'a>),

@@ -14,7 +14,7 @@ pub(super) fn step<R: Scalar, const D: usize>(
     scratch: &mut Vec<HugeVec<R>>,
     dt: R,
 ) -> Result<Report<R, D>, Error> {
-    let layers = problem.mesh.cells()[D - 1];
+    let layers = problem.mesh().cells()[D - 1];
     // A slab of few layers spends its time on the layers beside it.
     const LEAST_LAYERS: usize = 6;
     let threads = rayon::current_num_threads().min(layers / LEAST_LAYERS).max(1);
@@ -30,7 +30,7 @@ pub(super) fn step<R: Scalar, const D: usize>(
                    scratch: &mut [HugeVec<R>],
                    marks: Option<&[u8]>|
      -> Result<Report<R, D>, Error> {
-        let layer = problem.mesh.layer();
+        let layer = problem.mesh().layer();
         let mut rest = new.view_mut();
         let mut slabs = Vec::with_capacity(threads);
         let mut begin = 0;

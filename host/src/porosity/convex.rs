@@ -18,7 +18,7 @@ use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::subdivide::{
     self, ActiveFacets, Bounds, Candidate, ClosedSurface, Columns, LocalPlanes, Occupancy, QueryCount, Subdividable,
-    SubdivisionMemory, SubdivisionRule, WarmStart, share, slab, subdivide,
+    SubdivisionMemory, SubdivisionRule, WarmStart, share, slab_margin, subdivide,
 };
 use voidage_core::surface::OtherBodies;
 
@@ -266,7 +266,7 @@ impl<'a> Road<'a> {
         let end = |axis: usize| [grid.edges(axis)[0], grid.edges(axis)[grid.cells()[axis]]];
         let [x, y, z] = [0, 1, 2].map(end);
         let [min, max] = [0, 1].map(|n| DVec3::new(x[n], y[n], z[n]));
-        let room = 2.0 * slab(&Aabb { min, max });
+        let room = 2.0 * slab_margin(&Aabb { min, max });
         let [below, above] = [grid.edges(2)[planes[0]] - room, grid.edges(2)[planes[1]] + room];
         let mut triangles = std::mem::take(&mut lists.triangles);
         triangles.clear();
@@ -299,10 +299,13 @@ impl<'a> Road<'a> {
         places: RangeKind,
         k: usize,
         lists: &mut Lists,
-        row: usize,
         lower: &mut [f64],
         sum: &mut [f64],
     ) -> QueryCount {
+        let [row, _, _] = match places {
+            RangeKind::Cells => grid.cells(),
+            RangeKind::Faces(axis) => grid.face_shape(axis),
+        };
         let only = CellRange { lo: [0, 0, k as u32], hi: [u32::MAX, u32::MAX, k as u32 + 1] };
         let touched = |bounds: &Aabb<DVec3>| CellRange::touching(grid, places, bounds).intersection(only);
         let reaching = self.bodies.iter().map(|(bounds, body)| (touched(bounds), *body));
@@ -342,15 +345,11 @@ impl RoadWithLists<'_, '_> {
     fn add_between(&mut self, grid: &Grid<f64>, planes: [usize; 2], wanted: &[RangeKind], layer: &mut Layer<f64>) {
         let found = self.road.between(grid, planes, self.lists, |road, lists| {
             let place = |&places: &RangeKind| {
-                let [row, _, _] = match places {
-                    RangeKind::Cells => grid.cells(),
-                    RangeKind::Faces(axis) => grid.face_shape(axis),
-                };
                 let (lower, sum) = match places {
                     RangeKind::Cells => layer.cells_mut(),
                     RangeKind::Faces(axis) => layer.faces_mut(axis),
                 };
-                road.places(grid, places, planes[0], lists, row, lower, sum)
+                road.places(grid, places, planes[0], lists, lower, sum)
             };
             wanted.iter().map(place).fold(QueryCount::default(), ops::Add::add)
         });

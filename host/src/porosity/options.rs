@@ -5,6 +5,7 @@ use voidage_core::surface::layer::LayerOptions;
 
 /// How volumes are found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Method {
     /// The cheapest for every body: sums over its surface, if it has triangles, else subdivision.
     #[default]

@@ -5,7 +5,7 @@ use voidage_core::grid::{Grid, Located};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerSlices, Layers};
-use voidage_core::surface::union::UnionMemory;
+use voidage_core::surface::union::{UnionBuffers, UnionMemory};
 
 fn asked<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], at: usize, r: V::Scalar) -> usize {
     let rest = edges.get(at..).unwrap_or(edges);
@@ -25,7 +25,7 @@ fn sorted<V: Vector>(grid: &Grid<V::Scalar>, triangles: &[[V; 3]], at: usize) ->
     let bodies = [Surface::new(triangles), Surface::sheet(triangles)];
     let needed = Layers::needed(grid, &bodies);
     match Layers::new(grid, &bodies, LayerOptions::default(), &mut numbers, &mut groups) {
-        Ok(layers) => layers.memory_needed().numbers ^ layers.bodies_in(at) ^ cut(grid, at),
+        Ok(layers) => layers.memory_needed().numbers ^ layers.bodies_in(at) ^ cut(grid, at) ^ porous(grid, &layers, at),
         Err(_) => needed.numbers,
     }
 }
@@ -35,6 +35,23 @@ fn cut<R: Real>(grid: &Grid<R>, at: usize) -> usize {
     let memory = LayerMemory::<R::Vector>::new(grid, &mut reals, &mut flags, &mut [], &mut [], UnionMemory::default());
     let slices = LayerSlices::of_fields(grid, at, &mut field, [&mut [], &mut [], &mut []]);
     usize::from(memory.is_ok()) ^ usize::from(slices.is_ok())
+}
+
+/// The fractions of a layer, with memory for unions of a few pieces.
+fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> usize {
+    let zero = V::Scalar::ZERO;
+    let (mut reals, mut flags, mut numbers, mut groups) = ([zero; 999], [0; 999], [0; 99], [Group::default(); 9]);
+    let mut buffers = UnionBuffers::<V::Scalar, 8>::default();
+    let union = buffers.memory();
+    let Ok(mut memory) = LayerMemory::new(grid, &mut reals, &mut flags, &mut numbers, &mut groups, union) else { return 1 };
+    let mut fields = [[zero; 99]; 12];
+    let mut slices = fields.iter_mut().map(|f| f.as_mut_slice());
+    let mut next = || -> Option<LayerSlices<V::Scalar>> {
+        let (cell, x, y, z) = (slices.next()?, slices.next()?, slices.next()?, slices.next()?);
+        LayerSlices::of_fields(grid, at, cell, [x, y, z]).ok()
+    };
+    let (Some(beta), Some(low), Some(high)) = (next(), next(), next()) else { return 2 };
+    layers.layer(at, beta, Some([low, high]), &mut memory).map_or(3, |report| report.divided)
 }
 
 /// In double precision.

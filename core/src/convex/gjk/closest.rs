@@ -5,7 +5,7 @@
 
 use super::outcome::{Intersection, OverlapProof, Reason, within_radii};
 use super::pair::{BodyPair, Probe, sized};
-use super::working_simplex::{WorkingSimplex, across};
+use super::working_simplex::{SupportPairs, WorkingSimplex, across};
 use crate::convex::simplex::{NearestPoint, Simplex};
 use crate::convex::support::{ScalarOf, Support};
 use crate::number::real::{Real, Vector};
@@ -151,7 +151,13 @@ impl<V: Vector> Closest<V> {
 
     /// Takes the nearest point of a simplex, if it is nearer. False if it is not a step forward.
     #[inline(always)]
-    fn take(&mut self, simplex: &WorkingSimplex<V>, nearest: &NearestPoint<V>, slack: V::Scalar) -> bool {
+    fn take(
+        &mut self,
+        simplex: &WorkingSimplex<V>,
+        pairs: &SupportPairs<V>,
+        nearest: &NearestPoint<V>,
+        slack: V::Scalar,
+    ) -> bool {
         let real = V::Scalar::from_f64;
         let relative = real(BOUND_ROUNDINGS) * V::Scalar::EPSILON;
         let NearestPoint { point: v, weights, .. } = *nearest;
@@ -168,7 +174,7 @@ impl<V: Vector> Closest<V> {
         if upper < self.upper || (progress && norm(v) < self.upper) {
             self.upper = self.upper.min(upper);
             self.v = v;
-            self.witnesses = [0, 1, 2].map(|i| (weights[i], simplex.pair(i)));
+            self.witnesses = [0, 1, 2].map(|i| (weights[i], simplex.pair(i, pairs)));
         }
         progress
     }
@@ -186,7 +192,7 @@ where
 {
     let mut axis = pair.seed(hint);
     let mut starts = (0, 0);
-    let mut simplex = WorkingSimplex::new();
+    let (mut simplex, mut pairs) = (WorkingSimplex::new(), SupportPairs::new());
     let mut best = Closest::nothing_known(axis);
     let mut stalled = 0;
     for _ in 0..MAX_DISTANCE_ITERATIONS {
@@ -203,14 +209,14 @@ where
             best.reason = Reason::Rounding;
             break;
         }
-        simplex.push(&found);
+        simplex.push(&found, &mut pairs);
         if simplex.holds_origin(pair.slack) {
-            best.inside = Some(simplex.simplex());
+            best.inside = Some(simplex.simplex(&pairs));
             break;
         }
         let nearest = simplex.shrink_to_nearest();
         // Along a needle the first steps gain less than one rounding, and yet lead to the nearest point.
-        if !best.take(&simplex, &nearest, pair.slack) {
+        if !best.take(&simplex, &pairs, &nearest, pair.slack) {
             stalled += 1;
             if stalled > PATIENCE {
                 best.reason = Reason::Rounding;

@@ -3,7 +3,7 @@
 use super::closest::{Closest, Goal, closest_point};
 use super::outcome::{Distance, Intersection, OverlapProof};
 use super::pair::{BodyPair, Scale, scale};
-use super::search::{search, search_leaning};
+use super::search::search;
 use crate::convex::support::{ScalarOf, Support};
 use crate::number::real::{Real, Vector};
 
@@ -46,7 +46,7 @@ where
     // An overlap is quickly seen; else the axis that separates is a good first direction.
     let mut hint = hint;
     if !(A::ROUNDED || B::ROUNDED) {
-        match search(pair, hint) {
+        match search(pair, hint, false) {
             Intersection::Overlapping { proof } => return Distance::Overlapping { proof },
             Intersection::Apart { axis } => hint = Some(axis),
             Intersection::Undecided { .. } => {}
@@ -55,7 +55,7 @@ where
     let mut found = closest_point(pair, hint, Goal::Distance);
     if found.inside.is_none() && !(found.lower > Real::ZERO) {
         // Near the origin a symmetry may keep it on the simplex's rim: the boolean knows a way round that.
-        if let Intersection::Overlapping { proof: OverlapProof::Inside(simplex) } = search_leaning(pair) {
+        if let Intersection::Overlapping { proof: OverlapProof::Inside(simplex) } = search(pair, None, true) {
             found.inside = Some(simplex);
         }
     }

@@ -41,6 +41,7 @@ pub enum OverlapProof<V: Vector> {
 
 /// Why a query was left undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reason {
     /// A coordinate is NaN or infinite, a body is empty or a radius is negative, or the numbers are too large to add.
     NotFinite,

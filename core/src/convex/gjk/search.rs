@@ -3,7 +3,7 @@
 use super::closest::intersect_rounded;
 use super::outcome::{Intersection, OverlapProof, Reason};
 use super::pair::{BodyPair, sized};
-use super::working_simplex::{WorkingSimplex, across};
+use super::working_simplex::{SupportPairs, WorkingSimplex, across};
 use crate::convex::simplex::{OriginSide, Simplex, side};
 use crate::convex::support::{ScalarOf, Support, lengthened};
 use crate::number::real::{Real, Vector};
@@ -12,61 +12,14 @@ use crate::number::real::{Real, Vector};
 /// smooth body near touch, and another search takes over.
 pub const MAX_ITERATIONS: u32 = 32;
 
-/// Do the bodies of a pair share an inner point? From `hint`, or along their centres; where that cannot tell, once more and harder.
+/// Do the bodies of a pair share an inner point? From `hint`, or along their centres. With `lean` it looks in leaning directions, for bodies so
+/// placed that a symmetry keeps the origin on the rim of every simplex; without, what it cannot tell is searched harder.
 #[inline(always)]
 pub(super) fn search<A, B, const SCALED: bool>(
     pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     hint: Option<A::Vector>,
-) -> Intersection<A::Vector>
-where
-    A: Support,
-    B: Support<Vector = A::Vector>,
-{
-    match attempt(pair, hint, false) {
-        Attempt::Decided(found) => found,
-        Attempt::Ended { axis, reason, deep } if deep || reason == Reason::Iterations || pair.slack > Real::ZERO => {
-            search_harder(pair, axis, reason)
-        }
-        Attempt::Ended { axis, reason, .. } => Intersection::Undecided { reason, axis },
-    }
-}
-
-/// The search with leaning directions: for bodies so placed that a symmetry keeps the origin on the rim of every simplex.
-pub(super) fn search_leaning<A, B, const SCALED: bool>(
-    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
-) -> Intersection<A::Vector>
-where
-    A: Support,
-    B: Support<Vector = A::Vector>,
-{
-    match attempt(pair, None, true) {
-        Attempt::Decided(found) => found,
-        Attempt::Ended { axis, reason, .. } => Intersection::Undecided { reason, axis },
-    }
-}
-
-/// How a run of the search ended.
-enum Attempt<V: Vector> {
-    /// With a proof.
-    Decided(Intersection<V>),
-    /// Without one.
-    Ended {
-        /// The last direction tried.
-        axis: V,
-        /// Why it ended.
-        reason: Reason,
-        /// The last support plane passes the origin on the far side by more than rounding: the bodies overlap, yet no simplex proves it.
-        deep: bool,
-    },
-}
-
-/// One run of the boolean search, with leaning directions or without.
-#[inline(always)]
-fn attempt<A, B, const SCALED: bool>(
-    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
-    hint: Option<A::Vector>,
     lean: bool,
-) -> Attempt<A::Vector>
+) -> Intersection<A::Vector>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
@@ -75,7 +28,10 @@ where
     let margin = pair.margin();
     let mut axis = pair.seed(hint);
     let mut starts = (0, 0);
-    let mut simplex = WorkingSimplex::<A::Vector>::new();
+    let (mut simplex, mut pairs) = (WorkingSimplex::<A::Vector>::new(), SupportPairs::new());
+    let mut reason = Reason::Iterations;
+    // The last support plane passes the origin by more than rounding: the bodies overlap, yet no simplex proves it.
+    let mut deep = false;
     for round in 0..MAX_ITERATIONS {
         let surrounding = lean && round < 4;
         if lean {
@@ -87,38 +43,45 @@ where
                 size
             }
             // The origin is a vertex of the difference, or the simplex is flat.
-            Err(axis) => return Attempt::Ended { axis, reason: Reason::Rounding, deep: false },
+            Err(direction) => {
+                (axis, reason) = (direction, Reason::Rounding);
+                break;
+            }
         };
         let room = margin * size;
         let mut found = pair.probe(axis, starts);
         if found.w.dot(axis) > room {
             found = pair.probe_surely(axis, found);
             if found.w.dot(axis) > room {
-                return Attempt::Decided(Intersection::Apart { axis });
+                return Intersection::Apart { axis };
             }
         }
         starts = found.starts();
         // A point again can only come where there is no progress to speak of.
-        let along = found.w.dot(axis);
-        let stalled = simplex.count > 0 && along + room >= simplex.w[0].dot(axis);
+        let stalled = simplex.count > 0 && found.w.dot(axis) + room >= simplex.w[0].dot(axis);
         if stalled && simplex.holds(found.w) {
             if surrounding {
                 continue;
             }
-            return Attempt::Ended { axis, reason: Reason::Rounding, deep: along < -room };
+            (reason, deep) = (Reason::Rounding, found.w.dot(axis) < -room);
+            break;
         }
-        simplex.push(&found);
+        simplex.push(&found, &mut pairs);
         if surrounding && round < 3 {
             continue;
         }
         match simplex.step(pair.slack) {
             Some(next) => axis = next,
-            None => return Attempt::Decided(overlapping(simplex.simplex())),
+            None => return overlapping(simplex.simplex(&pairs)),
         }
     }
-    Attempt::Ended { axis, reason: Reason::Iterations, deep: false }
+    if !lean && (deep || reason == Reason::Iterations || pair.slack > Real::ZERO) {
+        return search_harder(pair, axis, reason);
+    }
+    Intersection::Undecided { reason, axis }
 }
 
+#[inline(always)]
 fn overlapping<V: Vector>(simplex: Simplex<V>) -> Intersection<V> {
     Intersection::Overlapping { proof: OverlapProof::Inside(simplex) }
 }
@@ -141,7 +104,7 @@ where
             return overlapping(simplex);
         }
     }
-    let found = search_leaning(pair);
+    let found = search(pair, None, true);
     if !matches!(found, Intersection::Undecided { .. }) {
         return found;
     }

@@ -4,59 +4,72 @@ use super::pair::Probe;
 use crate::convex::simplex::{NearestPoint, OriginSide, Simplex, nearest, side};
 use crate::number::real::{Real, Vector};
 
-/// Up to four points of the difference, the newest first, each with the pair of points it is the difference of.
+/// The pairs of points that the differences of a [`WorkingSimplex`] come from, each in a slot.
 ///
-/// Pairs stay where they were written; only the numbers of their slots are moved with the differences, which is less to copy.
+/// A slot is known at run time only, which keeps the pairs in memory. In one value with the simplex they would keep its differences there too,
+/// and the search would take a third longer.
+pub(super) struct SupportPairs<V>([(V, V); 4]);
+
+impl<V: Vector> SupportPairs<V> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        SupportPairs([(V::ZERO, V::ZERO); 4])
+    }
+}
+
+/// Up to four points of the difference, the newest first.
+///
+/// Their pairs stay in the slots where they were written; only the numbers of the slots move with the differences, which is less to copy.
 pub(super) struct WorkingSimplex<V> {
     /// The differences; of these, `count` are in use.
     pub w: [V; 4],
     pub count: usize,
     /// Where the pair of each difference is kept; a permutation of all four.
     slot: [usize; 4],
-    pairs: [(V, V); 4],
 }
 
 impl<V: Vector> WorkingSimplex<V> {
     #[inline(always)]
     pub fn new() -> Self {
-        WorkingSimplex { w: [V::ZERO; 4], count: 0, slot: [0, 1, 2, 3], pairs: [(V::ZERO, V::ZERO); 4] }
+        WorkingSimplex { w: [V::ZERO; 4], count: 0, slot: [0, 1, 2, 3] }
     }
 
     /// Adds a point in front. Of four, the last one is forgotten.
     #[inline(always)]
-    pub fn push(&mut self, found: &Probe<V>) {
+    pub fn push(&mut self, found: &Probe<V>, pairs: &mut SupportPairs<V>) {
         let [p, q, r, free] = self.slot;
-        self.pairs[free & 3] = (found.a.point, found.b.point);
+        pairs.0[free & 3] = (found.a.point, found.b.point);
         self.w = [found.w, self.w[0], self.w[1], self.w[2]];
         self.slot = [free, p, q, r];
         self.count = (self.count + 1).min(4);
     }
 
-    /// Puts the points in another order, given by their old positions, and keeps the first `count` of them.
+    /// Puts the points in another order, given by their old positions, and keeps the first `count` of them. The order is known when the program
+    /// is built, so that the points can stay in registers.
     #[inline(always)]
-    fn reorder(&mut self, order: [usize; 4], count: usize) {
-        self.w = order.map(|i| self.w[i & 3]);
-        self.slot = order.map(|i| self.slot[i & 3]);
+    fn reorder<const A: usize, const B: usize, const C: usize, const D: usize>(&mut self, count: usize) {
+        self.w = [self.w[A], self.w[B], self.w[C], self.w[D]];
+        self.slot = [self.slot[A], self.slot[B], self.slot[C], self.slot[D]];
         self.count = count;
     }
 
     /// The pair of points that a difference comes from.
     #[inline(always)]
-    pub fn pair(&self, index: usize) -> (V, V) {
-        self.pairs[self.slot[index & 3] & 3]
+    pub fn pair(&self, index: usize, pairs: &SupportPairs<V>) -> (V, V) {
+        pairs.0[self.slot[index & 3] & 3]
     }
 
     /// All four pairs.
     #[inline(always)]
-    pub fn simplex(&self) -> Simplex<V> {
-        Simplex { a: self.slot.map(|s| self.pairs[s & 3].0), b: self.slot.map(|s| self.pairs[s & 3].1) }
+    pub fn simplex(&self, pairs: &SupportPairs<V>) -> Simplex<V> {
+        Simplex { a: self.slot.map(|s| pairs.0[s & 3].0), b: self.slot.map(|s| pairs.0[s & 3].1) }
     }
 
     /// One of the points is `w`.
     #[inline(always)]
     pub fn holds(&self, w: V) -> bool {
-        let [p, q, r, s] = self.w.map(|p| p == w);
-        self.count > 0 && p || self.count > 1 && q || self.count > 2 && r || self.count > 3 && s
+        let n = self.count;
+        n > 0 && self.w[0] == w || n > 1 && self.w[1] == w || n > 2 && self.w[2] == w || n > 3 && self.w[3] == w
     }
 
     /// Four points, proved to hold the origin inside; see [`side`] for `slack`.
@@ -75,8 +88,8 @@ impl<V: Vector> WorkingSimplex<V> {
                 OriginSide::Inside => return None,
                 OriginSide::Beyond(dropped) => {
                     match dropped {
-                        1 => self.reorder([0, 2, 3, 1], 3),
-                        2 => self.reorder([0, 1, 3, 2], 3),
+                        1 => self.reorder::<0, 2, 3, 1>(3),
+                        2 => self.reorder::<0, 1, 3, 2>(3),
                         _ => self.count = 3,
                     }
                     behind = Some(self.w[3]);
@@ -101,7 +114,7 @@ impl<V: Vector> WorkingSimplex<V> {
             return across_line(a, b);
         }
         if normal.cross(ac).dot(a) < V::Scalar::ZERO {
-            self.reorder([0, 2, 1, 3], 2);
+            self.reorder::<0, 2, 1, 3>(2);
             return across_line(a, c);
         }
         let ahead = match behind {
@@ -116,7 +129,9 @@ impl<V: Vector> WorkingSimplex<V> {
     #[inline(always)]
     pub fn shrink_to_nearest(&mut self) -> NearestPoint<V> {
         let nearest = nearest(self.w, self.count);
-        self.reorder(nearest.order, nearest.count);
+        self.w = nearest.order.map(|i| self.w[i & 3]);
+        self.slot = nearest.order.map(|i| self.slot[i & 3]);
+        self.count = nearest.count;
         nearest
     }
 }

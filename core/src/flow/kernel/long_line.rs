@@ -149,7 +149,7 @@ fn advance_seam<R: Real, const D: usize>(
     let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported: inner.clone() };
     let mut report = sweep::advance(&seam, &part, &mut held, scratch);
     for i in inner {
-        new.set(place(i), &held.get(i));
+        new.set(place(i), &held.at(i));
     }
     report.inflow = Report::new().inflow;
     report

@@ -36,8 +36,24 @@ const TILE: usize = 4096;
 const LEAST_ROWS: usize = 16;
 
 /// Number of tiles of about equal size for layers of so many rows of `n` cells.
-fn tiles(n: usize, rows: usize) -> usize {
-    rows.div_ceil(LEAST_ROWS.max(TILE / n.max(1))).max(1)
+const fn tiles(n: usize, rows: usize) -> usize {
+    let of_tile = TILE / at_least(1, n);
+    at_least(1, rows.div_ceil(at_least(LEAST_ROWS, of_tile)))
+}
+
+/// The larger of two numbers.
+const fn at_least(a: usize, b: usize) -> usize {
+    if a > b { a } else { b }
+}
+
+/// The product of some numbers, or the largest one there is.
+const fn product<const N: usize>(factors: [usize; N]) -> usize {
+    let (mut all, mut i) = (1usize, 0);
+    while i < N {
+        all = all.saturating_mul(factors[i]);
+        i += 1;
+    }
+    all
 }
 
 /// Sizes of the pieces of scratch.
@@ -55,14 +71,14 @@ pub(in crate::flow) struct Sizes {
 }
 
 impl Sizes {
-    pub fn new<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>) -> Self {
-        let cells = mesh.cells();
+    /// For a mesh of so many cells along each axis.
+    pub const fn new<const D: usize>(cells: [usize; D]) -> Self {
         let n = if in_pieces::<D>(cells[0]) { PIECE } else { cells[0] };
         let rows = if D == 3 { cells[1].div_ceil(tiles(n, cells[1])) } else { 1 };
         Sizes {
             n,
-            padded: n + 2,
-            m: n + 1,
+            padded: n.saturating_add(2),
+            m: n.saturating_add(1),
             rows,
             rows_padded: if D == 3 { rows + 2 * ROWS_BESIDE } else { 1 },
             layers: if D == 1 { 1 } else { 3 },
@@ -76,26 +92,31 @@ impl Sizes {
         (0..count).map(move |k| rows * k / count..rows * (k + 1) / count)
     }
 
-    pub fn total<const D: usize>(&self) -> usize {
+    /// Scalars in all; the largest number there is, if they are more.
+    pub const fn total<const D: usize>(&self) -> usize {
         let v = D + 2;
         let f = D + 3;
-        let window = self.layers * self.rows_padded * v * self.padded;
-        let row = (D + 1) * v * self.n + 3 * f * self.m;
+        let window = product([self.layers, self.rows_padded, v, self.padded]);
+        let row = product([D + 1, v, self.n]).saturating_add(product([3, f, self.m]));
         let (middle, last) = self.lagged::<D>();
-        let lagged = 2 * f * self.n * (middle + last);
-        let changes = (0..D).map(|d| self.change_rows::<D>(d) * v * self.n).sum::<usize>();
-        let metric = (4 * D + 5) * self.n + 2 * self.m;
-        window + row + lagged + changes + metric
+        let lagged = product([2 * f, self.n, middle + last]);
+        let (mut changes, mut d) = (0usize, 0);
+        while d < D {
+            changes = changes.saturating_add(product([self.change_rows::<D>(d), v, self.n]));
+            d += 1;
+        }
+        let metric = product([4 * D + 5, self.n]).saturating_add(product([2, self.m]));
+        window.saturating_add(row).saturating_add(lagged).saturating_add(changes).saturating_add(metric)
     }
 
     /// Rows whose changes along axis `d` are kept: those of a layer, until the layer above has come. Along the last axis they are
     /// used at once.
-    fn change_rows<const D: usize>(&self, d: usize) -> usize {
+    const fn change_rows<const D: usize>(&self, d: usize) -> usize {
         if d == D - 1 { 1 } else { self.rows }
     }
 
     /// Rows of face states and fluxes to be kept for the faces above them: along axis 1 of a 3D mesh, and along the last axis.
-    fn lagged<const D: usize>(&self) -> (usize, usize) {
+    const fn lagged<const D: usize>(&self) -> (usize, usize) {
         match D {
             1 => (0, 0),
             2 => (0, 1),

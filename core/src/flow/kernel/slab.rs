@@ -60,7 +60,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         Slab {
             problem,
             medium: problem.porosity.map(|porosity| Medium { mesh: problem.mesh, porosity }),
-            size: Sizes::new(&problem.mesh),
+            size: Sizes::new(problem.mesh.cells()),
             periodic: problem.periodic(),
             weighted: problem.gravity.iter().any(|&g| g != R::ZERO),
             even: problem.mesh.widths.map(|w| w.iter().all(|x| *x == w[0])),

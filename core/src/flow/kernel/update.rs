@@ -81,7 +81,7 @@ fn drag<R: Real, const D: usize>(slab: &Slab<'_, R, D>, span: Span, new: &mut Fi
     for i in 0..span.n {
         let coefficients = drag.at(span.from + i);
         if !coefficients.is_free() {
-            let (before, mut after) = (slab.old.get(span.from + i), new.get(span.to + i));
+            let (before, mut after) = (slab.old.at(span.from + i), new.at(span.to + i));
             let u = before.momentum.map(|m| m / before.density);
             let pushed = after.momentum.map(|m| m / after.density);
             let v = coefficients.step(u, pushed, slab.dt);
@@ -130,7 +130,7 @@ fn report_row<R: Real, const D: usize>(
     if bad {
         for i in reported {
             let merged = small.is_some_and(|m| is(m[i], SMALL));
-            report.unphysical += usize::from(!merged && !slab.problem.is_physical(&new.get(span.to + i)));
+            report.unphysical += usize::from(!merged && !slab.problem.is_physical(&new.at(span.to + i)));
         }
     }
 }

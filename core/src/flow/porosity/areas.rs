@@ -10,13 +10,17 @@ use crate::number::real::Real;
 /// The faces of one axis beside the cells of a row; cells count from the first of the row.
 pub(crate) struct Ducts<'a, R> {
     axis: usize,
-    /// All faces of the axis; that of the lowest side of the first cell; and how far apart the two faces of a cell are.
+    /// Open fractions of all faces of the axis.
     open: &'a [R],
+    /// Index of the first cell's low face.
     low: usize,
+    /// From a cell's low face to its high face.
     stride: usize,
-    /// Index of the first cell along the axis, how much the next one adds to it, and where it ends.
+    /// Index of the first cell along the axis.
     place: usize,
+    /// What the next cell adds to it: 1 if the row runs along the axis, else 0.
     step: usize,
+    /// Cells along the axis.
     cells: usize,
     periodic: bool,
     volume: &'a [R],
@@ -83,8 +87,8 @@ impl<'a, R: Real> Ducts<'a, R> {
         (duct(below), duct(above))
     }
 
-    /// Open area of a cell that is not sealed, and of the wall that a closed face is to its gas: the duct goes on up to it. A
-    /// cell between two walls is as wide as its open volume.
+    /// Width of the gas in a cell: its duct area, or its open volume if that is larger, as in a cell between two closed faces. A closed face
+    /// is a wall of this area.
     pub fn width(&self, i: usize) -> R {
         R::larger(self.duct(i), self.volume[i])
     }

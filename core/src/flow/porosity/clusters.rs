@@ -1,10 +1,10 @@
 //! Small cells: open faces in front of hardly any open volume.
 //!
 //! Alone such a cell would force the time step down with its volume. It is merged with its neighbours, transitively, until
-//! the cluster has half the volume that its largest open face asks for; after each step the cluster's cells share one state.
+//! the cluster has the share [`SMALL_SHARE`] (the reference takes one half) of the volume that its largest open face asks for; after each step the cluster's cells share one state.
 //! Where nothing moves a cluster is left alone, so gas at rest keeps its densities.
 //!
-//! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution and its threshold of one half).
+//! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution, threshold one half).
 
 use crate::flow::error::{Error, fits};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
@@ -16,16 +16,16 @@ const LAST: u32 = 1 << 31;
 
 /// Clusters of cells that share one state: their cells one after the other.
 #[derive(Clone, Copy, Debug)]
-pub struct Clusters<'a>(pub &'a [u32]);
+pub(in crate::flow) struct Clusters<'a>(pub(in crate::flow) &'a [u32]);
 
 /// Length of the scratch that [`clusters`] needs for a number of cells.
 pub const fn cluster_scratch(cells: usize) -> usize {
-    6 * cells
+    cells.saturating_mul(6)
 }
 
 /// Smoothing passes of the room of a cell: it starts as the open volume, and each pass adds the neighbours' values times the open
 /// fraction between. It ranks equal neighbours without regard to the side they stand on, so that clusters stay small.
-const ROOM: usize = 8;
+const SMOOTHING_PASSES: usize = 8;
 
 /// Finds the clusters; returns how many entries of `list` they fill.
 ///
@@ -35,7 +35,7 @@ const ROOM: usize = 8;
 ///
 /// # Errors
 /// A slice does not fit the mesh, or the mesh has too many cells.
-pub fn clusters<R: Real, const D: usize>(
+pub(in crate::flow) fn clusters<R: Real, const D: usize>(
     mesh: &Mesh<'_, R, D>,
     (volume, faces): (&[R], &[&[R]; D]),
     periodic: [bool; D],
@@ -51,7 +51,7 @@ pub fn clusters<R: Real, const D: usize>(
         return Err(Error::ShapeMismatch { expected: cluster_scratch(n), found: scratch.len() });
     }
     if n >= LAST as usize {
-        return Err(Error::ShapeMismatch { expected: LAST as usize - 1, found: n });
+        return Err(Error::TooManyCells);
     }
     let mut search = Search::new(n, list, parent, scratch);
     search.find_room(&space);
@@ -153,7 +153,7 @@ impl<'s, R: Real> Search<'s, R> {
         for (cell, room) in room.iter_mut().enumerate() {
             *room = space.open_volume(cell);
         }
-        for _ in 0..ROOM {
+        for _ in 0..SMOOTHING_PASSES {
             before.copy_from_slice(room);
             for (cell, room) in room.iter_mut().enumerate() {
                 let mut beside = [R::ZERO; D];
@@ -279,12 +279,12 @@ impl<'a> Clusters<'a> {
     }
 
     /// The cells of each cluster.
-    pub fn groups(self) -> impl Iterator<Item = impl Iterator<Item = usize> + Clone + 'a> {
+    pub(in crate::flow) fn groups(self) -> impl Iterator<Item = impl Iterator<Item = usize> + Clone + 'a> {
         self.each().map(|cluster| cluster.iter().map(|e| (e & !LAST) as usize))
     }
 
     /// The cells of all clusters.
-    pub(crate) fn cells(self) -> impl Iterator<Item = usize> + 'a {
+    pub(in crate::flow) fn cells(self) -> impl Iterator<Item = usize> + 'a {
         self.0.iter().map(|e| (e & !LAST) as usize)
     }
 }
@@ -316,7 +316,7 @@ impl<R: Real> Sum<R> {
 }
 
 /// The least volume a cell is counted with. Its change is its flux over this volume: huge, and undone by the averaging.
-pub(crate) fn least_volume<R: Real>() -> R {
+pub(in crate::flow) fn least_volume<R: Real>() -> R {
     R::EPSILON * R::EPSILON
 }
 
@@ -325,7 +325,7 @@ pub(crate) fn least_volume<R: Real>() -> R {
 const UNEQUAL: f64 = 0.1;
 
 /// Gives the members of unequal clusters of a starting field their common average.
-pub(crate) fn average_unequal<R: Real, const D: usize>(
+pub(in crate::flow) fn average_unequal<R: Real, const D: usize>(
     clusters: Clusters<'_>,
     mesh: &Mesh<'_, R, D>,
     volume: &[R],
@@ -334,10 +334,10 @@ pub(crate) fn average_unequal<R: Real, const D: usize>(
 ) {
     for cells in clusters.groups() {
         let Some(first) = cells.clone().next() else { continue };
-        let w = gas.primitive(&field.get(first));
+        let w = gas.primitive(&field.at(first));
         let limit = R::from_f64(UNEQUAL);
         let unequal = cells.clone().any(|cell| {
-            let other = gas.primitive(&field.get(cell));
+            let other = gas.primitive(&field.at(cell));
             let c = gas.sound_speed(&w);
             !((other.pressure - w.pressure).abs() <= limit * w.pressure)
                 || (0..D).any(|d| !((other.velocity[d] - w.velocity[d]).abs() <= limit * c))
@@ -349,7 +349,7 @@ pub(crate) fn average_unequal<R: Real, const D: usize>(
         let mut momentum = [const { Sum::new() }; D];
         for cell in cells.clone() {
             let v = R::larger(volume[cell], least_volume()) * mesh.volume(mesh.coordinates(cell));
-            let u = field.get(cell);
+            let u = field.at(cell);
             total.add(v);
             density.add(v * u.density);
             energy.add(v * u.energy);
@@ -393,7 +393,7 @@ impl<R: Real, const D: usize> Totals<R, D> {
         let mut largest = Conserved { density: R::ZERO, momentum: [R::ZERO; D], energy: R::ZERO };
         for cell in cells {
             let v = weight(cell);
-            let (a, b) = (old.get(cell), new.get(cell));
+            let (a, b) = (old.at(cell), new.at(cell));
             total.add(v);
             content[0].add(v * a.density);
             content[1].add(v * a.energy);
@@ -432,7 +432,7 @@ impl<R: Real, const D: usize> Totals<R, D> {
 }
 
 /// Shares one state over each cluster. `volume` is `beta_v`.
-pub(crate) fn apply<R: Real, const D: usize>(
+pub(in crate::flow) fn apply<R: Real, const D: usize>(
     clusters: Clusters<'_>,
     mesh: &Mesh<'_, R, D>,
     volume: &[R],
@@ -447,7 +447,7 @@ pub(crate) fn apply<R: Real, const D: usize>(
         let (moves, inv) = (totals.moves(still), R::ONE / totals.volume);
         let Totals { content, change, .. } = totals;
         for cell in cells {
-            let a = old.get(cell);
+            let a = old.at(cell);
             let base = |own: R, all: R| if moves { all * inv } else { own };
             let mut momentum = [R::ZERO; D];
             for c in 0..D {

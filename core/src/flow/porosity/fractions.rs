@@ -2,16 +2,38 @@
 //!
 //! Works on the live axes only: a plane flow has two axes, whichever they are.
 
+use crate::flow::error::Error;
 use crate::number::real::Real;
 
 /// Cells per live axis and their widths; axis 0 runs fastest.
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a, R, const D: usize> {
-    /// Cell widths along each axis; their number is the number of cells.
-    pub widths: [&'a [R]; D],
+    pub(in crate::flow) widths: [&'a [R]; D],
 }
 
-impl<R: Real, const D: usize> Mesh<'_, R, D> {
+impl<'a, R: Real, const D: usize> Mesh<'a, R, D> {
+    /// Cells of the given widths along each axis; their number is the number of cells.
+    ///
+    /// # Errors
+    /// A width is not positive and finite, or there are more faces than a `usize` can count.
+    pub fn new(widths: [&'a [R]; D]) -> Result<Self, Error> {
+        const { assert!(D > 0 && D < 4, "a mesh has one, two or three axes") }
+        for (axis, widths) in widths.iter().enumerate() {
+            if let Some(cell) = widths.iter().position(|&w| !(w > R::ZERO && w.is_finite())) {
+                return Err(Error::Width { axis, cell });
+            }
+        }
+        let faces = widths.iter().try_fold(1usize, |n, w| n.checked_mul(w.len() + 1));
+        if faces.is_none() {
+            return Err(Error::TooManyCells);
+        }
+        Ok(Mesh { widths })
+    }
+
+    /// Widths of the cells along each axis.
+    pub const fn widths(&self) -> [&'a [R]; D] {
+        self.widths
+    }
     /// Cells along each axis.
     #[inline(always)]
     pub fn cells(&self) -> [usize; D] {
@@ -36,12 +58,13 @@ impl<R: Real, const D: usize> Mesh<'_, R, D> {
 
     /// Cells of one layer: those that share an index of the last axis. Slabs for threads are whole layers.
     pub fn layer(&self) -> usize {
-        self.cells()[..D - 1].iter().product()
+        self.cells()[..D.saturating_sub(1)].iter().product()
     }
 
-    /// Indices of a cell along each axis.
+    /// Indices of a cell along each axis; of a mesh without cells they mean nothing.
     pub fn coordinates(&self, mut cell: usize) -> [usize; D] {
         self.cells().map(|n| {
+            let n = n.max(1);
             let i = cell % n;
             cell /= n;
             i
@@ -52,14 +75,14 @@ impl<R: Real, const D: usize> Mesh<'_, R, D> {
     #[inline(always)]
     pub fn index(&self, at: [usize; D]) -> usize {
         let n = self.cells();
-        (0..D).rev().fold(0, |i, a| i * n[a] + at[a])
+        (0..D).rev().fold(0usize, |i, a| i.wrapping_mul(n[a]).wrapping_add(at[a]))
     }
 
     /// Flat index of the low face of a cell along axis `d`; the high face is [`Mesh::face_stride`] further.
     #[inline(always)]
     pub fn face(&self, d: usize, at: [usize; D]) -> usize {
         let n = self.cells();
-        (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a])
+        (0..D).rev().fold(0usize, |i, a| i.wrapping_mul(n[a] + usize::from(a == d)).wrapping_add(at[a]))
     }
 
     /// Distance between the two faces of a cell along axis `d`.
@@ -68,11 +91,18 @@ impl<R: Real, const D: usize> Mesh<'_, R, D> {
         (0..D).filter(|&a| a < d).fold(1, |s, a| s * self.widths[a].len())
     }
 
-    /// Volume of a cell, its obstacles included; length or area in fewer dimensions.
+    /// Flat indices of the low and high face of a cell along axis `d`.
+    #[inline(always)]
+    pub fn faces_of(&self, d: usize, at: [usize; D]) -> [usize; 2] {
+        let low = self.face(d, at);
+        [low, low.wrapping_add(self.face_stride(d))]
+    }
+
+    /// Volume of a cell, its obstacles included; length or area in fewer dimensions; 0 outside the mesh.
     pub fn volume(&self, at: [usize; D]) -> R {
         let mut v = R::ONE;
         for a in 0..D {
-            v *= self.widths[a][at[a]];
+            v *= self.widths[a].get(at[a]).copied().unwrap_or(R::ZERO);
         }
         v
     }
@@ -80,7 +110,7 @@ impl<R: Real, const D: usize> Mesh<'_, R, D> {
 
 /// Open fractions: of cell volumes, and of the faces normal to each axis (one longer along their own axis).
 #[derive(Clone, Copy, Debug)]
-pub struct Porosity<'a, R, const D: usize> {
+pub(in crate::flow) struct Porosity<'a, R, const D: usize> {
     /// `beta_v`.
     pub volume: &'a [R],
     /// `beta_x`, `beta_y`, `beta_z` of the live axes.
@@ -96,7 +126,7 @@ pub const SMALL_SHARE: f64 = 0.33;
 
 /// Porosity as the kernel asks for it at single cells and faces.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Medium<'a, R, const D: usize> {
+pub(in crate::flow) struct Medium<'a, R, const D: usize> {
     pub mesh: Mesh<'a, R, D>,
     pub porosity: Porosity<'a, R, D>,
 }

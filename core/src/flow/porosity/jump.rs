@@ -19,7 +19,8 @@ pub(in crate::flow) struct JumpFaces<R, const D: usize, const L: usize> {
     pub face: [R; L],
     /// Pressures that act on the walls inside each cell at this face.
     pub references: [[R; L]; 2],
-    /// 1; or 0 where a step went wrong: there the Riemann problem in the throat, however weak the waves.
+    /// Weight of the flux of weak waves: 1, or 0 beside a cell where a step went wrong. There the Riemann problem in the throat is solved,
+    /// however weak the waves.
     pub acoustic_weight: [R; L],
 }
 
@@ -86,7 +87,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
     out
 }
 
-/// The forces on the walls beside streams that choke, and 1 where weak waves may pass: in acoustic_weight, and where nothing chokes.
+/// The forces on the walls beside streams that choke, and `acoustic_weight` set to 0 where a stream chokes.
 fn chokes<R: Real, const D: usize, const L: usize>(
     faces: &JumpFaces<R, D, L>,
     at: &[AtThroat<[R; L], D>; 2],
@@ -139,8 +140,9 @@ fn relative_impulse<R: Real, const D: usize>(w: &Primitive<R, D>, reference: R) 
 /// on as strong.
 const STRONG: f64 = 0.6;
 
-/// How far the waves at a jump are weak: 1 if sound, 0 if a shock arrives, or if `mass_flux` per area of the throat, that of weak
-/// waves, is more than it would take.
+/// Share of the flux of weak waves: 1 up to half of [`STRONG`], 0 from [`STRONG`] on, linear between. The strength is the larger of the jump
+/// of the pressure as a share and the Mach number in the throat; the latter also for `mass_flux`, what weak waves would carry per area of
+/// the throat.
 #[inline(always)]
 fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2], gas: &FaceGas<R>) -> R {
     let mach = |w: &Primitive<R, D>| {

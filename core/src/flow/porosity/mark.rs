@@ -70,7 +70,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 ///
 /// # Errors
 /// A slice does not fit the mesh.
-pub fn mark<R: Real, const D: usize>(
+pub(in crate::flow) fn mark<R: Real, const D: usize>(
     mesh: &Mesh<'_, R, D>,
     volume: &[R],
     faces: &[&[R]; D],

@@ -3,6 +3,7 @@
 use super::NoProof::{self, Ambiguous, Full};
 use super::piece::{Piece, Place, Plane, cut};
 use crate::number::real::Real;
+use core::cell::Cell;
 
 /// Where a branch of a tree leads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,18 +50,18 @@ pub(super) fn build_bsp<R: Real>(pieces: &[Piece<R>], memory: BspMemory<R>, thic
         *place = id as u32;
         largest.see(piece.area, id);
     }
-    all.swap(0, largest.at);
+    swap(all, 0, largest.at);
     *pending.first_mut().ok_or(Full)? = PendingNode { first: 0, end: pieces.len(), parent: None };
     let (mut open_nodes, root) = (1, *node_count as u32);
     while open_nodes > 0 {
         open_nodes -= 1;
-        let PendingNode { first, end, parent } = pending[open_nodes];
+        let PendingNode { first, end, parent } = *pending.get(open_nodes).ok_or(Full)?;
         let number = *node_count as u32;
-        *nodes.get_mut(*node_count).ok_or(Full)? =
-            Node { plane: builder.piece(order[first]).plane, positive: Branch::Open, negative: Branch::Solid };
+        let plane = builder.piece(*order.get(first).ok_or(Full)?)?.plane;
+        *nodes.get_mut(*node_count).ok_or(Full)? = Node { plane, positive: Branch::Open, negative: Branch::Solid };
         *node_count += 1;
         if let Some((node, positive)) = parent {
-            let node = &mut nodes[node as usize];
+            let node = nodes.get_mut(node as usize).ok_or(Full)?;
             *(if positive { &mut node.positive } else { &mut node.negative }) = Branch::Node(number);
         }
         let (middle, end) = builder.divide(order, first, end)?;
@@ -116,7 +117,7 @@ impl<'a, R: Real> Sorted<'a, R> {
         if self.behind > p {
             return Err(Full);
         }
-        self.order[self.behind] = id;
+        *self.order.get_mut(self.behind).ok_or(Full)? = id;
         self.largest[0].see(area, self.behind);
         self.behind += 1;
         Ok(())
@@ -131,16 +132,18 @@ impl<'a, R: Real> Sorted<'a, R> {
     }
 
     /// Move both lists together, behind the plane from `first`, the largest first in each; returns where they end.
-    fn finish(self, first: usize, end: usize) -> (usize, usize) {
+    fn finish(self, first: usize, end: usize) -> Result<(usize, usize), NoProof> {
         let Sorted { order, behind, before, largest } = self;
         if behind > first {
-            order.swap(first, largest[0].at);
+            swap(order, first, largest[0].at);
         }
         if before > end {
-            order.swap(end, largest[1].at);
+            swap(order, end, largest[1].at);
         }
-        order.copy_within(end..before, behind);
-        (behind, behind + before - end)
+        let places = Cell::from_mut(order).as_slice_of_cells();
+        let (to, from) = (places.get(behind..).ok_or(Full)?, places.get(end..before).ok_or(Full)?);
+        to.iter().zip(from).for_each(|(to, from)| to.set(from.get()));
+        Ok((behind, behind + before - end))
     }
 }
 
@@ -155,22 +158,22 @@ struct BspBuilder<'a, R: Real> {
 
 impl<R: Real> BspBuilder<'_, R> {
     #[inline(always)]
-    fn piece(&self, id: u32) -> &Piece<R> {
+    fn piece(&self, id: u32) -> Result<&Piece<R>, NoProof> {
         piece(self.pieces, self.split_pieces, id)
     }
 
     /// Sort the pieces after `order[first]`, the divider, by the sides of its plane: `first..a` behind, `a..b` before, the largest
     /// first in each; returns `(a, b)`. Pieces in the plane are dropped, pieces across are cut.
     fn divide(&mut self, order: &mut [u32], first: usize, end: usize) -> Result<(usize, usize), NoProof> {
-        let divider = order[first];
-        let plane = self.piece(divider).plane;
+        let divider = *order.get(first).ok_or(Full)?;
+        let plane = self.piece(divider)?.plane;
         let mut sorted = Sorted::new(order, first, end);
         for p in first + 1..end {
-            let id = sorted.order[p];
-            let piece = self.piece(id);
+            let id = *sorted.order.get(p).ok_or(Full)?;
+            let piece = self.piece(id)?;
             match piece.place(&plane, self.thickness) {
                 // Solid thinner than rounding: which side of the plane holds it cannot be told.
-                Place::On if piece.backs(self.piece(divider), self.thickness) => return Err(Ambiguous),
+                Place::On if piece.backs(self.piece(divider)?, self.thickness) => return Err(Ambiguous),
                 Place::On => {}
                 Place::Negative => sorted.behind(id, piece.area, p)?,
                 Place::Positive => sorted.before(id, piece.area)?,
@@ -182,7 +185,7 @@ impl<R: Real> BspBuilder<'_, R> {
                 Place::Across => self.cut(id, &plane, p, &mut sorted)?,
             }
         }
-        Ok(sorted.finish(first, end))
+        sorted.finish(first, end)
     }
 
     /// Sort the parts of a piece that is not full, at place `p`; parts without area are dropped.
@@ -213,16 +216,26 @@ impl<R: Real> BspBuilder<'_, R> {
     /// A piece, two new split pieces, and their numbers.
     #[expect(clippy::type_complexity, reason = "a name would say no more")]
     fn two_parts(&mut self, id: u32) -> Result<(&Piece<R>, &mut [Piece<R>; 2], [u32; 2]), NoProof> {
-        let (made, free) = self.split_pieces.split_at_mut(self.used);
+        let (made, free) = self.split_pieces.split_at_mut_checked(self.used).ok_or(Full)?;
         let two = free.first_chunk_mut().ok_or(Full)?;
         let number = (self.pieces.len() + self.used) as u32;
         self.used += 2;
-        Ok((piece(self.pieces, made, id), two, [number, number + 1]))
+        Ok((piece(self.pieces, made, id)?, two, [number, number + 1]))
     }
 }
 
 #[inline(always)]
-fn piece<'a, R: Real>(pieces: &'a [Piece<R>], split_pieces: &'a [Piece<R>], id: u32) -> &'a Piece<R> {
+fn piece<'a, R: Real>(pieces: &'a [Piece<R>], split_pieces: &'a [Piece<R>], id: u32) -> Result<&'a Piece<R>, NoProof> {
     let id = id as usize;
-    pieces.get(id).unwrap_or_else(|| &split_pieces[id - pieces.len()])
+    pieces.get(id).or_else(|| split_pieces.get(id - pieces.len())).ok_or(Full)
+}
+
+/// Exchange two entries, if there are both.
+#[inline(always)]
+fn swap(order: &mut [u32], a: usize, b: usize) {
+    if let (Some(&at_a), Some(&at_b)) = (order.get(a), order.get(b)) {
+        for (place, id) in [(a, at_b), (b, at_a)] {
+            order.get_mut(place).into_iter().for_each(|place| *place = id);
+        }
+    }
 }

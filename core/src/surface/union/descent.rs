@@ -73,7 +73,7 @@ impl<R: Real> Descent<'_, R> {
         enter(first, 0);
         let mut waiting: usize = 1;
         while let Some(top) = waiting.checked_sub(1) {
-            let f = &mut self.fragments[top];
+            let f = self.fragments.get_mut(top).ok_or(Full)?;
             let Some(part) = parts.get(f.part) else {
                 keep(&f.polygon);
                 waiting = top;
@@ -92,7 +92,7 @@ impl<R: Real> Descent<'_, R> {
                     enter(f, f.part + 1);
                     continue;
                 }
-                Branch::Node(n) => &self.nodes[n as usize],
+                Branch::Node(n) => self.nodes.get(n as usize).ok_or(Full)?,
             };
             match f.place(node, self.thickness)? {
                 Place::Positive => f.branch = node.positive,

@@ -117,11 +117,15 @@ impl Fingerprint {
 
 // Kinds as numbers, each with its values: they mean the same in every version, whatever the kinds are called in the code.
 
+/// Number of a kind that this program does not name; a kind that a case file can name has one of its own.
+const UNNAMED: f64 = -1.0;
+
 fn gas_numbers(gas: &Gas<f64>) -> Vec<f64> {
     match *gas {
         Gas::Ideal { gamma } => vec![0.0, gamma],
         Gas::Isothermal { sound_speed } => vec![1.0, sound_speed],
         Gas::Isentropic { gamma, density, pressure } => vec![2.0, gamma, density, pressure],
+        _ => vec![UNNAMED],
     }
 }
 
@@ -135,6 +139,7 @@ fn side_numbers<const D: usize>(side: &Boundary<f64, D>) -> Vec<f64> {
         Boundary::Inlet(w) => state(4.0, w),
         Boundary::Outlet { pressure } => vec![5.0, *pressure],
         Boundary::Reservoir { density, pressure } => vec![6.0, *density, *pressure],
+        _ => vec![UNNAMED],
     }
 }
 
@@ -143,6 +148,7 @@ fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
         Riemann::Hllc => 0.0,
         Riemann::Hlle => 1.0,
         Riemann::Rusanov => 2.0,
+        _ => UNNAMED,
     };
     let limiter = match scheme.limiter {
         Limiter::FirstOrder => 0.0,
@@ -151,6 +157,7 @@ fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
         Limiter::VanLeer => 3.0,
         Limiter::Minmod => 4.0,
         Limiter::Unlimited => 5.0,
+        _ => UNNAMED,
     };
     let pressure = match scheme.pressure {
         PressureForm::Geometric => 0.0,

@@ -43,9 +43,12 @@ pub struct SpaceReport {
     pub jump_faces: usize,
     /// Cells that share their state with neighbours because of their little volume.
     pub merged_cells: usize,
-    /// Fractions changed before the start.
-    #[serde(flatten)]
-    pub tidied: Tidied,
+    /// Cells whose fraction was within a few rounding errors of 0 and became 0.
+    pub dust_cells: usize,
+    /// Faces likewise.
+    pub dust_faces: usize,
+    /// Open faces on the sides of the domain that were closed: too little volume behind them for any step.
+    pub closed_faces: usize,
 }
 
 /// The axes with more than one cell; x, if there is none.
@@ -86,11 +89,14 @@ pub fn setup<const D: usize>(
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
+            let Tidied { dust_cells, dust_faces, closed_faces } = tidied;
             report = Some(SpaceReport {
                 closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
                 jump_faces: flow.jump_faces(),
                 merged_cells: flow.merged_cells(),
-                tidied,
+                dust_cells,
+                dust_faces,
+                closed_faces,
             });
         }
     }

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 
 /// The formats that are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FileKind {
     BinaryStl,
     AsciiStl,

@@ -148,7 +148,7 @@ fn vortex(case: &Case) -> Outcome {
         for cell in 0..n * n {
             let (i, j) = (cell % n, cell / n);
             let (i, j) = if swapped { (j, i) } else { (i, j) };
-            flow.set(cell, &gas.primitive(&average(i, j, width, 0.0, swapped, &at, gas, sides)));
+            flow.set(cell, &gas.primitive(&average([i, j], width, 0.0, swapped, &at, gas, sides)));
         }
         flow.run(0.8, t)?;
         Ok(flow)
@@ -158,7 +158,7 @@ fn vortex(case: &Case) -> Outcome {
         let flow = run(n, false)?;
         let width = [length[0] / n as f64, length[1] / n as f64];
         let error: f64 = (0..n * n)
-            .map(|c| (flow.get(c).density - average(c % n, c / n, width, t, false, &at, gas, sides).density).abs())
+            .map(|c| (flow.get(c).density - average([c % n, c / n], width, t, false, &at, gas, sides).density).abs())
             .sum();
         errors.push(error / (n * n) as f64);
         v.note(&format!("L1@{n}"), errors[errors.len() - 1]);
@@ -177,8 +177,7 @@ fn vortex(case: &Case) -> Outcome {
 
 /// Cell average of the conserved variables by 4 × 4 midpoints of Gauss pairs.
 fn average(
-    i: usize,
-    j: usize,
+    [i, j]: [usize; 2],
     width: [f64; 2],
     time: f64,
     swapped: bool,
