@@ -56,7 +56,7 @@ pub(super) struct Shared<'s, V: Vector, O> {
 
 /// So many triangles may be sorted for the parts of one cell. Where so much surface meets in one place that halving does not thin it, a cell
 /// would take longer with each level of division; beyond this it keeps the bounds that it has.
-const MOST_EFFORT: usize = 1 << 18;
+const MOST_EFFORT: usize = 1 << 20;
 
 /// What the division of a cell has cost.
 #[derive(Clone, Copy, Debug, Default)]
