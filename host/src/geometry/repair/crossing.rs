@@ -7,7 +7,7 @@
 //!
 //! **Proof.** The new surface must be closed: its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
-use crate::geometry::repair::face::{Face, Meeting, beside, cut, meeting, push_parts};
+use crate::geometry::repair::face::{Crossing, Face, beside, cut, meeting, push_parts};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
@@ -87,7 +87,7 @@ pub struct Meetings<'a> {
     /// Their planes.
     pub faces: Vec<Face>,
     /// For each triangle that others meet, these others.
-    met: HashMap<u32, Vec<(u32, Meeting)>>,
+    met: HashMap<u32, Vec<(u32, Crossing)>>,
     on: f64,
 }
 
@@ -115,7 +115,7 @@ impl<'a> Meetings<'a> {
     #[must_use]
     pub fn new(triangles: &'a [[DVec3; 3]], on: f64) -> Self {
         let faces: Vec<Face> = triangles.iter().map(|&t| Face::new(t)).collect();
-        let mut met: HashMap<u32, Vec<(u32, Meeting)>> = HashMap::default();
+        let mut met: HashMap<u32, Vec<(u32, Crossing)>> = HashMap::default();
         Tree::new(triangles).touching_pairs(|m, n| {
             let (a, b) = (&faces[m as usize], &faces[n as usize]);
             if beside(a, b, on) || beside(b, a, on) {
@@ -123,7 +123,7 @@ impl<'a> Meetings<'a> {
             }
             for (m, n, a, b) in [(m, n, a, b), (n, m, b, a)] {
                 let found = meeting(a, b, on);
-                if found != Meeting::None {
+                if found != Crossing::None {
                     met.entry(m).or_default().push((n, found));
                 }
             }
@@ -164,7 +164,7 @@ impl<'a> Meetings<'a> {
     /// The triangles that cover a part of this one.
     pub fn covering(&self, n: u32) -> impl Iterator<Item = u32> {
         let met = self.met.get(&n).into_iter().flatten();
-        met.filter(|(_, found)| *found == Meeting::Cover).map(|(m, _)| *m)
+        met.filter(|(_, found)| *found == Crossing::Cover).map(|(m, _)| *m)
     }
 
     /// The uses of all edges, sorted: lower and higher point, and triangle.
@@ -206,9 +206,9 @@ impl<'a> Meetings<'a> {
                 [lo - self.on, hi + self.on]
             };
             match meeting {
-                Meeting::None => {}
-                Meeting::Cut(ends) => cut(&mut parts, ends[0], other.normal, around(ends), self.on),
-                Meeting::Cover => {
+                Crossing::None => {}
+                Crossing::Cut(ends) => cut(&mut parts, ends[0], other.normal, around(ends), self.on),
+                Crossing::Cover => {
                     for i in 0..3 {
                         let (a, b) = (other.corners[i], other.corners[(i + 1) % 3]);
                         let normal = face.normal.cross(b - a).normalize_or_zero();

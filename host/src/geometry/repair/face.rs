@@ -41,7 +41,7 @@ impl Face {
 
 /// How a triangle meets the inner part of another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Meeting {
+pub enum Crossing {
     /// It does not.
     None,
     /// Across, along this segment.
@@ -52,12 +52,12 @@ pub enum Meeting {
 
 /// How `other` meets the inner part of `face`.
 #[must_use]
-pub fn meeting(face: &Face, other: &Face, on: f64) -> Meeting {
+pub fn meeting(face: &Face, other: &Face, on: f64) -> Crossing {
     let shared = other.corners.map(|p| face.corners.contains(&p));
     let heights = [0, 1, 2].map(|i| if shared[i] { 0.0 } else { face.height(other.corners[i]) });
     let (above, below) = (heights.iter().any(|&h| h > on), heights.iter().any(|&h| h < -on));
     if !above && !below {
-        return if covers(face, other, on) { Meeting::Cover } else { Meeting::None };
+        return if covers(face, other, on) { Crossing::Cover } else { Crossing::None };
     }
     let mut ends = [DVec3::ZERO; 2];
     let mut count = 0;
@@ -77,7 +77,7 @@ pub fn meeting(face: &Face, other: &Face, on: f64) -> Meeting {
         }
     }
     if count != 2 {
-        return Meeting::None;
+        return Crossing::None;
     }
     // The part of the segment that lies within the triangle, off its sides.
     let (from, to) = (face.inward(ends[0]), face.inward(ends[1]));
@@ -85,7 +85,7 @@ pub fn meeting(face: &Face, other: &Face, on: f64) -> Meeting {
     for i in 0..3 {
         let (a, b) = (from[i] - on, to[i] - on);
         if a <= 0.0 && b <= 0.0 {
-            return Meeting::None;
+            return Crossing::None;
         }
         if a <= 0.0 {
             lo = lo.max(a / (a - b));
@@ -93,7 +93,7 @@ pub fn meeting(face: &Face, other: &Face, on: f64) -> Meeting {
             hi = hi.min(a / (a - b));
         }
     }
-    if (hi - lo) * ends[0].distance(ends[1]) > on { Meeting::Cut(ends) } else { Meeting::None }
+    if (hi - lo) * ends[0].distance(ends[1]) > on { Crossing::Cut(ends) } else { Crossing::None }
 }
 
 /// Do two triangles in one plane share more than their sides?
