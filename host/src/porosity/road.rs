@@ -6,7 +6,7 @@
 use super::convex::{Convex, Known, faceted, is_closed, round};
 use super::formulas::{self, FormulaMemory, FormulaSolid};
 use super::{Leaf, Method, Options};
-use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body, Doubt};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops;
@@ -34,7 +34,7 @@ impl Roads {
     #[must_use]
     pub fn choose(bodies: &Bodies, triangles: &[[DVec3; 3]], options: Options) -> Self {
         let known = |body: &Body| match (&body.form, options.method) {
-            _ if body.doubtful => None,
+            _ if body.doubt != Doubt::None => None,
             // Planes are measured by their surface: exact, and cheaper than any subdivision.
             (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
             (_, Method::Surface) => None,
