@@ -1,8 +1,9 @@
 //! Geometry: triangles of files and solids by formula, put in order until they are bodies that can be measured.
 //!
-//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`single`], [`repair`], [`bodies`]; `scene`.
+//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`facets`], [`single`], [`repair`], [`bodies`]; `scene`.
 
 pub mod bodies;
+pub mod facets;
 pub mod form;
 pub mod mesh;
 pub mod read;

@@ -9,6 +9,7 @@ mod fields;
 mod layers;
 mod levels;
 mod options;
+pub mod resistance;
 mod result;
 pub mod snap;
 mod targets;

@@ -293,7 +293,7 @@ fn union<V: Vector, O: OtherBodies<V>>(
 }
 
 /// Bounds of a cell from its parts, halves along the axes in which it is longest; none if the depth is spent.
-fn divide<V: Vector, O: OtherBodies<V>>(
+pub(super) fn divide<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
