@@ -8,6 +8,7 @@ mod doubt;
 mod fields;
 mod layers;
 mod levels;
+mod local;
 mod options;
 pub mod resistance;
 mod result;
@@ -52,8 +53,37 @@ pub fn porosity_watched(
     options: Options,
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
+    let Some(sure) = doubt::without_perhaps(bodies) else { return measured(grid, bodies, options, layer_done) };
+    let bounded = Options { bounds: true, ..options };
+    let mut found = measured(grid, bodies, bounded, layer_done);
+    doubt::open_upwards(&mut found, measured(grid, &sure, bounded, &|| ()));
+    found.bounds = found.bounds.filter(|_| options.bounds);
+    found
+}
+
+/// Porosities of bodies, all of them solid.
+fn measured(grid: &Grid<f64>, bodies: &Bodies, options: Options, layer_done: &(dyn Fn() + Sync)) -> Porosity {
     let moved = snap::into_planes(grid, bodies);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    let sheets_off_planes = snap::sheets_off_planes(grid, bodies, triangles);
+    let found = match local::from_corner(grid, bodies, triangles) {
+        Some((edges, seen)) => {
+            let near = edges.grid(None).expect("edges apart stay apart");
+            in_frame(&near, &seen, &seen.triangles, options, layer_done)
+        }
+        None => in_frame(grid, bodies, triangles, options, layer_done),
+    };
+    Porosity { sheets_off_planes, ..found }
+}
+
+/// Porosities of bodies with corners in the planes of the grid.
+fn in_frame(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    triangles: &[[DVec3; 3]],
+    options: Options,
+    layer_done: &(dyn Fn() + Sync),
+) -> Porosity {
     let levels = levels(bodies);
     let roads = Roads::choose(bodies, triangles, options);
     let mut last: Option<Union> = None;
@@ -64,8 +94,9 @@ pub fn porosity_watched(
         found.porosity
     });
     let mut joined = levels::join(&levels, unions);
+    doubt::allow_for_rounding(grid, bodies, options, &mut joined);
     doubt::widen(grid, bodies, options, &mut joined);
-    Porosity { sheets_off_planes: snap::sheets_off_planes(grid, bodies, triangles), ..joined }
+    joined
 }
 
 /// What all unions have in common: the bodies, their triangles as they are measured, and how each body is measured.

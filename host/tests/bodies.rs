@@ -1,8 +1,10 @@
 //! Triangles to bodies: what may be moved, capped and taken for a cavity, wherever the scene lies.
 
 use glam::{DVec3, dvec3};
-use voidage::geometry::bodies::Bodies;
+use voidage::geometry::bodies::{Bodies, Doubt};
 use voidage::geometry::mesh::{Mesh, Solid};
+use voidage::grid::Edges;
+use voidage::porosity::{Options, porosity};
 
 type Triangle = [DVec3; 3];
 
@@ -85,7 +87,8 @@ fn an_edge_divided_on_one_side_only_is_no_hole() {
         let middle = ((a + b) * 0.5).as_vec3().as_dvec3() + DVec3::splat(f64::from(f32::EPSILON) * (at.x + 1.0));
         shell[0] = [a, middle, c];
         shell.push([middle, b, c]);
-        let found = bodies(&[&shell]);
+        let mut found = Bodies::default();
+        found.add(&Mesh { single_precision: true, ..Mesh::from(shell) }, 1.0).expect("a body");
         let d = &found.diagnoses[0];
         assert_eq!((d.holes, d.t_junction_edges), (0, 3), "{at}: {:?}", found.warnings);
     }
@@ -152,7 +155,7 @@ fn parts_that_share_all_edges_of_a_face_count_once() {
             // Two bodies, one in the other, or their union.
             let largest = found.bodies.iter().map(|b| b.volume).fold(0.0, f64::max);
             assert!((largest - union).abs() < 1e-12, "{largest}, not {union}: {:?}", found.warnings);
-            assert!(found.bodies.iter().all(|b| !b.doubtful && b.volume <= union + 1e-12));
+            assert!(found.bodies.iter().all(|b| b.doubt == Doubt::None && b.volume <= union + 1e-12));
             assert_eq!(found.diagnoses[0].holes, 0);
         }
     }
@@ -182,7 +185,7 @@ fn a_double_sided_surface_counts_once() {
             let mut volume: Vec<f64> = found.bodies.iter().map(|b| b.volume).collect();
             volume.sort_by(f64::total_cmp);
             assert_eq!(volume, volumes, "{:?}", found.warnings);
-            assert!(found.bodies.iter().all(|b| !b.sheet && !b.doubtful), "{:?}", found.warnings);
+            assert!(found.bodies.iter().all(|b| !b.sheet && b.doubt == Doubt::None), "{:?}", found.warnings);
         }
     }
 }
@@ -272,13 +275,80 @@ fn cavities_that_overlap_are_open_once() {
 }
 
 #[test]
-fn double_sided_parts_that_overlap_flush_are_in_doubt() {
+fn double_sided_parts_that_overlap_flush_count_once() {
     let both = [cuboid(DVec3::ZERO, dvec3(1.0, 2.0, 1.0), false), cuboid(DVec3::ZERO, DVec3::ONE, false)].concat();
     for seed in 0..10 {
         let found = bodies(&[&shuffled(&with_backs(&both), seed)]);
-        let known: Vec<f64> = found.bodies.iter().filter(|b| !b.doubtful).map(|b| b.volume).collect();
-        // Never silently another volume.
-        let doubt = found.bodies.iter().any(|b| b.doubtful && b.bounds == [DVec3::ZERO, dvec3(1.0, 2.0, 1.0)]);
-        assert!(doubt || known.contains(&2.0), "{known:?} {:?}", found.warnings);
+        let volumes: Vec<f64> = found.bodies.iter().map(|b| b.volume).collect();
+        assert_eq!((found.diagnoses[0].doubtful, volumes), (0, vec![2.0]), "{:?}", found.warnings);
     }
+}
+
+#[test]
+fn a_room_of_double_sided_parts_stays_open() {
+    // Six parts that share whole edges with their neighbours, around a room of a cube.
+    let walls = [
+        ([0.0, 0.0, 0.0], [3.0, 3.0, 1.0]),
+        ([0.0, 0.0, 2.0], [3.0, 3.0, 3.0]),
+        ([0.0, 0.0, 1.0], [3.0, 1.0, 2.0]),
+        ([0.0, 2.0, 1.0], [3.0, 3.0, 2.0]),
+        ([0.0, 1.0, 1.0], [1.0, 2.0, 2.0]),
+        ([2.0, 1.0, 1.0], [3.0, 2.0, 2.0]),
+    ];
+    let part = |(lo, hi): ([f64; 3], [f64; 3])| cuboid(DVec3::from_array(lo), DVec3::from_array(hi), false);
+    let room: Vec<Triangle> = walls.into_iter().flat_map(part).collect();
+    for seed in 0..10 {
+        let found = bodies(&[&shuffled(&with_backs(&room), seed)]);
+        let volume: f64 = found.bodies.iter().map(|b| b.volume).sum();
+        assert!((volume - 26.0).abs() < 1e-12 && found.diagnoses[0].doubtful == 0, "{volume} {:?}", found.warnings);
+    }
+}
+
+/// Where surveys count from the equator and a meridian [m].
+const FAR: DVec3 = dvec3(500_000.0, 5_800_000.0, 0.0);
+
+#[test]
+fn thin_plates_far_from_the_origin_keep_their_thickness() {
+    let origin = FAR + dvec3(1.0, 1.0, 1.0);
+    for axis in 0..3 {
+        let mut end = origin + 1.0;
+        end[axis] = origin[axis] + 3e-7;
+        let thickness = end[axis] - origin[axis];
+        let found = bodies(&[&cuboid(origin, end, false)]);
+        let edges = Edges([0, 1, 2].map(|a| (0..4).map(|n| FAR[a] + f64::from(n)).collect()));
+        let options = Options { bounds: true, ..Options::default() };
+        let porosity = porosity(&edges.grid(None).unwrap(), &found, options);
+        let blocked: f64 = porosity.beta.v.iter().map(|b| 1.0 - b).sum();
+        assert!(
+            (blocked - thickness).abs() < 1e-12 && porosity.max_gap <= 1e-12,
+            "axis {axis}: {blocked}, not {thickness}"
+        );
+    }
+}
+
+#[test]
+fn a_slot_far_from_the_origin_is_a_hole() {
+    // A box without a strip of 5 cm of its top.
+    let (lo, hi) = (FAR, FAR + dvec3(10.0, 10.0, 4.0));
+    let mut open: Vec<Triangle> = cuboid(lo, hi, false);
+    open.retain(|t| !t.iter().all(|p| p.z == hi.z));
+    let strip = |y0: f64, y1: f64| {
+        let [a, b, c, d] = [dvec3(lo.x, y0, hi.z), dvec3(hi.x, y0, hi.z), dvec3(hi.x, y1, hi.z), dvec3(lo.x, y1, hi.z)];
+        [[a, b, c], [a, c, d]]
+    };
+    open.extend(strip(lo.y, lo.y + 5.0));
+    open.extend(strip(lo.y + 5.05, hi.y));
+    let found = bodies(&[&open]);
+    let d = &found.diagnoses[0];
+    assert!(d.holes == 1 && d.t_junction_edges == 0, "{:?}", found.warnings);
+    assert!((d.body_volume - 400.0).abs() < 1e-6 && d.welded_by == 0.0, "{} {:?}", d.body_volume, found.warnings);
+}
+
+#[test]
+fn backs_of_touching_parts_are_called_backs() {
+    let one = cuboid(DVec3::ZERO, DVec3::ONE, false);
+    let beside = cuboid(DVec3::X, DVec3::new(2.0, 1.0, 1.0), false);
+    let found = bodies(&[&with_backs(&[one, beside].concat())]);
+    let said = |what: &str| found.warnings.iter().any(|w| w.contains(what));
+    assert!(said("are the backs of others") && !said("repeat others"), "{:?}", found.warnings);
 }

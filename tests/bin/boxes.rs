@@ -14,7 +14,7 @@ fn main() {
     let of = |what: fn(&voidage_tests::boxes::Visited) -> bool| visited.iter().filter(|v| what(v)).count();
     println!(
         "seeds {first}..{}: {} wrong; {} defined, {} exact, {} with both orientations, {} hollow, {} with \
-         surface twice, {} in doubt",
+         surface twice, {} with T-junctions, {} far, {} in doubt",
         first + count,
         found.len() - visited.len(),
         of(|v| v.defined),
@@ -22,6 +22,8 @@ fn main() {
         of(|v| v.flipped),
         of(|v| v.hollow),
         of(|v| v.doubled),
+        of(|v| v.t_junctions),
+        of(|v| v.far),
         of(|v| v.doubtful)
     );
     assert!(visited.len() == found.len(), "values outside their bounds");

@@ -1,7 +1,7 @@
 //! Triangulated solids, outward, and scenes of them.
 
 use glam::{DMat3, DVec3};
-use voidage::geometry::bodies::{Bodies, Body};
+use voidage::geometry::bodies::{Bodies, Body, Doubt};
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::{Mesh, Solid};
 use voidage::geometry::scene::hull::HullSolid;
@@ -174,7 +174,8 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         volume: 0.0,
         bounds: form.bounds(),
         cavities: 0,
-        doubtful: false,
+        doubt: Doubt::None,
+        rounding: 0.0,
         sheet: false,
     };
     Bodies { bodies: forms.iter().enumerate().map(body).collect(), ..Bodies::default() }

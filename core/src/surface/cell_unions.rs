@@ -50,6 +50,21 @@ pub(super) struct Shared<'s, V: Vector, O> {
     pub union: UnionMemory<'s, V::Scalar>,
     /// How the parts of a cell are found: a function of [`crate::surface::layer`], passed because that room uses this file.
     pub parts: FindParts<V, O>,
+    /// What the division of one cell has cost so far.
+    pub effort: Effort,
+}
+
+/// So many triangles may be sorted for the parts of one cell. Where so much surface meets in one place that halving does not thin it, a cell
+/// would take longer with each level of division; beyond this it keeps the bounds that it has.
+const MOST_EFFORT: usize = 1 << 20;
+
+/// What the division of a cell has cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Effort {
+    /// How often the part at hand has been divided out of a cell.
+    level: u32,
+    /// Triangles sorted for parts of this cell.
+    triangles: usize,
 }
 
 /// Finds the bounds of a small grid of at most 2 × 2 × 2 cells from the triangles of some layers of a site; none if depth or memory
@@ -292,6 +307,40 @@ fn union<V: Vector, O: OtherBodies<V>>(
     })
 }
 
+/// Finds the parts of a cell or of a part of one; none if depth, memory or effort is spent.
+pub(super) fn find_parts<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    grid: &Grid<V::Scalar>,
+    layers: Range<usize>,
+    room: Room<V>,
+) -> Option<Parts<V::Scalar>> {
+    with_effort(shared, site, layers.clone(), |shared| (shared.parts)(shared, site, grid, layers, room))
+}
+
+/// Divides a cell, or a part of one that holds the triangles of some layers of a site; none if the effort is spent.
+pub(super) fn with_effort<V: Vector, O, T>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    layers: Range<usize>,
+    division: impl FnOnce(&mut Shared<V, O>) -> Option<T>,
+) -> Option<T> {
+    // The layer of a whole grid holds more than one of its cells: what is sorted for that is not counted.
+    if shared.effort.level == 0 {
+        shared.effort.triangles = 0;
+    } else {
+        let here: usize = layers.map(|k| site.bins.count(k).numbers).sum();
+        shared.effort.triangles = shared.effort.triangles.saturating_add(here);
+    }
+    if shared.effort.triangles > MOST_EFFORT {
+        return None;
+    }
+    shared.effort.level += 1;
+    let found = division(shared);
+    shared.effort.level -= 1;
+    found
+}
+
 /// Bounds of a cell from its parts, halves along the axes in which it is longest; none if the depth is spent.
 pub(super) fn divide<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
@@ -308,7 +357,7 @@ pub(super) fn divide<V: Vector, O: OtherBodies<V>>(
     let grid = Grid::new(list(0), list(1), list(2)).ok()?;
     let halvings = halved.iter().map(|&h| u32::from(h)).sum();
     let part = Site { halvings: site.halvings.checked_sub(halvings)?, ..*site };
-    let parts = (shared.parts)(shared, &part, &grid, site.k..site.k + 1, room)?;
+    let parts = find_parts(shared, &part, &grid, site.k..site.k + 1, room)?;
     Some(Refined::from_parts(&parts, grid.cells()))
 }
 

@@ -26,7 +26,7 @@ use crate::grid::Grid;
 use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, BinsError, BinsNeeded, Group, Surface};
-use crate::surface::cell_unions::{OtherBodies, Room, Shared, Site};
+use crate::surface::cell_unions::{Effort, OtherBodies, Room, Shared, Site};
 use crate::surface::cells::{Defects, Scratch};
 use fractions::{count_cells, open_field, to_open_fractions};
 use parts::{LEVEL, parts};
@@ -147,7 +147,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         let LayerSlices { cell, x, y, z, top } = beta;
         let LayerOptions { tol, depth, areas, solid_end } = self.options;
         let LayerMemory { sum, spare, scratch, has_surface, reals, flags, numbers, groups, union, .. } = memory;
-        let mut shared = Shared { tol, others, union: union.reborrow(), parts };
+        let mut shared = Shared { tol, others, union: union.reborrow(), parts, effort: Effort::default() };
         let site = Site { grid: &self.grid, bins: &self.bins, k, halvings: 3 * depth.min(MOST_HALVINGS), areas };
         let mut room = Room { reals, flags, numbers, groups };
         let mut layer = Layer {

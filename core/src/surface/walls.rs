@@ -6,7 +6,9 @@ use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group};
-use crate::surface::cell_unions::{OtherBodies, Room, Shared, Site, known, narrow, rounding, with_least_blur};
+use crate::surface::cell_unions::{
+    OtherBodies, Room, Shared, Site, find_parts, known, narrow, rounding, with_least_blur,
+};
 use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory};
 
 /// Narrow the bounds of the shared faces of a layer that lie in walls: its x and y faces and the z faces below.
@@ -109,7 +111,7 @@ fn divided_wall<V: Vector, O: OtherBodies<V>>(
     });
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
     let part = Site { halvings: site.halvings.checked_sub(3)?, ..*site };
-    let parts = (shared.parts)(shared, &part, &grid, below.k..above.k + 1, room)?;
+    let parts = find_parts(shared, &part, &grid, below.k..above.k + 1, room)?;
     parts.planes.get(axis).map(|planes| planes[1])
 }
 

@@ -4,25 +4,37 @@
 //! defined meaning; see [`Diagnosis`].
 
 use crate::error::{Error, Result};
+use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::repair::copies;
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::edges;
+pub use crate::geometry::repair::nesting::Doubt;
 use crate::geometry::repair::nesting::{self, Closed, Role};
 use crate::geometry::repair::rims::rims;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::shells::{self, Shell};
 use crate::geometry::repair::weld::{self, Indexed};
+use crate::geometry::resolve::{Part, resolve};
 use crate::geometry::single::SingleSource;
 use glam::DVec3;
-use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
 use std::ops::Range;
 
-/// Points closer than this many units in the last place of `f32` may be one point that an exporter wrote twice.
+pub use crate::geometry::diagnosis::Diagnosis;
+
+/// Points closer than this many units in the last place may be one point that an exporter wrote twice.
 const WELD_ULPS: f64 = 4.0;
+
+/// How far coordinates may be off: a few units in the last place of what the source was written in. Digits of `f32` count from the origin;
+/// where more were written, six to seven of a part's size, wherever the part is.
+fn rounding([lo, hi]: [DVec3; 2], single_precision: bool) -> f64 {
+    let (farthest, size) = (lo.abs().max(hi.abs()).max_element(), (hi - lo).max_element());
+    let single = if single_precision { farthest } else { size };
+    WELD_ULPS * (f64::from(f32::EPSILON) * single + f64::EPSILON * farthest)
+}
 
 /// Larger coordinates would overflow when multiplied.
 const LARGEST: f64 = 1e60;
@@ -49,64 +61,12 @@ pub struct Body {
     pub bounds: [DVec3; 2],
     /// Cavities attached.
     pub cavities: usize,
-    /// It is not known which part of its box is solid.
-    pub doubtful: bool,
+    /// What is not known of it.
+    pub doubt: Doubt,
+    /// How far corners may be off where surfaces crossed and were cut; 0 if none were.
+    pub rounding: f64,
     /// No volume: a sheet, which blocks faces where it lies in their plane.
     pub sheet: bool,
-}
-
-/// What was found in a file's surface, in numbers.
-#[derive(Debug, Clone, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Diagnosis {
-    /// The file.
-    pub file: String,
-    /// Triangles read.
-    pub triangles: usize,
-    /// Named solids read.
-    pub solids: usize,
-    /// Distinct points.
-    pub points: usize,
-    /// Triangles with two equal corners or no area.
-    pub degenerate: usize,
-    /// Triangles that repeat another and were dropped.
-    pub repeated: usize,
-    /// Triangles that are the back of another (double-sided surface) and were dropped.
-    pub doubled: usize,
-    /// Largest distance by which points were moved to close cracks; 0 if none.
-    pub welded_by: f64,
-    /// Triangles whose orientation disagreed with their neighbours and were turned.
-    pub turned: usize,
-    /// Shells (connected surfaces).
-    pub shells: usize,
-    /// Shells with negative volume that are bodies: turned inside out.
-    pub inside_out: usize,
-    /// Shells that are cavities.
-    pub cavities: usize,
-    /// Shells that cannot be oriented.
-    pub one_sided: usize,
-    /// Shells without volume.
-    pub sheets: usize,
-    /// Edges without a partner.
-    pub boundary_edges: usize,
-    /// Of these, edges of T-junctions, which close in space.
-    pub t_junction_edges: usize,
-    /// Shells that wind more than once around a part of what they hold, or cross themselves.
-    pub crossing: usize,
-    /// Of these, those that stayed as they are: what they hold is in doubt.
-    pub doubtful: usize,
-    /// Holes that were capped.
-    pub holes: usize,
-    /// Bodies in the end.
-    pub bodies: usize,
-    /// Signed volume of the triangles as read.
-    pub signed_volume: f64,
-    /// Sum of the bodies' volumes (overlaps counted as often as they occur).
-    pub body_volume: f64,
-    /// Area of the surface.
-    pub area: f64,
-    /// Lowest and highest corner.
-    pub bounds: [DVec3; 2],
 }
 
 /// A solid of a scene file, in numbers.
@@ -181,14 +141,16 @@ impl Bodies {
             ..measure(&scaled)
         };
         let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
-        let indexed = clean(&scaled, solid_of, &mut d, &mut report);
+        let rounding = rounding(d.bounds, mesh.single_precision);
+        let indexed = clean(&scaled, solid_of, rounding, &mut d, &mut report);
         let Some((indexed, shells)) = indexed else {
             let reason = format!("all {} triangles are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
         let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
-        let mut closed = close(&indexed, &shells, name_of, &mut d, &mut report);
-        resolve(&mut closed, &mut d, &mut report);
+        let closed = close(&indexed, &shells, name_of, rounding, &mut d, &mut report);
+        let closed = resolve(closed, &scaled, &mut d, &mut report);
+        say_copies(&d, &mut report);
         let first = self.bodies.len();
         self.assemble(closed, &mut d, &mut report);
         if mesh.single_precision {
@@ -204,11 +166,16 @@ impl Bodies {
         let (names, shells): (Vec<String>, Vec<Closed>) = parts.into_iter().map(|p| (p.name, p.shell)).unzip();
         let roles = nesting::roles(&shells);
         let first = self.bodies.len();
+        let mut cavities_of: HashMap<usize, Vec<&Closed>> = HashMap::default();
+        for (role, shell) in roles.iter().zip(&shells) {
+            if let Role::CavityOf(s) = role {
+                cavities_of.entry(*s).or_default().push(shell);
+            }
+        }
         for (s, shell) in shells.iter().enumerate().filter(|&(s, _)| roles[s] == Role::Body) {
             let begin = self.triangles.len();
             let mut volume = self.push(shell, true);
-            let cavities: Vec<&Closed> =
-                (0..shells.len()).filter(|&c| roles[c] == Role::CavityOf(s)).map(|c| &shells[c]).collect();
+            let cavities: Vec<&Closed> = cavities_of.remove(&s).unwrap_or_default();
             let count = cavities.len();
             let (joined, clear) = joined(&cavities);
             volume -= joined.iter().map(|cavity| self.push(cavity, false)).sum::<f64>();
@@ -216,7 +183,8 @@ impl Bodies {
             d.cavities += count;
             d.sheets += usize::from(shell.is_sheet());
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
-            let doubtful = shell.doubtful || !clear;
+            let rounding = joined.iter().fold(shell.rounding, |most, cavity| most.max(cavity.rounding));
+            let doubt = if clear { shell.doubt } else { Doubt::Unknown };
             let (name, form, single, porosity) = (names[s].clone(), None, None, 0.0);
             let cavities = count;
             self.bodies.push(Body {
@@ -228,7 +196,8 @@ impl Bodies {
                 volume,
                 bounds,
                 cavities,
-                doubtful,
+                doubt,
+                rounding,
                 sheet,
             });
         }
@@ -276,7 +245,7 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
             1 => whole,
             _ => match crossing::look(&whole.triangles, whole.bounds) {
                 Found::Simple => whole,
-                Found::Resolved(made) => Closed::new(made.surface),
+                Found::Resolved(made) => Closed::of_parts(made.surface),
                 Found::Doubtful(_) => {
                     clear = false;
                     whole
@@ -288,27 +257,6 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
     (joined, clear)
 }
 
-/// Collects warnings of one file.
-struct Reporter {
-    file: String,
-    warnings: Vec<String>,
-}
-
-impl Reporter {
-    fn warn(&mut self, reason: String) {
-        let separator = if self.file.is_empty() { "" } else { ": " };
-        self.warnings.push(format!("{}{separator}{reason}", self.file));
-    }
-}
-
-/// A point for people.
-fn show(p: DVec3) -> String {
-    match p.abs().max_element() {
-        size if size == 0.0 || (1e-3..1e9).contains(&size) => format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z),
-        _ => format!("({:.6e}, {:.6e}, {:.6e})", p.x, p.y, p.z),
-    }
-}
-
 fn measure(triangles: &[[DVec3; 3]]) -> Diagnosis {
     let whole = Closed::new(triangles.to_vec());
     Diagnosis { signed_volume: whole.volume, area: whole.area(), bounds: whole.bounds, ..Diagnosis::default() }
@@ -318,6 +266,7 @@ fn measure(triangles: &[[DVec3; 3]]) -> Diagnosis {
 fn clean(
     triangles: &[[DVec3; 3]],
     solid_of: impl Fn(u32) -> usize,
+    rounding: f64,
     d: &mut Diagnosis,
     report: &mut Reporter,
 ) -> Option<(Indexed, Vec<Shell>)> {
@@ -332,10 +281,10 @@ fn clean(
         report.warn(format!("{} degenerate triangles (no area) are ignored", d.degenerate));
     }
     let mut alive = distinct(&mesh);
-    d.repeated = copies::drop_repeats(&mesh, &mut alive);
-    close_cracks(&mut mesh, &alive, d, report);
+    [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
+    close_cracks(&mut mesh, &alive, rounding, d, report);
     let mut shells = shells::shells(&mut mesh, &alive, solid_of);
-    drop_copies(&mesh, &mut shells, d, report);
+    drop_copies(&mesh, &mut shells, rounding, d);
     d.shells = shells.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {
@@ -352,12 +301,16 @@ fn clean(
 }
 
 /// Drop the shells that repeat others or are their backs.
-fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, d: &mut Diagnosis, report: &mut Reporter) {
-    let found = copies::redundant(mesh, shells);
+fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, rounding: f64, d: &mut Diagnosis) {
+    let found = copies::redundant(mesh, shells, rounding);
     let mut redundant = found.shells.into_iter();
     shells.retain(|_| redundant.next() != Some(true));
     d.repeated += found.repeated;
-    d.doubled = found.doubled;
+    d.doubled += found.doubled;
+}
+
+/// Tell of surface that was there more than once.
+fn say_copies(d: &Diagnosis, report: &mut Reporter) {
     if d.repeated > 0 {
         report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
     }
@@ -372,15 +325,14 @@ fn distinct(mesh: &Indexed) -> Vec<bool> {
 }
 
 /// If edges lack partners, try whether points that differ by rounding are meant to be one.
-fn close_cracks(mesh: &mut Indexed, alive: &[bool], d: &mut Diagnosis, report: &mut Reporter) {
+fn close_cracks(mesh: &mut Indexed, alive: &[bool], rounding: f64, d: &mut Diagnosis, report: &mut Reporter) {
     let before = edges::unmatched_edges(mesh, alive);
     if before == 0 {
         return;
     }
-    let largest = d.bounds[0].abs().max(d.bounds[1].abs()).max_element();
     let loose = edges::unmatched_points(mesh, alive);
     let mut merged = mesh.clone();
-    let moved = weld::merge_close(&mut merged, alive, &loose, WELD_ULPS * f64::from(f32::EPSILON) * largest);
+    let moved = weld::merge_close(&mut merged, alive, &loose, rounding);
     if 2 * edges::unmatched_edges(&merged, alive) > before {
         return;
     }
@@ -389,22 +341,12 @@ fn close_cracks(mesh: &mut Indexed, alive: &[bool], d: &mut Diagnosis, report: &
     *mesh = merged;
 }
 
-/// A closed shell on its way to a body.
-struct Part {
-    name: String,
-    shell: Closed,
-    /// As those of [`Shell`].
-    cluster: usize,
-    guessed: bool,
-    /// It was open.
-    capped: bool,
-}
-
 /// Make every shell closed: join those that close each other, cap holes.
 fn close(
     mesh: &Indexed,
     shells: &[Shell],
     name_of: impl Fn(u32) -> String,
+    rounding: f64,
     d: &mut Diagnosis,
     report: &mut Reporter,
 ) -> Vec<Part> {
@@ -414,11 +356,11 @@ fn close(
     for group in groups(shells) {
         let members = group.iter().flat_map(|&s| shells[s].triangles.iter());
         let mut triangles: Vec<_> = members.clone().map(corners).collect();
+        let own = triangles.len();
         let boundary = without_opposites(group.iter().flat_map(|&s| shells[s].boundary.iter().copied()));
         d.boundary_edges += boundary.len();
-        let mut capped = false;
         for rim in rims(&boundary) {
-            if rim.cancels(&mesh.points) {
+            if rim.cancels(&mesh.points, rounding) {
                 d.t_junction_edges += rim.edges.len();
                 continue;
             }
@@ -428,13 +370,12 @@ fn close(
                 largest_hole = Some((area, rim.middle(&mesh.points)));
             }
             d.holes += 1;
-            capped = true;
             triangles.extend(cap);
         }
         let name = members.min().map_or_else(String::new, |&n| name_of(n));
         let cluster = group.iter().map(|&s| shells[s].cluster).min().unwrap_or(0);
         let guessed = group.iter().any(|&s| shells[s].guessed);
-        closed.push(Part { name, shell: Closed::new(triangles), cluster, guessed, capped });
+        closed.push(Part { name, shell: Closed::new(triangles), cluster, guessed, own });
     }
     if d.t_junction_edges > 0 {
         report.warn(format!("{} edges have no partner (T-junctions), but the surface closes", d.t_junction_edges));
@@ -448,76 +389,6 @@ fn close(
         ));
     }
     closed
-}
-
-/// Make every surface that crosses itself the surface of what it winds around; and parts that overlap where they share edges the
-/// surface of what they wind around together, unless each by itself is simple.
-fn resolve(parts: &mut Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
-    let look = |s: &Closed| if s.is_sheet() { Found::Simple } else { crossing::look(&s.triangles, s.bounds) };
-    let turned = |p: &Part, way: f64| p.shell.volume * way < 0.0 && !p.shell.is_sheet();
-    let single = |p: &Part| match look(&p.shell) {
-        // Which of several parts that were joined is turned cannot be told.
-        Found::Resolved(made) if made.touches && !p.guessed => Found::Doubtful(made.place),
-        seen => seen,
-    };
-    let mut found: Vec<Found> = parts.par_iter().map(single).collect();
-    let mut clusters: HashMap<usize, Vec<usize>> = HashMap::default();
-    for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.guessed) {
-        clusters.entry(part.cluster).or_default().push(n);
-    }
-    let mut gone = vec![false; parts.len()];
-    for members in clusters.into_values() {
-        let simple = |&n: &usize| {
-            let shell = &parts[n].shell;
-            matches!(found[n], Found::Simple) && shell.volume > 0.0 && !shell.is_sheet()
-        };
-        let capped = members.iter().any(|&n| parts[n].capped);
-        if !capped && members.iter().all(simple) {
-            continue;
-        }
-        let mixed = [-1.0, 1.0].iter().all(|&way| members.iter().any(|&n| turned(&parts[n], way)));
-        let whole = Closed::new(members.iter().flat_map(|&n| parts[n].shell.triangles.iter().copied()).collect());
-        found[members[0]] = match look(&whole) {
-            Found::Resolved(made) if made.both_ways || made.walls || capped || mixed => Found::Doubtful(made.place),
-            Found::Simple => Found::Doubtful(whole.bounds[0]),
-            seen => seen,
-        };
-        parts[members[0]].shell = whole;
-        members[1..].iter().for_each(|&n| gone[n] = true);
-    }
-    let mut first = [None; 2];
-    for (part, found) in parts.iter_mut().zip(found).zip(&gone).filter(|(_, gone)| !**gone).map(|(both, _)| both) {
-        match found {
-            Found::Simple => {}
-            Found::Resolved(made) => {
-                part.shell = Closed::new(made.surface);
-                d.crossing += 1;
-                first[0].get_or_insert(made.place);
-            }
-            Found::Doubtful(place) => {
-                part.shell.doubtful = true;
-                d.crossing += 1;
-                d.doubtful += 1;
-                first[1].get_or_insert(place);
-            }
-        }
-    }
-    let mut gone = gone.into_iter();
-    parts.retain(|_| gone.next() != Some(true));
-    if let [Some(place), _] = first {
-        report.warn(format!(
-            "{} surfaces cross themselves (the first near {}); what they wind around counts once",
-            d.crossing - d.doubtful,
-            show(place)
-        ));
-    }
-    if let [_, Some(place)] = first {
-        report.warn(format!(
-            "{} surfaces cross themselves (the first near {}) so that what they hold cannot be told; they are measured as they wind, and the bounds of all cells within their boxes are 0 and 1",
-            d.doubtful,
-            show(place)
-        ));
-    }
 }
 
 /// Edges without those that run back along others: there two sides of a sheet meet.

@@ -3,8 +3,10 @@
 pub mod copies;
 pub mod crossing;
 pub mod edges;
+pub mod face;
 pub mod join;
 pub mod nesting;
+pub mod regions;
 pub mod rims;
 pub mod sets;
 pub mod shells;

@@ -4,7 +4,7 @@
 //! by triangle. Their union enters a layer as one interval a cell and face, beside what the surfaces of other bodies give.
 
 use super::{Leaf, Method, Options};
-use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::form::Form;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
@@ -112,7 +112,7 @@ impl Roads {
     #[must_use]
     pub fn choose(bodies: &Bodies, triangles: &[[DVec3; 3]], options: Options) -> Self {
         let known = |body: &Body| match (&body.form, options.method) {
-            _ if body.doubtful => None,
+            _ if body.doubt != Doubt::None => None,
             // Planes are measured by their surface: exact, and cheaper than any subdivision.
             (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
             (_, Method::Surface) => None,

@@ -1,16 +1,38 @@
 //! Bodies of which it cannot be told where they are solid.
 //!
-//! Their cells and faces keep the fractions that their surfaces give as they wind; but such a body may as well be a cavity of another, or
+//! What is either solid or open counts as solid; the bounds are those with it and those without. Of other bodies not even that is known: their cells and faces keep the fractions that their surfaces give as they wind; but such a body may as well be a cavity of another, or
 //! count a part twice, so all that is certain within its box is that fractions lie between closed and open.
 
 use super::{FieldSet, Options, Porosity};
-use crate::geometry::bodies::Bodies;
+use crate::geometry::bodies::{Bodies, Body, Doubt};
 use std::ops::Range;
 use voidage_core::grid::Grid;
 
+/// The bodies without those that may as well be open, if there are such.
+#[must_use]
+pub fn without_perhaps(bodies: &Bodies) -> Option<Bodies> {
+    let perhaps = |b: &Body| b.doubt == Doubt::Perhaps;
+    bodies.bodies.iter().any(perhaps).then(|| {
+        let mut sure = bodies.clone();
+        for body in sure.bodies.iter_mut().filter(|b| perhaps(b)) {
+            body.triangles.end = body.triangles.start;
+        }
+        sure
+    })
+}
+
+/// Takes the upper bounds from what was found for less solid.
+pub fn open_upwards(found: &mut Porosity, less: Porosity) {
+    let (Some([lower, upper]), Some([_, most])) = (&mut found.bounds, less.bounds) else { return };
+    *upper = most;
+    let gap = |lower: &[f64], upper: &[f64]| lower.iter().zip(upper).fold(0.0, |gap, (l, u)| f64::max(gap, u - l));
+    let gaps = [(&lower.v, &upper.v), (&lower.x, &upper.x), (&lower.y, &upper.y), (&lower.z, &upper.z)];
+    found.max_gap = gaps.into_iter().fold(found.max_gap, |most, (l, u)| most.max(gap(l, u)));
+}
+
 /// Widens the bounds of all cells and faces within the boxes of doubtful bodies to 0…1.
 pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
-    for body in bodies.bodies.iter().filter(|b| b.doubtful) {
+    for body in bodies.bodies.iter().filter(|b| b.doubt == Doubt::Unknown) {
         let [lo, hi] = body.bounds;
         let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
         if cells.iter().any(Range::is_empty) {
@@ -18,7 +40,28 @@ pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Po
         }
         found.max_gap = 1.0;
         for (set, value) in found.bounds.iter_mut().flatten().zip([0.0, 1.0]) {
-            fill(grid, &cells, set, value, options.areas);
+            change(grid, &cells, set, options.areas, |_| value);
+        }
+    }
+}
+
+/// Widens the bounds of all cells and faces within the boxes of bodies that were cut, by what the rounding of their new corners may change.
+pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
+    for body in bodies.bodies.iter().filter(|b| b.rounding > 0.0) {
+        let [lo, hi] = body.bounds;
+        let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
+        if cells.iter().any(Range::is_empty) {
+            continue;
+        }
+        // Of a cell's height along each axis, what a shift of all surface on two sides makes out.
+        let share = |axis: usize| {
+            let widths = grid.edges(axis)[cells[axis].start..=cells[axis].end].windows(2).map(|w| w[1] - w[0]);
+            2.0 * body.rounding / widths.fold(f64::INFINITY, f64::min)
+        };
+        let by = share(0) + share(1) + share(2);
+        found.max_gap = (found.max_gap + 2.0 * by).min(1.0);
+        for (set, sign) in found.bounds.iter_mut().flatten().zip([-1.0, 1.0]) {
+            change(grid, &cells, set, options.areas, |beta| (beta + sign * by).clamp(0.0, 1.0));
         }
     }
 }
@@ -28,9 +71,10 @@ fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
     edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
 }
 
-/// Sets some cells and all their faces.
-fn fill(grid: &Grid<f64>, cells: &[Range<usize>; 3], set: &mut FieldSet, value: f64, areas: bool) {
-    each(cells, |cell| set.v[grid.cell_index(cell)] = value);
+/// Changes the values of some cells and of all their faces.
+fn change(grid: &Grid<f64>, cells: &[Range<usize>; 3], set: &mut FieldSet, areas: bool, to: impl Fn(f64) -> f64) {
+    let to = |value: &mut f64| *value = to(*value);
+    each(cells, |cell| to(&mut set.v[grid.cell_index(cell)]));
     for axis in 0..if areas { 3 } else { 0 } {
         let mut faces = cells.clone();
         faces[axis].end += 1;
@@ -39,7 +83,7 @@ fn fill(grid: &Grid<f64>, cells: &[Range<usize>; 3], set: &mut FieldSet, value: 
             1 => &mut set.y,
             _ => &mut set.z,
         };
-        each(&faces, |face| field[grid.face_index(axis, face)] = value);
+        each(&faces, |face| to(&mut field[grid.face_index(axis, face)]));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::layers::UnionVecs;
 use super::{FieldSet, Options, Porosity, levels, porosity, snap};
-use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ pub struct Totals {
 #[must_use]
 pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Resistance {
     let only_solid = levels(bodies) != [0.0];
-    let solid = |b: &&Body| b.porosity == 0.0 && !b.doubtful;
+    let solid = |b: &&Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
     // Of other levels the unions are mixed into the porosities.
     let own = only_solid.then(|| {
         let mut bodies = bodies.clone();

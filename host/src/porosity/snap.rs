@@ -8,8 +8,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::grid::{Grid, Located};
 
-/// Corners within this share of the grid's largest coordinate are in the plane: far below the digits of any `f32` file.
+/// Corners within this share of the grid's length are in the plane: far below the digits of any `f32` file, …
 const NEAR: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// … and so are those within so many units in the last place of its largest coordinate.
+const NEAR_ULPS: f64 = 2.0;
 
 /// A copy of the bodies' triangles with such corners moved; none if there are no such corners.
 #[must_use]
@@ -29,7 +32,8 @@ pub fn into_planes(grid: &Grid<f64>, bodies: &Bodies) -> Option<Vec<[DVec3; 3]>>
 pub fn near(grid: &Grid<f64>) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|axis| {
         let e = grid.edges(axis);
-        e[0].abs().max(e[e.len() - 1].abs()) * NEAR
+        let (lo, hi) = (e[0], e[e.len() - 1]);
+        (hi - lo) * NEAR + lo.abs().max(hi.abs()) * f64::EPSILON * NEAR_ULPS
     }))
 }
 

@@ -19,6 +19,12 @@ fn other_formats_are_refused_by_name() {
     is_refused(stl("<?xml version=\"1.0\"?><model/>"), &["XML"]);
     is_refused(stl("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"), &["Git LFS"]);
     is_refused(stl("ply\nformat ascii 1.0\n"), &["PLY"]);
+    is_refused(stl("# vtk DataFile Version 3.0\nparts\nASCII\nDATASET POLYDATA\n"), &["VTK"]);
+    is_refused(stl("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n"), &["VTK"]);
+    is_refused(stl("  0\r\nSECTION\r\n  2\r\nHEADER\r\n"), &["DXF"]);
+    is_refused(stl(format!("{:72}S      1\n{:72}G      1\n", "made by hand", "1H,,1H;")), &["IGES"]);
+    is_refused(stl("OFF\n8 6 12\n0 0 0\n"), &["OFF model"]);
+    is_refused(stl("{ \"asset\": { \"version\": \"2.0\" }, \"meshes\": [] }"), &["glTF"]);
     is_refused(stl("Dear colleague, please find attached.\n".repeat(9)), &["`Dear colleague", "solid"]);
     let wide = |bytes: fn(u16) -> [u8; 2]| ascii().encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
     is_refused(stl([b"\xff\xfe".to_vec(), wide(u16::to_le_bytes)].concat()), &["UTF-16"]);

@@ -10,7 +10,9 @@ use crate::grid::fields::{Fields, Layer, exactly};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Row;
-use crate::surface::cell_unions::{Refined, Room, Shared, Site, divide, rounding, with_least_blur};
+use crate::surface::cell_unions::{
+    Effort, Refined, Room, Shared, Site, divide, rounding, with_effort, with_least_blur,
+};
 use crate::surface::cells::Scratch;
 use crate::surface::surface_area::{Bodies, CellSurface, SurfaceArea, gather};
 use crate::surface::union::{CellUnion, NoProof};
@@ -80,16 +82,19 @@ impl<V: Vector> Layers<'_, V> {
         if k >= layers {
             return Err(LayerError::NoLayer { layer: k, layers });
         }
-        if memory.cells != [nx, ny] {
-            return Err(LayerError::OtherGrid);
-        }
+        (memory.cells == [nx, ny]).then_some(()).ok_or(LayerError::OtherGrid)?;
         open.check(&self.grid)?;
         for found in [union.len(), sum.len(), cells.len()] {
             exactly(nx * ny, found)?;
         }
         let LayerMemory { reals, flags, numbers, groups, union: trees, .. } = memory;
-        let mut shared =
-            Shared { tol: self.options.tol, others: &mut (), union: trees.reborrow(), parts: parts::parts };
+        let mut shared = Shared {
+            tol: self.options.tol,
+            others: &mut (),
+            union: trees.reborrow(),
+            parts: parts::parts,
+            effort: Effort::default(),
+        };
         let halvings = 3 * self.options.depth.min(MOST_HALVINGS);
         let site = Site { grid: &self.grid, bins: &self.bins, k, halvings, areas: true };
         gather(&self.bins, &self.grid, k, cells);
@@ -147,7 +152,8 @@ fn of_shared_cell<V: Vector>(
         Some((area, sides)) => (area, Some(sides), None),
         None => {
             let mut room = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
-            let inside = parts_of(shared, site, *cell, room.reborrow());
+            let inside =
+                with_effort(shared, site, site.k..site.k + 1, |shared| parts_of(shared, site, *cell, room.reborrow()));
             let sides =
                 divide(shared, site, *cell, room).map(|Refined { low, high, .. }| [0, 1, 2].map(|a| [low[a], high[a]]));
             let (area, doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
@@ -210,8 +216,8 @@ fn fragments<V: Vector>(
 /// Where a cell without a proof is divided, as a share of its width: surface of bodies seldom lies there.
 const DIVIDED_AT: f64 = 0.472_135_954_999_579_4;
 
-/// What the union has of surface inside a cell, from its parts, and how much of the wetted area is in doubt; none if depth or memory is
-/// spent. Calls itself, once a level.
+/// What the union has of surface inside a cell, from its parts, and how much of the wetted area is in doubt; none if depth, memory or effort
+/// is spent. Calls itself, once a level.
 fn parts_of<V: Vector>(
     shared: &mut Shared<V, ()>,
     site: &Site<V>,
@@ -252,7 +258,7 @@ fn parts_of<V: Vector>(
                 found = fragments(shared, &part, cell, &row).map(|(area, _)| (area, V::Scalar::ZERO));
                 if found.is_none() {
                     let rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
-                    found = parts_of(shared, &part, cell, rest);
+                    found = with_effort(shared, &part, k..k + 1, |shared| parts_of(shared, &part, cell, rest));
                 }
             }
             let (area, open) = found.unwrap_or((surface.inside, surface.inside.wetted));

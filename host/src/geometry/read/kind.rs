@@ -36,6 +36,13 @@ const REFUSED: &[(&[u8], &str)] = &[
     (b"ply\n", "a PLY model; export STL or OBJ"),
     (b"ply\r", "a PLY model; export STL or OBJ"),
     (b"ISO-10303-21", "a STEP model; export STL or OBJ"),
+    (b"# vtk DataFile", "a VTK file; export STL or OBJ"),
+    (b"AutoCAD Binary DXF", "a DXF drawing; export STL or OBJ"),
+    (b"OFF\n", "an OFF model; export STL or OBJ"),
+    (b"OFF\r", "an OFF model; export STL or OBJ"),
+    (b"OFF ", "an OFF model; export STL or OBJ"),
+    (b"COFF", "an OFF model; export STL or OBJ"),
+    (b"NOFF", "an OFF model; export STL or OBJ"),
     (b"version https://git-lfs", "a Git LFS pointer, not the file itself; fetch it with `git lfs pull`"),
     (b"\xff\xfe\0\0", "UTF-32 text; save it as UTF-8"),
     (b"\xff\xfe", "UTF-16 text; save it as UTF-8"),
@@ -74,11 +81,40 @@ fn refused(head: &[u8]) -> Option<&'static str> {
         return Some("UTF-16 text; save it as UTF-8");
     }
     let text = text::without_bom(head).trim_ascii_start();
+    if is_dxf(text) {
+        return Some("a DXF drawing; export STL or OBJ");
+    }
+    if is_iges(head) {
+        return Some("an IGES model; export STL or OBJ");
+    }
+    if text.starts_with(b"{") {
+        let gltf = contains(text, b"\"asset\"") || contains(text, b"\"meshes\"");
+        return Some(if gltf { "a glTF model; export STL or OBJ" } else { "JSON, not STL or OBJ" });
+    }
+    if text.starts_with(b"<") && contains(text, b"<VTKFile") {
+        return Some("a VTK file; export STL or OBJ");
+    }
     if text.starts_with(b"<") {
         let html = [&b"<html"[..], b"<!doctype html", b"<head", b"<body"].iter().any(|mark| contains(text, mark));
         return Some(if html { "an HTML page, perhaps the error page of a download" } else { "XML, not STL or OBJ" });
     }
     None
+}
+
+/// A DXF begins with group code 0 or 999 and what it groups, a line each.
+fn is_dxf(text: &[u8]) -> bool {
+    let mut lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    match lines.next() {
+        Some(b"0") => lines.next().is_some_and(|line| line == b"SECTION"),
+        Some(b"999") => lines.nth(1).is_some_and(|line| line == b"0"),
+        _ => false,
+    }
+}
+
+/// An IGES file has lines of 80 characters, of which the 73rd tells the section and the rest count: `S      1` in the first.
+fn is_iges(head: &[u8]) -> bool {
+    head.get(72..80).is_some_and(|end| end[0] == b'S' && end[1..].trim_ascii() == b"1")
+        || head.get(72..80).is_some_and(|end| end == b"S0000001")
 }
 
 fn is_utf16_without_bom(head: &[u8]) -> bool {

@@ -16,8 +16,8 @@ fn from_lowest(t: [u32; 3]) -> [u32; 3] {
 }
 
 /// Drop repeated triangles, by clusters that share edges, where that leaves the surface no more open than before; a repeat
-/// that closes another part stays. Returns the number dropped.
-pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
+/// that closes another part stays. Returns the numbers dropped of triangles without a back, and of those of surfaces with two sides.
+pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> [usize; 2] {
     let mut first: HashMap<[u32; 3], u32> = HashMap::default();
     first.reserve(mesh.triangles.len());
     let mut repeats = Vec::new();
@@ -27,10 +27,10 @@ pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
         }
     }
     if repeats.is_empty() {
-        return 0;
+        return [0; 2];
     }
     let edges = EdgeUses::new(mesh, alive);
-    let mut dropped = 0;
+    let mut dropped = [0; 2];
     for cluster in clusters(mesh, &repeats) {
         let mut change: HashMap<u64, i64> = HashMap::default();
         for &n in &cluster {
@@ -45,8 +45,10 @@ pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> usize {
             after += (up - less).abs();
         }
         if after <= before {
-            cluster.iter().for_each(|&n| alive[n as usize] = false);
-            dropped += cluster.len();
+            for n in cluster {
+                alive[n as usize] = false;
+                dropped[usize::from(first.contains_key(&back(mesh.triangles[n as usize])))] += 1;
+            }
         }
     }
     dropped
@@ -89,12 +91,12 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(mesh: &Indexed, shell: &Shell) -> Self {
+    fn new(mesh: &Indexed, shell: &Shell, rounding: f64) -> Self {
         let corners = |&n: &u32| mesh.triangles[n as usize].map(|v| mesh.points[v as usize]);
         let mut triangles: Vec<[DVec3; 3]> = shell.triangles.iter().map(corners).collect();
         let whole = area(&triangles);
         let mut open = 0.0;
-        for rim in rims(&shell.boundary).iter().filter(|rim| !rim.cancels(&mesh.points)) {
+        for rim in rims(&shell.boundary).iter().filter(|rim| !rim.cancels(&mesh.points, rounding)) {
             let cap = rim.cap(&mesh.points);
             open += area(&cap);
             triangles.extend(cap);
@@ -125,8 +127,10 @@ pub struct Redundant {
 /// - a shell of negative volume is redundant if each of its triangles is the back of one of closed shells of positive volume;
 /// - an open one, if each of its triangles or their backs belong to closed shells;
 /// - any, if all its triangles belong to one closed shell of as many triangles.
+///
+/// Corners may be off by `rounding`.
 #[must_use]
-pub fn redundant(mesh: &Indexed, shells: &[Shell]) -> Redundant {
+pub fn redundant(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Redundant {
     let mut found = Redundant { shells: vec![false; shells.len()], ..Redundant::default() };
     let owners = twins(mesh, shells);
     if owners.is_empty() {
@@ -146,7 +150,7 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell]) -> Redundant {
         let of_shell = shells[s].triangles.iter();
         let beside = of_shell.flat_map(|&n| others(corners(n), s).chain(others(back(corners(n)), s)));
         for s in beside.chain([s]) {
-            seen.entry(s).or_insert_with(|| Seen::new(mesh, &shells[s]));
+            seen.entry(s).or_insert_with(|| Seen::new(mesh, &shells[s], rounding));
         }
     }
     for kind in [Kind::Back, Kind::Open, Kind::Same] {
@@ -170,7 +174,9 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell]) -> Redundant {
                     Kind::Same => own.first().is_some_and(|&n| others(corners(n), s).any(|o| kept(&o) && holds(o))),
                 };
             if redundant {
-                let repeats = own.iter().filter(|&&n| others(corners(n), s).any(|o| kept(&o))).count();
+                // Of a surface with two sides the backs are dropped, whichever of its copies they are.
+                let has_two_sides = |n: u32| owners.contains_key(&back(corners(n)));
+                let repeats = own.iter().filter(|&&n| !has_two_sides(n)).count();
                 found.repeated += repeats;
                 found.doubled += own.len() - repeats;
                 found.shells[s] = true;

@@ -6,6 +6,23 @@
 use crate::geometry::repair::crossing::solid_angle;
 use glam::DVec3;
 
+/// What is not known of a body.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Doubt {
+    /// Nothing.
+    #[default]
+    None,
+    /// Whether what it holds is solid or open.
+    Perhaps,
+    /// Which part of its box is solid; it may as well be a cavity of another body.
+    Unknown,
+}
+
+/// A corner where surfaces cross is off by no more than so many units in the last place.
+const CUT_ULPS: f64 = 2.0;
+
 /// A closed shell as the nesting sees it.
 #[derive(Debug, Clone)]
 pub struct Closed {
@@ -15,8 +32,10 @@ pub struct Closed {
     pub volume: f64,
     /// Bounding box.
     pub bounds: [DVec3; 2],
-    /// What it holds cannot be told.
-    pub doubtful: bool,
+    /// What is not known of it.
+    pub doubt: Doubt,
+    /// How far corners may be off that were not read but computed; 0 if there are none.
+    pub rounding: f64,
 }
 
 impl Closed {
@@ -25,7 +44,21 @@ impl Closed {
     pub fn new(triangles: Vec<[DVec3; 3]>) -> Self {
         let corners = || triangles.iter().flatten().copied();
         let bounds = corners().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
-        Closed { volume: signed_volume(&triangles, (bounds[0] + bounds[1]) * 0.5), bounds, triangles, doubtful: false }
+        Closed {
+            volume: signed_volume(&triangles, (bounds[0] + bounds[1]) * 0.5),
+            bounds,
+            triangles,
+            doubt: Doubt::None,
+            rounding: 0.0,
+        }
+    }
+
+    /// Measure triangles that were cut where they cross.
+    #[must_use]
+    pub fn of_parts(triangles: Vec<[DVec3; 3]>) -> Self {
+        let whole = Self::new(triangles);
+        let farthest = whole.bounds[0].abs().max(whole.bounds[1].abs()).max_element();
+        Closed { rounding: CUT_ULPS * f64::EPSILON * farthest, ..whole }
     }
 
     /// Area of the surface.
@@ -62,7 +95,8 @@ pub enum Role {
 pub fn roles(shells: &[Closed]) -> Vec<Role> {
     let mut roles = vec![Role::Body; shells.len()];
     let sign = |s: usize| shells[s].volume > 0.0;
-    let solid: Vec<usize> = (0..shells.len()).filter(|&s| !shells[s].is_sheet() && !shells[s].doubtful).collect();
+    let solid: Vec<usize> =
+        (0..shells.len()).filter(|&s| !shells[s].is_sheet() && shells[s].doubt == Doubt::None).collect();
     if solid.iter().all(|&s| sign(s)) || solid.iter().all(|&s| !sign(s)) {
         return roles;
     }

@@ -11,10 +11,7 @@ use rustc_hash::FxHashMap as HashMap;
 /// A rim whose integrals are below this share of its own size cancels.
 const CANCELS: f64 = 1e-5;
 
-/// So does one that is off by the rounding of `f32` corners, a few units in the last place of the largest coordinate, …
-const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
-
-/// … unless it gapes: only a slit stays below this share.
+/// So does one that is off by the rounding of its corners, unless it gapes: only a slit stays below this share.
 const GAPES: f64 = 1e-2;
 
 /// Loose edges around a hole in a surface, or along a T-junction.
@@ -51,15 +48,16 @@ impl Rim {
     /// Do its edges cancel as a chain, so that the surface is closed in space though not in its edges?
     ///
     /// A chain that cancels has no integral of any 1-form; a few cubic forms (k·p)³ (m·dp) with fixed odd directions tell.
+    /// Corners may be off by `rounding`.
     #[must_use]
-    pub fn cancels(&self, points: &[DVec3]) -> bool {
+    pub fn cancels(&self, points: &[DVec3], rounding: f64) -> bool {
         let corners = || self.edges.iter().flatten().map(|&v| points[v as usize]);
         let (lo, hi) = corners().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
         let size = (hi - lo).max_element();
         if !(size > 0.0) {
             return true;
         }
-        let limit = CANCELS + (ROUNDING * lo.abs().max(hi.abs()).max_element() / size).min(GAPES);
+        let limit = CANCELS + (rounding / size).min(GAPES);
         let unit = |v: u32| (points[v as usize] - lo) / size;
         let mut angle = 0.3_f64;
         (0..8).all(|_| {

@@ -40,29 +40,73 @@ pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
 /// Of an edge, how wide a crack at its end may be. Below a half: then no edge has both its ends merged into one point.
 const OF_AN_EDGE: f64 = 0.25;
 
+/// Points in buckets by place, for reaches of many sizes: of each size so many buckets as the points there reach or more.
+struct Buckets {
+    origin: DVec3,
+    points: HashMap<(i32, [i64; 3]), Vec<u32>>,
+    /// Binary orders of the smallest and the largest reach.
+    orders: [i32; 2],
+}
+
+impl Buckets {
+    fn new(origin: DVec3, reach: impl Iterator<Item = f64>) -> Self {
+        let (least, most) = reach.filter(|&r| r > 0.0).fold((f64::INFINITY, 0.0_f64), |(a, b), r| (a.min(r), b.max(r)));
+        let highest = Self::order(most);
+        // Points that reach less than the lowest order are looked for farther than they reach, which only takes longer.
+        let lowest = Self::order(least).clamp(highest - Self::ORDERS, highest);
+        Buckets { origin, points: HashMap::default(), orders: [lowest, highest] }
+    }
+
+    /// So many binary orders of reaches are told apart.
+    const ORDERS: i32 = 40;
+
+    fn order(reach: f64) -> i32 {
+        if reach > 0.0 && reach.is_finite() { reach.log2().ceil() as i32 } else { 0 }
+    }
+
+    /// The orders at which a point of this reach is found.
+    fn orders(&self, reach: f64) -> std::ops::RangeInclusive<i32> {
+        self.orders[0]..=Self::order(reach).clamp(self.orders[0], self.orders[1])
+    }
+
+    fn bucket(&self, p: DVec3, order: i32) -> [i64; 3] {
+        ((p - self.origin) / 2_f64.powi(order)).floor().to_array().map(|c| c as i64)
+    }
+
+    fn add(&mut self, v: u32, p: DVec3, reach: f64) {
+        for order in self.orders(reach) {
+            let bucket = self.bucket(p, order);
+            self.points.entry((order, bucket)).or_default().push(v);
+        }
+    }
+
+    /// Points that may lie as close as both they and a point of this reach do reach; some more than once.
+    fn near(&self, p: DVec3, reach: f64) -> impl Iterator<Item = u32> {
+        self.orders(reach).flat_map(move |order| {
+            let [a, b, c] = self.bucket(p, order);
+            let side = |n: i64| n.saturating_sub(1)..=n.saturating_add(1);
+            let around = side(a).flat_map(move |i| side(b).flat_map(move |j| side(c).map(move |k| [i, j, k])));
+            around.filter_map(move |at| self.points.get(&(order, at))).flatten().copied()
+        })
+    }
+}
+
 /// Merge `loose` points closer than `distance`, and much closer than the edges of `alive` triangles there are long; each group
 /// moves to the place of its first point. Other points stay where they are. Returns the largest move.
 pub fn merge_close(mesh: &mut Indexed, alive: &[bool], loose: &[bool], distance: f64) -> f64 {
     let reach = reach(mesh, alive, loose, distance);
-    let key = |p: DVec3| (p / distance).floor().to_array().map(|c| c as i64);
-    let mut buckets: HashMap<[i64; 3], Vec<u32>> = HashMap::default();
+    let origin = mesh.points.iter().fold(DVec3::INFINITY, |a, p| a.min(*p));
+    let mut buckets = Buckets::new(origin, reach.iter().copied());
     let (mut target, mut largest_move): (Vec<u32>, f64) = ((0..mesh.points.len() as u32).collect(), 0.0);
-    for (v, &p) in mesh.points.iter().enumerate().filter(|&(v, _)| loose[v]) {
-        let [a, b, c] = key(p);
-        let around = (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [a + i, b + j, c + k])));
+    for (v, &p) in mesh.points.iter().enumerate().filter(|&(v, _)| loose[v] && reach[v] > 0.0) {
         let apart = |q: u32| mesh.points[q as usize].distance(p);
-        let near = around
-            .filter_map(|k| buckets.get(&k))
-            .flatten()
-            .copied()
-            .filter(|&q| apart(q) <= reach[v].min(reach[q as usize]))
-            .min();
+        let near = buckets.near(p, reach[v]).filter(|&q| apart(q) <= reach[v].min(reach[q as usize])).min();
         match near {
             Some(q) => {
                 largest_move = largest_move.max(apart(q));
                 target[v] = q;
             }
-            None => buckets.entry([a, b, c]).or_default().push(v as u32),
+            None => buckets.add(v as u32, p, reach[v]),
         }
     }
     for t in &mut mesh.triangles {

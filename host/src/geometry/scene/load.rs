@@ -4,7 +4,7 @@ use super::placement::Motion;
 use super::shape::Shape;
 use super::{Scene, SceneSolid};
 use crate::error::{Error, Result};
-use crate::geometry::bodies::{Bodies, Body, SolidSummary};
+use crate::geometry::bodies::{Bodies, Body, Doubt, SolidSummary};
 use crate::geometry::read;
 use glam::DVec3;
 use std::path::Path;
@@ -50,8 +50,9 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
             let bounds = form.as_ref().map_or_else(Default::default, |f| f.bounds());
             let (volume, porosity) = (solid.shape.volume(), solid.porosity);
             let (name, single) = (name(solid, at, ""), None);
-            let (cavities, doubtful, sheet) = (0, false, false);
-            let body = Body { name, triangles, form, single, porosity, volume, bounds, cavities, doubtful, sheet };
+            let (cavities, doubt, rounding, sheet) = (0, Doubt::None, 0.0, false);
+            let body =
+                Body { name, triangles, form, single, porosity, volume, bounds, cavities, doubt, rounding, sheet };
             bodies.bodies.push(body);
         }
         return Ok(());
