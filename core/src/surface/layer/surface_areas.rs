@@ -44,7 +44,7 @@ impl<R: Real> OpenLayer<'_, R> {
     }
 
     /// Solid fractions of the sides of a cell, low and high along each axis.
-    fn blocked(&self, [i, j]: [usize; 2], nx: usize) -> Option<[[R; 2]; 3]> {
+    fn blocked(&self, [i, j]: [usize; 2], nx: usize) -> Option<Sides<R>> {
         let (c, x) = (j * nx + i, j * (nx + 1) + i);
         let open = [
             [self.x.get(x)?, self.x.get(x + 1)?],
@@ -54,6 +54,9 @@ impl<R: Real> OpenLayer<'_, R> {
         Some(open.map(|side| side.map(|&open| R::ONE - open)))
     }
 }
+
+/// Solid fractions of the sides of a cell, low and high along each axis.
+type Sides<R> = [[R; 2]; 3];
 
 /// How well the areas of a layer are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -137,7 +140,7 @@ struct SharedCell<'a, V: Vector> {
     cell: Aabb<V>,
     surface: &'a CellSurface<V::Scalar>,
     /// Solid fractions of its sides.
-    blocked: [[V::Scalar; 2]; 3],
+    blocked: Sides<V::Scalar>,
 }
 
 /// The area of the union in a cell, and what of its wetted area is in doubt, if there is no proof.
@@ -172,7 +175,7 @@ fn of_shared_cell<V: Vector>(
 }
 
 /// Area of the surface in the planes of a cell's sides that is wetted from the cell: what is blocked, less what is solid on this side of it.
-fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &[[V::Scalar; 2]; 3], solid: &[[V::Scalar; 2]; 3]) -> V::Scalar {
+fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides<V::Scalar>) -> V::Scalar {
     let size = cell.size().to_array();
     let across = [size[1] * size[2], size[2] * size[0], size[0] * size[1]];
     let mut sum = V::Scalar::ZERO;
@@ -193,7 +196,7 @@ fn fragments<V: Vector>(
     site: &Site<V>,
     cell: Aabb<V>,
     row: &Row<V>,
-) -> Option<(SurfaceArea<V::Scalar>, [[V::Scalar; 2]; 3])> {
+) -> Option<(SurfaceArea<V::Scalar>, Sides<V::Scalar>)> {
     let size = cell.size().to_array();
     let across = [size[1] * size[2], size[2] * size[0], size[0] * size[1]];
     with_least_blur(shared.tol, |blur| {
