@@ -152,7 +152,7 @@ fn of_shared_cell<V: Vector>(
     (reals, flags): (&mut [V::Scalar], &mut [u8]),
 ) -> (SurfaceArea<V::Scalar>, Option<V::Scalar>) {
     let (inside, sides, doubt) = match fragments(shared, site, *cell, row) {
-        Some((area, sides)) => (area, Some(sides), None),
+        Some(Fragments { area, sides }) => (area, Some(sides), None),
         None => {
             let mut room = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
             let inside =
@@ -190,13 +190,19 @@ fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides
     sum
 }
 
+/// What the union has of surface inside a cell.
+struct Fragments<R> {
+    area: SurfaceArea<R>,
+    sides: Sides<R>,
+}
+
 /// What the union of all bodies has of surface inside a cell, and the solid fractions of the cell's sides; none without a proof.
 fn fragments<V: Vector>(
     shared: &mut Shared<V, ()>,
     site: &Site<V>,
     cell: Aabb<V>,
     row: &Row<V>,
-) -> Option<(SurfaceArea<V::Scalar>, Sides<V::Scalar>)> {
+) -> Option<Fragments<V::Scalar>> {
     let size = cell.size().to_array();
     let across = [size[1] * size[2], size[2] * size[0], size[0] * size[1]];
     with_least_blur(shared.tol, |blur| {
@@ -212,7 +218,7 @@ fn fragments<V: Vector>(
             area = area.plus(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));
         })?;
         let sides = [0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]);
-        Ok::<_, NoProof>(((area, sides), found.error))
+        Ok::<_, NoProof>((Fragments { area, sides }, found.error))
     })
 }
 
@@ -258,7 +264,7 @@ fn parts_of<V: Vector>(
                 let cell = grid.cell_box([n % 2, n / 2, k])?;
                 let Room { reals, flags, numbers, groups } = room.reborrow();
                 let row = Row::new(&bins, k, [cell.min.y(), cell.max.y()], (numbers, groups))?;
-                found = fragments(shared, &part, cell, &row).map(|(area, _)| (area, V::Scalar::ZERO));
+                found = fragments(shared, &part, cell, &row).map(|found| (found.area, V::Scalar::ZERO));
                 if found.is_none() {
                     let rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
                     found = with_effort(shared, &part, k..k + 1, |shared| parts_of(shared, &part, cell, rest));
