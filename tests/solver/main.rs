@@ -1,5 +1,6 @@
 //! Tests of the PDR Euler kernel: invariances to the bit, conservation, convergence, extremes, reference cases.
 
+mod askew;
 mod balance;
 mod contracts;
 mod convergence;

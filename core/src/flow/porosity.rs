@@ -2,6 +2,7 @@
 //!
 //! - [`fractions`]: mesh and open fractions as the caller's slices
 //! - [`flags`]: one byte per cell: jumps, walls, small and sealed cells
+//! - `cell_walls`: what kind of wall a cell holds, and how far the gas flows along it
 //! - `areas`: open areas along one axis at the cells of a row
 //! - `mark`: the flags from the open fractions
 //! - [`throat`], `jump`: fluxes where the porosity jumps
@@ -9,6 +10,7 @@
 //! - [`mod@prepare`]: all of that in one call
 
 pub(crate) mod areas;
+pub(crate) mod cell_walls;
 pub mod clusters;
 pub mod flags;
 pub mod fractions;

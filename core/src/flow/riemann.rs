@@ -4,6 +4,11 @@
 //! left and right and reversing the normal reverses the flux to the bit, and so that two states at rest with one pressure
 //! give exactly that pressure.
 //!
+//! None of them is corrected for slow flow. Bringing the velocities closer by the local Mach number before HLLC (Thornber et al., J. Comput.
+//! Phys. 227 (2008) 4873) takes damping from sound that the half step of Hancock needs: of the kinetic energy of Gresho's vortex (40 × 40
+//! cells, one turn) HLLC keeps 0.95, 0.79 and 0.46 at Mach 0.3, 0.03 and 0.003; so corrected it keeps 0.99 and 0.99, then 1.06 with a
+//! pressure that alternates from cell to cell, at half the step, and at a CFL number of 0.8 the energy grows twentyfold at Mach 0.03.
+//!
 //! References: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 10;
 //! P. Batten, N. Clarke, C. Lambert, D. M. Causon, SIAM J. Sci. Comput. 18 (1997) 1553; B. Einfeldt, SIAM J. Numer. Anal. 25 (1988) 294.
 

@@ -208,7 +208,10 @@ fn coefficients<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, o
     for d in 0..D {
         let ducts = medium.ducts(d, row.at, slab.periodic[d]);
         for i in marked(marks, break_low(d) | break_high(d)) {
-            let (low, high) = ducts.sections(i);
+            let mut at = row.at;
+            at[0] += i;
+            let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
+            let (low, high) = ducts.sections(i, slab.contractions(d, at, breaks));
             let scale = half_dt / mesh.widths[d][row.at[d] + if d == 0 { i } else { 0 }];
             of_row.rate[d][i] = R::HALF * (low + high) * of_row.spare[i] * scale;
             of_row.widening[d][i] = (high - low) * of_row.spare[i] * scale;

@@ -75,6 +75,26 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         }
     }
 
+    /// How far the gas passes the low face of a cell along `d` as a contraction, 1, or flows along the walls of a cell beside it, 0.
+    /// `at[d]` may be one past the end.
+    pub fn contraction(&self, d: usize, at: [usize; D]) -> R {
+        let Some(medium) = self.medium.as_ref().filter(|_| D > 1) else { return R::ONE };
+        let of = |cell: [usize; D]| {
+            let index = self.problem.mesh.index(cell);
+            medium.contraction(cell, self.old.momentum.map(|m| m[index]))
+        };
+        medium.beside(d, at, self.periodic[d]).into_iter().flatten().map(of).fold(R::ONE, R::smaller)
+    }
+
+    /// The same for the low and the high face of a cell, as far as they break.
+    pub fn contractions(&self, d: usize, at: [usize; D], breaks: [bool; 2]) -> [R; 2] {
+        core::array::from_fn(|side| {
+            let mut face = at;
+            face[d] += side;
+            if breaks[side] { self.contraction(d, face) } else { R::ONE }
+        })
+    }
+
     /// Cells of the whole mesh along an axis.
     pub fn cells(&self, d: usize) -> isize {
         self.problem.mesh.cells()[d] as isize

@@ -8,7 +8,7 @@ use crate::flow::boundary::Boundary;
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, Three, var};
 use crate::flow::kernel::slab::{RowAt, Slab};
 use crate::flow::limiter::{Slope, wall_slope};
-use crate::flow::porosity::areas::Ducts;
+use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, jump_fluxes};
@@ -40,7 +40,7 @@ impl<R: Real> Differences<R> for Single<R> {
 }
 
 /// Slopes along axis `d` of the cells of a row beside breaks, in place of those that looked across: mirrored at walls, none
-/// at jumps. `values` gives a variable in the cells below, here and above.
+/// at jumps; as far as the gas does not flow along walls. `values` gives a variable in the cells below, here and above.
 pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope>(
     slab: &Slab<'_, R, D>,
     d: usize,
@@ -57,8 +57,17 @@ pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope>(
     for i in marked(marks, break_low(d) | break_high(d)) {
         let (low, high) = ducts.openings(i);
         let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
+        let mut at = row.at;
+        at[0] += i;
+        // 1 beside a face that is no break.
+        let [a, b] = slab.contractions(d, at, breaks);
+        let share = if breaks == [true; 2] { R::larger(a, b) } else { R::smaller(a, b) };
+        let mut blend = |v: usize, slope: R| {
+            let own = &mut out[v * n + i];
+            *own = if share >= R::ONE { slope } else { *own + share * (slope - *own) };
+        };
         if (breaks[0] & (low > R::ZERO)) | (breaks[1] & (high > R::ZERO)) {
-            (0..D + 2).for_each(|v| out[v * n + i] = R::ZERO);
+            (0..D + 2).for_each(|v| blend(v, R::ZERO));
             continue;
         }
         let mut three = [[R::ZERO; 3]; MOST];
@@ -67,7 +76,7 @@ pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope>(
             *three = [below[i], here[i], above[i]];
         }
         let slope = slope_at_walls::<R, D, S>(d, breaks, three, axis, i, compliance);
-        (0..D + 2).for_each(|v| out[v * n + i] = slope[v]);
+        (0..D + 2).for_each(|v| blend(v, slope[v]));
     }
 }
 
@@ -190,6 +199,13 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
         face[0] = i;
         self.medium.beside(self.d, face, self.slab.periodic[self.d])
     }
+
+    /// How far the gas passes a face as a contraction.
+    fn contraction(&self, i: usize) -> R {
+        let mut face = self.at;
+        face[0] = i;
+        self.slab.contraction(self.d, face)
+    }
 }
 
 /// Fluxes at the first `count` jump faces of a group.
@@ -212,7 +228,10 @@ fn jump_group<R: Real, const D: usize, S: Solver>(
     let (mut face, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
     for l in 0..LANES {
         face[l] = row.ducts.face(group[l]);
-        (areas[0][l], areas[1][l]) = row.ducts.beside(group[l], false);
+        let (left, right) = row.ducts.beside(group[l], false);
+        let contraction = row.contraction(group[l]);
+        areas[0][l] = share(face[l], left, contraction);
+        areas[1][l] = share(face[l], right, contraction);
     }
     let mut acoustic_weight = [R::ONE; LANES];
     if let Some(asked) = slab.first_order {
@@ -258,7 +277,7 @@ fn wall_flux<R: Real, const D: usize, S: Solver>(row: &BrokenRow<'_, R, D>, i: u
         let image = Boundary::Wall.ghost_face(&w, d, side == 1, problem.gas);
         let pair: [&Primitive<R, D>; 2] = if side == 0 { [&w, &image] } else { [&image, &w] };
         let f = S::flux::<R, D, false>(pair[0], pair[1], &row.slab.face_gas);
-        area * (f.momentum[0] - row.states[side][(D + 2) * m + i])
+        row.contraction(i) * area * (f.momentum[0] - row.states[side][(D + 2) * m + i])
     };
     let (to_left, to_right) = (push(0), push(1));
     for v in 0..D + 2 {

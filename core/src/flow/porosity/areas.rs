@@ -46,6 +46,12 @@ impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
     }
 }
 
+/// An open area and what it would grow to, by a share; all of it for a share of 1.
+#[inline(always)]
+pub(crate) fn share<R: Real>(open: R, area: R, share: R) -> R {
+    if share >= R::ONE { area } else { open + share * (area - open) }
+}
+
 impl<'a, R: Real> Ducts<'a, R> {
     /// Open fractions of the low and of the high faces of the first `n` cells.
     pub fn rows(&self, n: usize) -> (&'a [R], &'a [R]) {
@@ -129,11 +135,15 @@ impl<'a, R: Real> Ducts<'a, R> {
         if breaks { jump } else { open }
     }
 
-    /// Areas with which a duct meets the low and high face of its cell: at a jump it goes on behind the face.
+    /// Areas with which a duct meets the low and high face of its cell: at a jump it goes on behind the face, by so much as the
+    /// `contraction` of that face tells.
     #[inline(always)]
-    pub fn sections(&self, i: usize) -> (R, R) {
-        let duct = |_| self.duct(i);
-        (self.area(i, false, duct), self.area(i, true, duct))
+    pub fn sections(&self, i: usize, contraction: [R; 2]) -> (R, R) {
+        let section = |high: bool| {
+            let open = self.face(if high { i + self.stride } else { i });
+            share(open, self.area(i, high, |_| self.duct(i)), contraction[usize::from(high)])
+        };
+        (section(false), section(true))
     }
 
     /// Areas that the flux acts on at the low and high face of a cell: at a jump that of the throat.

@@ -20,51 +20,12 @@ fn is_wall<R: Real>(width: R, threshold: R) -> bool {
     width > R::from_f64(0.2) * threshold
 }
 
-/// Open fractions of a cell's two faces along an axis that differ by no more than this differ by rounding: of the geometry, of
-/// fractions stored in single precision, or of the scalar. A wall so little inclined that it differs no more counts as aligned
-/// with the grid, at an error of about this share over the Mach number in units of the dynamic pressure.
-fn rounding<R: Real>() -> R {
-    R::larger(R::from_f64(1e-6), R::from_f64(16.0) * R::EPSILON)
-}
-
-impl<R: Real, const D: usize> Medium<'_, R, D> {
-    /// Whether the wall inside a cell is inclined to the grid.
-    ///
-    /// The high open face less the low one, axis by axis, is the area vector of that wall (Gauss). A duct that changes its area
-    /// has one component, along itself; a wall that cuts through the cell at an angle has more, and so has the corner of a body that
-    /// is aligned with the grid. A cell with all its volume open holds no wall: what closes its faces lies in their planes.
-    fn holds_inclined_wall(&self, at: [usize; D], periodic: [bool; D]) -> bool {
-        let least = rounding::<R>();
-        let open = self.porosity.volume[self.mesh.index(at)];
-        if open >= R::ONE - least {
-            return false;
-        }
-        let (mut components, mut product) = (0, R::ONE);
-        let (mut solid_corner, mut open_corner) = (true, true);
-        for d in 0..D {
-            let (low, high) = self.ducts(d, at, periodic[d]).openings(0);
-            let change = (high - low).abs();
-            if change > least {
-                components += 1;
-                product *= change;
-                let part = change < R::ONE - least;
-                solid_corner &= part & (R::larger(low, high) >= R::ONE - least);
-                open_corner &= part & (R::smaller(low, high) <= least);
-            }
-        }
-        // The corner of a body aligned with the grid, or the space it leaves, is a box: in a plane its area is the product of its
-        // sides, in space the square of its volume the product of its faces. A plane cuts off half of that or less.
-        let is_box = |volume: R| (if components == 3 { volume * volume } else { volume } - product).abs() <= least;
-        components > 1 && !(solid_corner && is_box(R::ONE - open)) && !(open_corner && is_box(open))
-    }
-}
-
 /// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
 /// for no jumps), which cells are small, which are sealed.
 ///
-/// Both belong to ducts, layers and walls aligned with the grid. A face beside a cell that an inclined wall cuts is neither: the
-/// area of such a cell's faces changes though no duct does, and the stream runs along the wall, not against the closed face. There
-/// the geometric form is exact for a uniform stream.
+/// Both belong to ducts, layers and walls aligned with the grid, and to obstacles smaller than a cell. A face beside a cell that an
+/// inclined wall cuts is neither: the area of such a cell's faces changes though no duct does, and the stream runs along the wall, not
+/// against the closed face ([`cell_walls`](super::cell_walls)).
 ///
 /// `marks` is one byte per cell.
 ///
@@ -98,7 +59,7 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
                 let (left, right) = own.beside(0, bit == break_high(d));
                 let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
                 let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
-                let inclined = |c: &[usize; D]| medium.holds_inclined_wall(*c, periodic);
+                let inclined = |c: &[usize; D]| medium.holds_inclined_wall(*c);
                 let breaks = closed || is_jump(left, open, right, threshold);
                 if breaks && !medium.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
                     bits |= bit;
