@@ -43,7 +43,8 @@
 //! 3. [`z_faces`]: its z faces, from the section with their plane
 //! 4. [`union`]: the exact union of bodies in a cell, from BSP trees of their surfaces
 //! 5. [`bins`]: which triangles of which bodies reach which layer
-//! 6. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies
+//! 6. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies; [`surface_area`]: frontal and
+//!    wetted area of single bodies
 //! 7. [`layer`]: the door: porosity of the layers of a grid
 
 pub mod bins;
@@ -51,6 +52,7 @@ mod cell_unions;
 pub mod cells;
 pub mod clip;
 pub mod layer;
+pub mod surface_area;
 pub mod union;
 mod walls;
 pub mod z_faces;

@@ -1,9 +1,10 @@
 //! Geometry: triangles of files and solids by formula, put in order until they are bodies that can be measured.
 //!
-//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`single`], [`repair`], `diagnosis`, `resolve`, [`bodies`]; `scene`.
+//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`facets`], [`single`], [`repair`], `diagnosis`, `resolve`, [`bodies`]; `scene`.
 
 pub mod bodies;
 mod diagnosis;
+pub mod facets;
 pub mod form;
 pub mod mesh;
 pub mod read;

@@ -11,6 +11,7 @@ mod layers;
 mod levels;
 mod local;
 mod options;
+pub mod resistance;
 mod result;
 mod road;
 pub mod snap;
@@ -31,13 +32,17 @@ use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::Layers;
 
-/// Bytes that the fields of a grid take, with what one thread needs beside them.
+/// Bytes that the fields of a grid take, with the lists of triangles by layer and what one thread needs beside them.
 #[must_use]
 pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
     // Of several levels, one joins the others, and one is remembered for the next.
     let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(3);
-    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + layers::memory_of_a_thread(grid)
+    // Tall triangles are listed in every layer that they reach.
+    let (surfaces, _) = surfaces(bodies, &bodies.triangles, |_| true);
+    let lists = Layers::needed(grid, &surfaces);
+    let listed = size_of::<u32>() * lists.numbers + size_of::<Group<DVec3>>() * lists.groups;
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + layers::memory_of_a_thread(grid) + listed
 }
 
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.

@@ -345,6 +345,20 @@ fn a_slot_far_from_the_origin_is_a_hole() {
 }
 
 #[test]
+fn a_room_turned_inward_is_told_from_a_body_with_cavities() {
+    let part = cuboid(DVec3::splat(1.0), DVec3::splat(2.0), false);
+    let room = bodies(&[&cuboid(DVec3::ZERO, DVec3::splat(10.0), true), &part]);
+    assert!(
+        room.warnings.iter().any(|w| w.contains("1 shells that look outward became cavities")),
+        "{:?}",
+        room.warnings
+    );
+    let inner: Vec<Triangle> = part.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let hollow = bodies(&[&cuboid(DVec3::ZERO, DVec3::splat(10.0), false), &inner]);
+    assert_eq!((hollow.diagnoses[0].cavities, hollow.warnings.len()), (1, 0), "{:?}", hollow.warnings);
+}
+
+#[test]
 fn backs_of_touching_parts_are_called_backs() {
     let one = cuboid(DVec3::ZERO, DVec3::ONE, false);
     let beside = cuboid(DVec3::X, DVec3::new(2.0, 1.0, 1.0), false);

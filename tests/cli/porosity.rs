@@ -1,6 +1,6 @@
 //! `voidage porosity`.
 
-use crate::kit::{Scratch, fixture, json, stderr, stdout, voidage};
+use crate::kit::{Scratch, array, fixture, json, stderr, stdout, voidage};
 use std::fs;
 use voidage::files::npy;
 
@@ -316,4 +316,30 @@ fn outputs_in_the_directory_of_the_arrays() {
     let over = voidage(&[&"porosity", &mesh, &"--cells", &"4x4x4", &"--npy", &dir]);
     assert_eq!(over.status.code(), Some(2), "{}", stderr(&over));
     assert_eq!(fs::read(&mesh).expect("readable"), fs::read(&skid).expect("readable"));
+}
+
+/// `--resistance`: six arrays more, of cells; what they mean together.
+#[test]
+fn resistance_writes_the_obstacles() {
+    let dir = Scratch::new();
+    let (npy, report) = (dir.file("npy"), dir.file("report.json"));
+    let skid = fixture("cad_skid.stl");
+    let all: [&dyn AsRef<std::ffi::OsStr>; 9] =
+        [&"porosity", &skid, &"--cells", &"20x13x11", &"--resistance", &"--npy", &npy, &"--report", &report];
+    let output = voidage(&all);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let [beta, s, d_h, l_obs] = ["beta_v", "s", "d_h", "l_obs"].map(|name| array(&npy.join(format!("{name}.npy"))));
+    assert_eq!(s.len(), 20 * 13 * 11);
+    for (cell, (&s, &beta)) in s.iter().zip(&beta).enumerate() {
+        if s > 0.0 {
+            assert!((d_h[cell] * s - 4.0 * beta).abs() < 1e-12 && (l_obs[cell] * s - 4.0 * (1.0 - beta)).abs() < 1e-12);
+        } else {
+            assert_eq!([d_h[cell], l_obs[cell]], [0.0; 2]);
+        }
+    }
+    let obstacles = &json(&report)["obstacles"];
+    let wetted = obstacles["wetted_area"].as_f64().expect("a number");
+    assert!((wetted - 228.608_4).abs() < 1e-3 && obstacles["unproved"] == 0, "{obstacles}");
+    let refused = voidage(&[&"porosity" as &dyn AsRef<std::ffi::OsStr>, &skid, &"--resistance", &"--no-areas"]);
+    assert_eq!(refused.status.code(), Some(2));
 }

@@ -8,6 +8,7 @@ mod invariance;
 mod known;
 mod layers;
 mod meshes;
+mod obstacles;
 mod overlap;
 mod quadric;
 mod scenes;

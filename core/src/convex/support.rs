@@ -176,8 +176,14 @@ impl<S: Support> Transformed<S> {
         Transformed { shape, columns, translation, norm: magnitude(rows), round }
     }
 
+    /// What is mapped.
+    pub fn shape(&self) -> &S {
+        &self.shape
+    }
+
+    /// The image of a point.
     #[inline(always)]
-    fn apply(&self, p: S::Vector) -> S::Vector {
+    pub fn apply(&self, p: S::Vector) -> S::Vector {
         self.columns[0] * p.x() + self.columns[1] * p.y() + self.columns[2] * p.z() + self.translation
     }
 

@@ -31,6 +31,12 @@ impl<R: Real> Bounds<R> {
         Bounds { lower: R::ONE - self.upper, upper: R::ONE - self.lower }
     }
 
+    /// Halfway between them.
+    #[must_use]
+    pub fn middle(self) -> R {
+        self.lower + (self.upper - self.lower) * R::HALF
+    }
+
     /// How far the bounds are apart.
     #[must_use]
     pub fn gap(self) -> R {

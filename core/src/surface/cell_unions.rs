@@ -315,24 +315,34 @@ pub(super) fn find_parts<V: Vector, O: OtherBodies<V>>(
     layers: Range<usize>,
     room: Room<V>,
 ) -> Option<Parts<V::Scalar>> {
+    with_effort(shared, site, layers.clone(), |shared| (shared.parts)(shared, site, grid, layers, room))
+}
+
+/// Divides a cell, or a part of one that holds the triangles of some layers of a site; none if the effort is spent.
+pub(super) fn with_effort<V: Vector, O, T>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    layers: Range<usize>,
+    division: impl FnOnce(&mut Shared<V, O>) -> Option<T>,
+) -> Option<T> {
     // The layer of a whole grid holds more than one of its cells: what is sorted for that is not counted.
     if shared.effort.level == 0 {
         shared.effort.triangles = 0;
     } else {
-        let here: usize = layers.clone().map(|k| site.bins.count(k).numbers).sum();
+        let here: usize = layers.map(|k| site.bins.count(k).numbers).sum();
         shared.effort.triangles = shared.effort.triangles.saturating_add(here);
     }
     if shared.effort.triangles > MOST_EFFORT {
         return None;
     }
     shared.effort.level += 1;
-    let parts = (shared.parts)(shared, site, grid, layers, room);
+    let found = division(shared);
     shared.effort.level -= 1;
-    parts
+    found
 }
 
 /// Bounds of a cell from its parts, halves along the axes in which it is longest; none if the depth is spent.
-fn divide<V: Vector, O: OtherBodies<V>>(
+pub(super) fn divide<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,

@@ -14,11 +14,13 @@ mod parts;
 mod report;
 mod slices;
 mod solid_bounds;
+mod surface_areas;
 
 pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};
 pub use report::{CellKinds, LayerReport};
 pub use slices::LayerSlices;
+pub use surface_areas::{AreaReport, OpenLayer};
 
 use crate::grid::Grid;
 use crate::grid::fields::{Fields, Layer};

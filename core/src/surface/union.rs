@@ -244,13 +244,25 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// # Errors
     /// [`NoProof`]: divide the cell.
     pub fn cell(&mut self) -> Result<CellFractions<R>, NoProof> {
+        self.cell_and_surface(|_| ())
+    }
+
+    /// As [`CellUnion::cell`]; hands over the surface of the union inside the cell, in its frame. Without a proof what was handed over
+    /// may be wrong.
+    ///
+    /// # Errors
+    /// [`NoProof`]: divide the cell.
+    pub fn cell_and_surface(&mut self, mut each: impl FnMut(&Polygon<R>)) -> Result<CellFractions<R>, NoProof> {
         self.build_trees()?;
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         let (mut descent, pieces) = self.descent();
         for (own, part) in descent.parts.iter().enumerate() {
             for Piece { polygon, ball, plane, .. } in pieces.get(part.first..part.end).ok_or(Full)? {
                 let rule = DescentRule { toward: plane.normal, own: Some(own), both_sides: false };
-                descent.send(polygon, *ball, rule, |kept| integrate(kept, &mut flux, &mut moment))?;
+                descent.send(polygon, *ball, rule, |kept| {
+                    integrate(kept, &mut flux, &mut moment);
+                    each(kept);
+                })?;
             }
         }
         let (mut low, mut high, mut volume) = ([R::ZERO; 3], [R::ZERO; 3], [R::ZERO; 3]);

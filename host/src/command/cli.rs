@@ -146,6 +146,9 @@ pub struct PorosityArgs {
     /// Only the volume porosity
     #[arg(long)]
     pub no_areas: bool,
+    /// Also the obstacles in every cell: frontal area density a_x, a_y, a_z and wetted area density s in 1/m, hydraulic diameter d_h and mean obstacle size l_obs in m
+    #[arg(long, conflicts_with = "no_areas")]
+    pub resistance: bool,
     /// Number of threads (default: all cores)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,

@@ -10,7 +10,8 @@ use crate::error::Result;
 use crate::files::json;
 use crate::geometry::bodies::Bodies;
 use crate::grid::{self, Edges, GridSpec};
-use crate::porosity::{Method, Options};
+use crate::porosity::resistance::{Resistance, resistance};
+use crate::porosity::{Method, Options, Porosity};
 use report::Report;
 
 /// `voidage porosity`.
@@ -35,14 +36,35 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
         let result = measure(&bodies, &edges, options, &mut progress)?;
-        let report = Report::new(args, &edges, &bodies, &result);
-        files::write(args, &edges, &result, &report, &mut progress)?;
+        let obstacles =
+            args.resistance.then(|| obstacles(&bodies, &edges, &result, options, &mut progress)).transpose()?;
+        let report = Report::new(args, &edges, &bodies, &result, obstacles.as_ref());
+        files::write(args, &edges, (&result, obstacles.as_ref()), &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {
             json::write(path, &report.finished(&progress))?;
         }
         Ok(())
     })
+}
+
+/// The obstacles, and what is to be said about them.
+fn obstacles(
+    bodies: &Bodies,
+    edges: &Edges,
+    result: &Porosity,
+    options: Options,
+    progress: &mut Progress,
+) -> Result<Resistance> {
+    let grid = edges.grid(None)?;
+    let found = progress.stage("resistance", |_| resistance(&grid, bodies, result, options));
+    if found.totals.unproved > 0 {
+        progress.warn(format!(
+            "the surface of the union is not known for certain in {} cells; up to {:.1e} m² of wetted area in one of them",
+            found.totals.unproved, found.totals.max_doubt
+        ));
+    }
+    Ok(found)
 }
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.

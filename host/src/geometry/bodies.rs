@@ -209,6 +209,17 @@ impl Bodies {
                 d.inside_out, d.bodies
             ));
         }
+        let hollowed =
+            self.bodies[first..].iter().zip(shells.iter().zip(&roles).filter(|(_, role)| **role == Role::Body));
+        if let Some((body, _)) = hollowed.into_iter().find(|(b, (shell, _))| b.cavities > 0 && shell.volume < 0.0) {
+            report.warn(format!(
+                "{} shells that look outward became cavities of a body that is inside out (from {} to {}); if it is a room with parts in it, \
+                 give it a wall or leave it out",
+                body.cavities,
+                show(body.bounds[0]),
+                show(body.bounds[1])
+            ));
+        }
         if d.sheets > 0 {
             let place = self.bodies[first..].iter().find(|b| b.sheet).map_or(DVec3::ZERO, |b| b.bounds[0]);
             report.warn(format!(

@@ -165,7 +165,7 @@ impl Worker {
 const MAX_PIECES: usize = 1024;
 
 /// Memory for unions.
-struct UnionVecs {
+pub struct UnionVecs {
     pieces: Vec<Piece<f64>>,
     split_pieces: Vec<Piece<f64>>,
     order: Vec<u32>,
@@ -176,7 +176,9 @@ struct UnionVecs {
 }
 
 impl UnionVecs {
-    fn new() -> Self {
+    /// For cells with up to [`MAX_PIECES`] pieces.
+    #[must_use]
+    pub fn new() -> Self {
         UnionVecs {
             pieces: vec![Piece::default(); MAX_PIECES],
             split_pieces: vec![Piece::default(); 4 * MAX_PIECES],
@@ -188,7 +190,8 @@ impl UnionVecs {
         }
     }
 
-    fn memory(&mut self) -> UnionMemory<'_, f64> {
+    /// Its slices.
+    pub fn memory(&mut self) -> UnionMemory<'_, f64> {
         UnionMemory {
             pieces: &mut self.pieces,
             split_pieces: &mut self.split_pieces,

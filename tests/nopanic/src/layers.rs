@@ -4,7 +4,8 @@ use glam::{DVec3, Vec3};
 use voidage_core::grid::{Grid, Located};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
-use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerSlices, Layers};
+use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
+use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
 use voidage_core::surface::union::{UnionBuffers, UnionMemory};
 
 fn asked<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], at: usize, r: V::Scalar) -> usize {
@@ -51,7 +52,13 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
         LayerSlices::of_fields(grid, at, cell, [x, y, z]).ok()
     };
     let (Some(beta), Some(low), Some(high)) = (next(), next(), next()) else { return 2 };
-    layers.layer(at, beta, Some([low, high]), &mut memory).map_or(3, |report| report.divided)
+    let porosity = layers.layer(at, beta, Some([low, high]), &mut memory).map_or(3, |report| report.divided);
+    let (open, mut areas, mut cells) = ([V::Scalar::HALF; 99], [[SurfaceArea::default(); 99]; 2], [CellSurface::default(); 99]);
+    let of = |count: usize| open.get(..count).unwrap_or(&open);
+    let known = OpenLayer { cell: of(at), x: of(at + 1), y: of(at + 2), z: of(at), top: of(at) };
+    let [union, sum] = areas.each_mut().map(|a| a.get_mut(..at).unwrap_or_default());
+    let cells = cells.get_mut(..at).unwrap_or_default();
+    porosity ^ layers.surface_areas(at, &known, [union, sum], cells, &mut memory).map_or(4, |report| report.unproved)
 }
 
 /// In double precision.

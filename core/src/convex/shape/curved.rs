@@ -139,6 +139,16 @@ impl<V: Vector> Cylinder<V> {
     pub fn new(from: V, to: V, radius: V::Scalar) -> Self {
         Cylinder(AxisFrame::new(from, to, radius))
     }
+
+    /// The centres of its ends.
+    pub fn ends(&self) -> [V; 2] {
+        [self.0.base, self.0.top]
+    }
+
+    /// Its radius.
+    pub fn radius(&self) -> V::Scalar {
+        self.0.radius
+    }
 }
 
 impl<V: Vector> Support for Cylinder<V> {
@@ -171,6 +181,16 @@ impl<V: Vector> Cone<V> {
     /// From the centre and radius of its base to its apex. With both in one place it is that point.
     pub fn new(base: V, apex: V, radius: V::Scalar) -> Self {
         Cone(AxisFrame::new(base, apex, radius))
+    }
+
+    /// The centre of its base, and its apex.
+    pub fn ends(&self) -> [V; 2] {
+        [self.0.base, self.0.top]
+    }
+
+    /// The radius of its base.
+    pub fn radius(&self) -> V::Scalar {
+        self.0.radius
     }
 }
 

@@ -9,6 +9,7 @@ use crate::files::{check_target, npy};
 use crate::grid::Edges;
 use crate::picture::png;
 use crate::porosity::Porosity;
+use crate::porosity::resistance::Resistance;
 use std::path::{Path, PathBuf};
 
 /// Outputs must have a place, and none may replace a file of the scene, the grid or another output.
@@ -46,7 +47,9 @@ fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
     let suffixes: &[&str] = if args.bounds_fields { &["", "_lower", "_upper"] } else { &[""] };
     let fields: &[&str] = if args.no_areas { &["v"] } else { &["v", "x", "y", "z"] };
     let names = suffixes.iter().flat_map(|suffix| fields.iter().map(move |field| format!("beta_{field}{suffix}.npy")));
-    args.npy.iter().flat_map(|dir| names.clone().map(|name| dir.join(name))).collect()
+    let obstacles = OBSTACLES.iter().filter(|_| args.resistance).map(|name| format!("{name}.npy"));
+    let names: Vec<String> = names.chain(obstacles).collect();
+    args.npy.iter().flat_map(|dir| names.iter().map(move |name| dir.join(name))).collect()
 }
 
 /// Write all that was asked for.
@@ -56,15 +59,16 @@ fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
 pub(super) fn write(
     args: &PorosityArgs,
     edges: &Edges,
-    result: &Porosity,
+    (result, obstacles): (&Porosity, Option<&Resistance>),
     about: &Report,
     progress: &mut Progress,
 ) -> Result<()> {
     if let Some(dir) = &args.npy {
-        progress.stage("npy", |_| npy::write_all(dir, &fields(edges, result)))?;
+        let all = [fields(edges, result), obstacle_fields(edges, obstacles)].concat();
+        progress.stage("npy", |_| npy::write_all(dir, &all))?;
     }
     if let Some(path) = &args.output {
-        progress.stage("vtr", |_| write_vtr(path, args.compress, edges, result, about))?;
+        progress.stage("vtr", |_| write_vtr(path, args.compress, edges, (result, obstacles), about))?;
     }
     if let Some(path) = &args.png {
         let [x, y, z] = &edges.0;
@@ -91,7 +95,23 @@ fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &
     all
 }
 
-fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, about: &Report) -> Result<()> {
+/// Names of the arrays of `--resistance`.
+const OBSTACLES: [&str; 6] = ["a_x", "a_y", "a_z", "s", "d_h", "l_obs"];
+
+/// The obstacles with names, as [`fields`].
+fn obstacle_fields<'a>(edges: &Edges, obstacles: Option<&'a Resistance>) -> Vec<(String, [usize; 3], &'a [f64])> {
+    let Some(Resistance { a: [x, y, z], s, d_h, l_obs, .. }) = obstacles else { return Vec::new() };
+    let values = [x, y, z, s, d_h, l_obs];
+    OBSTACLES.iter().zip(values).map(|(name, values)| ((*name).to_owned(), edges.cells(), &values[..])).collect()
+}
+
+fn write_vtr(
+    path: &Path,
+    compress: bool,
+    edges: &Edges,
+    (result, obstacles): (&Porosity, Option<&Resistance>),
+    about: &Report,
+) -> Result<()> {
     let [x, y, z] = &edges.0;
     let all = fields(edges, result);
     let beta = &result.beta;
@@ -101,6 +121,10 @@ fn write_vtr(path: &Path, compress: bool, edges: &Edges, result: &Porosity, abou
     }
     if !beta.x.is_empty() {
         cell.push(CellField::LowFaces { name: "beta_f", faces: [&beta.x, &beta.y, &beta.z] });
+    }
+    let obstacles = obstacle_fields(edges, obstacles);
+    for (name, _, data) in &obstacles {
+        cell.push(CellField::Values(NamedField { name, components: 1, data }));
     }
     let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
     let field_data = staggered.map(|(name, _, data)| NamedField { name, components: 1, data }).collect();

@@ -6,6 +6,7 @@ use crate::command::stages::command_line;
 use crate::geometry::bodies::{Bodies, SolidSummary};
 use crate::grid::Edges;
 use crate::picture::ticks::measure;
+use crate::porosity::resistance::{Resistance, Totals};
 use crate::porosity::{self, Leaf, Porosity};
 use glam::DVec3;
 use serde::Serialize;
@@ -33,6 +34,9 @@ pub(super) struct Report {
     skipped: Vec<&'static str>,
     seconds: BTreeMap<&'static str, f64>,
     gjk: porosity::Gjk,
+    /// Areas in m², with `--resistance`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    obstacles: Option<Totals>,
 }
 
 /// How many bodies took which road.
@@ -56,7 +60,13 @@ struct GridReport {
 }
 
 impl Report {
-    pub(super) fn new(args: &PorosityArgs, edges: &Edges, bodies: &Bodies, result: &Porosity) -> Self {
+    pub(super) fn new(
+        args: &PorosityArgs,
+        edges: &Edges,
+        bodies: &Bodies,
+        result: &Porosity,
+        obstacles: Option<&Resistance>,
+    ) -> Self {
         let mut skipped = Vec::new();
         if result.subdivided == 0 && result.gjk.queries == 0 {
             skipped.push("gjk: sums over triangles and closed forms are exact and cheaper");
@@ -66,6 +76,9 @@ impl Report {
         }
         if !args.bounds_fields {
             skipped.push("bound fields: not asked for (--bounds-fields)");
+        }
+        if obstacles.is_none() {
+            skipped.push("frontal and wetted areas: not asked for (--resistance)");
         }
         if result.cells.ambiguous == 0 {
             skipped.push("unions: no cell is shared by bodies");
@@ -93,6 +106,7 @@ impl Report {
             skipped,
             seconds: BTreeMap::new(),
             gjk: result.gjk,
+            obstacles: obstacles.map(|found| found.totals),
         }
     }
 
@@ -116,6 +130,10 @@ impl Report {
             "cells         {} open, {} cut, {} closed; {} shared by bodies",
             c.open, c.cut, c.closed, c.ambiguous
         ));
+        if let Some(Totals { frontal_area: [x, y, z], wetted_area, .. }) = self.obstacles {
+            let [x, y, z] = [x, y, z].map(measure);
+            progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {} m²", measure(wetted_area)));
+        }
         progress.say(format!(
             "largest gap   {}",
             if self.max_gap > 0.0 { format!("{:.1e}", self.max_gap) } else { "0".into() }

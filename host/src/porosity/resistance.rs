@@ -1,0 +1,175 @@
+//! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
+
+use super::layers::UnionVecs;
+use super::{FieldSet, Options, Porosity, levels, porosity, snap};
+use crate::geometry::bodies::{Bodies, Body, Doubt};
+use crate::geometry::facets;
+use glam::DVec3;
+use rayon::prelude::*;
+use voidage_core::grid::Grid;
+use voidage_core::surface::bins::{Group, Surface};
+use voidage_core::surface::layer::{AreaReport, LayerMemory, Layers, MemoryNeeded, OpenLayer};
+use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
+
+/// Obstacles in the cells of a grid, `nx*ny*nz`, x fastest, and their totals. Of solids that are porous themselves nothing is counted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Resistance {
+    /// Frontal area density along x, y and z in 1/m: ½ ∫ |n_i| dA / V over the surface of the union inside the cell.
+    pub a: [Vec<f64>; 3],
+    /// Wetted area density in 1/m: ∫ dA / V.
+    pub s: Vec<f64>,
+    /// Hydraulic diameter 4 β_v / s in m; 0 in cells without surface.
+    pub d_h: Vec<f64>,
+    /// Mean size of the obstacles 4 (1 − β_v) / s in m: of a pipe its diameter; 0 in cells without surface.
+    pub l_obs: Vec<f64>,
+    /// Totals.
+    pub totals: Totals,
+}
+
+/// Areas within the grid, in m².
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Totals {
+    /// Frontal area of the union along x, y and z, without surface in the planes of the grid.
+    pub frontal_area: [f64; 3],
+    /// Wetted area of the union.
+    pub wetted_area: f64,
+    /// Frontal areas of all bodies added up, whether they overlap or not.
+    pub frontal_area_of_bodies: [f64; 3],
+    /// Likewise wetted areas.
+    pub wetted_area_of_bodies: f64,
+    /// Cells shared by bodies whose union has no proof.
+    pub unproved: usize,
+    /// The largest wetted area in doubt in one of them.
+    pub max_doubt: f64,
+}
+
+/// The obstacles among `bodies` on `grid`; `result` holds their porosities, faces included. Runs in the current rayon pool.
+#[must_use]
+pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Resistance {
+    let only_solid = levels(bodies) != [0.0];
+    let solid = |b: &&Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
+    // Of other levels the unions are mixed into the porosities.
+    let own = only_solid.then(|| {
+        let mut bodies = bodies.clone();
+        bodies.bodies.retain(|b| b.porosity == 0.0);
+        porosity(grid, &bodies, Options { bounds: false, areas: true, ..options })
+    });
+    let beta = &own.as_ref().unwrap_or(result).beta;
+    let moved = snap::into_planes(grid, bodies);
+    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    let curved: Vec<Vec<[DVec3; 3]>> = bodies
+        .bodies
+        .par_iter()
+        .map(|b| b.form.as_ref().filter(|_| b.triangles.is_empty()).map_or_else(Vec::new, facets::triangles))
+        .collect();
+    let surfaces: Vec<Surface<DVec3>> = bodies
+        .bodies
+        .iter()
+        .zip(&curved)
+        .filter(|(b, _)| solid(b))
+        .map(|(b, curved)| {
+            let own = if curved.is_empty() { &triangles[b.triangles.clone()] } else { curved };
+            let own = if own.iter().flatten().all(|p| p.is_finite()) { own } else { &[] };
+            if b.sheet { Surface::sheet(own) } else { Surface::new(own) }
+        })
+        .collect();
+    let needed = Layers::needed(grid, &surfaces);
+    let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
+    let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
+    let [nx, ny, nz] = grid.cells();
+    let mut union = vec![SurfaceArea::default(); nx * ny * nz];
+    let mut sum = union.clone();
+    let reports: Vec<AreaReport<f64>> = union
+        .par_chunks_mut(nx * ny)
+        .zip(sum.par_chunks_mut(nx * ny))
+        .enumerate()
+        .map_init(
+            || Worker::new(&layers, nx * ny),
+            |worker, (k, (union, sum))| worker.layer(grid, &layers, k, beta, [union, sum]),
+        )
+        .collect();
+    Resistance { totals: totals(&union, &sum, &reports), ..densities(grid, &beta.v, &union) }
+}
+
+/// A thread's memory.
+struct Worker {
+    cells: Vec<CellSurface<f64>>,
+    reals: Vec<f64>,
+    flags: Vec<u8>,
+    numbers: Vec<u32>,
+    groups: Vec<Group<DVec3>>,
+    union: UnionVecs,
+}
+
+impl Worker {
+    fn new(layers: &Layers<DVec3>, cells: usize) -> Self {
+        let MemoryNeeded { reals, flags, numbers, groups } = layers.memory_needed();
+        Worker {
+            cells: vec![CellSurface::default(); cells],
+            reals: vec![0.0; reals],
+            flags: vec![0; flags],
+            numbers: vec![0; numbers],
+            groups: vec![Group::default(); groups],
+            union: UnionVecs::new(),
+        }
+    }
+
+    fn layer(
+        &mut self,
+        grid: &Grid<f64>,
+        layers: &Layers<DVec3>,
+        k: usize,
+        beta: &FieldSet,
+        areas: [&mut [SurfaceArea<f64>]; 2],
+    ) -> AreaReport<f64> {
+        const FITS: &str = "slices of a layer fit its grid";
+        let [nx, ny, _] = grid.cells();
+        let nth = |k: usize, length: usize| k * length..(k + 1) * length;
+        let open = OpenLayer {
+            cell: &beta.v[nth(k, nx * ny)],
+            x: &beta.x[nth(k, (nx + 1) * ny)],
+            y: &beta.y[nth(k, nx * (ny + 1))],
+            z: &beta.z[nth(k, nx * ny)],
+            top: &beta.z[nth(k + 1, nx * ny)],
+        };
+        let Worker { cells, reals, flags, numbers, groups, union } = self;
+        let mut memory = LayerMemory::new(grid, reals, flags, numbers, groups, union.memory()).expect(FITS);
+        layers.surface_areas(k, &open, areas, cells, &mut memory).expect(FITS)
+    }
+}
+
+/// Totals in the order of cells, so that their bits do not depend on the number of threads.
+fn totals(union: &[SurfaceArea<f64>], sum: &[SurfaceArea<f64>], reports: &[AreaReport<f64>]) -> Totals {
+    let add = |areas: &[SurfaceArea<f64>]| areas.iter().fold(SurfaceArea::default(), |total, a| total.plus(*a));
+    let (union, sum) = (add(union), add(sum));
+    Totals {
+        frontal_area: union.frontal,
+        wetted_area: union.wetted,
+        frontal_area_of_bodies: sum.frontal,
+        wetted_area_of_bodies: sum.wetted,
+        unproved: reports.iter().map(|r| r.unproved).sum(),
+        max_doubt: reports.iter().fold(0.0, |most, r| r.max_doubt.max(most)),
+    }
+}
+
+/// Areas over volumes, and the lengths that follow.
+fn densities(grid: &Grid<f64>, open: &[f64], union: &[SurfaceArea<f64>]) -> Resistance {
+    let widths = |axis: usize| grid.edges(axis).windows(2).map(|e| e[1] - e[0]).collect::<Vec<_>>();
+    let [x, y, z] = [0, 1, 2].map(widths);
+    let mut found = Resistance::default();
+    let mut cells = open.iter().zip(union);
+    for dz in &z {
+        for dy in &y {
+            for (dx, (&open, area)) in x.iter().zip(&mut cells) {
+                let area = area.times((dx * dy * dz).recip());
+                let length = |share: f64| if area.wetted > 0.0 { 4.0 * share / area.wetted } else { 0.0 };
+                found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a.push(f));
+                found.s.push(area.wetted);
+                found.d_h.push(length(open));
+                found.l_obs.push(length(1.0 - open));
+            }
+        }
+    }
+    found
+}
