@@ -214,7 +214,7 @@ pub fn errors(random: &mut Random, family: Family, samples: usize) -> (f64, f64,
                 let size = (hi - lo).element_product();
                 let truth = exact.volume(lo, hi) / size;
                 // Rarely a kink hides from the nodes of the quadrature; from those of the cell's parts it does not.
-                let hidden = (field[at] - truth).abs() > 3e-13;
+                let hidden = family != Family::Huge && (field[at] - truth).abs() > 3e-13;
                 (if hidden { volume_of_parts(&exact, lo, hi) / size } else { truth }, &mut cell)
             } else {
                 let n = kind - 1;
