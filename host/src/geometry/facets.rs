@@ -21,13 +21,13 @@ pub fn triangles(form: &Form) -> Vec<[DVec3; 3]> {
             s.apply(s.shape().center + p * s.shape().semi_axes * BALL_SCALE)
         }),
         Form::Cylinder(s) => {
-            let ([from, to], radius) = (s.ends(), s.radius());
+            let ([from, to], radius) = (s.ends(), s.base_radius());
             let length = (to - from).length();
             let profile = [(0.0, 0.0), (radius, 0.0), (radius, length), (0.0, length)];
             revolve((to - from).normalize_or_zero(), &profile, |p| from + p)
         }
         Form::Cone(s) => {
-            let ([base, apex], radius) = (s.ends(), s.radius());
+            let ([base, apex], radius) = (s.ends(), s.base_radius());
             let profile = [(0.0, 0.0), (radius, 0.0), (0.0, (apex - base).length())];
             revolve((apex - base).normalize_or_zero(), &profile, |p| base + p)
         }

@@ -145,8 +145,8 @@ impl<V: Vector> Cylinder<V> {
         [self.0.base, self.0.top]
     }
 
-    /// Its radius.
-    pub fn radius(&self) -> V::Scalar {
+    /// The radius of its ends. ([`Support::radius`] is that of rounding, zero.)
+    pub fn base_radius(&self) -> V::Scalar {
         self.0.radius
     }
 }
@@ -188,8 +188,8 @@ impl<V: Vector> Cone<V> {
         [self.0.base, self.0.top]
     }
 
-    /// The radius of its base.
-    pub fn radius(&self) -> V::Scalar {
+    /// The radius of its base. ([`Support::radius`] is that of rounding, zero.)
+    pub fn base_radius(&self) -> V::Scalar {
         self.0.radius
     }
 }
