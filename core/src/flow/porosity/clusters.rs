@@ -18,7 +18,7 @@ const LAST: u32 = 1 << 31;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::flow) struct Clusters<'a>(pub(in crate::flow) &'a [u32]);
 
-/// Length of the scratch that [`clusters`] needs for a number of cells.
+/// Length of the scratch that the search for clusters needs for a number of cells.
 pub const fn cluster_scratch(cells: usize) -> usize {
     cells.saturating_mul(6)
 }

@@ -45,7 +45,7 @@ impl<'a, V: Vector> LayerMemory<'a, V> {
         MemoryNeeded { reals: 2 * fields + Scratch::needed(grid), flags: fields, numbers: 0, groups: 0 }
     }
 
-    /// Cut memory for layers of `grid`; what the slices hold does not matter. [`Layers::memory_needed`] tells lengths that are always
+    /// Cut memory for layers of `grid`; what the slices hold does not matter. [`crate::surface::layer::Layers::memory_needed`] tells lengths that are always
     /// enough. With less of numbers, groups and `union`, cells that bodies share may keep bounds instead of a value.
     ///
     /// # Errors

@@ -44,7 +44,7 @@ impl<'a, R: Real> LayerSlices<'a, R> {
         })
     }
 
-    /// Five slices; what they must hold, [`Layers::layer`] checks.
+    /// Five slices; what they must hold, [`crate::surface::layer::Layers::layer`] checks.
     #[must_use]
     pub fn new(cell: &'a mut [R], x: &'a mut [R], y: &'a mut [R], z: &'a mut [R], top: &'a mut [R]) -> Self {
         LayerSlices { cell, x, y, z, top }
