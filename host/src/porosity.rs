@@ -39,7 +39,7 @@ pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     // Of several levels, one joins the others, and one is remembered for the next.
     let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(3);
     // Tall triangles are listed in every layer that they reach.
-    let (surfaces, _) = surfaces(bodies, &bodies.triangles, |_| true);
+    let (surfaces, _) = surfaces(bodies, |_, body| &bodies.triangles[body.triangles.clone()]);
     let lists = Layers::needed(grid, &surfaces);
     let listed = size_of::<u32>() * lists.numbers + size_of::<Group<DVec3>>() * lists.groups;
     size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + layers::memory_of_a_thread(grid) + listed
@@ -145,7 +145,10 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
     let Scene { grid, bodies, triangles, roads, options } = scene;
     let counts = |body: usize| bodies.bodies[body].porosity <= level;
     let convex = roads.road(triangles, *options, counts);
-    let (surfaces, broken) = surfaces(bodies, triangles, |body| counts(body) && roads.by_surface(body));
+    let (surfaces, broken) = surfaces(bodies, |number, body| {
+        let by_surface = counts(number) && roads.by_surface(number);
+        if by_surface { &triangles[body.triangles.clone()] } else { &[] }
+    });
     let needed = Layers::needed(grid, &surfaces);
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
     let layers = Layers::new(grid, &surfaces, (*options).into(), &mut numbers, &mut groups).expect("memory as needed");
@@ -186,16 +189,15 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
     Union { level, porosity, layers: summaries }
 }
 
-/// The surfaces of all bodies, and which of them are broken. Without triangles are those that are not `wanted`, and those with a
+/// The surfaces of all bodies, made of the triangles that `own` gives for a body's number, and which of them are broken: those with a
 /// coordinate that is no number, which some scale or turn has made too large: of these nothing can be said.
 fn surfaces<'a>(
     bodies: &Bodies,
-    triangles: &'a [[DVec3; 3]],
-    wanted: impl Fn(usize) -> bool,
+    own: impl Fn(usize, &bodies::Body) -> &'a [[DVec3; 3]],
 ) -> (Vec<Surface<'a, DVec3>>, Vec<usize>) {
     let mut broken = Vec::new();
     let surface = |(number, body): (usize, &bodies::Body)| {
-        let mut own = if wanted(number) { &triangles[body.triangles.clone()] } else { &[] };
+        let mut own = own(number, body);
         if !own.iter().flatten().all(|p| p.is_finite()) {
             broken.push(number);
             own = &[];

@@ -57,28 +57,28 @@ impl Exact {
 
     /// A convex function, negative inside.
     fn depth(&self, p: DVec3) -> f64 {
-        let along = |from: DVec3, to: DVec3| {
-            let axis = to - from;
+        let along = |from: DVec3, to: DVec3, radius: f64| {
+            let (axis, [q, lost]) = (to - from, apart(p, from));
             let unit = axis.normalize();
-            ((p - from).dot(unit), unit.cross(p - from).length(), axis.length())
+            (q.dot(unit), beyond([unit.cross(q), unit.cross(lost)], radius), axis.length())
         };
         match *self {
-            Exact::Ball(center, radius) => (p - center).length() - radius,
+            Exact::Ball(center, radius) => beyond(apart(p, center), radius),
             Exact::Ellipsoid(center, axes) => {
                 let unit = axes.map(|a| a.dot(p - center) / a.length_squared());
                 (DVec3::from_array(unit).length() - 1.0) * axes[0].length()
             }
             Exact::Cylinder(from, to, radius) => {
-                let (at, off, length) = along(from, to);
-                (off - radius).max(-at).max(at - length)
+                let (at, off, length) = along(from, to, radius);
+                off.max(-at).max(at - length)
             }
             Exact::Capsule(from, to, radius) => {
                 let axis = to - from;
                 let nearest = from + axis * ((p - from).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
-                (p - nearest).length() - radius
+                beyond(apart(p, nearest), radius)
             }
             Exact::Cone(base, apex, radius) => {
-                let (at, off, length) = along(apex, base);
+                let (at, off, length) = along(apex, base, 0.0);
                 (off - at * radius / length).max(at - length)
             }
         }
@@ -159,6 +159,21 @@ fn apart(p: DVec3, from: DVec3) -> [DVec3; 2] {
     [q, (p - (q - part)) - (from + part)]
 }
 
+/// By how much a vector, of which `lost` was rounded away, is longer than `r`: from the exact squares, so that a surface that a plane touches but
+/// for rounding keeps its digits.
+fn beyond([v, lost]: [DVec3; 2], r: f64) -> f64 {
+    let mut parts = [(v.x, v.x), (v.y, v.y), (v.z, v.z), (-r, r)].map(|(a, b)| (a * b, a.mul_add(b, -(a * b))));
+    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let (mut sum, mut rest) = (0.0_f64, 2.0 * v.dot(lost));
+    for (square, error) in parts {
+        let next = sum + square;
+        let part = next - sum;
+        rest += ((sum - (next - part)) + (square - part)) + error;
+        sum = next;
+    }
+    if r == 0.0 { v.length() } else { (sum + rest) / (v.length() + r) }
+}
+
 /// Where `|b + t a| <= r`: by the distance of the line from the origin, so that lines which nearly touch keep their digits. `lost` is what `b`
 /// lacks by rounding.
 fn within(a: DVec3, [b, lost]: [DVec3; 2], r: f64) -> Option<[f64; 2]> {
@@ -190,7 +205,7 @@ fn tube(p: DVec3, e: DVec3, from: DVec3, to: DVec3, radius: f64) -> Option<[f64;
     let unit = axis.normalize();
     let (a, b) = (unit.cross(e), unit.cross(q));
     if a == DVec3::ZERO {
-        return (b.length() <= radius).then_some(slab);
+        return (beyond([b, unit.cross(lost)], radius) <= 0.0).then_some(slab);
     }
     meet(within(a, [b, unit.cross(lost)], radius)?, slab)
 }

@@ -42,6 +42,17 @@ impl Rectangle {
         }
         corners
     }
+
+    /// Its sides, as the outline of all of it.
+    pub fn sides(&self) -> Vec<Piece, 4> {
+        let corners = self.corners();
+        let mut sides = Vec::new();
+        for (n, corner) in corners.iter().enumerate() {
+            let to = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
+            let _ = sides.push(Piece { from: corner.at, to, joined: true });
+        }
+        sides
+    }
 }
 
 /// The part of a polygon where a linear function is not negative. The sides along it get the number `side`.

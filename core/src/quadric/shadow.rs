@@ -31,15 +31,7 @@ impl PlaneOverApex<'_> {
             Region::Empty => 0.0,
             Region::Ellipse(_) => PI * self.slope * self.slope,
             Region::Pieces(pieces, major) => self.of_pieces(section, pieces, *major),
-            Region::Whole => {
-                let corners = rectangle.corners();
-                let mut pieces = heapless::Vec::<Piece, 4>::new();
-                for (n, corner) in corners.iter().enumerate() {
-                    let to = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
-                    let _ = pieces.push(Piece { from: corner.at, to, joined: true });
-                }
-                self.of_pieces(section, &pieces, false)
-            }
+            Region::Whole => self.of_pieces(section, &rectangle.sides(), false),
         }
     }
 

@@ -295,16 +295,27 @@ fn union<V: Vector, O: OtherBodies<V>>(
         return None;
     }
     with_least_blur(shared.tol, |blur| {
-        let mut union = CellUnion::new(shared.union.reborrow(), cell, blur);
-        for group in row.groups {
-            if group.bounds.max.x() > cell.min.x() && group.bounds.min.x() < cell.max.x() {
-                union.add(cell, false, site.bins.triangles(group), row.ids(group))?;
-            }
-        }
-        let found = union.cell()?;
+        let found = bodies_in(shared.union.reborrow(), site, cell, row, blur)?.cell()?;
         let refined = Refined::from_union(found);
         if believed(&refined) { Ok((refined, found.error)) } else { Err(NoProof::Ambiguous) }
     })
+}
+
+/// The bodies of a row that reach a cell, ready to be united.
+pub(super) fn bodies_in<'u, V: Vector>(
+    memory: UnionMemory<'u, V::Scalar>,
+    site: &Site<V>,
+    cell: Aabb<V>,
+    row: &Row<V>,
+    blur: V::Scalar,
+) -> Result<CellUnion<'u, V::Scalar>, NoProof> {
+    let mut union = CellUnion::new(memory, cell, blur);
+    for group in row.groups {
+        if group.bounds.max.x() > cell.min.x() && group.bounds.min.x() < cell.max.x() {
+            union.add(cell, false, site.bins.triangles(group), row.ids(group))?;
+        }
+    }
+    Ok(union)
 }
 
 /// Finds the parts of a cell or of a part of one; none if depth, memory or effort is spent.

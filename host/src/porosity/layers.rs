@@ -100,53 +100,76 @@ impl Workers {
 
     /// Compute layer `k` in the memory of the current thread.
     pub fn layer(&self, grid: &Grid<f64>, layers: &Layers<DVec3>, road: &Road, k: usize, target: Target) -> Summary {
+        self.with(layers, |worker| worker.layer(grid, layers, road, k, target))
+    }
+
+    /// Work in the memory of the current thread.
+    pub fn with<T>(&self, layers: &Layers<DVec3>, work: impl FnOnce(&mut Worker) -> T) -> T {
         let slot = rayon::current_thread_index().and_then(|n| self.0.get(n));
         match slot {
-            None => Worker::new(layers).layer(grid, layers, road, k, target),
+            None => work(&mut Worker::new(layers)),
             Some(slot) => {
                 let mut worker = slot.lock().unwrap_or_else(PoisonError::into_inner);
-                worker.get_or_insert_with(|| Worker::new(layers)).layer(grid, layers, road, k, target)
+                work(worker.get_or_insert_with(|| Worker::new(layers)))
             }
         }
     }
 }
 
 /// A thread's memory.
-struct Worker {
+pub struct Worker {
+    sums: SumVecs,
+    lists: Lists,
+}
+
+/// What a thread needs for sums over surfaces and for unions.
+struct SumVecs {
     needed: MemoryNeeded,
     reals: Vec<f64>,
     flags: Vec<u8>,
     numbers: Vec<u32>,
     groups: Vec<Group<DVec3>>,
     union: Option<UnionVecs>,
-    lists: Lists,
+}
+
+impl SumVecs {
+    /// As the core takes it; for bodies that share no cells it holds sums alone.
+    fn memory(&mut self, grid: &Grid<f64>, shared: bool) -> LayerMemory<'_, DVec3> {
+        if shared && self.union.is_none() {
+            self.numbers = vec![0; self.needed.numbers];
+            self.groups = vec![Group::default(); self.needed.groups];
+            self.union = Some(UnionVecs::new());
+        }
+        let SumVecs { reals, flags, numbers, groups, union, .. } = self;
+        let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
+        LayerMemory::new(grid, reals, flags, numbers, groups, union).expect(FITS)
+    }
 }
 
 impl Worker {
     fn new(layers: &Layers<DVec3>) -> Self {
         let needed = layers.memory_needed();
-        Worker {
+        let sums = SumVecs {
             needed,
             reals: vec![0.0; needed.reals],
             flags: vec![0; needed.flags],
             numbers: Vec::new(),
             groups: Vec::new(),
             union: None,
-            lists: Lists::default(),
-        }
+        };
+        Worker { sums, lists: Lists::default() }
+    }
+
+    /// Memory for all that the core does with layer `k`.
+    pub fn memory(&mut self, grid: &Grid<f64>, layers: &Layers<DVec3>, k: usize) -> LayerMemory<'_, DVec3> {
+        self.sums.memory(grid, layers.bodies_in(k) > 1)
     }
 
     /// Compute layer `k`.
     fn layer(&mut self, grid: &Grid<f64>, layers: &Layers<DVec3>, road: &Road, k: usize, target: Target) -> Summary {
+        let Worker { sums, lists } = self;
         // Only bodies that share cells ask for more than sums.
-        if layers.bodies_in(k) > usize::from(road.is_empty()) && self.union.is_none() {
-            self.numbers = vec![0; self.needed.numbers];
-            self.groups = vec![Group::default(); self.needed.groups];
-            self.union = Some(UnionVecs::new());
-        }
-        let Worker { reals, flags, numbers, groups, union, lists, .. } = self;
-        let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
-        let mut memory = LayerMemory::new(grid, reals, flags, numbers, groups, union).expect(FITS);
+        let mut memory = sums.memory(grid, layers.bodies_in(k) > usize::from(road.is_empty()));
         let mut others = road.with(grid, lists);
         let mut leaks = Vec::new();
         let note_leak = |body, defects: voidage_core::surface::cells::Defects<f64>| {
@@ -165,7 +188,7 @@ impl Worker {
 const MAX_PIECES: usize = 1024;
 
 /// Memory for unions.
-pub struct UnionVecs {
+struct UnionVecs {
     pieces: Vec<Piece<f64>>,
     split_pieces: Vec<Piece<f64>>,
     order: Vec<u32>,
@@ -176,9 +199,7 @@ pub struct UnionVecs {
 }
 
 impl UnionVecs {
-    /// For cells with up to [`MAX_PIECES`] pieces.
-    #[must_use]
-    pub fn new() -> Self {
+    fn new() -> Self {
         UnionVecs {
             pieces: vec![Piece::default(); MAX_PIECES],
             split_pieces: vec![Piece::default(); 4 * MAX_PIECES],
@@ -190,8 +211,7 @@ impl UnionVecs {
         }
     }
 
-    /// Its slices.
-    pub fn memory(&mut self) -> UnionMemory<'_, f64> {
+    fn memory(&mut self) -> UnionMemory<'_, f64> {
         UnionMemory {
             pieces: &mut self.pieces,
             split_pieces: &mut self.split_pieces,

@@ -1,14 +1,14 @@
 //! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
 
-use super::layers::UnionVecs;
-use super::{FieldSet, Options, Porosity, levels, porosity, snap};
+use super::layers::Workers;
+use super::{FieldSet, Options, Porosity, levels, porosity, snap, surfaces};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
 use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::grid::Grid;
-use voidage_core::surface::bins::{Group, Surface};
-use voidage_core::surface::layer::{AreaReport, LayerMemory, Layers, MemoryNeeded, OpenLayer};
+use voidage_core::surface::bins::Group;
+use voidage_core::surface::layer::{AreaReport, Layers, OpenLayer};
 use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
 
 /// Obstacles in the cells of a grid, `nx*ny*nz`, x fastest, and their totals. Of solids that are porous themselves nothing is counted.
@@ -47,10 +47,9 @@ pub struct Totals {
 /// The obstacles among `bodies` on `grid`; `result` holds their porosities, faces included. Runs in the current rayon pool.
 #[must_use]
 pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Resistance {
-    let only_solid = levels(bodies) != [0.0];
-    let solid = |b: &&Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
-    // Of other levels the unions are mixed into the porosities.
-    let own = only_solid.then(|| {
+    let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
+    // The unions of several levels are mixed into the porosities.
+    let own = (levels(bodies) != [0.0]).then(|| {
         let mut bodies = bodies.clone();
         bodies.bodies.retain(|b| b.porosity == 0.0);
         porosity(grid, &bodies, Options { bounds: false, areas: true, ..options })
@@ -63,79 +62,45 @@ pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options:
         .par_iter()
         .map(|b| b.form.as_ref().filter(|_| b.triangles.is_empty()).map_or_else(Vec::new, facets::triangles))
         .collect();
-    let surfaces: Vec<Surface<DVec3>> = bodies
-        .bodies
-        .iter()
-        .zip(&curved)
-        .filter(|(b, _)| solid(b))
-        .map(|(b, curved)| {
-            let own = if curved.is_empty() { &triangles[b.triangles.clone()] } else { curved };
-            let own = if own.iter().flatten().all(|p| p.is_finite()) { own } else { &[] };
-            if b.sheet { Surface::sheet(own) } else { Surface::new(own) }
-        })
-        .collect();
+    let own_triangles = |n: usize, body: &Body| match &curved[n][..] {
+        _ if !solid(body) => &[],
+        [] => &triangles[body.triangles.clone()],
+        curved => curved,
+    };
+    let (surfaces, _) = surfaces(bodies, own_triangles);
     let needed = Layers::needed(grid, &surfaces);
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
     let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
     let [nx, ny, nz] = grid.cells();
     let mut union = vec![SurfaceArea::default(); nx * ny * nz];
-    let mut sum = union.clone();
+    let (mut sum, workers) = (union.clone(), Workers::new());
     let reports: Vec<AreaReport<f64>> = union
         .par_chunks_mut(nx * ny)
         .zip(sum.par_chunks_mut(nx * ny))
         .enumerate()
-        .map_init(
-            || Worker::new(&layers, nx * ny),
-            |worker, (k, (union, sum))| worker.layer(grid, &layers, k, beta, [union, sum]),
-        )
+        .map(|(k, (union, sum))| {
+            workers.with(&layers, |worker| {
+                let (mut cells, open) = (vec![CellSurface::default(); nx * ny], open_layer(grid, k, beta));
+                let mut memory = worker.memory(grid, &layers, k);
+                layers
+                    .surface_areas(k, &open, [union, sum], &mut cells, &mut memory)
+                    .expect("slices of a layer fit its grid")
+            })
+        })
         .collect();
     Resistance { totals: totals(&union, &sum, &reports), ..densities(grid, &beta.v, &union) }
 }
 
-/// A thread's memory.
-struct Worker {
-    cells: Vec<CellSurface<f64>>,
-    reals: Vec<f64>,
-    flags: Vec<u8>,
-    numbers: Vec<u32>,
-    groups: Vec<Group<DVec3>>,
-    union: UnionVecs,
-}
-
-impl Worker {
-    fn new(layers: &Layers<DVec3>, cells: usize) -> Self {
-        let MemoryNeeded { reals, flags, numbers, groups } = layers.memory_needed();
-        Worker {
-            cells: vec![CellSurface::default(); cells],
-            reals: vec![0.0; reals],
-            flags: vec![0; flags],
-            numbers: vec![0; numbers],
-            groups: vec![Group::default(); groups],
-            union: UnionVecs::new(),
-        }
-    }
-
-    fn layer(
-        &mut self,
-        grid: &Grid<f64>,
-        layers: &Layers<DVec3>,
-        k: usize,
-        beta: &FieldSet,
-        areas: [&mut [SurfaceArea<f64>]; 2],
-    ) -> AreaReport<f64> {
-        const FITS: &str = "slices of a layer fit its grid";
-        let [nx, ny, _] = grid.cells();
-        let nth = |k: usize, length: usize| k * length..(k + 1) * length;
-        let open = OpenLayer {
-            cell: &beta.v[nth(k, nx * ny)],
-            x: &beta.x[nth(k, (nx + 1) * ny)],
-            y: &beta.y[nth(k, nx * (ny + 1))],
-            z: &beta.z[nth(k, nx * ny)],
-            top: &beta.z[nth(k + 1, nx * ny)],
-        };
-        let Worker { cells, reals, flags, numbers, groups, union } = self;
-        let mut memory = LayerMemory::new(grid, reals, flags, numbers, groups, union.memory()).expect(FITS);
-        layers.surface_areas(k, &open, areas, cells, &mut memory).expect(FITS)
+/// The open fractions of layer `k`.
+fn open_layer<'a>(grid: &Grid<f64>, k: usize, beta: &'a FieldSet) -> OpenLayer<'a, f64> {
+    let [nx, ny, _] = grid.cells();
+    let nth = |k: usize, length: usize| k * length..(k + 1) * length;
+    OpenLayer {
+        cell: &beta.v[nth(k, nx * ny)],
+        x: &beta.x[nth(k, (nx + 1) * ny)],
+        y: &beta.y[nth(k, nx * (ny + 1))],
+        z: &beta.z[nth(k, nx * ny)],
+        top: &beta.z[nth(k + 1, nx * ny)],
     }
 }
 

@@ -6,6 +6,7 @@ use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
+use crate::surface::bins::Bins;
 use crate::surface::cell_unions::{OtherBodies, Parts, Room, Shared, Site};
 use crate::surface::cells::Scratch;
 use core::ops::Range;
@@ -22,6 +23,32 @@ pub(super) const LEVEL: MemoryNeeded = MemoryNeeded {
     groups: 0,
 };
 
+/// A small grid within some layers of a site: its triangles, sums for one of its layers, and the memory left over.
+pub(super) struct SmallGrid<'m, V: Vector> {
+    pub bins: Bins<'m, V>,
+    pub layer: Layer<'m, V::Scalar>,
+    pub scratch: Scratch<'m, V::Scalar>,
+    pub room: Room<'m, V>,
+}
+
+impl<'m, V: Vector> SmallGrid<'m, V> {
+    /// None if memory is spent.
+    pub fn new(site: &Site<'m, V>, grid: &Grid<V::Scalar>, layers: Range<usize>, room: Room<'m, V>) -> Option<Self> {
+        let Room { reals, flags, numbers, groups } = room;
+        let (bins, (numbers, groups)) = site.bins.part(grid, layers, numbers, groups).ok()?;
+        let fields = Fields::<u8>::needed(grid);
+        let (lower, reals) = reals.split_at_mut_checked(fields)?;
+        let (sum, reals) = reals.split_at_mut_checked(fields)?;
+        let (scratch, reals) = reals.split_at_mut_checked(Scratch::needed(grid))?;
+        let (has_surface, flags) = flags.split_at_mut_checked(fields)?;
+        let room = Room { reals, flags, numbers, groups };
+        let scratch = Scratch::new(grid, scratch).ok()?;
+        let (lower, sum) = (Fields::within(grid, lower).ok()?, Fields::within(grid, sum).ok()?);
+        let layer = Layer::new(lower, sum, Fields::within(grid, has_surface).ok()?).ok()?;
+        Some(SmallGrid { bins, layer, scratch, room })
+    }
+}
+
 /// Bounds of the parts of a small grid within some layers of a site; none if memory is spent.
 pub(super) fn parts<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
@@ -30,17 +57,7 @@ pub(super) fn parts<V: Vector, O: OtherBodies<V>>(
     layers: Range<usize>,
     room: Room<V>,
 ) -> Option<Parts<V::Scalar>> {
-    let Room { reals, flags, numbers, groups } = room;
-    let (bins, (numbers, groups)) = site.bins.part(grid, layers, numbers, groups).ok()?;
-    let fields = Fields::<u8>::needed(grid);
-    let (lower, reals) = reals.split_at_mut_checked(fields)?;
-    let (sum, reals) = reals.split_at_mut_checked(fields)?;
-    let (scratch, reals) = reals.split_at_mut_checked(Scratch::needed(grid))?;
-    let (has_surface, flags) = flags.split_at_mut_checked(fields)?;
-    let mut room = Room { reals, flags, numbers, groups };
-    let mut scratch = Scratch::new(grid, scratch).ok()?;
-    let fields = (Fields::within(grid, lower).ok()?, Fields::within(grid, sum).ok()?);
-    let mut layer = Layer::new(fields.0, fields.1, Fields::within(grid, has_surface).ok()?).ok()?;
+    let SmallGrid { bins, mut layer, mut scratch, mut room } = SmallGrid::new(site, grid, layers, room)?;
     let mut means = Means::default();
     let count = grid.cells()[2];
     for k in 0..count {

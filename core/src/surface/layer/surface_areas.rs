@@ -2,20 +2,20 @@
 
 use super::error::LayerError;
 use super::memory::LayerMemory;
+use super::parts::{self, SmallGrid};
 use super::solid_bounds::solid_bounds;
-use super::{Layers, MOST_HALVINGS, parts};
+use super::{Layers, MOST_HALVINGS};
 use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
-use crate::grid::fields::{Fields, Layer, exactly};
+use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Row;
 use crate::surface::cell_unions::{
-    Effort, Refined, Room, Shared, Site, divide, rounding, with_effort, with_least_blur,
+    Effort, Refined, Room, Shared, Site, bodies_in, divide, rounding, with_effort, with_least_blur,
 };
-use crate::surface::cells::Scratch;
 use crate::surface::surface_area::{Bodies, CellSurface, SurfaceArea, gather};
-use crate::surface::union::{CellUnion, NoProof};
+use crate::surface::union::NoProof;
 
 /// Open fractions of a layer that are known already: cells `ny*nx`, x faces `ny*(nx+1)`, y faces `(ny+1)*nx`, z faces below and above
 /// `ny*nx` each; x fastest.
@@ -109,9 +109,13 @@ impl<V: Vector> Layers<'_, V> {
                 let (Some(surface), Some(&open_share)) = (cells.get(c), open.cell.get(c)) else { continue };
                 let (Some(union), Some(sum)) = (union.get_mut(c), sum.get_mut(c)) else { continue };
                 *sum = surface.sum();
-                // In a closed cell another body holds all that surface.
-                *union = if open_share > V::Scalar::ZERO { *sum } else { SurfaceArea::default() };
-                if surface.bodies != Bodies::Several || !(open_share > V::Scalar::ZERO) {
+                *union = SurfaceArea::default();
+                if !(open_share > V::Scalar::ZERO) {
+                    // Another body holds all that surface.
+                    continue;
+                }
+                *union = *sum;
+                if surface.bodies != Bodies::Several {
                     continue;
                 }
                 let (Some(cell), Some(blocked)) = (site.grid.cell_box([i, j, k]), open.blocked([i, j], nx)) else {
@@ -176,9 +180,7 @@ fn of_shared_cell<V: Vector>(
 
 /// Area of the surface in the planes of a cell's sides that is wetted from the cell: what is blocked, less what is solid on this side of it.
 fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides<V::Scalar>) -> V::Scalar {
-    let size = cell.size().to_array();
-    let across = [size[1] * size[2], size[2] * size[0], size[0] * size[1]];
-    let mut sum = V::Scalar::ZERO;
+    let (across, mut sum) = (side_areas(cell), V::Scalar::ZERO);
     for axis in 0..3 {
         for side in 0..2 {
             let share = blocked[axis][side] - solid[axis][side];
@@ -188,6 +190,12 @@ fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides
         }
     }
     sum
+}
+
+/// Areas of a cell's sides normal to x, y and z.
+fn side_areas<V: Vector>(cell: Aabb<V>) -> [V::Scalar; 3] {
+    let [x, y, z] = cell.size().to_array();
+    [y * z, z * x, x * y]
 }
 
 /// What the union has of surface inside a cell.
@@ -203,15 +211,9 @@ fn fragments<V: Vector>(
     cell: Aabb<V>,
     row: &Row<V>,
 ) -> Option<Fragments<V::Scalar>> {
-    let size = cell.size().to_array();
-    let across = [size[1] * size[2], size[2] * size[0], size[0] * size[1]];
+    let across = side_areas(cell);
     with_least_blur(shared.tol, |blur| {
-        let mut union = CellUnion::new(shared.union.reborrow(), cell, blur);
-        for group in row.groups {
-            if group.bounds.max.x() > cell.min.x() && group.bounds.min.x() < cell.max.x() {
-                union.add(cell, false, site.bins.triangles(group), row.ids(group))?;
-            }
-        }
+        let mut union = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
         let mut area = SurfaceArea::default();
         let found = union.cell_and_surface(|kept| {
             let [x, y, z] = kept.doubled_area();
@@ -237,17 +239,7 @@ fn parts_of<V: Vector>(
     let (hi, at) = (cell.max.to_array(), V::Scalar::from_f64(DIVIDED_AT));
     let edges = [0, 1, 2].map(|a| [lo[a], lo[a] + size[a] * at, hi[a]]);
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
-    let Room { reals, flags, numbers, groups } = room;
-    let (bins, (numbers, groups)) = site.bins.part(&grid, site.k..site.k + 1, numbers, groups).ok()?;
-    let fields = Fields::<u8>::needed(&grid);
-    let (lower, reals) = reals.split_at_mut_checked(fields)?;
-    let (sum, reals) = reals.split_at_mut_checked(fields)?;
-    let (scratch, reals) = reals.split_at_mut_checked(Scratch::needed(&grid))?;
-    let (has_surface, flags) = flags.split_at_mut_checked(fields)?;
-    let mut scratch = Scratch::new(&grid, scratch).ok()?;
-    let fields = (Fields::within(&grid, lower).ok()?, Fields::within(&grid, sum).ok()?);
-    let mut layer = Layer::new(fields.0, fields.1, Fields::within(&grid, has_surface).ok()?).ok()?;
-    let mut room = Room { reals, flags, numbers, groups };
+    let SmallGrid { bins, mut layer, mut scratch, mut room } = SmallGrid::new(site, &grid, site.k..site.k + 1, room)?;
     let (mut total, mut doubt) = (SurfaceArea::default(), V::Scalar::ZERO);
     for k in 0..2 {
         let part = Site { grid: &grid, bins: &bins, k, areas: true, halvings: site.halvings.checked_sub(3)? };
