@@ -117,27 +117,27 @@ pub struct PorosityReport<R> {
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// p[0..3] the point.
+    /// `p[0..3]` the point.
     Point = 0,
-    /// p[0..3], p[3..6] the ends.
+    /// `p[0..3]`, `p[3..6]` the ends.
     Segment = 1,
-    /// p[0..3], p[3..6], p[6..9] the corners.
+    /// `p[0..3]`, `p[3..6]`, `p[6..9]` the corners.
     Triangle = 2,
-    /// p[0..3] the lowest corner, p[3..6] the highest: a box along the axes.
+    /// `p[0..3]` the lowest corner, `p[3..6]` the highest: a box along the axes.
     Box = 3,
     /// The convex hull of `points`.
     Hull = 4,
-    /// p[0..3] the centre, p[3] the radius.
+    /// `p[0..3]` the centre, `p[3]` the radius.
     Sphere = 5,
-    /// p[0..3], p[3..6] the ends of the core, p[6] the radius.
+    /// `p[0..3]`, `p[3..6]` the ends of the core, `p[6]` the radius.
     Capsule = 6,
-    /// p[0..3], p[3..6] the centres of the flat ends, p[6] the radius.
+    /// `p[0..3]`, `p[3..6]` the centres of the flat ends, `p[6]` the radius.
     Cylinder = 7,
-    /// p[0..3] the centre of the base, p[3..6] the apex, p[6] the radius of the base.
+    /// `p[0..3]` the centre of the base, `p[3..6]` the apex, `p[6]` the radius of the base.
     Cone = 8,
-    /// p[0..3] the centre, p[3..6], p[6..9], p[9..12] the half axes, at right angles.
+    /// `p[0..3]` the centre, `p[3..6]`, `p[6..9]`, `p[9..12]` the half axes, at right angles.
     Ellipsoid = 9,
-    /// p[0..3] the centre, p[3..6], p[6..9], p[9..12] from the centre to the middle of three faces.
+    /// `p[0..3]` the centre, `p[3..6]`, `p[6..9]`, `p[9..12]` from the centre to the middle of three faces.
     OrientedBox = 10,
 }
 

@@ -165,7 +165,7 @@ fn handles_that_are_none_are_told() {
     let at = moved.as_mut_ptr().wrapping_byte_offset(flow.addr() as isize - block.as_ptr().addr() as isize);
     assert_eq!(rate(at.cast()), Status::Handle);
     // Arrays inside the flow's own block.
-    let inside = block.as_mut_ptr().wrapping_add(bytes / 2 & !15).cast();
+    let inside = block.as_mut_ptr().wrapping_add((bytes / 2) & !15).cast();
     let status = unsafe { f64::flow_get(flow, inside, null_mut(), null_mut(), null_mut(), null_mut(), &mut fault) };
     assert_eq!((status, named(&fault)), (Status::Overlap, "rho"));
 }

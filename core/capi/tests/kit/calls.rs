@@ -155,7 +155,7 @@ fn porosity<R: Api>(s: &mut Source) {
     let grid = grid(s, &lists);
     let triangles = s.below(12);
     let mut corners: Vec<R> = s.numbers(9 * triangles + 1);
-    if s.byte() % 2 == 0 && triangles >= 4 {
+    if s.below(2) == 0 && triangles >= 4 {
         tetrahedron(&mut corners);
     }
     let mut first: Vec<usize> = vec![0, triangles / 2, triangles, 0];
@@ -204,14 +204,14 @@ fn tetrahedron<R: Api>(corners: &mut [R]) {
 const ROOM: usize = 160;
 
 fn answer<R: Api>(s: &mut Source, grid: &Grid<R>, surface: &Surface<R>, scene: &Scene<R>, options: &Options<R>) {
-    let by_scene = s.byte() % 2 == 0;
+    let by_scene = s.below(2) == 0;
     let mut sets: Vec<Vec<R>> = vec![vec![R::from_f64(0.5); ROOM]; 12];
     let mut fields = sets.iter_mut().map(|f| f.as_mut_ptr());
     let mut beta = |s: &mut Source, wanted: bool| {
         let mut next = || fields.next().filter(|_| wanted).map_or(null_mut(), |first| s.pointer(first));
         Beta { v: next(), x: next(), y: next(), z: next() }
     };
-    let bounds = s.byte() % 2 == 0;
+    let bounds = s.below(2) == 0;
     let mut fractions = Fractions { value: beta(s, true), lower: beta(s, bounds), upper: beta(s, bounds) };
     if s.rarely() {
         fractions.lower.v = fractions.value.x;
@@ -255,7 +255,7 @@ fn flow<R: Api>(s: &mut Source) {
         (0..ROOM).map(|_| if wild { s.number() } else { R::from_f64((s.byte() % 5) as f64 / 4.0) }).collect()
     };
     let fields: [Vec<R>; 4] = core::array::from_fn(|_| fraction(s));
-    let porous = s.byte() % 2 == 0;
+    let porous = s.below(2) == 0;
     let array = |s: &mut Source, n: usize, wanted: bool| {
         if wanted { s.pointer(fields[n].as_ptr().cast_mut()).cast_const() } else { null() }
     };
