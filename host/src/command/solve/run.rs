@@ -458,19 +458,20 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
     let mut cells = Vec::with_capacity(probes.len());
     for (n, probe) in probes.iter().enumerate() {
         let key = format!("output.probes[{n}]");
-        if probe.name.is_empty() || probe.name.contains([',', '"', '\n', '\r']) {
+        let name = probe.name(n);
+        if name.is_empty() || name.contains([',', '"', '\n', '\r']) {
             return Err(file.wrong(&format!("{key}.name"), "needs a name without commas, quotes and line ends"));
         }
-        if probes[..n].iter().any(|other| other.name == probe.name) {
-            return Err(file.wrong(&format!("{key}.name"), format!("\"{}\" is the name of another", probe.name)));
+        if probes[..n].iter().enumerate().any(|(m, other)| other.name(m) == name) {
+            return Err(file.wrong(&format!("{key}.name"), format!("\"{name}\" is the name of another")));
         }
         let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
-            file.wrong(&format!("{key}.at"), format!("{:?} of \"{}\" is outside the grid", probe.at, probe.name))
+            file.wrong(&format!("{key}.at"), format!("{:?} of \"{name}\" is outside the grid", probe.at))
         })?;
         let [nx, ny, _] = setup.edges.cells();
         let cell = (at[2] * ny + at[1]) * nx + at[0];
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
-            progress.warn(format!("{}: probe {}: its cell {at:?} is solid", file.path.display(), probe.name));
+            progress.warn(format!("{}: probe {name}: its cell {at:?} is solid", file.path.display()));
         }
         cells.push(cell);
     }
@@ -479,6 +480,6 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
 
 fn probe_head(output: &OutputKeys) -> String {
     let of_probe = |name: &str| ["rho", "u", "v", "w", "p"].map(|q| format!("{name} {q}")).join(",");
-    let all = output.probes.iter().map(|p| of_probe(&p.name));
+    let all = output.probes.iter().enumerate().map(|(n, p)| of_probe(&p.name(n)));
     ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")
 }
