@@ -1,6 +1,6 @@
 //! The command `voidage`: what the user typed, and what is done about it.
 //!
-//! In reading order: [`interrupt`], [`cli`], [`progress`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`].
+//! In reading order: [`interrupt`], [`cli`], [`progress`], [`template`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`].
 
 pub mod cli;
 pub mod inspect;
@@ -10,3 +10,4 @@ pub mod progress;
 pub mod solve;
 pub mod stages;
 pub mod study;
+pub mod template;

@@ -7,6 +7,7 @@ mod outside;
 mod planes;
 mod porosity;
 mod readme;
+mod reference;
 mod scene;
 mod solve;
 mod solve_errors;

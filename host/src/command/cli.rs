@@ -116,6 +116,9 @@ pub struct PorosityArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// Print a commented scene that runs, and do nothing else
+    #[arg(long, exclusive = true)]
+    pub template_scene: bool,
     /// Grid file (TOML or JSON): edges x, y, z; or origin, spacing, cells
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cells", "spacing", "bounds"])]
     pub grid: Option<PathBuf>,
@@ -176,8 +179,11 @@ pub struct PorosityArgs {
 #[derive(Debug, Args)]
 pub struct SolveArgs {
     /// Case file (TOML): grid, porosity, gas, initial, boundary, drag, gravity, scheme, time, output
-    #[arg(value_name = "CASE.toml")]
-    pub case: PathBuf,
+    #[arg(value_name = "CASE.toml", required = true)]
+    pub case: Option<PathBuf>,
+    /// Print a commented case that runs, and do nothing else
+    #[arg(long, exclusive = true)]
+    pub template: bool,
     /// Directory for results and checkpoints (default: the case's name without .toml, here)
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -213,8 +219,11 @@ pub struct InspectArgs {
 #[derive(Debug, Args)]
 pub struct StudyArgs {
     /// The case file (TOML): scenes, grids, methods, threads
-    #[arg(value_name = "CASE.toml")]
-    pub case: PathBuf,
+    #[arg(value_name = "CASE.toml", required = true)]
+    pub case: Option<PathBuf>,
+    /// Print a commented case that runs, and do nothing else
+    #[arg(long, exclusive = true)]
+    pub template: bool,
     /// Write study.csv, study.md and study.png into this directory (default: print the table)
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,

@@ -4,8 +4,9 @@ mod files;
 mod report;
 
 use super::cli::PorosityArgs;
-use super::progress::Progress;
+use super::progress::{Progress, print};
 use super::stages::{load, measure, need_surfaces, threads};
+use super::template;
 use crate::error::Result;
 use crate::files::json;
 use crate::geometry::bodies::Bodies;
@@ -19,6 +20,9 @@ use report::Report;
 /// # Errors
 /// Anything that keeps it from writing all that was asked for.
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
+    if args.template_scene {
+        return print(template::SCENE.as_bytes());
+    }
     let mut progress = Progress::new(&args.talk);
     files::check(args)?;
     threads(args.threads)?.install(|| {

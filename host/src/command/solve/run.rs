@@ -8,8 +8,9 @@ use super::setup::{Setup, live_axes, setup};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
-use crate::command::progress::Progress;
+use crate::command::progress::{Progress, print};
 use crate::command::stages::threads;
+use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
 use crate::flow::Flow;
@@ -25,12 +26,15 @@ use voidage_core::flow::Primitive;
 /// # Errors
 /// Anything that keeps it from writing all that the case asks for; an interrupt.
 pub fn solve(args: &SolveArgs) -> Result<()> {
+    let Some(path) = args.case.as_deref().filter(|_| !args.template) else {
+        return print(template::CASE.as_bytes());
+    };
     let mut progress = Progress::new(&args.talk);
-    let file = CaseFile::read(&args.case)?;
+    let file = CaseFile::read(path)?;
     let mut remarks = Vec::new();
     let edges = file.edges(&mut remarks)?;
     remarks.into_iter().for_each(|r| progress.warn(r));
-    let dir = match (&args.output, args.case.file_stem()) {
+    let dir = match (&args.output, path.file_stem()) {
         (Some(dir), _) => dir.clone(),
         (None, Some(stem)) => PathBuf::from(stem),
         (None, None) => return Err(Error::usage("give an output directory with -o")),
