@@ -176,7 +176,7 @@ const WRONG: [(&str, &[&str]); 42] = [
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nporosity = 1.5@", &["from 0 to 1"]),
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[gird]@\n", &["gird", "not known"]),
     (
-        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[grid]@\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\nw = 3",
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[grid]\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\nw = 3@",
         &["key w"],
     ),
     ("[[solid]]\nname = \"a\nshape@", &["line"]),
