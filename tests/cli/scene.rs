@@ -177,7 +177,7 @@ const WRONG: [(&str, &[&str]); 42] = [
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[gird]@\n", &["gird", "not known"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[grid]\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\nw = 3@",
-        &["key w"],
+        &["key grid.w"],
     ),
     ("[[solid]]\nname = \"a\nshape@", &["line"]),
 ];
