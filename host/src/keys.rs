@@ -8,4 +8,4 @@ pub mod value;
 
 pub use reader::read;
 pub use source::Source;
-pub use value::Node;
+pub use value::PlacedValue;

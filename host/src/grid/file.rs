@@ -10,7 +10,7 @@ use super::{Edges, MAX_AXIS, few_enough};
 use crate::error::{Error, Result};
 use crate::keys::reader::{misfit, not_known};
 use crate::keys::value::Value;
-use crate::keys::{self, Node, Source};
+use crate::keys::{self, PlacedValue, Source};
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -175,12 +175,12 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
     let node = if json {
         let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
-        Node::of_json(
+        PlacedValue::of_json(
             serde_json::from_str(text).map_err(|e| Error::at(path, place(&e), format!("this is no JSON: {e}")))?,
         )
     } else {
         let table = source.toml()?;
-        Node::of_table(table.get_ref(), table.span()).map_err(|e| misfit(&source, e))?
+        PlacedValue::of_table(table.get_ref(), table.span()).map_err(|e| misfit(&source, e))?
     };
     let Value::Table(mut entries) = node.value else {
         return Err(Error::file(path, "a grid is a table: x, y, z; or origin, spacing, cells"));
@@ -194,7 +194,7 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
         warnings.push(format!("{}: key {}: not known, ignored", path.display(), entry.key));
     }
     entries.retain(|e| KEYS.contains(&&e.key[..]));
-    let table = Node { value: Value::Table(entries), span: node.span };
+    let table = PlacedValue { value: Value::Table(entries), span: node.span };
     let spec: GridTable = keys::read(&source, &table, "")?;
     if spec.x.is_some() && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some()) {
         warnings.push(format!("{}: x, y, z are given; origin, spacing, cells beside them are ignored", path.display()));
@@ -207,7 +207,7 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
 /// # Errors
 /// If it is none; with the place in `source`.
 pub fn from_value(source: &Source, key: &str, value: &toml::Spanned<toml::de::DeValue>) -> Result<Edges> {
-    let node = Node::of_toml(value).map_err(|e| misfit(source, e))?;
+    let node = PlacedValue::of_toml(value).map_err(|e| misfit(source, e))?;
     if let Value::Table(entries) = &node.value
         && let Some(entry) = entries.iter().find(|e| !KEYS.contains(&&e.key[..]) && e.key != "file")
     {

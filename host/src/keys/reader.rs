@@ -3,7 +3,7 @@
 //! A text where a table with the key `type` is expected stands for the table that has only this key: `x_min = "wall"`.
 
 use super::source::Source;
-use super::value::{Misfit, Node, Value};
+use super::value::{Misfit, PlacedValue, Value};
 use crate::error::Error;
 use serde::Deserialize;
 use serde::de::value::StrDeserializer;
@@ -15,7 +15,7 @@ use std::ops::Range;
 ///
 /// # Errors
 /// A key that is missing or not known, a value of the wrong kind: with the place in `source`.
-pub fn read<T: for<'de> Deserialize<'de>>(source: &Source, node: &Node, place: &str) -> crate::error::Result<T> {
+pub fn read<T: for<'de> Deserialize<'de>>(source: &Source, node: &PlacedValue, place: &str) -> crate::error::Result<T> {
     let reader = Reader { node, key: place.to_owned() };
     T::deserialize(&reader).map_err(|e| reader.place(e)).map_err(|wrong| {
         let key = wrong.key.unwrap_or_default();
@@ -27,7 +27,7 @@ pub fn read<T: for<'de> Deserialize<'de>>(source: &Source, node: &Node, place: &
     })
 }
 
-/// An error of [`Node`] as one of the file.
+/// An error of [`PlacedValue`] as one of the file.
 #[must_use]
 pub fn misfit(source: &Source, (span, reason): Misfit) -> Error {
     match span {
@@ -124,7 +124,7 @@ fn distance(a: &str, b: &str) -> usize {
 
 /// A value with its key.
 struct Reader<'a> {
-    node: &'a Node,
+    node: &'a PlacedValue,
     key: String,
 }
 
@@ -337,7 +337,7 @@ impl<'de> Deserializer<'de> for &Reader<'_> {
 
 /// The values of a list, one after the other.
 struct Items<'a> {
-    items: std::iter::Enumerate<std::slice::Iter<'a, Node>>,
+    items: std::iter::Enumerate<std::slice::Iter<'a, PlacedValue>>,
     list: &'a Reader<'a>,
 }
 
@@ -352,7 +352,7 @@ impl<'de> SeqAccess<'de> for Items<'_> {
 }
 
 /// A key, where it stands, its value.
-type Member<'a> = (&'a str, Option<Range<usize>>, &'a Node);
+type Member<'a> = (&'a str, Option<Range<usize>>, &'a PlacedValue);
 
 /// The keys and values of a table, one after the other.
 struct Members<'a> {

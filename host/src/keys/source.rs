@@ -1,6 +1,6 @@
 //! The text of a file, for messages that show the place: line, column, the line itself with a mark.
 
-use super::value::{Node, Value};
+use super::value::{PlacedValue, Value};
 use crate::error::{Error, Result};
 use std::ops::Range;
 use std::path::Path;
@@ -57,7 +57,7 @@ impl<'a> Source<'a> {
     #[must_use]
     pub fn at_key(&self, key: &str, reason: impl Into<String>) -> Error {
         let reason = format!("key {key}: {}", reason.into());
-        let table = self.toml().ok().and_then(|table| Node::of_table(table.get_ref(), table.span()).ok());
+        let table = self.toml().ok().and_then(|table| PlacedValue::of_table(table.get_ref(), table.span()).ok());
         match table.and_then(|table| deepest(&table, key)) {
             Some(span) => self.error(span, reason),
             None => Error::file(self.path, reason),
@@ -86,7 +86,7 @@ impl<'a> Source<'a> {
 }
 
 /// Where a key stands; where it does not, the deepest of the tables and lists that lead to it, unless that is the whole file.
-fn deepest(table: &Node, key: &str) -> Option<Range<usize>> {
+fn deepest(table: &PlacedValue, key: &str) -> Option<Range<usize>> {
     let (mut node, mut found) = (table, None);
     for part in key.split(['.', '[']).map(|part| part.trim_end_matches(']')) {
         let next = match &node.value {

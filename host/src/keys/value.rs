@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 /// A value and the bytes of the text that it stands in.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Node {
+pub struct PlacedValue {
     /// The value.
     pub value: Value,
     /// Its bytes, if they are known.
@@ -27,7 +27,7 @@ pub enum Value {
     /// A day or a time.
     Date(String),
     /// Values in brackets.
-    List(Vec<Node>),
+    List(Vec<PlacedValue>),
     /// Keys with values, in the order of the file.
     Table(Vec<Entry>),
     /// Nothing, which JSON can say.
@@ -42,7 +42,7 @@ pub struct Entry {
     /// Its bytes, if they are known.
     pub span: Option<Range<usize>>,
     /// Its value.
-    pub node: Node,
+    pub node: PlacedValue,
 }
 
 /// A part of a text and what is wrong there.
@@ -65,7 +65,7 @@ impl Value {
     }
 }
 
-impl Node {
+impl PlacedValue {
     /// Of a value of TOML.
     ///
     /// # Errors
@@ -85,23 +85,23 @@ impl Node {
             DeValue::Float(f) => number(f.as_str())?,
             DeValue::Boolean(truth) => Value::Truth(*truth),
             DeValue::Datetime(date) => Value::Date(date.to_string()),
-            DeValue::Array(items) => Value::List(items.iter().map(Node::of_toml).collect::<Result<_, _>>()?),
-            DeValue::Table(table) => return Node::of_table(table, value.span()),
+            DeValue::Array(items) => Value::List(items.iter().map(PlacedValue::of_toml).collect::<Result<_, _>>()?),
+            DeValue::Table(table) => return PlacedValue::of_table(table, value.span()),
         };
-        Ok(Node { value, span })
+        Ok(PlacedValue { value, span })
     }
 
     /// Of a table of TOML.
     ///
     /// # Errors
-    /// As [`Node::of_toml`].
+    /// As [`PlacedValue::of_toml`].
     pub fn of_table(table: &DeTable, span: Range<usize>) -> Result<Self, Misfit> {
         let entry = |(key, value): (&Spanned<std::borrow::Cow<str>>, &Spanned<DeValue>)| {
-            Ok(Entry { key: key.get_ref().to_string(), span: Some(key.span()), node: Node::of_toml(value)? })
+            Ok(Entry { key: key.get_ref().to_string(), span: Some(key.span()), node: PlacedValue::of_toml(value)? })
         };
         let mut entries: Vec<Entry> = table.iter().map(entry).collect::<Result<_, Misfit>>()?;
         entries.sort_by_key(|e| e.span.as_ref().map(|s| s.start));
-        Ok(Node { value: Value::Table(entries), span: Some(span) })
+        Ok(PlacedValue { value: Value::Table(entries), span: Some(span) })
     }
 
     /// Of a value of JSON, which does not tell places.
@@ -116,11 +116,11 @@ impl Node {
                 whole.map_or(Value::Number(n.as_f64().unwrap_or(f64::NAN)), Value::Whole)
             }
             Json::String(text) => Value::Text(text),
-            Json::Array(items) => Value::List(items.into_iter().map(Node::of_json).collect()),
+            Json::Array(items) => Value::List(items.into_iter().map(PlacedValue::of_json).collect()),
             Json::Object(map) => Value::Table(
-                map.into_iter().map(|(key, v)| Entry { key, span: None, node: Node::of_json(v) }).collect(),
+                map.into_iter().map(|(key, v)| Entry { key, span: None, node: PlacedValue::of_json(v) }).collect(),
             ),
         };
-        Node { value, span: None }
+        PlacedValue { value, span: None }
     }
 }

@@ -9,7 +9,7 @@ use crate::grid::file::{self, GridTable};
 use crate::keys::reader::misfit;
 use crate::keys::source::another;
 use crate::keys::value::Value;
-use crate::keys::{self, Node, Source};
+use crate::keys::{self, PlacedValue, Source};
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
@@ -399,7 +399,7 @@ pub struct CaseFile {
 
 fn parse(source: &Source) -> Result<Case> {
     let table = source.toml()?;
-    let node = Node::of_table(table.get_ref(), 0..0).map_err(|e| misfit(source, e))?;
+    let node = PlacedValue::of_table(table.get_ref(), 0..0).map_err(|e| misfit(source, e))?;
     if let Value::Table(entries) = &node.value {
         let of = |key: &str| entries.iter().find(|e| e.key == key);
         if let Some((_, reason)) = another("a case", |key| of(key).is_some()) {
@@ -410,7 +410,7 @@ fn parse(source: &Source) -> Result<Case> {
             return Err(misfit(source, (entry.span.clone(), reason.into())));
         }
     }
-    keys::read(source, &Node { span: None, ..node }, "")
+    keys::read(source, &PlacedValue { span: None, ..node }, "")
 }
 
 impl CaseFile {
