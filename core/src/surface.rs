@@ -44,7 +44,7 @@
 //! 4. [`union`]: the exact union of bodies in a cell, from BSP trees of their surfaces
 //! 5. [`bins`]: which triangles of which bodies reach which layer
 //! 6. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies; [`surface_area`]: frontal and
-//!    wetted area of single bodies
+//!    wetted area of single bodies; [`shadow`]: what surface in a cell covers, seen along an axis
 //! 7. [`layer`]: the door: porosity of the layers of a grid
 
 pub mod bins;
@@ -52,6 +52,7 @@ mod cell_unions;
 pub mod cells;
 pub mod clip;
 pub mod layer;
+pub mod shadow;
 pub mod surface_area;
 pub mod union;
 mod walls;

@@ -14,6 +14,7 @@ mod options;
 pub mod resistance;
 mod result;
 mod road;
+pub mod shadows;
 pub mod snap;
 mod targets;
 

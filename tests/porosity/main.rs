@@ -12,5 +12,6 @@ mod obstacles;
 mod overlap;
 mod quadric;
 mod scenes;
+mod shadows;
 mod subdivide;
 mod truth;

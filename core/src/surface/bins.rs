@@ -55,6 +55,13 @@ impl<V: Vector> Default for Group<V> {
     }
 }
 
+impl<V> Group<V> {
+    /// Has its body no volume?
+    pub(super) const fn is_sheet(&self) -> bool {
+        self.sheet
+    }
+}
+
 impl<V: Vector> Group<V> {
     /// Its entries in the list of triangle numbers.
     fn run(&self) -> Range<usize> {
@@ -395,4 +402,78 @@ impl<'m, V: Vector> Row<'m, V> {
     pub fn ids(&self, group: &Group<V>) -> &'m [u32] {
         self.ids.get(group.run()).unwrap_or_default()
     }
+}
+
+/// Cells along an axis that an interval reaches or touches.
+pub(super) fn cells_touched<R: Real>(edges: &[R], [lo, hi]: [R; 2]) -> Range<usize> {
+    let first = edges.partition_point(|&e| e < lo).saturating_sub(1);
+    first..edges.partition_point(|&e| e <= hi).min(edges.len().saturating_sub(1))
+}
+
+/// Which triangles reach or touch, by their boxes, which cell of a layer.
+pub(super) struct CellLists<'m> {
+    /// The end of each cell's entries.
+    ends: &'m [u32],
+    /// Position of a group in the layer and number of a triangle, by cell, and by group within a cell.
+    entries: &'m [[u32; 2]],
+}
+
+impl<'m> CellLists<'m> {
+    /// Numbers needed.
+    pub fn needed<V: Vector>(bins: &Bins<V>, grid: &Grid<V::Scalar>, k: usize) -> usize {
+        let [nx, ny, _] = grid.cells();
+        let cells = |[x, y]: [Range<usize>; 2]| x.len().saturating_mul(y.len());
+        let entries = spans(bins, grid, k).map(|(_, spans)| cells(spans)).fold(0, usize::saturating_add);
+        entries.saturating_mul(2).saturating_add(nx * ny)
+    }
+
+    /// Of layer `k`; with less memory than needed some entries are lost.
+    pub fn new<V: Vector>(bins: &Bins<V>, grid: &Grid<V::Scalar>, k: usize, memory: &'m mut [u32]) -> Self {
+        let [nx, ny, _] = grid.cells();
+        let (ends, entries) = memory.split_at_mut(memory.len().min(nx * ny));
+        let (entries, _) = entries.as_chunks_mut();
+        ends.fill(0);
+        let cells = |[x, y]: [Range<usize>; 2]| y.flat_map(move |j| x.clone().map(move |i| j * nx + i));
+        for cell in spans(bins, grid, k).flat_map(|(_, spans)| cells(spans)) {
+            if let Some(count) = ends.get_mut(cell) {
+                *count = count.saturating_add(1);
+            }
+        }
+        let mut sum = 0_u32;
+        for first in &mut *ends {
+            sum = sum.saturating_add(core::mem::replace(first, sum));
+        }
+        for (entry, spans) in spans(bins, grid, k) {
+            for cell in cells(spans) {
+                let Some(end) = ends.get_mut(cell) else { continue };
+                if let Some(place) = entries.get_mut(*end as usize) {
+                    *place = entry;
+                }
+                *end = end.saturating_add(1);
+            }
+        }
+        CellLists { ends, entries }
+    }
+
+    /// The entries of a cell.
+    pub fn of(&self, cell: usize) -> &'m [[u32; 2]] {
+        let first = cell.checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
+        let end = self.ends.get(cell).copied().unwrap_or(first);
+        self.entries.get(first as usize..end as usize).unwrap_or_default()
+    }
+}
+
+/// The triangles of layer `k`: position of the group, number of the triangle, and the cells along x and y that it reaches or touches.
+fn spans<V: Vector>(
+    bins: &Bins<V>,
+    grid: &Grid<V::Scalar>,
+    k: usize,
+) -> impl Iterator<Item = ([u32; 2], [Range<usize>; 2])> {
+    bins.groups(k).iter().zip(0_u32..).flat_map(move |(group, n)| {
+        bins.ids(group).iter().map(move |&id| {
+            let around = Aabb::around(&bins.corners(group, id));
+            let x = cells_touched(grid.edges(0), [around.min.x(), around.max.x()]);
+            ([n, id], [x, cells_touched(grid.edges(1), [around.min.y(), around.max.y()])])
+        })
+    })
 }

@@ -5,7 +5,7 @@ use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::{Bins, Group, Row};
+use crate::surface::bins::{Bins, Group, Row, cells_touched};
 use crate::surface::union::{CellFractions, CellUnion, NoProof, UnionMemory};
 use core::ops::Range;
 
@@ -312,7 +312,7 @@ pub(super) fn bodies_in<'u, V: Vector>(
     let mut union = CellUnion::new(memory, cell, blur);
     for group in row.groups {
         if group.bounds.max.x() > cell.min.x() && group.bounds.min.x() < cell.max.x() {
-            union.add(cell, false, site.bins.triangles(group), row.ids(group))?;
+            union.add(cell, false, site.bins.triangles(group), row.ids(group).iter().copied())?;
         }
     }
     Ok(union)
@@ -448,15 +448,13 @@ fn free_face<R: Real>(layer: &Layer<R>, axis: usize, at: usize) -> Option<(R, R)
 /// Along one axis, by how many the bodies and the surfaces among them that reach or touch a cell are more than in the cell before:
 /// two entries a cell and two beyond, in two's complement.
 fn count_reaching<R: Real>(edges: &[R], extents: impl Iterator<Item = ([R; 2], bool)>, steps: &mut [u32]) {
-    let cells = edges.len() - 1;
     steps.fill(0);
-    for ([lo, hi], surface) in extents {
-        let first = edges.partition_point(|&e| e < lo).saturating_sub(1);
-        let end = edges.partition_point(|&e| e <= hi).min(cells);
-        if first >= end {
+    for (extent, surface) in extents {
+        let Range { start, end } = cells_touched(edges, extent);
+        if start >= end {
             continue;
         }
-        for (at, sign) in [(first, 1), (end, u32::MAX)] {
+        for (at, sign) in [(start, 1), (end, u32::MAX)] {
             if let Some([bodies, surfaces]) = steps.get_mut(2 * at..).and_then(|s| s.first_chunk_mut()) {
                 *bodies = bodies.wrapping_add(sign);
                 *surfaces = surfaces.wrapping_add(if surface { sign } else { 0 });

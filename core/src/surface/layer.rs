@@ -12,6 +12,7 @@ mod fractions;
 mod memory;
 mod parts;
 mod report;
+mod shadows;
 mod slices;
 mod solid_bounds;
 mod surface_areas;

@@ -140,7 +140,7 @@ use NoProof::{Ambiguous, Full};
 
 /// How a cell is seen: 0..1 along each axis.
 #[derive(Clone, Copy, Debug)]
-struct Frame<R> {
+pub(super) struct Frame<R> {
     origin: [R; 3],
     scale: [R; 3],
     /// Planes closer than this are one.
@@ -165,17 +165,11 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// Begin with the cell `lo..hi`; it sets the frame. Planes closer than `blur`, in cells, are taken for one plane: faces that
     /// were meant to coincide and miss by so much then do, and [`CellFractions::error`] says what that may cost.
     pub fn new<V: Vector<Scalar = R>>(space: UnionMemory<'a, R>, cell: Aabb<V>, blur: R) -> Self {
-        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
-        let size = sub(hi, lo);
-        let mut reach = R::ONE;
-        for axis in 0..3 {
-            reach = reach.max(lo[axis].abs().max(hi[axis].abs()) / size[axis]);
-        }
-        let rounding = R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach;
+        let frame = Frame::of(cell);
         CellUnion {
             space,
-            frame: Frame { origin: lo, scale: size, thickness: rounding.max(blur) },
-            blurred: blur > rounding,
+            blurred: blur > frame.thickness,
+            frame: Frame { thickness: frame.thickness.max(blur), ..frame },
             part_count: 0,
             built: 0,
             piece_count: 0,
@@ -193,13 +187,13 @@ impl<'a, R: Real> CellUnion<'a, R> {
         cell: Aabb<V>,
         below: bool,
         triangles: &[[V; 3]],
-        ids: &[u32],
+        ids: impl Iterator<Item = u32>,
     ) -> Result<(), NoProof> {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
         let first = self.piece_count;
         let mut filling = R::ZERO;
         let mut scratch = [Polygon::default(), Polygon::default()];
-        for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
+        for triangle in ids.filter_map(|id| triangles.get(id as usize)) {
             let triangle = triangle.map(Vector::to_array);
             if !reaches(&triangle, lo, hi) {
                 continue;
@@ -326,6 +320,25 @@ impl<'a, R: Real> CellUnion<'a, R> {
 }
 
 impl<R: Real> Frame<R> {
+    /// Of a cell, with a thickness that rounding asks for.
+    pub fn of<V: Vector<Scalar = R>>(cell: Aabb<V>) -> Self {
+        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
+        let size = sub(hi, lo);
+        let mut reach = R::ONE;
+        for axis in 0..3 {
+            reach = reach.max(lo[axis].abs().max(hi[axis].abs()) / size[axis]);
+        }
+        Frame { origin: lo, scale: size, thickness: R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach }
+    }
+
+    /// What a triangle has inside a cell; nothing if it lies in the plane of a side.
+    pub fn inside<V: Vector<Scalar = R>>(&self, triangle: &[[R; 3]; 3], cell: Aabb<V>) -> Option<Polygon<R>> {
+        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
+        let (mut scratch, mut piece) = ([Polygon::default(), Polygon::default()], Piece::default());
+        let found = reaches(triangle, lo, hi) && self.piece(triangle, lo, hi, &mut scratch, &mut piece);
+        found.then_some(piece.polygon)
+    }
+
     fn framed(&self, p: [R; 3]) -> [R; 3] {
         let d = sub(p, self.origin);
         [d[0] / self.scale[0], d[1] / self.scale[1], d[2] / self.scale[2]]

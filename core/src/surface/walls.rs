@@ -148,7 +148,7 @@ fn gather<'u, V: Vector>(
     let mut union = CellUnion::new(memory.reborrow(), frame, blur);
     for side in sides {
         for group in bins.groups(side.k).iter().filter(|g| side.touches(g)) {
-            union.add(side.cell, side.below, bins.triangles(group), bins.ids(group))?;
+            union.add(side.cell, side.below, bins.triangles(group), bins.ids(group).iter().copied())?;
         }
     }
     Ok(union)

@@ -1,6 +1,7 @@
 //! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
 
 use super::layers::Workers;
+use super::shadows::{Shadows, of_layers};
 use super::{FieldSet, Options, Porosity, levels, porosity, snap, surfaces};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
@@ -22,6 +23,8 @@ pub struct Resistance {
     pub d_h: Vec<f64>,
     /// Mean size of the obstacles 4 (1 − β_v) / s in m: of a pipe its diameter; 0 in cells without surface.
     pub l_obs: Vec<f64>,
+    /// Shadows along x, y and z.
+    pub shadows: Shadows,
     /// Totals.
     pub totals: Totals,
 }
@@ -47,14 +50,32 @@ pub struct Totals {
 /// The obstacles among `bodies` on `grid`; `result` holds their porosities, faces included. Runs in the current rayon pool.
 #[must_use]
 pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Resistance {
-    let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
-    // The unions of several levels are mixed into the porosities.
-    let own = (levels(bodies) != [0.0]).then(|| {
+    let own = solid_alone(grid, bodies, options);
+    let beta = &own.as_ref().unwrap_or(result).beta;
+    with_solid_layers(grid, bodies, options, |layers| {
+        let (union, sum, reports) = areas(grid, layers, beta);
+        let shadows = of_layers(grid, layers, beta);
+        Resistance { totals: totals(&union, &sum, &reports), shadows, ..densities(grid, &beta.v, &union) }
+    })
+}
+
+/// Porosities of the solid bodies alone, if there are others: the unions of several levels are mixed into the porosities.
+pub(super) fn solid_alone(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Option<Porosity> {
+    (levels(bodies) != [0.0]).then(|| {
         let mut bodies = bodies.clone();
         bodies.bodies.retain(|b| b.porosity == 0.0);
         porosity(grid, &bodies, Options { bounds: false, areas: true, ..options })
-    });
-    let beta = &own.as_ref().unwrap_or(result).beta;
+    })
+}
+
+/// Work with the layers of the bodies that are solid, those without triangles as facets.
+pub(super) fn with_solid_layers<T>(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    options: Options,
+    work: impl FnOnce(&Layers<DVec3>) -> T,
+) -> T {
+    let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
     let moved = snap::into_planes(grid, bodies);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
     let curved: Vec<Vec<[DVec3; 3]>> = bodies
@@ -71,6 +92,14 @@ pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options:
     let needed = Layers::needed(grid, &surfaces);
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
     let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
+    work(&layers)
+}
+
+/// Areas of the union and of all bodies added up, and how well they are known.
+type Areas = (Vec<SurfaceArea<f64>>, Vec<SurfaceArea<f64>>, Vec<AreaReport<f64>>);
+
+/// Areas in all cells.
+fn areas(grid: &Grid<f64>, layers: &Layers<DVec3>, beta: &FieldSet) -> Areas {
     let [nx, ny, nz] = grid.cells();
     let mut union = vec![SurfaceArea::default(); nx * ny * nz];
     let (mut sum, workers) = (union.clone(), Workers::new());
@@ -79,20 +108,20 @@ pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options:
         .zip(sum.par_chunks_mut(nx * ny))
         .enumerate()
         .map(|(k, (union, sum))| {
-            workers.with(&layers, |worker| {
+            workers.with(layers, |worker| {
                 let (mut cells, open) = (vec![CellSurface::default(); nx * ny], open_layer(grid, k, beta));
-                let mut memory = worker.memory(grid, &layers, k);
+                let mut memory = worker.memory(grid, layers, k);
                 layers
                     .surface_areas(k, &open, [union, sum], &mut cells, &mut memory)
                     .expect("slices of a layer fit its grid")
             })
         })
         .collect();
-    Resistance { totals: totals(&union, &sum, &reports), ..densities(grid, &beta.v, &union) }
+    (union, sum, reports)
 }
 
 /// The open fractions of layer `k`.
-fn open_layer<'a>(grid: &Grid<f64>, k: usize, beta: &'a FieldSet) -> OpenLayer<'a, f64> {
+pub(super) fn open_layer<'a>(grid: &Grid<f64>, k: usize, beta: &'a FieldSet) -> OpenLayer<'a, f64> {
     let [nx, ny, _] = grid.cells();
     let nth = |k: usize, length: usize| k * length..(k + 1) * length;
     OpenLayer {

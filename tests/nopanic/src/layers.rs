@@ -5,6 +5,7 @@ use voidage_core::grid::{Grid, Located};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
+use voidage_core::surface::shadow::{Shadow, ShadowEdge, ShadowMemory};
 use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
 use voidage_core::surface::union::{UnionBuffers, UnionMemory};
 
@@ -58,7 +59,16 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let known = OpenLayer { cell: of(at), x: of(at + 1), y: of(at + 2), z: of(at), top: of(at) };
     let [union, sum] = areas.each_mut().map(|a| a.get_mut(..at).unwrap_or_default());
     let cells = cells.get_mut(..at).unwrap_or_default();
-    porosity ^ layers.surface_areas(at, &known, [union, sum], cells, &mut memory).map_or(4, |report| report.unproved)
+    let areas = layers.surface_areas(at, &known, [union, sum], cells, &mut memory).map_or(4, |report| report.unproved);
+    porosity ^ areas ^ shadowed(layers, &known, at)
+}
+
+fn shadowed<V: Vector>(layers: &Layers<V>, open: &OpenLayer<V::Scalar>, at: usize) -> usize {
+    let (mut edges, mut crossed, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);
+    let lists = lists.get_mut(..layers.shadow_lists_needed(at)).unwrap_or_default();
+    let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists };
+    let mut found = [Shadow::default(); 99];
+    layers.shadows(at, open, found.get_mut(..at).unwrap_or_default(), memory).unwrap_or(5)
 }
 
 /// In double precision.

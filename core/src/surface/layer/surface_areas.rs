@@ -34,7 +34,7 @@ pub struct OpenLayer<'a, R> {
 }
 
 impl<R: Real> OpenLayer<'_, R> {
-    fn check(&self, grid: &Grid<R>) -> Result<(), LayerError> {
+    pub(super) fn check(&self, grid: &Grid<R>) -> Result<(), LayerError> {
         let [nx, ny, _] = grid.cells();
         exactly(nx * ny, self.cell.len())?;
         exactly((nx + 1) * ny, self.x.len())?;
@@ -44,7 +44,7 @@ impl<R: Real> OpenLayer<'_, R> {
     }
 
     /// Solid fractions of the sides of a cell, low and high along each axis.
-    fn blocked(&self, [i, j]: [usize; 2], nx: usize) -> Option<Sides<R>> {
+    pub(super) fn blocked(&self, [i, j]: [usize; 2], nx: usize) -> Option<Sides<R>> {
         let (c, x) = (j * nx + i, j * (nx + 1) + i);
         let open = [
             [self.x.get(x)?, self.x.get(x + 1)?],

@@ -96,12 +96,13 @@ fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &
 }
 
 /// Names of the arrays of `--resistance`.
-const OBSTACLES: [&str; 6] = ["a_x", "a_y", "a_z", "s", "d_h", "l_obs"];
+const OBSTACLES: [&str; 9] = ["a_x", "a_y", "a_z", "s", "d_h", "l_obs", "tau_x", "tau_y", "tau_z"];
 
 /// The obstacles with names, as [`fields`].
 fn obstacle_fields<'a>(edges: &Edges, obstacles: Option<&'a Resistance>) -> Vec<(String, [usize; 3], &'a [f64])> {
-    let Some(Resistance { a: [x, y, z], s, d_h, l_obs, .. }) = obstacles else { return Vec::new() };
-    let values = [x, y, z, s, d_h, l_obs];
+    let Some(Resistance { a: [x, y, z], s, d_h, l_obs, shadows, .. }) = obstacles else { return Vec::new() };
+    let [tau_x, tau_y, tau_z] = &shadows.tau;
+    let values = [x, y, z, s, d_h, l_obs, tau_x, tau_y, tau_z];
     OBSTACLES.iter().zip(values).map(|(name, values)| ((*name).to_owned(), edges.cells(), &values[..])).collect()
 }
 

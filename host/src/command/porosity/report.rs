@@ -7,6 +7,7 @@ use crate::geometry::bodies::{Bodies, SolidSummary};
 use crate::grid::Edges;
 use crate::picture::ticks::measure;
 use crate::porosity::resistance::{Resistance, Totals};
+use crate::porosity::shadows::{HiddenPassages, Shadows};
 use crate::porosity::{self, Leaf, Porosity};
 use glam::DVec3;
 use serde::Serialize;
@@ -36,7 +37,25 @@ pub(super) struct Report {
     gjk: porosity::Gjk,
     /// Areas in m², with `--resistance`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    obstacles: Option<Totals>,
+    obstacles: Option<ObstacleReport>,
+}
+
+/// Totals of the obstacles, and what stands between faces that do not see it.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct ObstacleReport {
+    #[serde(flatten)]
+    totals: Totals,
+    /// Along x, y and z.
+    hidden_passages: [HiddenPassages; 3],
+    /// Cells that hold too much surface for a shadow.
+    unproved_shadows: usize,
+}
+
+impl ObstacleReport {
+    fn new(found: &Resistance) -> Self {
+        let Shadows { hidden, too_full, .. } = &found.shadows;
+        ObstacleReport { totals: found.totals, hidden_passages: *hidden, unproved_shadows: *too_full }
+    }
 }
 
 /// How many bodies took which road.
@@ -106,7 +125,7 @@ impl Report {
             skipped,
             seconds: BTreeMap::new(),
             gjk: result.gjk,
-            obstacles: obstacles.map(|found| found.totals),
+            obstacles: obstacles.map(ObstacleReport::new),
         }
     }
 
@@ -130,7 +149,8 @@ impl Report {
             "cells         {} open, {} cut, {} closed; {} shared by bodies",
             c.open, c.cut, c.closed, c.ambiguous
         ));
-        if let Some(Totals { frontal_area: [x, y, z], wetted_area, .. }) = self.obstacles {
+        if let Some(ObstacleReport { totals: Totals { frontal_area: [x, y, z], wetted_area, .. }, .. }) = self.obstacles
+        {
             let [x, y, z] = [x, y, z].map(measure);
             progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {} m²", measure(wetted_area)));
         }

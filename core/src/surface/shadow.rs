@@ -1,0 +1,446 @@
+//! The shadow of solids in a cell: which share of the lines along an axis meets them.
+//!
+//! A line meets solid if it begins inside a solid or meets a face. So the faces are projected along the axis, and so are the boundaries of the solids'
+//! sections with the low side of the cell, which are those edges of faces that lie in it. A sweep over the edges counts both: between two
+//! neighbouring ends and crossings nothing changes places, so areas are sums of trapezoids, exact to rounding, whatever the solids have in
+//! common. Edges between two faces that look the same way cancel before: what is left are outlines. The sweep is that of J. L. Bentley and
+//! T. A. Ottmann, *Algorithms for Reporting and Counting Geometric Intersections*, IEEE Transactions on Computers C-28, 1979.
+//!
+//! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
+
+use crate::number::real::Real;
+use crate::surface::clip::{Polygon, cross, sub};
+
+/// Places closer than this, in ε, are one place.
+const THICKNESS_IN_EPSILONS: f64 = 64.0;
+
+/// A section of which this share is solid at most, or open at most, has no boundary but rounding.
+const NO_SECTION: f64 = 1e-12;
+
+/// A sweep that takes more steps than this, each once an edge that it passes, is given up.
+const MOST_STEPS: usize = 1 << 24;
+
+/// An edge seen along the axis of a sweep. The default serves as memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShadowEdge<R> {
+    /// The end met first by the sweep: place along the sweeping line, and of the line.
+    low: [R; 2],
+    high: [R; 2],
+    /// How many more faces cover the places beyond the edge.
+    covering: i32,
+    /// In how many more solids lines begin there.
+    starting: i32,
+}
+
+impl<R: Real> ShadowEdge<R> {
+    /// From `a` to `b`, with counts that hold if it leads upwards; none along the sweeping line.
+    fn new(a: [R; 2], b: [R; 2], [covering, starting]: [i32; 2]) -> Option<Self> {
+        if a[1] < b[1] {
+            Some(ShadowEdge { low: a, high: b, covering, starting })
+        } else {
+            (a[1] > b[1]).then_some(ShadowEdge { low: b, high: a, covering: -covering, starting: -starting })
+        }
+    }
+
+    /// Place along the line that has come to `v`.
+    fn at(&self, v: R) -> R {
+        if v >= self.high[1] {
+            return self.high[0];
+        }
+        let along = ((v - self.low[1]) / (self.high[1] - self.low[1])).max(R::ZERO);
+        self.low[0] + (self.high[0] - self.low[0]) * along
+    }
+
+    /// What lies beyond it, counted once for each solid in which lines begin there.
+    fn starting_area(&self) -> R {
+        let beyond = R::ONE - (self.low[0] + self.high[0]) * R::HALF;
+        let area = beyond * (self.high[1] - self.low[1]);
+        if self.starting < 0 { -area } else { area }
+    }
+
+    /// Is it to be sorted after another?
+    fn follows(&self, other: &Self) -> bool {
+        let key = |e: &Self| [e.low[1], e.low[0], e.high[1], e.high[0]];
+        let (own, other) = (key(self), key(other));
+        own.iter().zip(other).find(|(a, b)| **a != *b).is_some_and(|(a, b)| *a > b)
+    }
+}
+
+/// Memory for the shadows of one cell at a time; the larger, the more surface a cell may hold. What the slices hold does not matter.
+#[derive(Debug, Default)]
+pub struct ShadowMemory<'a, R> {
+    /// Edges of faces, a third for each axis: 3 to 5 times as many as faces, and as many again in sides of the cell.
+    pub edges: &'a mut [ShadowEdge<R>],
+    /// Edges that the sweeping line crosses, in their order: a third as many.
+    pub crossed: &'a mut [u32],
+    /// Which triangles reach which cell of a layer; `Layers::shadow_lists_needed` tells how many.
+    pub lists: &'a mut [u32],
+}
+
+/// The shadow of the solids in a cell along x, y and z.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shadow<R> {
+    /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it.
+    pub share: [R; 3],
+    /// Where, from 0 at the low side of the cell to 1: the mean place of the surface inside, each part counted by its area as seen along the axis. One
+    /// half where there is none.
+    pub place: [R; 3],
+}
+
+/// The outlines of what is in a cell, seen along x, y and z.
+pub(super) struct Outlines<'m, R> {
+    axes: [Outline<'m, R>; 3],
+    crossed: &'m mut [u32],
+    /// Seen area, and its first moment.
+    seen: [[R; 2]; 3],
+}
+
+/// The edges of what is in a cell, seen along an axis.
+struct Outline<'m, R> {
+    edges: &'m mut [ShadowEdge<R>],
+    count: usize,
+    /// The area of the present solid's section with the low side, but for a whole number.
+    section: R,
+    /// In how many solids the line at (0, 0) begins.
+    starting: i32,
+}
+
+impl<'m, R: Real> Outlines<'m, R> {
+    /// Of nothing yet; `lists` is not used.
+    pub fn new(memory: ShadowMemory<'m, R>) -> Self {
+        let ShadowMemory { edges, crossed, .. } = memory;
+        let third = edges.len() / 3;
+        let (x, rest) = edges.split_at_mut(third.min(edges.len()));
+        let (y, z) = rest.split_at_mut(third.min(rest.len()));
+        let outline = |edges| Outline { edges, count: 0, section: R::ZERO, starting: 0 };
+        Outlines { axes: [outline(x), outline(y), outline(z)], crossed, seen: [[R::ZERO; 2]; 3] }
+    }
+
+    /// Of nothing again.
+    pub fn clear(&mut self) {
+        for outline in &mut self.axes {
+            (outline.count, outline.section, outline.starting) = (0, R::ZERO, 0);
+        }
+        self.seen = [[R::ZERO; 2]; 3];
+    }
+
+    /// Is nothing seen?
+    pub fn is_empty(&self) -> bool {
+        self.axes.iter().all(|outline| outline.count == 0)
+    }
+
+    /// Add a face, in the frame of the cell; false if there is no room.
+    pub fn add(&mut self, polygon: &Polygon<R>, sheet: bool) -> bool {
+        let normal = polygon.doubled_area();
+        self.see(polygon);
+        let [x, y, z] = &mut self.axes;
+        [x, y, z].into_iter().zip(0..).all(|(outline, axis)| outline.add(polygon, normal[axis], sheet, axis).is_some())
+    }
+
+    /// All faces of one solid have been added.
+    pub fn finish_solid(&mut self) {
+        for outline in &mut self.axes {
+            if outline.section < -R::from_f64(NO_SECTION).max(thickness()) {
+                outline.starting = outline.starting.saturating_add(1);
+            }
+            outline.section = R::ZERO;
+        }
+    }
+
+    /// Take note of where a face stands.
+    fn see(&mut self, polygon: &Polygon<R>) {
+        let [first, second, others @ ..] = polygon.corners() else { return };
+        let mut last = second;
+        for corner in others {
+            let doubled = cross(sub(*last, *first), sub(*corner, *first));
+            for axis in 0..3 {
+                let area = doubled[axis].abs();
+                self.seen[axis][0] += area;
+                self.seen[axis][1] += area * (first[axis] + last[axis] + corner[axis]);
+            }
+            last = corner;
+        }
+    }
+
+    /// The mean place of all faces along each axis, each part counted by its area as seen along it; one half if nothing is seen.
+    pub fn places(&self) -> [R; 3] {
+        let three = R::from_f64(3.0);
+        self.seen.map(|[area, moment]| if area > R::ZERO { moment / (three * area) } else { R::HALF })
+    }
+
+    /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid; none if patience or memory is spent.
+    pub fn shadow(&mut self, axis: usize) -> Option<R> {
+        let outline = self.axes.get_mut(axis.min(2))?;
+        let count = joined(outline.edges.get_mut(..outline.count)?);
+        let edges = outline.edges.get(..count)?;
+        Sweep { edges, crossed: self.crossed, count: 0, starting: outline.starting }.shadow()
+    }
+}
+
+impl<R: Real> Outline<'_, R> {
+    fn push(&mut self, edge: Option<ShadowEdge<R>>) -> Option<()> {
+        if let Some(edge) = edge {
+            *self.edges.get_mut(self.count)? = edge;
+            self.count += 1;
+        }
+        Some(())
+    }
+
+    /// Add the edges of a face whose normal has this component along `axis`.
+    fn add(&mut self, polygon: &Polygon<R>, normal: R, sheet: bool, axis: usize) -> Option<()> {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        // A face that is entered is seen from behind: beyond an edge that leads upwards it begins.
+        let covering = if normal < R::ZERO { 1 } else { -1 };
+        let corners = polygon.corners();
+        let mut last = corners.last()?;
+        for corner in corners {
+            let (a, b) = ([last[u], last[v]], [corner[u], corner[v]]);
+            let in_side = !sheet && last[axis] == R::ZERO && corner[axis] == R::ZERO;
+            last = corner;
+            if normal != R::ZERO {
+                self.push(ShadowEdge::new(a, b, [covering, 0]))?;
+            }
+            if in_side {
+                self.add_to_section(a, b)?;
+            }
+        }
+        Some(())
+    }
+
+    /// Add an edge of the section with the low side, the solid to its left. Where a boundary comes in from `u = 0` or goes out there, the section goes
+    /// on along it.
+    fn add_to_section(&mut self, a: [R; 2], b: [R; 2]) -> Option<()> {
+        if a[0] == R::ZERO && b[0] == R::ZERO {
+            return Some(());
+        }
+        let own = ShadowEdge::new(a, b, [0, -1]);
+        let along_side = |from: [R; 2], count| {
+            (from[0] == R::ZERO).then(|| ShadowEdge::new(from, [R::ZERO, R::ONE], [0, count])).flatten()
+        };
+        for edge in [own, along_side(a, 1), along_side(b, -1)] {
+            self.section += edge.as_ref().map_or(R::ZERO, ShadowEdge::starting_area);
+            self.push(edge)?;
+        }
+        Some(())
+    }
+}
+
+/// Sort edges by their low ends and make one of those with the same ends; how many are left that count.
+fn joined<R: Real>(edges: &mut [ShadowEdge<R>]) -> usize {
+    sort(edges);
+    let (mut kept, mut open): (usize, Option<ShadowEdge<R>>) = (0, None);
+    for n in 0..=edges.len() {
+        let next = edges.get(n).copied();
+        match (&mut open, next) {
+            (Some(last), Some(edge)) if last.low == edge.low && last.high == edge.high => {
+                last.covering = last.covering.saturating_add(edge.covering);
+                last.starting = last.starting.saturating_add(edge.starting);
+            }
+            (last, _) => {
+                if let Some(edge) = last.filter(|e| (e.covering, e.starting) != (0, 0)) {
+                    if let Some(place) = edges.get_mut(kept) {
+                        *place = edge;
+                    }
+                    kept += 1;
+                }
+                *last = next;
+            }
+        }
+    }
+    kept
+}
+
+/// Shell's sort, which needs no memory.
+fn sort<R: Real>(edges: &mut [ShadowEdge<R>]) {
+    let mut gap = edges.len() / 2;
+    while gap > 0 {
+        for start in gap..edges.len() {
+            let Some(&edge) = edges.get(start) else { continue };
+            let mut at = start;
+            while let Some(&before) = at.checked_sub(gap).and_then(|n| edges.get(n)).filter(|e| e.follows(&edge)) {
+                if let Some(place) = edges.get_mut(at) {
+                    *place = before;
+                }
+                at -= gap;
+            }
+            if let Some(place) = edges.get_mut(at) {
+                *place = edge;
+            }
+        }
+        gap = if gap == 2 { 1 } else { gap * 5 / 11 };
+    }
+}
+
+/// A line that sweeps over edges.
+struct Sweep<'m, R> {
+    /// By their low ends.
+    edges: &'m [ShadowEdge<R>],
+    crossed: &'m mut [u32],
+    /// So many edges are crossed.
+    count: usize,
+    /// In how many solids lines begin before the first edge.
+    starting: i32,
+}
+
+impl<R: Real> Sweep<'_, R> {
+    /// The area that is covered or solid; none if memory or patience is spent.
+    fn shadow(&mut self) -> Option<R> {
+        let (mut next, mut steps, mut v, mut area) = (0, 0_usize, R::ZERO, R::ZERO);
+        while v < R::ONE {
+            self.drop_passed(v);
+            while let Some(edge) = self.edges.get(next).filter(|e| e.low[1] <= v) {
+                if edge.high[1] > v {
+                    *self.crossed.get_mut(self.count)? = next as u32;
+                    self.count += 1;
+                }
+                next += 1;
+            }
+            let start = self.edges.get(next).map_or(R::ONE, |e| e.low[1]);
+            let top = self.nearest_end().smaller(start);
+            self.arrange(v, top);
+            let stop = self.first_crossing(v, top);
+            area += self.strips(v, stop);
+            v = stop;
+            steps += self.count + 1;
+            if steps > MOST_STEPS {
+                return None;
+            }
+        }
+        Some(area)
+    }
+
+    fn edge(&self, nth: usize) -> Option<&ShadowEdge<R>> {
+        self.edges.get(*self.crossed.get(nth)? as usize)
+    }
+
+    /// Forget the edges that end at or before `v`.
+    fn drop_passed(&mut self, v: R) {
+        let mut kept = 0;
+        for nth in 0..self.count {
+            if !self.edge(nth).is_some_and(|e| e.high[1] > v) {
+                continue;
+            }
+            let Some(&id) = self.crossed.get(nth) else { continue };
+            if let Some(place) = self.crossed.get_mut(kept) {
+                *place = id;
+                kept += 1;
+            }
+        }
+        self.count = kept;
+    }
+
+    /// Where the first of the crossed edges ends.
+    fn nearest_end(&self) -> R {
+        (0..self.count).filter_map(|nth| self.edge(nth)).fold(R::INFINITY, |end, e| end.smaller(e.high[1]))
+    }
+
+    /// Put the crossed edges in order, as the line meets them just beyond `v`.
+    fn arrange(&mut self, v: R, top: R) {
+        for start in 1..self.count {
+            let Some(&id) = self.crossed.get(start) else { continue };
+            let Some(edge) = self.edges.get(id as usize) else { continue };
+            let place = [edge.at(v), edge.at(top)];
+            let mut at = start;
+            while let Some(before) = at.checked_sub(1) {
+                let Some(other) = self.edge(before) else { break };
+                if !is_before(place, [other.at(v), other.at(top)]) {
+                    break;
+                }
+                let moved = self.crossed.get(before).copied().unwrap_or_default();
+                if let Some(place) = self.crossed.get_mut(at) {
+                    *place = moved;
+                }
+                at = before;
+            }
+            if let Some(place) = self.crossed.get_mut(at) {
+                *place = id;
+            }
+        }
+    }
+
+    /// Where two neighbours first change places between `v` and `top`, or `top`.
+    fn first_crossing(&self, v: R, top: R) -> R {
+        let mut stop = top;
+        for nth in 1..self.count {
+            let (Some(a), Some(b)) = (self.edge(nth - 1), self.edge(nth)) else { continue };
+            let (before, after) = (b.at(v) - a.at(v), b.at(top) - a.at(top));
+            if before > thickness() && after < R::ZERO {
+                let crossing = v + (top - v) * (before / (before - after));
+                if crossing > v {
+                    stop = stop.smaller(crossing);
+                }
+            }
+        }
+        stop
+    }
+
+    /// What is covered or solid between `v` and `stop`, where no edges change places.
+    fn strips(&self, v: R, stop: R) -> R {
+        let (mut covering, mut starting, mut width) = (0_i32, self.starting, R::ZERO);
+        let mut last = [R::ZERO; 2];
+        for nth in 0..=self.count {
+            let edge = self.edge(nth).filter(|_| nth < self.count);
+            let here = edge.map_or([R::ONE; 2], |e| [e.at(v), e.at(stop)]);
+            if covering > 0 || starting > 0 {
+                width += ((here[0] - last[0]) + (here[1] - last[1])).max(R::ZERO) * R::HALF;
+            }
+            if let Some(edge) = edge {
+                covering = covering.saturating_add(edge.covering);
+                starting = starting.saturating_add(edge.starting);
+            }
+            last = here;
+        }
+        width * (stop - v)
+    }
+}
+
+/// Places closer than this are one place.
+fn thickness<R: Real>() -> R {
+    R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS)
+}
+
+/// Is one edge before another, by their places on two lines?
+fn is_before<R: Real>(one: [R; 2], other: [R; 2]) -> bool {
+    let apart = one[0] - other[0];
+    if apart.abs() > thickness() { apart < R::ZERO } else { one[1] < other[1] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What triangles at random cover against counting on a lattice of points.
+    #[test]
+    fn random_triangles_against_points() {
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for count in [1, 2, 3, 7, 20, 60] {
+            let triangles: [[[f64; 3]; 3]; 60] = [0; 60].map(|_| [0; 3].map(|_| [random(), random(), random()]));
+            let (mut edges, mut crossed) = ([ShadowEdge::default(); 600], [0; 200]);
+            let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut [] };
+            let mut cell = Outlines::new(memory);
+            triangles[..count].iter().for_each(|t| assert!(cell.add(&Polygon::new(t), false)));
+            for axis in 0..3 {
+                let found = cell.shadow(axis).expect("room");
+                let (mut met, n) = (0, 500);
+                for at in 0..n * n {
+                    let p = [(f64::from(at % n) + 0.5) / f64::from(n), (f64::from(at / n) + 0.5) / f64::from(n)];
+                    met += i32::from(triangles[..count].iter().any(|t| is_met(t, p, axis)));
+                }
+                let share = f64::from(met) / f64::from(n * n);
+                assert!((found - share).abs() < 2e-3, "{count} along {axis}: {found} and {share}");
+            }
+        }
+    }
+
+    /// Does a line along an axis meet a triangle?
+    fn is_met([a, b, c]: &[[f64; 3]; 3], p: [f64; 2], axis: usize) -> bool {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let side = |a: &[f64; 3], b: &[f64; 3]| (b[u] - a[u]) * (p[1] - a[v]) - (b[v] - a[v]) * (p[0] - a[u]);
+        let shares = [side(b, c), side(c, a), side(a, b)];
+        shares.iter().all(|s| *s >= 0.0) || shares.iter().all(|s| *s <= 0.0)
+    }
+}

@@ -1,0 +1,186 @@
+//! Shadows in cells: boxes by coordinate compression, convex bodies by a closed relation, anything by lines, walls that no face sees.
+
+use glam::{DMat3, DVec3};
+use proptest::prelude::*;
+use voidage::geometry::bodies::Bodies;
+use voidage::grid::Edges;
+use voidage::porosity::resistance::{Resistance, resistance};
+use voidage::porosity::shadows::{cells, faces_of_cell};
+use voidage::porosity::{Options, Porosity, porosity};
+use voidage_core::grid::Grid;
+use voidage_tests::random::Random;
+use voidage_tests::solids::{Triangle, cuboid, scene, turned_box};
+
+fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
+    let axis: Vec<f64> = (0..=cells).map(|n| lo + (hi - lo) * n as f64 / cells as f64).collect();
+    Edges([axis.clone(), axis.clone(), axis])
+}
+
+fn found(edges: &Edges, bodies: &Bodies) -> (Porosity, Resistance) {
+    let grid = edges.grid(None).expect("a grid");
+    let result = porosity(&grid, bodies, Options::default());
+    let resistance = resistance(&grid, bodies, &result, Options::default());
+    (result, resistance)
+}
+
+/// Solid shares of the two faces of a cell along an axis.
+fn blocked(grid: &Grid<f64>, result: &Porosity, axis: usize, at: [usize; 3]) -> [f64; 2] {
+    let beta = [&result.beta.x, &result.beta.y, &result.beta.z][axis];
+    faces_of_cell(grid, axis, at).map(|face| 1.0 - beta[face])
+}
+
+/// Area of a union of rectangles.
+fn area_of_union(rectangles: &[[[f64; 2]; 2]]) -> f64 {
+    let sorted = |axis: usize| {
+        let mut all: Vec<f64> = rectangles.iter().flat_map(|r| r[axis]).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    };
+    let (u, v) = (sorted(0), sorted(1));
+    let mut area = 0.0;
+    for u in u.windows(2) {
+        for v in v.windows(2) {
+            let holds = |r: &[[f64; 2]; 2]| r[0][0] <= u[0] && u[1] <= r[0][1] && r[1][0] <= v[0] && v[1] <= r[1][1];
+            if rectangles.iter().any(holds) {
+                area += (u[1] - u[0]) * (v[1] - v[0]);
+            }
+        }
+    }
+    area
+}
+
+/// The share of a cell's section that boxes within it cover, seen along an axis.
+fn covered_by_boxes(boxes: &[[DVec3; 2]], [lo, hi]: [DVec3; 2], axis: usize) -> f64 {
+    let (iu, iv) = ((axis + 1) % 3, (axis + 2) % 3);
+    let inside = boxes.iter().map(|[a, b]| (a.max(lo), b.min(hi))).filter(|(a, b)| a.cmplt(*b).all());
+    let rectangles: Vec<_> = inside.map(|(a, b)| [[a[iu], b[iu]], [a[iv], b[iv]]]).collect();
+    area_of_union(&rectangles) / ((hi[iu] - lo[iu]) * (hi[iv] - lo[iv]))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    /// Boxes that overlap, touch, hold each other and lie in planes of the grid, half-way between and anywhere; far from the origin too.
+    #[test]
+    fn boxes_cast_the_shadow_of_their_union(
+        boxes in prop::collection::vec((prop::array::uniform3(0_u8..9), prop::array::uniform3(1_u8..6)), 1..8),
+        cells_along in 2_usize..6,
+        on_planes in any::<bool>(),
+        far in any::<bool>(),
+    ) {
+        let offset = DVec3::splat(if far { 4096.0 } else { 0.0 });
+        let half = |p: &[u8; 3]| DVec3::from_array(p.map(|c| f64::from(c) * 0.5));
+        let boxes: Vec<[DVec3; 2]> =
+            boxes.iter().map(|(lo, size)| [offset + half(lo), offset + half(lo) + half(size)]).collect();
+        let (lo, hi) = if on_planes { (0.0, 7.0) } else { (-0.318, 7.41) };
+        let edges = edges(if on_planes { 7 } else { cells_along }, offset.x + lo, offset.x + hi);
+        let bodies = scene(&boxes.iter().map(|[a, b]| cuboid(*a, *b)).collect::<Vec<_>>());
+        let (result, found) = found(&edges, &bodies);
+        let grid = edges.grid(None).expect("a grid");
+        for (n, at) in cells(&grid).enumerate() {
+            let cell = grid.cell_box(at).expect("a cell");
+            for axis in 0..3 {
+                let tau = found.shadows.tau[axis][n];
+                let [low, high] = blocked(&grid, &result, axis, at);
+                let seen = covered_by_boxes(&boxes, [cell.min, cell.max], axis).max(low).max(high);
+                let truth = if result.beta.v[n] > 0.0 { seen } else { 1.0 };
+                prop_assert!((tau - truth).abs() < 1e-11, "cell {at:?}, axis {axis}: {tau}, {truth}, {boxes:?}");
+            }
+        }
+        prop_assert_eq!(found.shadows.too_full, 0);
+    }
+}
+
+/// A turned box by its centre, half sides and turn.
+struct Turned(DVec3, DVec3, DMat3);
+
+impl Turned {
+    fn random(random: &mut Random, size: f64) -> Self {
+        let half = DVec3::from_array([0; 3].map(|_| size * random.between(0.05, 1.0)));
+        Turned(random.point(DVec3::splat(0.2), DVec3::splat(2.8)), half, random.turn())
+    }
+
+    fn triangles(&self) -> Vec<Triangle> {
+        turned_box(self.0, self.1, self.2)
+    }
+
+    /// Does the line along `axis` through `p` meet it between two coordinates?
+    fn meets(&self, p: DVec3, axis: usize, [lo, hi]: [f64; 2]) -> bool {
+        let inverse = self.2.transpose();
+        let (q, d) = (inverse * (p - self.0), inverse * DVec3::AXES[axis]);
+        let (mut start, mut end) = (lo - p[axis], hi - p[axis]);
+        for a in 0..3 {
+            let [s, t] = [-self.1[a], self.1[a]].map(|side| (side - q[a]) / d[a]);
+            (start, end) = (start.max(s.min(t)), end.min(s.max(t)));
+        }
+        start < end
+    }
+}
+
+/// A line enters a convex body once: its shadow is the mean blockage of the faces and the frontal area.
+#[test]
+fn of_one_convex_body_the_frontal_area_tells() {
+    let mut random = Random::new(5);
+    for _ in 0..40 {
+        let (edges, body) = (edges(4, 0.0, 3.0), Turned::random(&mut random, 1.5));
+        let (result, found) = found(&edges, &scene(&[body.triangles()]));
+        let grid = edges.grid(None).expect("a grid");
+        for (n, at) in cells(&grid).enumerate().filter(|(n, _)| result.beta.v[*n] > 0.0) {
+            for axis in 0..3 {
+                let [low, high] = blocked(&grid, &result, axis, at);
+                let truth = found.a[axis][n] * 0.75 + (low + high) / 2.0;
+                let tau = found.shadows.tau[axis][n];
+                assert!((tau - truth).abs() < 1e-11, "{at:?} along {axis}: {tau} and {truth}");
+            }
+        }
+    }
+}
+
+/// Several turned boxes, by lines.
+#[test]
+fn turned_boxes_against_lines() {
+    const LINES: usize = 160;
+    let mut random = Random::new(6);
+    let mut several = 0;
+    for count in [2, 3, 5, 9, 17] {
+        let bodies: Vec<Turned> = (0..count).map(|_| Turned::random(&mut random, 0.8)).collect();
+        let edges = edges(3, 0.0, 3.0);
+        let (result, found) = found(&edges, &scene(&bodies.iter().map(Turned::triangles).collect::<Vec<_>>()));
+        let grid = edges.grid(None).expect("a grid");
+        for (n, at) in cells(&grid).enumerate().filter(|(n, _)| result.beta.v[*n] > 0.0) {
+            let cell = grid.cell_box(at).expect("a cell");
+            for axis in 0..3 {
+                let (iu, iv) = ((axis + 1) % 3, (axis + 2) % 3);
+                let mut met = 0;
+                for line in 0..LINES * LINES {
+                    let mut p = cell.min;
+                    p[iu] += ((line % LINES) as f64 + 0.5) / LINES as f64;
+                    p[iv] += ((line / LINES) as f64 + 0.5) / LINES as f64;
+                    met += usize::from(bodies.iter().any(|b| b.meets(p, axis, [cell.min[axis], cell.max[axis]])));
+                }
+                let truth = met as f64 / (LINES * LINES) as f64;
+                let tau = found.shadows.tau[axis][n];
+                assert!((tau - truth).abs() < 6e-3, "{count} at {at:?} along {axis}: {tau} and {truth}");
+                several += usize::from(tau > 0.05 && tau < 0.95);
+            }
+        }
+        assert_eq!(found.shadows.too_full, 0, "{count}");
+    }
+    assert!(several > 80, "{several}");
+}
+
+/// A wall between two planes is told, wherever it lies; in a plane it is blocked already.
+#[test]
+fn a_thin_wall_is_a_hidden_passage() {
+    for (place, expected) in [(0.31, 9), (0.02, 9), (0.9, 9), (0.0, 0)] {
+        let wall = cuboid(DVec3::new(1.0 + place, -1.0, -1.0), DVec3::new(1.05 + place, 4.0, 4.0));
+        let (_, found) = found(&edges(3, 0.0, 3.0), &scene(&[wall]));
+        let hidden = found.shadows.hidden;
+        assert_eq!(hidden.map(|h| h.cells), [expected, 0, 0], "{place}");
+        assert_eq!(hidden[0].first, (expected > 0).then_some([1, 0, 0]));
+        if expected > 0 {
+            assert!((found.shadows.place[0][1] - place - 0.025).abs() < 1e-12);
+            assert_eq!(found.shadows.tau[0][1], 1.0);
+        }
+    }
+}
