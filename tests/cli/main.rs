@@ -12,4 +12,5 @@ mod scene;
 mod solve;
 mod solve_errors;
 mod solve_resume;
+mod streams;
 mod study;

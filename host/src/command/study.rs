@@ -8,6 +8,7 @@ pub mod table;
 
 use crate::command::cli::StudyArgs;
 use crate::command::progress::{Progress, print};
+use crate::command::streams::{INPUT, text_of};
 use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::atomically;
@@ -25,7 +26,9 @@ pub fn study(args: &StudyArgs) -> Result<()> {
         return print(template::STUDY.as_bytes());
     };
     let mut progress = Progress::new(&args.talk);
-    let case = case::read(path)?;
+    let piped = text_of(path)?;
+    let path = if piped.is_some() { Path::new(INPUT) } else { path };
+    let case = piped.map_or_else(|| case::read(path), |text| case::parse(path, &text))?;
     let rows = measure::all(path, &case, &mut progress, |progress, row| progress.say(table::line(row)))?;
     if let Some(dir) = &args.output {
         std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;

@@ -169,7 +169,14 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return Err(Error::file(path, "not a regular file"));
     }
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
+    parse(path, &std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?, warnings)
+}
+
+/// Read the text of a grid file; `path` names it in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edges> {
     let text = text.trim_start_matches('\u{feff}');
     let source = Source::new(path, text);
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');

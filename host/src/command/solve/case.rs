@@ -3,6 +3,7 @@
 //! Lengths in metres, times in seconds, any consistent units. A state is `rho`, `u`, `v`, `w`, `p`: density, velocity
 //! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
+use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
 use crate::grid::Edges;
 use crate::grid::file::{self, GridTable};
@@ -419,7 +420,12 @@ impl CaseFile {
     /// # Errors
     /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
+        let piped = text_of(path)?;
+        let path = if piped.is_some() { Path::new(INPUT) } else { path };
+        let text = match piped {
+            Some(text) => text,
+            None => std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?,
+        };
         let case = parse(&Source::new(path, &text))?;
         Ok(CaseFile { path: path.to_owned(), text, case })
     }

@@ -8,14 +8,14 @@ use super::setup::{Setup, live_axes, setup};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
-use crate::command::progress::{Progress, print};
+use crate::command::progress::{Meter, Progress, print};
 use crate::command::stages::threads;
+use crate::command::streams::is_stream;
 use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
 use crate::flow::Flow;
 use crate::grid::Edges;
-use indicatif::ProgressBar;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -34,18 +34,36 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
     let mut remarks = Vec::new();
     let edges = file.edges(&mut remarks)?;
     remarks.into_iter().for_each(|r| progress.warn(r));
-    let dir = match (&args.output, path.file_stem()) {
+    let dir = match (&args.output, path.file_stem().filter(|_| !is_stream(path))) {
         (Some(dir), _) => dir.clone(),
         (None, Some(stem)) => PathBuf::from(stem),
         (None, None) => return Err(Error::usage("give an output directory with -o")),
     };
     keep_inputs(&file, &dir)?;
+    keep_results(&dir, args)?;
     threads(args.threads)?.install(|| match live_axes(&edges)[..] {
         [a] => run(&file, &edges, [a], dir, args.resume, progress),
         [a, b] => run(&file, &edges, [a, b], dir, args.resume, progress),
         [a, b, c] => run(&file, &edges, [a, b, c], dir, args.resume, progress),
         _ => Ok(()), // there are one to three
     })
+}
+
+/// Name of the report, which a run writes last: where it is, the run is finished.
+const REPORT: &str = "report.json";
+
+/// A finished run is not replaced unless that is asked for.
+fn keep_results(dir: &Path, args: &SolveArgs) -> Result<()> {
+    let report = dir.join(REPORT);
+    if args.resume || !report.exists() {
+        return Ok(());
+    }
+    if args.force {
+        return frames::remove_old(dir)
+            .and_then(|()| std::fs::remove_file(&report).map_err(|e| Error::io(&report, "remove", &e)));
+    }
+    let reason = "holds a finished run: --force replaces it, --resume goes on from its end, -o DIR takes another place";
+    Err(Error::file(dir, reason))
 }
 
 /// The last state must not replace the first one.
@@ -79,7 +97,7 @@ fn run<const D: usize>(
     progress.stage("output", |_| run.snapshot().arrays(&run.dir.join("final"), &run.setup.edges))?;
     let summary = Report::new(file, &run.setup, &run.journal, run.done, &progress);
     summary.say(&progress);
-    json::write(&run.dir.join("report.json"), &summary)
+    json::write(&run.dir.join(REPORT), &summary)
 }
 
 /// When to do what.
@@ -224,7 +242,7 @@ impl<'a, const D: usize> Run<'a, D> {
     }
 
     /// Steps until the end, or an interrupt.
-    fn steps(&mut self, line: &ProgressBar) -> Result<()> {
+    fn steps(&mut self, line: &Meter) -> Result<()> {
         let (begun, start) = (Instant::now(), (self.setup.flow.time, self.setup.flow.steps));
         let mut saved = begun;
         while self.setup.flow.time < self.limits.end && self.setup.flow.steps < self.limits.max_steps {
@@ -241,8 +259,8 @@ impl<'a, const D: usize> Run<'a, D> {
                 self.checkpoint()?;
                 saved = Instant::now();
             }
-            if !line.is_hidden() {
-                line.set_message(self.progress(dt, start, begun.elapsed()));
+            if line.is_due() {
+                line.tell(&self.progress(dt, start, begun.elapsed()));
             }
             if interrupt::asked() {
                 self.checkpoint()?;

@@ -103,8 +103,15 @@ const MOST: usize = 1024;
 /// # Errors
 /// As [`scene::read`].
 pub fn read(path: &Path) -> Result<StudyCase> {
-    let text = table::read_text(path, LARGEST_FILE)?;
-    let source = Source::new(path, &text);
+    parse(path, &table::read_text(path, LARGEST_FILE)?)
+}
+
+/// Read the text of a case file; `path` names it in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
+    let source = Source::new(path, text);
     let table = source.toml()?;
     let mut keys = StrictTable::new(&source, "", 0..0, table.get_ref());
     keys.is_a("a study")?;
