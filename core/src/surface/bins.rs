@@ -430,7 +430,7 @@ impl<'m> CellLists<'m> {
     /// Of layer `k`; with less memory than needed some entries are lost.
     pub fn new<V: Vector>(bins: &Bins<V>, grid: &Grid<V::Scalar>, k: usize, memory: &'m mut [u32]) -> Self {
         let [nx, ny, _] = grid.cells();
-        let (ends, entries) = memory.split_at_mut(memory.len().min(nx * ny));
+        let (ends, entries) = memory.split_at_mut_checked(nx * ny).unwrap_or_default();
         let (entries, _) = entries.as_chunks_mut();
         ends.fill(0);
         let cells = |[x, y]: [Range<usize>; 2]| y.flat_map(move |j| x.clone().map(move |i| j * nx + i));

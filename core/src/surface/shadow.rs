@@ -110,8 +110,8 @@ impl<'m, R: Real> Outlines<'m, R> {
     pub fn new(memory: ShadowMemory<'m, R>) -> Self {
         let ShadowMemory { edges, crossed, .. } = memory;
         let third = edges.len() / 3;
-        let (x, rest) = edges.split_at_mut(third.min(edges.len()));
-        let (y, z) = rest.split_at_mut(third.min(rest.len()));
+        let (x, rest) = edges.split_at_mut_checked(third).unwrap_or_default();
+        let (y, z) = rest.split_at_mut_checked(third).unwrap_or_default();
         let outline = |edges| Outline { edges, count: 0, section: R::ZERO, starting: 0 };
         Outlines { axes: [outline(x), outline(y), outline(z)], crossed, seen: [[R::ZERO; 2]; 3] }
     }

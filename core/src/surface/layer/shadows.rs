@@ -87,16 +87,18 @@ impl<V: Vector> CellOfLayer<'_, V> {
     /// Take in what all bodies have of surface inside the cell; none if there is no room.
     fn load(&self, outlines: &mut Outlines<V::Scalar>) -> Option<()> {
         let (groups, frame) = (self.bins.groups(self.k), Frame::of(self.cell));
-        for run in self.entries.chunk_by(|a, b| a[0] == b[0]) {
-            let Some(group) = run.first().and_then(|&[n, _]| groups.get(n as usize)) else { continue };
-            let triangles = self.bins.triangles(group);
-            for triangle in run.iter().filter_map(|&[_, id]| triangles.get(id as usize)) {
-                if let Some(polygon) = frame.inside(&triangle.map(Vector::to_array), self.cell) {
-                    outlines.add(&polygon, group.is_sheet()).then_some(())?;
-                }
+        let mut last = None;
+        for &[n, id] in self.entries {
+            if last.replace(n).is_some_and(|last| last != n) {
+                outlines.finish_solid();
             }
-            outlines.finish_solid();
+            let Some(group) = groups.get(n as usize) else { continue };
+            let Some(triangle) = self.bins.triangles(group).get(id as usize) else { continue };
+            if let Some(polygon) = frame.inside(&triangle.map(Vector::to_array), self.cell) {
+                outlines.add(&polygon, group.is_sheet()).then_some(())?;
+            }
         }
+        outlines.finish_solid();
         Some(())
     }
 }
