@@ -76,6 +76,8 @@ pub mod flow;
 pub mod geometry;
 pub mod grid;
 pub mod huge;
+#[cfg(feature = "scene")]
+pub mod keys;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod porosity;

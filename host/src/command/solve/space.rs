@@ -59,10 +59,7 @@ fn from_scene<const D: usize>(
     progress: &mut Progress,
 ) -> Result<Space<D>> {
     let keys = &file.case.porosity;
-    let paths = match scene {
-        Paths::One(path) => std::slice::from_ref(path),
-        Paths::Many(paths) => paths,
-    };
+    let Paths(paths) = scene;
     if paths.is_empty() {
         return Err(file.wrong("porosity.scene", "names no file"));
     }
