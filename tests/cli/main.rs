@@ -5,6 +5,7 @@ mod inspect;
 mod kit;
 mod outputs;
 mod outside;
+mod packages;
 mod planes;
 mod porosity;
 mod readme;
