@@ -1,7 +1,7 @@
 //! Volume and area porosity of real geometry on structured grids.
 //!
 //! The crate is `no_std`, allocates nothing, holds no `unsafe` code and works in `f32` and `f64` from one text.
-//! Seven rooms; one uses only those above it:
+//! Eight rooms; one uses only those above it:
 //!
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
@@ -10,7 +10,8 @@
 //! 5. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
 //!    in [`surface`]
 //! 6. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
-//! 7. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//! 7. [`solids`]: solids by formula beside bodies of triangles, where they share cells by subdivision
+//! 8. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
 //!
 //! | to … | use |
 //! |---|---|
@@ -118,5 +119,6 @@ pub mod flow;
 pub mod grid;
 pub mod number;
 pub mod quadric;
+pub mod solids;
 pub mod subdivide;
 pub mod surface;
