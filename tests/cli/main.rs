@@ -3,6 +3,7 @@
 mod bad_inputs;
 mod inspect;
 mod kit;
+mod maxima;
 mod outputs;
 mod outside;
 mod packages;
