@@ -3,7 +3,10 @@
 mod bad_inputs;
 mod inspect;
 mod kit;
+mod maxima;
+mod outputs;
 mod outside;
+mod packages;
 mod planes;
 mod porosity;
 mod readme;
