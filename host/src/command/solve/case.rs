@@ -6,6 +6,7 @@
 use crate::error::{Error, Result};
 use crate::grid::Edges;
 use crate::grid::file::{self, GridTable};
+use crate::porosity::throat::Faces;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -65,6 +66,8 @@ pub struct PorosityKeys {
     pub from: Option<PathBuf>,
     /// Differences of the open fraction above this share are jumps and get the throat map; `inf` for none.
     pub jump: Option<f64>,
+    /// As `voidage porosity --faces`.
+    pub faces: Option<Faces>,
     /// Merge cells of little volume behind open faces, which otherwise set the time step.
     pub merge: Option<bool>,
 }
@@ -199,10 +202,41 @@ impl Sides {
     }
 }
 
-/// `[drag]`: R_i = −beta_v rho (linear_i + ½ cr_i |u|) u_i, the same everywhere or from files.
+/// A law, or the choice of none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LawName {
+    /// Obstacles inside cells exert no force.
+    None,
+    /// As `voidage porosity --drag bluff`.
+    Bluff,
+    /// As `voidage porosity --drag pdr`.
+    Pdr,
+}
+
+/// Drag coefficients of a law.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "a number, or round and sharp")]
+pub enum Coefficients {
+    /// Of all bodies.
+    All(f64),
+    /// By shape.
+    ByShape {
+        /// Of round bodies.
+        round: Option<f64>,
+        /// Of bodies with edges.
+        sharp: Option<f64>,
+    },
+}
+
+/// `[drag]`: R_i = −beta_v rho (linear_i + ½ cr_i |u|) u_i, by a law from the scene, the same everywhere, or from files.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DragKeys {
+    /// How the frontal area of the scene becomes `cr`.
+    pub law: Option<LawName>,
+    /// Drag coefficients of the law; 1.2 for round and 2 for sharp bodies if left out.
+    pub cd: Option<Coefficients>,
     /// CR along x, y, z in 1/m.
     pub cr: Option<[f64; 3]>,
     /// Linear coefficients in 1/s.

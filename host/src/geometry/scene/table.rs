@@ -225,6 +225,15 @@ pub fn positive(value: &DeValue) -> Wanted<f64> {
     if x > 0.0 { Ok(x) } else { Err(format!("must be positive, not {x}")) }
 }
 
+/// A number that is not below zero.
+///
+/// # Errors
+/// What it should be.
+pub fn not_negative(value: &DeValue) -> Wanted<f64> {
+    let x = number(value)?;
+    if x >= 0.0 { Ok(x) } else { Err(format!("must not be below 0, not {x}")) }
+}
+
 /// A number from 0 to 1.
 ///
 /// # Errors
