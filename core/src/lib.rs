@@ -1,7 +1,7 @@
 //! Volume and area porosity of real geometry on structured grids.
 //!
 //! The crate is `no_std`, allocates nothing, holds no `unsafe` code and works in `f32` and `f64` from one text.
-//! Seven rooms; one uses only those above it:
+//! Eight rooms; one uses only those above it:
 //!
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
@@ -10,18 +10,59 @@
 //! 5. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
 //!    in [`surface`]
 //! 6. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
-//! 7. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//! 7. [`solids`]: solids by formula beside bodies of triangles, where they share cells by subdivision
+//! 8. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//!
+//! | to … | use |
+//! |---|---|
+//! | tell whether two convex bodies meet, how far apart they are | [`convex::meets`], [`convex::distance`] |
+//! | measure triangulated bodies, overlaps counted once | [`surface::layer::Layers`] |
+//! | measure cylinders, cones, balls, capsules, ellipsoids by closed forms | [`quadric::QuadricSolid`] |
+//! | bound the fractions of any convex body | [`subdivide`] |
+//! | make open fractions ready for a flow, step it | [`flow::prepare`], [`flow::Problem`] |
+//! | put `f32` or `f64` into one text | [`number`] |
+//!
+//! # Triangles to fields
+//!
+//! ```
+//! use glam::DVec3;
+//! use voidage_core::{grid::Grid, surface::bins::Surface, surface::layer::*, surface::union::UnionBuffers};
+//!
+//! let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]; // a tetrahedron of volume 1/6
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|v: usize| corner[v]));
+//! let (bodies, edges) = ([Surface::new(&triangles)], [0.0, 0.5, 1.0]);
+//! let grid = Grid::new(&edges, &edges, &edges)?;
+//! // All memory is yours: for the triangles by layer, then for one layer at a time.
+//! let needed = Layers::needed(&grid, &bodies);
+//! let (mut ids, mut groups) = (vec![0; needed.numbers], vec![Default::default(); needed.groups]);
+//! let layers = Layers::new(&grid, &bodies, LayerOptions::default(), &mut ids, &mut groups)?;
+//! let needed = layers.memory_needed();
+//! let (mut reals, mut flags) = (vec![0.0; needed.reals], vec![0; needed.flags]);
+//! let (mut numbers, mut parts) = (vec![0; needed.numbers], vec![Default::default(); needed.groups]);
+//! let mut union = UnionBuffers::<f64, 64>::default();
+//! let mut memory = LayerMemory::new(&grid, &mut reals, &mut flags, &mut numbers, &mut parts, union.memory())?;
+//! let (mut beta_v, mut beta_x, mut beta_y, mut beta_z) = ([0.0; 8], [0.0; 12], [0.0; 12], [0.0; 12]);
+//! for k in 0..2 {
+//!     let slices = LayerSlices::of_fields(&grid, k, &mut beta_v, [&mut beta_x, &mut beta_y, &mut beta_z])?;
+//!     layers.layer(k, slices, None, &mut memory)?;
+//! }
+//! assert!((beta_v.iter().map(|b| (1.0 - b) / 8.0).sum::<f64>() - 1.0 / 6.0).abs() < 1e-15);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Two convex bodies
 //!
 //! ```
 //! use glam::DVec3;
-//! use voidage_core::convex::{self, AnyBody, exact::Contact, shape::Cylinder};
+//! use voidage_core::convex::{self, AnyBody, Clearance, exact::Contact, shape::Cylinder};
 //! use voidage_core::number::aabb::Aabb;
 //!
 //! let cell = AnyBody::new(Aabb { min: DVec3::ZERO, max: DVec3::ONE })?;
 //! let pipe = AnyBody::new(Cylinder::new(DVec3::new(0.5, 0.5, -1.0), DVec3::new(0.5, 0.5, 2.0), 0.25))?;
 //! assert_eq!(convex::meets(&cell, &pipe).contact(), Some(Contact::Overlapping));
+//! let far = pipe.posed([DVec3::X, DVec3::Y, DVec3::Z], DVec3::new(2.0, 0.0, 0.0))?;
+//! let Clearance::Apart { lower, upper, .. } = convex::distance(&cell, &far) else { panic!("they are apart") };
+//! assert!(lower <= 1.25 && 1.25 <= upper && upper - lower < 1e-9);
 //! # Ok::<(), convex::BodyError>(())
 //! ```
 //!
@@ -68,10 +109,16 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 
+/// The examples of the page of the package are tests, too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct PackagePage;
+
 pub mod convex;
 pub mod flow;
 pub mod grid;
 pub mod number;
 pub mod quadric;
+pub mod solids;
 pub mod subdivide;
 pub mod surface;

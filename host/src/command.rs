@@ -1,6 +1,6 @@
 //! The command `voidage`: what the user typed, and what is done about it.
 //!
-//! In reading order: [`interrupt`], [`cli`], [`progress`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`].
+//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`].
 
 pub mod cli;
 pub mod inspect;
@@ -10,4 +10,7 @@ pub mod porosity;
 pub mod progress;
 pub mod solve;
 pub mod stages;
+pub mod streams;
 pub mod study;
+pub mod template;
+pub mod version;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A failure that the user can act on. Prints as `file: place: reason`.
+/// A failure that the user can act on. Prints as `file: place: reason`, and below it the line that it is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
     /// The file it is about, if any.
@@ -12,6 +12,8 @@ pub struct Error {
     pub place: Option<String>,
     /// What is wrong and, where known, what to do.
     pub reason: String,
+    /// Lines that show the place, printed below.
+    pub excerpt: Option<String>,
     /// The command line itself is at fault (exit code 2 rather than 1).
     pub usage: bool,
 }
@@ -22,7 +24,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 impl Error {
     /// A failure about no file in particular.
     pub fn new(reason: impl Into<String>) -> Self {
-        Error { path: None, place: None, reason: reason.into(), usage: false }
+        Error { path: None, place: None, reason: reason.into(), excerpt: None, usage: false }
     }
 
     /// A failure of a file as a whole.
@@ -54,7 +56,8 @@ impl fmt::Display for Error {
         if let Some(place) = &self.place {
             write!(f, "{place}: ")?;
         }
-        f.write_str(&self.reason)
+        f.write_str(&self.reason)?;
+        self.excerpt.as_ref().map_or(Ok(()), |lines| write!(f, "\n{lines}"))
     }
 }
 

@@ -29,13 +29,15 @@ impl Edges {
     /// # Errors
     /// If they are none; `path` is the file to blame, if there is one.
     pub fn grid(&self, path: Option<&Path>) -> Result<Grid<'_, f64>> {
-        Grid::new(&self.0[0], &self.0[1], &self.0[2]).map_err(|error| {
-            let (place, reason) = explain(error, &self.0);
-            match path {
-                Some(path) => Error::at(path, place, reason),
-                None => Error::usage(format!("grid: {place}: {reason}")),
-            }
+        self.explained().map_err(|(place, reason)| match path {
+            Some(path) => Error::at(path, place, reason),
+            None => Error::usage(format!("grid: {place}: {reason}")),
         })
+    }
+
+    /// The edges as a grid; or where they make none, and why.
+    pub(crate) fn explained(&self) -> std::result::Result<Grid<'_, f64>, (String, String)> {
+        Grid::new(&self.0[0], &self.0[1], &self.0[2]).map_err(|error| explain(error, &self.0))
     }
 
     /// Number of cells along each axis.

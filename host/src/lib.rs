@@ -19,10 +19,25 @@
 //! # Ok::<(), voidage::error::Error>(())
 //! ```
 //!
-//! **Porosity of a file.** [`geometry::read`] takes STL and OBJ; what is wrong with the surface is said in `bodies.warnings`.
+//! | to … | use |
+//! |---|---|
+//! | read STL and OBJ files | [`geometry::read`] |
+//! | make closed bodies of triangles, and hear what is wrong with them | [`geometry::bodies`] |
+//! | read scene files, grids from files (feature `scene`) | `geometry::scene`, `grid::file` |
+//! | make a grid | [`mod@grid`] |
+//! | compute open fractions, and the resistance of obstacles | [`mod@porosity`], [`porosity::resistance`] |
+//! | flow gas through them | [`mod@flow`] |
+//! | write NumPy and ParaView files, whole or not at all | [`files`] |
+//! | draw fields and curves (feature `pictures`) | `picture` |
+//! | do what the command does (feature `cli`) | `command` |
+//!
+//! **Read → bodies → grid → porosity → files.** [`geometry::read`] takes STL and OBJ; what is wrong with the surface is said in
+//! `bodies.warnings`.
 //!
 //! ```
 //! use std::path::Path;
+//! use voidage::files::npy;
+//! use voidage::files::vtr::{CellField, NamedField, Vtr};
 //! use voidage::geometry::{bodies::Bodies, read};
 //! use voidage::grid::{GridSpec, edges};
 //! use voidage::porosity::{Options, porosity};
@@ -32,6 +47,13 @@
 //! let edges = edges(&GridSpec::Cells([20, 20, 20], None), bodies.bounds(), &mut Vec::new())?;
 //! let found = porosity(&edges.grid(None)?, &bodies, Options::default());
 //! assert!(found.cells.cut > 0 && found.max_gap < 1e-9);
+//!
+//! let [x, y, z] = &edges.0;
+//! let beta_v = NamedField { name: "beta_v", components: 1, data: &found.beta.v };
+//! let directory = std::env::temp_dir().join(format!("voidage-example-{}", std::process::id()));
+//! npy::write_all(&directory, &[("beta_v".into(), edges.cells(), &found.beta.v[..])])?;
+//! Vtr { x, y, z, cell: vec![CellField::Values(beta_v)], ..Vtr::default() }.write(&directory.join("fields.vtr"))?;
+//! # std::fs::remove_dir_all(&directory).expect("removed");
 //! # Ok::<(), voidage::error::Error>(())
 //! ```
 //!
@@ -76,6 +98,8 @@ pub mod flow;
 pub mod geometry;
 pub mod grid;
 pub mod huge;
+#[cfg(feature = "scene")]
+pub mod keys;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod porosity;

@@ -3,7 +3,7 @@
 use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 use voidage::command::cli::{Cli, Command};
-use voidage::command::progress::{print, visible};
+use voidage::command::progress::{all_said, print, visible};
 use voidage::command::{inspect, interrupt, porosity, solve, study};
 use voidage::error::{Error, Result};
 
@@ -16,7 +16,11 @@ fn main() -> ExitCode {
         voidage::files::discard_unfinished();
         std::process::exit(130);
     });
-    match execute(Cli::parse().command) {
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(answer) => return told(&answer),
+    };
+    match execute(command).and_then(|()| all_said()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {}", visible(&error.to_string()));
@@ -26,6 +30,17 @@ fn main() -> ExitCode {
                 false => 1,
             })
         }
+    }
+}
+
+/// Help, the version, or what is wrong with the arguments.
+fn told(answer: &clap::Error) -> ExitCode {
+    match answer.print() {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            eprintln!("error: cannot write to standard output: {e}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2)),
     }
 }
 

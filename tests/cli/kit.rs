@@ -1,5 +1,7 @@
 //! Running the command in a directory of its own.
 
+pub mod trace;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -3,12 +3,16 @@
 mod bad_inputs;
 mod inspect;
 mod kit;
+mod outputs;
 mod outside;
+mod packages;
 mod planes;
 mod porosity;
 mod readme;
+mod reference;
 mod scene;
 mod solve;
 mod solve_errors;
 mod solve_resume;
+mod streams;
 mod study;

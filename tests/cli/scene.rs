@@ -89,11 +89,20 @@ fn warnings_name_the_solid() {
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
-const WRONG: [(&str, &[&str]); 39] = [
-    ("solid = 3@", &["needs tables [[solid]]"]),
+const WRONG: [(&str, &[&str]); 42] = [
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cylinder\"\ncenter = [0, 0, 0]@\nradius = 1\nheight = 2",
+        &[
+            "solid \"a\": cylinder takes from, to, radius; not center, height",
+            "   4 | center = [0, 0, 0]\n     | ^^^^^^\n",
+        ],
+    ),
+    ("[[solid]]@\nshape = \"sphere\"\nradius = 1", &["sphere takes center, radius; center is missing"]),
+    ("[[solid]]\nshape = \"spere\"@", &["did you mean sphere?"]),
+    ("solid = 3@", &["takes tables [[solid]]"]),
     ("", &["without solids"]),
-    ("[[solid]]@\nshape = \"box\"", &["solid 1", "name is missing"]),
-    ("[[solid]]\nname = 7@", &["name needs a string"]),
+    ("[[solid]]@\nshape = \"box\"", &["solid 1", "box takes min, max; min, max are missing"]),
+    ("[[solid]]\nname = 7@", &["name takes a text"]),
     ("[[solid]]@\nname = \"a\"", &["solid \"a\"", "shape is missing"]),
     ("[[solid]]\nname = \"a\"\nshape = \"torus\"@", &["torus", "known: sphere"]),
     (
@@ -104,12 +113,12 @@ const WRONG: [(&str, &[&str]); 39] = [
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, nan]@\nradius = 1", &["center [2]", "nan"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, -inf]@\nradius = 1", &["inf"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0]@\nradius = 1", &["three values, not 2"]),
-    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, \"x\"]@\nradius = 1", &["number, not a string"]),
-    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = 0@\nradius = 1", &["needs a list"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, \"x\"]@\nradius = 1", &["number, not a text"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = 0@\nradius = 1", &["takes a list"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1e99@", &["finite number below"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmin = [0, 0, 0]@",
-        &["key min is not known"],
+        &["sphere takes center, radius; not min"],
     ),
     (
         "[[solid]]\nname = \"a\"\nshape = \"ellipsoid\"\ncenter = [0, 0, 0]\nsemi_axes = [1, 0, 1]@",
@@ -163,12 +172,12 @@ const WRONG: [(&str, &[&str]); 39] = [
         "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"w\", angle = 3 }@",
         &["\"w\""],
     ),
-    ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = 30@", &["needs a table"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = 30@", &["takes a table"]),
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nporosity = 1.5@", &["from 0 to 1"]),
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[gird]@\n", &["gird", "not known"]),
     (
-        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[grid]@\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\nw = 3",
-        &["key w"],
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n\n[grid]\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\nw = 3@",
+        &["key grid.w"],
     ),
     ("[[solid]]\nname = \"a\nshape@", &["line"]),
 ];
@@ -186,7 +195,10 @@ fn what_is_wrong_is_said_with_its_place() {
         assert_eq!(output.status.code(), Some(1), "{text}\n{said}");
         assert!(said.contains("scene.toml: "), "{text}\n{said}");
         assert!(
-            !text.contains('@') || text.contains("name = \"a\nshape") || said.contains(&format!("line {line}: ")),
+            !text.contains('@')
+                || text.contains("name = \"a\nshape")
+                || said.contains(&format!("line {line}, column "))
+                || said.contains(&format!("line {line}: solid ")) && text.contains("file"),
             "line {line}: {text}\n{said}"
         );
         words.iter().for_each(|w| assert!(said.contains(w), "{w}: {text}\n{said}"));

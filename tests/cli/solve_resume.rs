@@ -2,6 +2,7 @@
 
 use crate::kit::{Scratch, fixture, json, program, solve, solved, stderr};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -126,6 +127,70 @@ fn ctrl_c_leaves_a_checkpoint() {
     }
 }
 
+/// Two signals at once, as shells and supervisors send them, are one: the run ends in good order, with its last state.
+#[test]
+#[cfg(unix)]
+fn two_signals_at_once_cost_no_checkpoint() {
+    let at = Scratch::new();
+    fs::write(at.file("case.toml"), wind("end = 1000", "checkpoint_every = 1000")).expect("a case");
+    let child = background(&at, "stopped", &[]);
+    // The first checkpoint is that of the beginning; the next one would come after a quarter of an hour.
+    let begin = Instant::now();
+    while fs::read(at.file("stopped/checkpoint.bin")).is_err() {
+        assert!(begin.elapsed() < Duration::from_secs(100), "no checkpoint was written");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let first = fs::read(at.file("stopped/checkpoint.bin")).expect("a checkpoint");
+    std::thread::sleep(Duration::from_millis(300));
+    for signal in ["-INT", "-TERM", "-INT"] {
+        assert!(Command::new("kill").arg(signal).arg(child.id().to_string()).status().expect("kill runs").success());
+    }
+    let output = child.wait_with_output().expect("the program ends");
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stderr(&output).contains("interrupted at step"), "{}", stderr(&output));
+    assert!(fs::read(at.file("stopped/checkpoint.bin")).expect("a checkpoint") != first);
+    solved(&at, &wind("max_steps = 1", ""), "stopped", &["-q", "--resume"]);
+}
+
+#[test]
+fn a_finished_run_is_kept() {
+    let at = Scratch::new();
+    let case = falling(-1.0, 3).replace("checkpoint_every = 0", "every = 0.001\nformats = [\"npy\"]");
+    solved(&at, &case, "out", &["-q"]);
+    let density = || fs::read(at.file("out/final/rho.npy")).expect("an array");
+    let before = density();
+    let refused = solve(&at, &case.replace("[-1,", "[-2,"), "out", &["-q"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stderr(&refused).contains("out: holds a finished run: --force replaces it"), "{}", stderr(&refused));
+    assert!(density() == before);
+    solved(&at, &case, "out", &["-q", "--resume"]);
+    fs::write(at.file("out/frames/notes.txt"), "mine").expect("written");
+    fs::create_dir(at.file("out/frames/0099")).expect("a frame of the run before");
+    solved(&at, &case.replace("[-1,", "[-2,"), "out", &["-q", "--force"]);
+    assert!(density() != before);
+    assert!(at.file("out/frames/notes.txt").is_file() && !at.file("out/frames/0099").exists());
+    // A run that did not finish may begin anew.
+    fs::remove_file(at.file("out/report.json")).expect("removed");
+    solved(&at, &case, "out", &["-q"]);
+}
+
+/// Without a terminal a line tells from time to time how far the run is.
+#[test]
+#[cfg(unix)]
+fn progress_without_a_terminal() {
+    let at = Scratch::new();
+    fs::write(at.file("case.toml"), wind("end = 1000", "")).expect("a case");
+    let mut command = Command::new(program());
+    command.arg("solve").arg(at.file("case.toml")).arg("-o").arg(at.file("out")).args(["--threads", "1"]);
+    let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("the program runs");
+    let (begin, pipe) = (Instant::now(), child.stderr.take().expect("a pipe"));
+    let line = BufReader::new(pipe).lines().map_while(Result::ok).find(|line| line.starts_with("step "));
+    assert!(begin.elapsed() >= Duration::from_secs(10), "{line:?} after {:?}", begin.elapsed());
+    assert!(line.as_ref().is_some_and(|l| l.contains("  t = ") && l.ends_with(" left")), "{line:?}");
+    child.kill().expect("killed");
+    child.wait().expect("gone");
+}
+
 #[test]
 #[cfg(unix)]
 fn a_kill_leaves_the_last_checkpoint() {
@@ -228,7 +293,7 @@ fn floors_are_booked_and_the_state_before_the_first_one_stays() {
     assert!(results() == before);
     assert_eq!(fs::read_to_string(at.file("out/log.csv")).expect("a log"), log);
     // A new run without floors leaves no copy of an old one behind.
-    solved(&at, &falling(-1.0, 3), "out", &["-q"]);
+    solved(&at, &falling(-1.0, 3), "out", &["-q", "--force"]);
     assert!(!checkpoint.exists() && json(&at.file("out/report.json"))["floors"] == 0);
 }
 

@@ -119,16 +119,16 @@ fn wrong_cases_say_where() {
     let case = dir.file("case.toml");
     let changed = [
         ("threads = [1, 2]", "threads = []", "at least one threads"),
-        ("threads = [1, 2]", "threads = [0]", "line 4: threads [0] must be at least 1"),
+        ("threads = [1, 2]", "threads = [0]", "line 4, column 11: threads [0] must be at least 1"),
         ("threads = [1, 2]", "threads = [99999]", "at most 1024"),
-        ("repeats = 1", "repeat = 1", "line 3: key repeat is not known"),
+        ("repeats = 1", "repeat = 1", "line 3, column 1: key repeat is not known here; did you mean repeats?"),
         ("method = \"surface\"", "method = \"magic\"", "\"magic\" is not known: auto, surface, gjk"),
-        ("exact = 0.064", "exact = nan", "exact needs a finite number"),
+        ("exact = 0.064", "exact = nan", "exact takes a finite number"),
         ("exact = 0.064", "probe = { cell = [1, 1, 2], beta_v = 1 }", "outside of the grid 2x2x2"),
-        ("exact = 0.064", "probe = { cell = [1, 1, -2], beta_v = 1 }", "cell [2] needs a whole number"),
+        ("exact = 0.064", "probe = { cell = [1, 1, -2], beta_v = 1 }", "cell [2] takes a whole number"),
         ("files = [\"scene.toml\"]", "files = [\"absent.toml\"]", "absent.toml: cannot open"),
         ("files = [\"scene.toml\"]", "", "needs files or [[scene.solid]]"),
-        ("shape = \"box\"", "shape = \"bix\"", "line 9: solid \"brick\": shape \"bix\" is not known"),
+        ("shape = \"box\"", "shape = \"bix\"", "line 9, column 9: solid \"brick\": shape \"bix\" is not known"),
         ("z = [0, 0.5, 1]", "z = [0, 0.5, 0.5]", "z[2]"),
     ];
     for (from, to, words) in changed {

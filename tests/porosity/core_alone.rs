@@ -48,10 +48,12 @@ fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given
         [room(grid.cell_count()), x, y, z]
     };
     let mut found = Found { value: set(), bounds: [set(), set()], reports: Vec::new() };
+    let told = Layers::all_needed(grid, bodies.iter().copied(), LayerOptions::default());
     let BinsNeeded { numbers, groups } = Layers::needed(grid, bodies);
     let (mut numbers, mut groups) = (room(numbers), room(groups));
     let layers = Layers::new(grid, bodies, LayerOptions::default(), &mut numbers, &mut groups).expect("sorted");
     let MemoryNeeded { reals, flags, numbers, groups } = layers.memory_needed();
+    assert_eq!(told, (Layers::needed(grid, bodies), layers.memory_needed()), "told before anything was sorted");
     let least = LayerMemory::<V>::needed(grid);
     let share = |needed: usize, least: usize| least + (needed - least) * given.tenths / 10;
     let (mut reals, mut flags) = (room(share(reals, least.reals)), room(share(flags, least.flags)));

@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Rooms of the core from the bottom up. The flow uses scalars only, and no geometry uses the flow.
-const CORE: [&str; 7] = ["number", "flow", "convex", "grid", "quadric", "surface", "subdivide"];
+const CORE: [&str; 8] = ["number", "flow", "convex", "grid", "quadric", "surface", "subdivide", "solids"];
 
 /// Rooms and single files of the host likewise.
-const HOST: [&str; 9] = ["error", "huge", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
+const HOST: [&str; 10] =
+    ["error", "huge", "keys", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 /// Files that use each other and may, each group with its reason.
 const CIRCLES: [(&[&str], &str); 1] = [(

@@ -72,7 +72,7 @@ proptest! {
         let half = |p: &[u8; 3]| DVec3::from_array(p.map(|c| f64::from(c) * 0.5));
         let boxes: Vec<[DVec3; 2]> =
             boxes.iter().map(|(lo, size)| [offset + half(lo), offset + half(lo) + half(size)]).collect();
-        let (lo, hi) = if on_planes { (0.0, 7.0) } else { (-0.318, 7.41) };
+        let (lo, hi) = if on_planes { (0.0, 7.0) } else { (-0.317, 7.41) };
         let edges = edges(if on_planes { 7 } else { cells_along }, offset.x + lo, offset.x + hi);
         let bodies = scene(&boxes.iter().map(|[a, b]| cuboid(*a, *b)).collect::<Vec<_>>());
         let (result, found) = found(&edges, &bodies);

@@ -124,12 +124,15 @@ pub(super) struct Bins<'a, V> {
     ids: &'a [u32],
 }
 
+/// Layers whose entries are counted at a time where there is no memory.
+const COUNTED: usize = 64;
+
 /// Memory that a level of division leaves to the next.
 pub(super) type Rest<'a, V> = (&'a mut [u32], &'a mut [Group<V>]);
 
 impl<'a, V: Vector> Bins<'a, V> {
     /// Memory for [`Bins::new`].
-    pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Surface<V>]) -> BinsNeeded {
+    pub fn needed<'b>(grid: &Grid<V::Scalar>, bodies: impl Iterator<Item = Surface<'b, V>>) -> BinsNeeded {
         let layers = grid.cells()[2];
         let (mut ids, mut groups) = (0, 0);
         for body in bodies {
@@ -144,6 +147,36 @@ impl<'a, V: Vector> Bins<'a, V> {
             groups += end.saturating_sub(lowest);
         }
         BinsNeeded { numbers: bookkeeping(layers) + ids, groups }
+    }
+
+    /// The most entries and groups that two layers one above the other have, found without memory: the bodies are looked at once for every
+    /// [`COUNTED`] layers.
+    pub fn most_in_two_layers<'b>(
+        grid: &Grid<V::Scalar>,
+        bodies: impl Iterator<Item = Surface<'b, V>> + Clone,
+    ) -> BinsNeeded {
+        let (layers, mut most, mut below) = (grid.cells()[2], BinsNeeded::default(), BinsNeeded::default());
+        for first in (0..layers).step_by(COUNTED) {
+            let (mut counts, mut last_body) = ([BinsNeeded::default(); COUNTED], [usize::MAX; COUNTED]);
+            for (n, body) in bodies.clone().enumerate() {
+                for triangle in body.triangles {
+                    let span = layer_span(grid, triangle);
+                    let here = span.start.saturating_sub(first)..span.end.saturating_sub(first).min(COUNTED);
+                    let (counts, last_body) = (counts.get_mut(here.clone()), last_body.get_mut(here));
+                    for (count, last) in counts.into_iter().flatten().zip(last_body.into_iter().flatten()) {
+                        count.numbers += 1;
+                        count.groups += usize::from(*last != n);
+                        *last = n;
+                    }
+                }
+            }
+            for count in counts {
+                most.numbers = most.numbers.max(below.numbers + count.numbers);
+                most.groups = most.groups.max(below.groups + count.groups);
+                below = count;
+            }
+        }
+        most
     }
 
     /// Sort the triangles of all bodies.

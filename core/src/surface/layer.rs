@@ -68,7 +68,19 @@ impl<'a, V: Vector> Layers<'a, V> {
     /// Memory for [`Layers::new`].
     #[must_use]
     pub fn needed(grid: &Grid<V::Scalar>, bodies: &[Surface<V>]) -> BinsNeeded {
-        Bins::needed(grid, bodies)
+        Bins::needed(grid, bodies.iter().copied())
+    }
+
+    /// Memory for [`Layers::new`] and for [`LayerMemory::new`], told before anything is sorted and so without a list of the bodies: as
+    /// [`Layers::needed`] and [`Layers::memory_needed`].
+    #[must_use]
+    pub fn all_needed<'b>(
+        grid: &Grid<V::Scalar>,
+        bodies: impl Iterator<Item = Surface<'b, V>> + Clone,
+        options: LayerOptions<V::Scalar>,
+    ) -> (BinsNeeded, MemoryNeeded) {
+        let most = Bins::most_in_two_layers(grid, bodies.clone());
+        (Bins::needed(grid, bodies), memory_for(grid, options, most))
     }
 
     /// Sort the triangles of `bodies` into the layers of `grid`, in memory of the caller; what the slices hold does not matter.
@@ -88,22 +100,13 @@ impl<'a, V: Vector> Layers<'a, V> {
     /// Lengths of the memory with which any layer is refined as far as the depth allows.
     #[must_use]
     pub fn memory_needed(&self) -> MemoryNeeded {
-        let [nx, ny, nz] = self.grid.cells();
-        // A part of a cell takes triangles of one layer, or of two beside a wall, each in at most two layers of its own and in a row.
-        let (mut numbers, mut groups) = (0, 0);
-        for k in 0..nz {
+        let mut most = BinsNeeded::default();
+        for k in 0..self.grid.cells()[2] {
             let (a, b) = (self.bins.count(k), self.bins.count(k + 1));
-            (numbers, groups) = (numbers.max(a.numbers + b.numbers), groups.max(a.groups + b.groups));
+            most.numbers = most.numbers.max(a.numbers + b.numbers);
+            most.groups = most.groups.max(a.groups + b.groups);
         }
-        let levels = 3 * self.options.depth.min(MOST_HALVINGS) as usize + 1;
-        let each = 3 * levels;
-        let least = LayerMemory::<V>::needed(&self.grid);
-        MemoryNeeded {
-            reals: least.reals + levels * LEVEL.reals,
-            flags: least.flags + levels * LEVEL.flags,
-            numbers: 2 * (nx + ny + 2) + numbers.saturating_mul(each) + levels * LEVEL.numbers,
-            groups: groups.saturating_mul(each),
-        }
+        memory_for(&self.grid, self.options, most)
     }
 
     /// How many bodies of triangles reach layer `k`.
@@ -198,5 +201,20 @@ impl<'a, V: Vector> Layers<'a, V> {
             slices.check(&self.grid, k, self.options.areas)?;
         }
         Ok(())
+    }
+}
+
+/// Lengths of the memory with which any layer is refined as far as the depth allows; `most` is what two layers hold, one above the other.
+fn memory_for<R: Real>(grid: &Grid<R>, options: LayerOptions<R>, most: BinsNeeded) -> MemoryNeeded {
+    let [nx, ny, _] = grid.cells();
+    let levels = 3 * options.depth.min(MOST_HALVINGS) as usize + 1;
+    // A part of a cell takes triangles of one layer, or of two beside a wall, each in at most two layers of its own and in a row.
+    let each = 3 * levels;
+    let least = LayerMemory::<R::Vector>::needed(grid);
+    MemoryNeeded {
+        reals: least.reals + levels * LEVEL.reals,
+        flags: least.flags + levels * LEVEL.flags,
+        numbers: 2 * (nx + ny + 2) + most.numbers.saturating_mul(each) + levels * LEVEL.numbers,
+        groups: most.groups.saturating_mul(each),
     }
 }

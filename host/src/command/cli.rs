@@ -1,5 +1,6 @@
 //! What the user typed.
 
+use crate::command::version::VERSION;
 use crate::geometry::unit::Unit;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 
 /// Volume and area porosity of real geometry on structured grids.
 #[derive(Debug, Parser)]
-#[command(name = "voidage", version, about, max_term_width = 100)]
+#[command(name = "voidage", version = VERSION, about, max_term_width = 100)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -119,9 +120,9 @@ impl ValueEnum for Leaf {
 }
 
 /// The scene, shared by all commands.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct SceneArgs {
-    /// STL, OBJ or scene (TOML) files; their bodies form one scene
+    /// STL, OBJ or scene (TOML) files; their bodies form one scene; - is the standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scene: Vec<PathBuf>,
     /// Unit of the coordinates of STL and OBJ files (default: m)
@@ -130,7 +131,7 @@ pub struct SceneArgs {
 }
 
 /// What goes to the terminal.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct TalkArgs {
     /// Only errors
     #[arg(short, long, conflicts_with = "verbose")]
@@ -141,11 +142,14 @@ pub struct TalkArgs {
 }
 
 /// Arguments of `voidage porosity`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct PorosityArgs {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// Print a commented scene that runs, and do nothing else
+    #[arg(long, exclusive = true)]
+    pub template_scene: bool,
     /// Grid file (TOML or JSON): edges x, y, z; or origin, spacing, cells
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cells", "spacing", "bounds"])]
     pub grid: Option<PathBuf>,
@@ -194,8 +198,8 @@ pub struct PorosityArgs {
     /// Number of threads (default: all cores)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
-    /// Write fields for ParaView (VTK rectilinear grid)
-    #[arg(short, long, value_name = "OUT.vtr")]
+    /// Write fields for ParaView (.vtr), a picture (.png) or a report (.json), by the suffix; - is the standard output, as it is for all files
+    #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Compress the .vtr file (zlib)
     #[arg(long, requires = "output")]
@@ -203,6 +207,9 @@ pub struct PorosityArgs {
     /// Write beta_v.npy, beta_x.npy, beta_y.npy, beta_z.npy into this directory
     #[arg(long, value_name = "DIR")]
     pub npy: Option<PathBuf>,
+    /// Where the picture is cut, such as x=1.5 or x=1.5,z=0 (default: where the porosity shows most)
+    #[arg(long, value_name = "AXIS=M", value_parser = parse_slice, value_delimiter = ',', allow_hyphen_values = true)]
+    pub slice: Vec<(usize, f64)>,
     /// Draw slices of the volume porosity
     #[arg(long, value_name = "FILE.png")]
     pub png: Option<PathBuf>,
@@ -218,11 +225,17 @@ pub struct PorosityArgs {
 #[derive(Debug, Args)]
 pub struct SolveArgs {
     /// Case file (TOML): grid, porosity, gas, initial, boundary, drag, gravity, scheme, time, output
-    #[arg(value_name = "CASE.toml")]
-    pub case: PathBuf,
+    #[arg(value_name = "CASE.toml", required = true)]
+    pub case: Option<PathBuf>,
+    /// Print a commented case that runs, and do nothing else
+    #[arg(long, exclusive = true)]
+    pub template: bool,
     /// Directory for results and checkpoints (default: the case's name without .toml, here)
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// Replace the results of a finished run in that directory
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
     /// Number of threads (default: all cores)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
@@ -255,8 +268,11 @@ pub struct InspectArgs {
 #[derive(Debug, Args)]
 pub struct StudyArgs {
     /// The case file (TOML): scenes, grids, methods, threads
-    #[arg(value_name = "CASE.toml")]
-    pub case: PathBuf,
+    #[arg(value_name = "CASE.toml", required = true)]
+    pub case: Option<PathBuf>,
+    /// Print a commented case that runs, and do nothing else
+    #[arg(long, exclusive = true)]
+    pub template: bool,
     /// Write study.csv, study.md and study.png into this directory (default: print the table)
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -285,6 +301,13 @@ fn parse_spacing(text: &str) -> Result<f64, String> {
         Ok(d) if d > 0.0 && d.is_finite() => Ok(d),
         _ => Err("needs a positive length".into()),
     }
+}
+
+fn parse_slice(text: &str) -> Result<(usize, f64), String> {
+    let (axis, at) = text.split_once('=').ok_or("needs an axis and a coordinate, such as x=1.5")?;
+    let axis = ["x", "y", "z"].iter().position(|name| *name == axis.trim()).ok_or("the axis is x, y or z")?;
+    let at = at.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or("needs a coordinate in metres")?;
+    Ok((axis, at))
 }
 
 fn parse_tol(text: &str) -> Result<f64, String> {

@@ -3,8 +3,8 @@
 use crate::command::cli::InspectArgs;
 use crate::command::progress::{Progress, print};
 use crate::command::stages::load;
+use crate::command::streams::{check_place, check_suffix, is_stream, write_json};
 use crate::error::{Error, Result};
-use crate::files::json;
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
 use crate::picture::ticks::{measure, plain_to};
 use glam::DVec3;
@@ -36,6 +36,8 @@ struct Thin {
 /// A file that cannot be read, or a report that cannot be written.
 pub fn inspect(args: &InspectArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
+    args.report.iter().try_for_each(|path| check_suffix("--report", path, "json").and_then(|()| check_place(path)))?;
+    progress.stdout_is_taken(args.report.as_deref().is_some_and(is_stream));
     let (bodies, _) = load(&args.scene, &mut progress)?;
     let inspection = Inspection {
         files: &bodies.diagnoses,
@@ -46,7 +48,7 @@ pub fn inspect(args: &InspectArgs) -> Result<()> {
         warnings: &progress.warnings,
     };
     if let Some(path) = &args.report {
-        json::write(path, &inspection)?;
+        write_json(path, &inspection)?;
     }
     if args.json {
         let text =

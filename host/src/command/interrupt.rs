@@ -1,6 +1,8 @@
 //! Ctrl-C: a run that can end in good order is asked to; any other ends at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 static WATCHED: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -25,15 +27,23 @@ impl Drop for Watch {
     }
 }
 
+/// A second signal within this time is one with the first: shells and supervisors send two at once.
+const ONE: Duration = Duration::from_secs(2);
+
+/// When the first signal came.
+static FIRST: Mutex<Option<Instant>> = Mutex::new(None);
+
 /// The run has been asked to stop.
 #[must_use]
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// For the signal handler: whether the run will stop by itself. A second interrupt does not wait for that.
+/// For the signal handler: whether the run will stop by itself. A second interrupt, two seconds later, does not wait for that.
 #[must_use]
 pub fn interrupt() -> bool {
-    let first = !ASKED.swap(true, Ordering::SeqCst);
-    first && WATCHED.load(Ordering::SeqCst)
+    ASKED.store(true, Ordering::SeqCst);
+    let mut first = FIRST.lock().unwrap_or_else(PoisonError::into_inner); // a moment is valid at any moment
+    let since = first.get_or_insert_with(Instant::now).elapsed();
+    since < ONE && WATCHED.load(Ordering::SeqCst)
 }

@@ -2,27 +2,35 @@
 
 mod files;
 mod report;
+mod solids;
 mod zones;
 
 use super::cli::PorosityArgs;
 use super::obstacles::{Wanted, obstacles};
-use super::progress::Progress;
+use super::progress::{Progress, print};
 use super::stages::{load, measure, need_surfaces, threads};
+use super::streams::{self, INPUT, is_stream, text_of};
+use super::template;
 use crate::error::Result;
-use crate::files::json;
 use crate::geometry::bodies::Bodies;
 use crate::grid::{self, Edges, GridSpec};
 use crate::porosity::congestion::congestion;
 use crate::porosity::{Method, Options};
 use report::Report;
+use std::path::Path;
 
 /// `voidage porosity`.
 ///
 /// # Errors
 /// Anything that keeps it from writing all that was asked for.
 pub fn porosity(args: &PorosityArgs) -> Result<()> {
+    if args.template_scene {
+        return print(template::SCENE.as_bytes());
+    }
+    let args = &files::by_suffix(args)?;
     let mut progress = Progress::new(&args.talk);
     files::check(args)?;
+    progress.stdout_is_taken([&args.output, &args.png, &args.report].into_iter().flatten().any(|p| is_stream(p)));
     threads(args.threads)?.install(|| {
         let (bodies, own_grid) = load(&args.scene, &mut progress)?;
         if args.method == Method::Surface {
@@ -30,7 +38,10 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         }
         let mut remarks = Vec::new();
         let edges = match &args.grid {
-            Some(path) => grid::file::read(path, &mut remarks)?,
+            Some(path) => match text_of(path)? {
+                Some(text) => grid::file::parse(Path::new(INPUT), &text, &mut remarks)?,
+                None => grid::file::read(path, &mut remarks)?,
+            },
             None => grid::edges(&spec(args, &bodies, own_grid), bodies.bounds(), &mut remarks)?,
         };
         remarks.into_iter().for_each(|r| progress.warn(r));
@@ -49,7 +60,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         files::write(args, &edges, (&result, &found), &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {
-            json::write(path, &report.finished(&progress))?;
+            streams::write_json(path, &report.finished(&progress))?;
         }
         Ok(())
     })

@@ -5,7 +5,9 @@ use crate::error::{Error, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::time::Instant;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Print a result to standard output, however quiet the run. A reader that closes early is no failure.
 ///
@@ -26,10 +28,66 @@ pub fn visible(sentence: &str) -> String {
     sentence.chars().map(shown).collect()
 }
 
+/// The first sentence that the standard output did not take.
+static UNSAID: Mutex<Option<Error>> = Mutex::new(None);
+
+/// All that was said has been taken.
+///
+/// # Errors
+/// The standard output is full, or the like.
+pub fn all_said() -> Result<()> {
+    UNSAID.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+}
+
+/// Time between lines about how far a run has come, where there is no terminal.
+const PAUSE: Duration = Duration::from_secs(10);
+
+/// How far something has come.
+#[derive(Debug)]
+pub struct Meter {
+    name: &'static str,
+    steps: usize,
+    done: AtomicUsize,
+    bar: ProgressBar,
+    /// When the last line was printed, where there is no terminal and the run is not quiet.
+    plain: Option<Mutex<Instant>>,
+}
+
+impl Meter {
+    /// Something may be told now.
+    pub fn is_due(&self) -> bool {
+        let Some(last) = &self.plain else { return !self.bar.is_hidden() };
+        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+        let due = last.elapsed() >= PAUSE;
+        if due {
+            *last = Instant::now();
+        }
+        due
+    }
+
+    /// Tell it.
+    pub fn tell(&self, sentence: &str) {
+        match self.plain {
+            Some(_) => eprintln!("{sentence}"),
+            None => self.bar.set_message(sentence.to_owned()),
+        }
+    }
+
+    /// A step is done.
+    pub fn step(&self) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.bar.inc(1);
+        if self.plain.is_some() && self.is_due() {
+            self.tell(&format!("{} {} %", self.name, 100 * done / self.steps.max(1)));
+        }
+    }
+}
+
 /// Messages to the terminal, warnings collected, stages timed.
 #[derive(Debug)]
 pub struct Progress {
     quiet: bool,
+    taken: bool,
     verbose: bool,
     /// Sentences said so far.
     pub warnings: Vec<String>,
@@ -44,6 +102,7 @@ impl Progress {
     pub fn new(talk: &TalkArgs) -> Self {
         Progress {
             quiet: talk.quiet,
+            taken: false,
             verbose: talk.verbose,
             warnings: Vec::new(),
             seconds: BTreeMap::new(),
@@ -60,35 +119,50 @@ impl Progress {
         self.warnings.push(sentence);
     }
 
+    /// A file of the run goes to the standard output: what else is said goes beside it.
+    pub fn stdout_is_taken(&mut self, taken: bool) {
+        self.taken = taken;
+    }
+
     /// Say something that is no warning.
     pub fn say(&self, sentence: impl AsRef<str>) {
-        if !self.quiet {
-            // A reader that closes early (head) is no failure.
-            let _ = writeln!(std::io::stdout(), "{}", visible(sentence.as_ref()));
+        let sentence = visible(sentence.as_ref());
+        match (self.quiet, self.taken) {
+            (true, _) => {}
+            (false, true) => eprintln!("{sentence}"),
+            (false, false) => {
+                if let Err(error) = print(format!("{sentence}\n").as_bytes()) {
+                    UNSAID.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                }
+            }
         }
     }
 
-    /// A bar of `steps` steps, on a terminal only.
+    /// A bar of `steps` steps on a terminal, else a line from time to time.
     #[must_use]
-    pub fn bar(&self, name: &'static str, steps: usize) -> ProgressBar {
-        if self.quiet || !std::io::stderr().is_terminal() {
-            return ProgressBar::hidden();
-        }
-        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr_with_hz(10));
-        let style = ProgressStyle::with_template("{prefix:>10} {bar:40} {percent:>3} %  {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.with_prefix(name).with_finish(indicatif::ProgressFinish::AndClear)
+    pub fn bar(&self, name: &'static str, steps: usize) -> Meter {
+        let style = "{prefix:>10} {bar:40} {percent:>3} %  {eta} left";
+        let meter = self.meter(name, steps, style);
+        meter.bar.set_prefix(name);
+        meter
     }
 
-    /// A line that tells how far something has come, on a terminal only.
+    /// A line that tells how far something has come, on a terminal always the same, else a new one from time to time.
     #[must_use]
-    pub fn line(&self) -> ProgressBar {
-        if self.quiet || !std::io::stderr().is_terminal() {
-            return ProgressBar::hidden();
-        }
-        let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
-        line.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_spinner()));
-        line.with_finish(indicatif::ProgressFinish::AndClear)
+    pub fn line(&self) -> Meter {
+        self.meter("", 0, "{msg}")
+    }
+
+    fn meter(&self, name: &'static str, steps: usize, style: &str) -> Meter {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = match !self.quiet && terminal {
+            true => ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr_with_hz(10)),
+            false => ProgressBar::hidden(),
+        };
+        bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let bar = bar.with_finish(indicatif::ProgressFinish::AndClear);
+        let plain = (!self.quiet && !terminal).then(|| Mutex::new(Instant::now()));
+        Meter { name, steps, done: AtomicUsize::new(0), bar, plain }
     }
 
     /// Run a stage and keep its time.

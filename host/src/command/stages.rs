@@ -2,6 +2,7 @@
 
 use crate::command::cli::SceneArgs;
 use crate::command::progress::Progress;
+use crate::command::streams::{INPUT, is_stream, read_input};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body};
 use crate::geometry::read;
@@ -23,8 +24,15 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
     let scale = args.unit.unwrap_or(Unit::M).metres();
     let (mut bodies, mut grid) = (Bodies::default(), None);
     for path in &args.scene {
-        if scene::is_scene(path) {
-            let found = progress.stage("read", |_| scene::read(path))?;
+        let (path, piped) = match is_stream(path) {
+            true => (Path::new(INPUT), Some(read_input()?)),
+            false => (path.as_path(), None),
+        };
+        let text = piped.as_deref().and_then(|bytes| std::str::from_utf8(bytes).ok());
+        let text = text.filter(|text| text.contains("[[solid]]"));
+        if scene::is_scene(path) || text.is_some() {
+            let found =
+                progress.stage("read", |_| text.map_or_else(|| scene::read(path), |text| scene::parse(path, text)))?;
             progress.stage("bodies", |_| scene::load::add(&found, &mut bodies))?;
             if found.grid.is_some() && grid.is_some() {
                 return Err(Error::file(path, "a second scene with a [grid]: leave one of them out"));
@@ -35,7 +43,10 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
             }
             continue;
         }
-        let mesh = progress.stage("read", |_| read::read(path))?;
+        let mesh = progress.stage("read", |_| match piped {
+            Some(bytes) => read::from_bytes(path, bytes),
+            None => read::read(path),
+        })?;
         mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
         progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
         if args.unit.is_none() {
@@ -91,7 +102,7 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
     let layers = edges.cells()[2] * porosity::levels(bodies).len();
     let result = progress.stage("porosity", |p| {
         let bar = p.bar("porosity", layers);
-        porosity::porosity_watched(&grid, bodies, options, &|| bar.inc(1))
+        porosity::porosity_watched(&grid, bodies, options, &|| bar.step())
     });
     report_leaks(bodies, &result, progress);
     report_sheets(bodies, result.sheets_off_planes, progress);

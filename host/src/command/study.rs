@@ -8,6 +8,8 @@ pub mod table;
 
 use crate::command::cli::StudyArgs;
 use crate::command::progress::{Progress, print};
+use crate::command::streams::{INPUT, text_of};
+use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::atomically;
 use crate::picture::chart::{Chart, Series};
@@ -20,9 +22,14 @@ use std::path::Path;
 /// # Errors
 /// A case, a scene or an output that does not work.
 pub fn study(args: &StudyArgs) -> Result<()> {
+    let Some(path) = args.case.as_deref().filter(|_| !args.template) else {
+        return print(template::STUDY.as_bytes());
+    };
     let mut progress = Progress::new(&args.talk);
-    let case = case::read(&args.case)?;
-    let rows = measure::all(&args.case, &case, &mut progress, |progress, row| progress.say(table::line(row)))?;
+    let piped = text_of(path)?;
+    let path = if piped.is_some() { Path::new(INPUT) } else { path };
+    let case = piped.map_or_else(|| case::read(path), |text| case::parse(path, &text))?;
+    let rows = measure::all(path, &case, &mut progress, |progress, row| progress.say(table::line(row)))?;
     if let Some(dir) = &args.output {
         std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
         let write = |name: &str, text: String| atomically(&dir.join(name), |out| out.write_all(text.as_bytes()));

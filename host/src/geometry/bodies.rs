@@ -169,6 +169,7 @@ impl Bodies {
             self.bodies[first..].iter_mut().for_each(|b| b.single = Some(SingleSource::scaled(scale)));
         }
         self.warnings.append(&mut report.warnings);
+        d.body_range = first..self.bodies.len();
         self.diagnoses.push(d);
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! What is wrong with a surface, in numbers and sentences.
 
 use glam::DVec3;
+use std::ops::Range;
 
 /// What was found in a file's surface, in numbers.
 #[derive(Debug, Clone, Default)]
@@ -46,6 +47,8 @@ pub struct Diagnosis {
     pub holes: usize,
     /// Bodies in the end.
     pub bodies: usize,
+    /// Their run among the bodies of the scene.
+    pub body_range: Range<usize>,
     /// Signed volume of the triangles as read.
     pub signed_volume: f64,
     /// Sum of the bodies' volumes (overlaps counted as often as they occur).

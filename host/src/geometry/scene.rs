@@ -19,7 +19,7 @@
 //! translate = [0, 0, 3]
 //! ```
 //!
-//! Lengths are in metres. A solid is turned about its own centre (see [`shape::Shape::centre`]), then moved, then repeated. Every key
+//! Lengths are in metres; a name may be left out. A solid is turned about its own centre (see [`shape::Shape::centre`]), then moved, then repeated. Every key
 //! must be known. In reading order: [`table`], [`hull`], [`placement`], [`shape`], [`load`].
 
 pub mod hull;
@@ -30,12 +30,12 @@ pub mod table;
 
 use crate::error::{Error, Result};
 use crate::geometry::bodies::OwnDrag;
-use crate::grid::{Edges, file};
+use crate::grid::Edges;
+use crate::keys::Source;
 use placement::{MOST_COPIES, Placement};
 use shape::Shape;
 use std::path::{Path, PathBuf};
-use table::{StrictTable, TomlText};
-use toml::de::DeTable;
+use table::StrictTable;
 
 /// A scene file.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,9 +87,10 @@ pub fn read(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn parse(path: &Path, text: &str) -> Result<Scene> {
-    let table = DeTable::parse(text).map_err(|e| file::toml_error(path, text, &e))?;
-    let source = TomlText::new(path, text);
-    let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
+    let source = Source::new(path, text);
+    let table = source.toml()?;
+    let mut keys = StrictTable::new(&source, "", 0..0, table.get_ref());
+    keys.is_a("a scene")?;
     let solids = solids(&mut keys)?;
     let grid = keys.grid("grid")?;
     keys.finish()?;
@@ -116,8 +117,7 @@ pub fn solids(keys: &mut StrictTable) -> Result<Vec<SceneSolid>> {
 }
 
 fn solid(mut keys: StrictTable<'_>) -> Result<(SceneSolid, StrictTable<'_>)> {
-    let name = keys.need("name", table::text)?;
-    keys.subject = format!("solid \"{name}\"");
+    let name = keys.named()?;
     let shape = Shape::read(&mut keys)?;
     let porosity = keys.get("porosity", table::fraction)?.unwrap_or(0.0);
     let drag = OwnDrag { cd: keys.get("cd", table::not_negative)?, cr: keys.get("cr", table::not_negative)? };

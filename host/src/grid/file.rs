@@ -8,18 +8,14 @@
 
 use super::{Edges, MAX_AXIS, few_enough};
 use crate::error::{Error, Result};
+use crate::keys::reader::{misfit, not_known};
+use crate::keys::value::Value;
+use crate::keys::{self, PlacedValue, Source};
 use glam::DVec3;
 use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use std::path::{Path, PathBuf};
-
-#[derive(Deserialize)]
-#[serde(expecting = "a grid is a table: x, y, z; or origin, spacing, cells")]
-struct Document {
-    #[serde(flatten)]
-    spec: GridTable,
-    #[serde(flatten)]
-    other: std::collections::BTreeMap<String, serde::de::IgnoredAny>,
-}
 
 /// A grid as written in a file, in one of the forms above.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -35,15 +31,47 @@ pub struct GridTable {
     file: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(
-    untagged,
-    deny_unknown_fields,
-    expecting = "an axis is a list of edges, or { points = […], cells = […], ratios = […] }"
-)]
+/// Keys of a grid where it stands in a file of its own.
+const KEYS: [&str; 6] = ["x", "y", "z", "origin", "spacing", "cells"];
+
+#[derive(Debug, Clone, PartialEq)]
 enum AxisSpec {
     Edges(Vec<f64>),
-    Segments { points: Vec<f64>, cells: Vec<usize>, ratios: Option<Vec<f64>> },
+    Segments(Segments),
+}
+
+/// An axis in parts, each with cells that grow evenly.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Segments {
+    points: Vec<f64>,
+    cells: Vec<usize>,
+    ratios: Option<Vec<f64>>,
+}
+
+impl<'de> Deserialize<'de> for AxisSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(AxisVisitor)
+    }
+}
+
+/// Tells the two forms of an axis apart.
+struct AxisVisitor;
+
+impl<'de> Visitor<'de> for AxisVisitor {
+    type Value = AxisSpec;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("a list of edges, or { points = […], cells = […], ratios = […] }")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> std::result::Result<AxisSpec, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(items)).map(AxisSpec::Edges)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, members: A) -> std::result::Result<AxisSpec, A::Error> {
+        Segments::deserialize(MapAccessDeserializer::new(members)).map(AxisSpec::Segments)
+    }
 }
 
 /// Edges of an axis that is left out: a flow that does not vary along it has one cell there, of unit width.
@@ -57,39 +85,29 @@ impl GridTable {
         self.file.as_deref().filter(|_| *self == only)
     }
 
-    /// The edges. With `fewer_axes`, later axes may be left out and hold one cell of unit width; `place` goes before
-    /// the key in errors.
+    /// The edges. With `fewer_axes`, as `voidage solve` allows, later axes may be left out and hold one cell of unit width; `place`
+    /// goes before the key in errors.
     ///
     /// # Errors
-    /// Keys missing or at odds, or edges that make no grid; they name `path`.
-    pub fn edges(self, path: &Path, place: &str, fewer_axes: bool) -> Result<Edges> {
-        let wrong = |key: &str, reason: String| Error::at(path, format!("key {place}{key}"), reason);
+    /// Keys missing or at odds, or edges that make no grid; they name the place in `source`.
+    pub fn edges(self, source: &Source, place: &str, fewer_axes: bool) -> Result<Edges> {
+        let wrong = |key: &str, reason: String| source.at_key(&format!("{place}{key}"), reason);
+        let whole = |reason: &str| match place.trim_end_matches('.') {
+            "" => Error::file(source.path, reason),
+            table => source.at_key(table, reason),
+        };
         if self.file.is_some() {
-            return Err(wrong("file", "a grid is either here or in another file".into()));
+            let reason = if fewer_axes { "a grid is either here or in another file" } else { FILE_ELSEWHERE };
+            return Err(wrong("file", reason.into()));
         }
-        let least = if fewer_axes { 1 } else { 3 };
-        let edges = match (self.x, self.y, self.z) {
-            (None, None, None) => {
-                let (Some(origin), Some(spacing), Some(cells)) = (self.origin, self.spacing, self.cells) else {
-                    return Err(Error::file(path, "a grid needs x, y, z or origin, spacing, cells"));
-                };
-                let axes = cells.len();
-                for (key, n) in [("cells", axes), ("origin", origin.len()), ("spacing", spacing.len())] {
-                    if n != axes || !(least..=3).contains(&n) {
-                        return Err(wrong(key, format!("needs one number for each axis, not {n}")));
-                    }
-                }
-                few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
-                    .map_err(|reason| wrong("cells", reason))?;
-                Edges([0, 1, 2].map(|a| match cells.get(a) {
-                    Some(&n) => (0..=n).map(|i| origin[a] + spacing[a] * i as f64).collect(),
-                    None => UNIT_CELL.to_vec(),
-                }))
-            }
+        let edges = match (&self.x, &self.y, &self.z) {
+            (None, None, None) => self.uniform(fewer_axes, &whole, &wrong)?,
             (x, y, z) => {
                 let given = [x.is_some(), y.is_some(), z.is_some()];
                 if !fewer_axes && given != [true; 3] {
-                    return Err(Error::file(path, "a grid needs all of x, y, z"));
+                    return Err(whole(
+                        "a grid needs all of x, y, z: only that of a case of voidage solve may lack some",
+                    ));
                 }
                 if let Some((key, _)) = [("origin", self.origin.is_some()), ("spacing", self.spacing.is_some())]
                     .into_iter()
@@ -98,16 +116,47 @@ impl GridTable {
                 {
                     return Err(wrong(key, "does not go with edges".into()));
                 }
-                let read = |name, spec: Option<AxisSpec>| {
-                    spec.map_or_else(|| Ok(UNIT_CELL.to_vec()), |s| axis(path, &format!("{place}{name}"), s))
+                let read = |name, spec: &Option<AxisSpec>| {
+                    let edges = |s: &AxisSpec| axis(s).map_err(|reason| wrong(name, reason));
+                    spec.as_ref().map_or_else(|| Ok(UNIT_CELL.to_vec()), edges)
                 };
                 Edges([read("x", x)?, read("y", y)?, read("z", z)?])
             }
         };
-        edges.grid(Some(path))?;
-        Ok(edges)
+        match edges.explained() {
+            Ok(_) => Ok(edges),
+            Err((place, reason)) if place.contains(' ') => Err(whole(&format!("{place}: {reason}"))),
+            Err((place, reason)) => Err(wrong(&place, reason)),
+        }
+    }
+
+    /// From `origin`, `spacing` and `cells`.
+    fn uniform(
+        &self,
+        fewer_axes: bool,
+        whole: &dyn Fn(&str) -> Error,
+        wrong: &dyn Fn(&str, String) -> Error,
+    ) -> Result<Edges> {
+        let (Some(origin), Some(spacing), Some(cells)) = (&self.origin, &self.spacing, &self.cells) else {
+            return Err(whole("a grid needs x, y, z or origin, spacing, cells"));
+        };
+        let (axes, least) = (cells.len(), if fewer_axes { 1 } else { 3 });
+        for (key, n) in [("cells", axes), ("origin", origin.len()), ("spacing", spacing.len())] {
+            if n != axes || !(least..=3).contains(&n) {
+                return Err(wrong(key, format!("needs one number for each axis, not {n}")));
+            }
+        }
+        few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
+            .map_err(|reason| wrong("cells", reason))?;
+        Ok(Edges([0, 1, 2].map(|a| match cells.get(a) {
+            Some(&n) => (0..=n).map(|i| origin[a] + spacing[a] * i as f64).collect(),
+            None => UNIT_CELL.to_vec(),
+        })))
     }
 }
+
+/// Why a grid does not name another file where it may not.
+const FILE_ELSEWHERE: &str = "only the grid of a case of voidage solve may stand in another file: give --grid";
 
 /// Keys that other programs write beside the edges and that say nothing new.
 const HARMLESS: [&str; 6] = ["nx", "ny", "nz", "uniform", "name", "comment"];
@@ -120,68 +169,79 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return Err(Error::file(path, "not a regular file"));
     }
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
+    parse(path, &std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?, warnings)
+}
+
+/// Read the text of a grid file; `path` names it in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edges> {
     let text = text.trim_start_matches('\u{feff}');
+    let source = Source::new(path, text);
     let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
-    let document: Document = if json {
-        serde_json::from_str(text)
-            .map_err(|e| Error::at(path, format!("line {}", e.line()), format!("no grid: {e}")))?
+    let node = if json {
+        let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
+        PlacedValue::of_json(
+            serde_json::from_str(text).map_err(|e| Error::at(path, place(&e), format!("this is no JSON: {e}")))?,
+        )
     } else {
-        toml::from_str(text).map_err(|e| toml_error(path, text, &e))?
+        let table = source.toml()?;
+        PlacedValue::of_table(table.get_ref(), table.span()).map_err(|e| misfit(&source, e))?
     };
-    for key in document.other.keys().filter(|k| !HARMLESS.contains(&k.as_str())) {
-        warnings.push(format!("{}: key {key}: not known, ignored", path.display()));
+    let Value::Table(mut entries) = node.value else {
+        return Err(Error::file(path, "a grid is a table: x, y, z; or origin, spacing, cells"));
+    };
+    if let Some(entry) = entries.iter().find(|e| e.key == "grid") {
+        let (span, reason) =
+            (entry.span.clone(), "this file holds a [grid] among others: a grid file is the grid alone");
+        return Err(misfit(&source, (span, reason.into())));
     }
-    let spec = &document.spec;
+    for entry in entries.iter().filter(|e| !KEYS.contains(&&e.key[..]) && !HARMLESS.contains(&&e.key[..])) {
+        warnings.push(format!("{}: key {}: not known, ignored", path.display(), entry.key));
+    }
+    entries.retain(|e| KEYS.contains(&&e.key[..]));
+    let table = PlacedValue { value: Value::Table(entries), span: node.span };
+    let spec: GridTable = keys::read(&source, &table, "")?;
     if spec.x.is_some() && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some()) {
         warnings.push(format!("{}: x, y, z are given; origin, spacing, cells beside them are ignored", path.display()));
     }
-    document.spec.edges(path, "", false)
+    spec.edges(&source, "", false)
 }
 
-/// The grid that a value of another TOML file describes. Unlike a grid file it holds nothing else.
+/// The grid that a value of another TOML file describes; `key` is its key there. Unlike a grid file it holds nothing else.
 ///
 /// # Errors
-/// If it is none; with the line in `text`.
-pub fn from_value(path: &Path, text: &str, value: toml::Spanned<toml::de::DeValue>) -> Result<Edges> {
-    let line = text.get(..value.span().start).unwrap_or("").matches('\n').count() + 1;
-    let document =
-        Document::deserialize(toml::de::ValueDeserializer::from(value)).map_err(|e| toml_error(path, text, &e))?;
-    if let Some(key) = document.other.keys().next() {
-        return Err(Error::at(path, format!("line {line}"), format!("grid: key {key} is not known here")));
+/// If it is none; with the place in `source`.
+pub fn from_value(source: &Source, key: &str, value: &toml::Spanned<toml::de::DeValue>) -> Result<Edges> {
+    let node = PlacedValue::of_toml(value).map_err(|e| misfit(source, e))?;
+    if let Value::Table(entries) = &node.value
+        && let Some(entry) = entries.iter().find(|e| !KEYS.contains(&&e.key[..]) && e.key != "file")
+    {
+        let reason = format!("key {key}.{} {}", entry.key, not_known(&entry.key, &KEYS));
+        return Err(misfit(source, (entry.span.clone(), reason)));
     }
-    document.spec.edges(path, "", false)
+    keys::read::<GridTable>(source, &node, key)?.edges(source, &format!("{key}."), false)
 }
 
-/// A TOML error with its line.
-pub fn toml_error(path: &Path, text: &str, error: &toml::de::Error) -> Error {
-    let place = error.span().map_or_else(
-        || "document".to_owned(),
-        |s| format!("line {}", text.get(..s.start).unwrap_or("").matches('\n').count() + 1),
-    );
-    Error::at(path, place, error.message())
-}
-
-fn axis(path: &Path, name: &str, spec: AxisSpec) -> Result<Vec<f64>> {
-    let (points, cells, ratios) = match spec {
-        AxisSpec::Edges(edges) => return Ok(edges),
-        AxisSpec::Segments { points, cells, ratios } => (points, cells, ratios),
+/// The edges of an axis, or what is wrong with it.
+fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
+    let Segments { points, cells, ratios } = match spec {
+        AxisSpec::Edges(edges) => return Ok(edges.clone()),
+        AxisSpec::Segments(segments) => segments,
     };
-    let wrong = |reason: String| Error::at(path, format!("key {name}"), reason);
-    let ratios = ratios.unwrap_or_else(|| vec![1.0; cells.len()]);
+    let ratios = ratios.clone().unwrap_or_else(|| vec![1.0; cells.len()]);
     if points.len() != cells.len() + 1 || ratios.len() != cells.len() {
         let (p, c, r) = (points.len(), cells.len(), ratios.len());
-        return Err(wrong(format!("{p} points need {} cells and ratios, not {c} and {r}", p.saturating_sub(1))));
+        return Err(format!("{p} points need {} cells and ratios, not {c} and {r}", p.saturating_sub(1)));
     }
     if cells.iter().map(|&n| n as f64).sum::<f64>() > MAX_AXIS {
-        return Err(wrong(format!("more than {MAX_AXIS:e} cells along an axis")));
+        return Err(format!("more than {MAX_AXIS:e} cells along an axis"));
     }
     let mut edges = vec![points.first().copied().unwrap_or(0.0)];
     for (ends, (&n, &ratio)) in points.windows(2).zip(cells.iter().zip(&ratios)) {
         if n == 0 || ratio == 0.0 || !ratio.is_finite() {
-            return Err(wrong(format!(
-                "a segment needs at least one cell and a ratio other than 0, not {n} and {ratio}"
-            )));
+            return Err(format!("a segment needs at least one cell and a ratio other than 0, not {n} and {ratio}"));
         }
         let ratio = if ratio < 0.0 { -1.0 / ratio } else { ratio };
         edges.extend((1..=n).map(|i| ends[0] + (ends[1] - ends[0]) * share(i, n, ratio)));

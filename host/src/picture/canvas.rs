@@ -1,5 +1,6 @@
 //! A picture in memory: rectangles, lines, text. Pixels count from the upper left corner, y down.
 
+use std::io::{self, Write};
 use std::path::Path;
 
 use super::font;
@@ -154,15 +155,21 @@ impl Canvas {
     /// # Errors
     /// As [`atomically`].
     pub fn write(&self, path: &Path) -> Result<()> {
-        atomically(path, |out| {
-            let mut encoder = ::png::Encoder::new(out, self.width as u32, self.height as u32);
-            encoder.set_color(::png::ColorType::Rgb);
-            encoder.set_depth(::png::BitDepth::Eight);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(self.pixels.as_flattened())?;
-            writer.finish()?;
-            Ok(())
-        })
+        atomically(path, |out| self.encode(out))
+    }
+
+    /// The bytes of [`Canvas::write`], to any writer.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn encode(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut encoder = ::png::Encoder::new(out, self.width as u32, self.height as u32);
+        encoder.set_color(::png::ColorType::Rgb);
+        encoder.set_depth(::png::BitDepth::Eight);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(self.pixels.as_flattened())?;
+        writer.finish()?;
+        Ok(())
     }
 }
 

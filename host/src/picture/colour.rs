@@ -5,7 +5,7 @@
 //! B. Ottosson, *A perceptual color space for image processing*, 2020, <https://bottosson.github.io/posts/oklab/>.
 //! Lightness alone carries the value, so the maps also work in grey and for colour-blind readers.
 
-use super::canvas::Colour;
+use super::canvas::{Colour, WHITE};
 
 /// No number: missing or not finite.
 pub const NO_VALUE: Colour = [186, 160, 172];
@@ -18,6 +18,12 @@ pub struct ColourMap {
 
 const STEPS: usize = 256;
 
+/// The step of the even map that just under 1 has where 1 itself is white.
+const LIGHTEST: usize = 230;
+
+/// Means over a pixel miss 1 by no more.
+const ROUNDING: f64 = 1e-9;
+
 impl ColourMap {
     /// Dark blue over teal and green to a light paper: blocked (0) to open (1). For any quantity that grows from zero.
     #[must_use]
@@ -29,6 +35,17 @@ impl ColourMap {
             [0.79, -0.070, 0.085],
             [0.975, -0.006, 0.020],
         ])
+    }
+
+    /// As [`ColourMap::sequential`], for open fractions: what is open to the last is white, and what is not is told from it by its colour,
+    /// be it open to 0.999.
+    #[must_use]
+    pub fn open_fraction() -> Self {
+        let ColourMap { table } = Self::sequential();
+        // The lightest colours are left out: 0.999 has the lightness of 0.9 in the even map.
+        let mut table: Vec<Colour> = (0..STEPS).map(|step| table[step * LIGHTEST / (STEPS - 1)]).collect();
+        table.push(WHITE);
+        ColourMap { table }
     }
 
     /// Blue over white to red-brown: for quantities with a sign, and a range symmetric about zero.
@@ -48,6 +65,9 @@ impl ColourMap {
     pub fn colour(&self, value: f64) -> Colour {
         if value.is_nan() {
             return NO_VALUE;
+        }
+        if value >= 1.0 - ROUNDING {
+            return self.table[self.table.len() - 1];
         }
         let step = (value * (STEPS - 1) as f64).round().clamp(0.0, (STEPS - 1) as f64);
         self.table[step as usize]
@@ -122,6 +142,22 @@ mod tests {
         for step in at.windows(2) {
             assert!((step[1] - step[0] - mean).abs() < 0.3 * mean, "{at:?}");
         }
+    }
+
+    /// A cell that is open but for a pipe or a cable does not look like an open one.
+    #[test]
+    fn nearly_open_is_told_from_open() {
+        let map = ColourMap::open_fraction();
+        assert_eq!(map.colour(1.0), WHITE);
+        for value in [0.95, 0.99, 0.999, 0.999_99] {
+            assert!(
+                lightness(map.colour(1.0)) - lightness(map.colour(value)) > 8.0,
+                "{value}: {:?}",
+                map.colour(value)
+            );
+        }
+        let at: Vec<f64> = (0..16).map(|i| lightness(map.colour(f64::from(i) / 16.0))).collect();
+        assert!(at.windows(2).all(|w| w[1] - w[0] > 3.0), "{at:?}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use super::canvas::Canvas;
 use super::colour::ColourMap;
 use super::figure::Figure;
 use super::ticks::number;
@@ -14,13 +15,30 @@ use crate::error::{Error, Result};
 /// # Errors
 /// `beta_v` does not fit the edges, the edges do not ascend, or the file cannot be written.
 pub fn slices(path: &Path, title: &str, x: &[f64], y: &[f64], z: &[f64], unit: &str, beta_v: &[f64]) -> Result<()> {
-    let edges = [x, y, z];
-    let (at, open) =
-        survey(edges, beta_v).ok_or_else(|| Error::file(path, "beta_v does not have the grid's length"))?;
+    let canvas = picture(title, [x, y, z], unit, beta_v, [None; 3]);
+    canvas.map_err(|reason| Error::file(path, reason))?.write(path)
+}
+
+/// The picture of [`slices`]; along an axis it is cut through the given coordinate, if there is one.
+///
+/// # Errors
+/// The reason: `beta_v` does not fit the edges, or the edges do not ascend.
+pub fn picture(
+    title: &str,
+    edges: [&[f64]; 3],
+    unit: &str,
+    beta_v: &[f64],
+    through: [Option<f64>; 3],
+) -> std::result::Result<Canvas, String> {
+    let (telling, open) = survey(edges, beta_v).ok_or("beta_v does not have the grid's length")?;
+    let at = std::array::from_fn(|a| {
+        let cell = |x: f64| edges[a].partition_point(|&e| e <= x).clamp(1, edges[a].len() - 1) - 1;
+        through[a].map_or(telling[a], cell)
+    });
     let note = note(edges, unit, open);
-    let map = &ColourMap::sequential();
+    let map = &ColourMap::open_fraction();
     let (name, range, ends) = ("beta_v", [0.0, 1.0], ["blocked", "open"]);
-    Figure { title, note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.write(path)
+    Figure { title, note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.draw()
 }
 
 /// Cells, their sizes, the domain, how much is open.

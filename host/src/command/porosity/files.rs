@@ -3,16 +3,35 @@
 use super::report::Report;
 use crate::command::cli::PorosityArgs;
 use crate::command::obstacles::Obstacles;
-use crate::command::progress::Progress;
+use crate::command::progress::{Progress, print};
+use crate::command::streams::{OutputFormat, check_place, check_suffix, is_stream, make_place};
 use crate::error::{Error, Result};
+use crate::files::npy;
 use crate::files::vtr::{CellField, NamedField, Vtr};
-use crate::files::{check_target, npy};
 use crate::grid::Edges;
 use crate::picture::png;
 use crate::porosity::Porosity;
 use crate::porosity::drag::Drag;
 use crate::porosity::resistance::Resistance;
 use std::path::{Path, PathBuf};
+
+/// The arguments with what `-o` asks for in the place that its suffix tells.
+///
+/// # Errors
+/// A suffix that is not known, or two outputs of one format.
+pub(super) fn by_suffix(args: &PorosityArgs) -> Result<PorosityArgs> {
+    let mut args = args.clone();
+    let Some(path) = args.output.take() else { return Ok(args) };
+    let (place, option) = match OutputFormat::of(&path)? {
+        OutputFormat::Fields => (&mut args.output, "-o"),
+        OutputFormat::Picture => (&mut args.png, "--png"),
+        OutputFormat::Report => (&mut args.report, "--report"),
+    };
+    match place.replace(path) {
+        None => Ok(args),
+        Some(other) => Err(Error::usage(format!("{}: {option} and -o ask for the same", other.display()))),
+    }
+}
 
 /// Outputs must have a place, and none may replace a file of the scene, the grid or another output.
 ///
@@ -26,14 +45,15 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
         return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
     }
+    if args.png.is_none() && !args.slice.is_empty() {
+        return Err(Error::usage("--slice cuts a picture: give --png FILE.png"));
+    }
+    args.png.iter().try_for_each(|path| check_suffix("--png", path, "png"))?;
+    args.report.iter().try_for_each(|path| check_suffix("--report", path, "json"))?;
     for (n, output) in outputs.iter().enumerate() {
-        // The directory of the arrays is made before.
-        let made = args.npy.as_deref().zip(output.parent()).is_some_and(|(made, parent)| made.starts_with(parent));
-        if !made || output.exists() {
-            check_target(output)?;
-        }
+        check_place(output)?;
         let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
-        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
+        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path()).filter(|p| !is_stream(p));
         if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
             return Err(Error::usage(format!(
                 "{}: an output would replace another file of this run",
@@ -74,10 +94,20 @@ pub(super) fn write(
         progress.stage("vtr", |_| write_vtr(path, args.compress, edges, (result, obstacles), about))?;
     }
     if let Some(path) = &args.png {
-        let [x, y, z] = &edges.0;
         let name = |p: &PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
-        progress.stage("png", |_| png::slices(path, &title, x, y, z, "m", &result.beta.v))?;
+        let through = slices(args, edges)?;
+        let edges = edges.0.each_ref().map(|e| &e[..]);
+        progress.stage("png", |_| {
+            let canvas = png::picture(&title, edges, "m", &result.beta.v, through);
+            let canvas = canvas.map_err(|reason| Error::file(path, reason))?;
+            if !is_stream(path) {
+                return make_place(path).and_then(|()| canvas.write(path));
+            }
+            let mut bytes = Vec::new();
+            canvas.encode(&mut bytes).map_err(|e| Error::new(format!("cannot draw the picture: {e}")))?;
+            print(&bytes)
+        })?;
     }
     Ok(())
 }
@@ -142,6 +172,29 @@ fn write_vtr(
     let staggered = all.iter().filter(|(name, ..)| !name.starts_with("beta_v"));
     let field_data = staggered.map(|(name, _, data)| NamedField { name, components: 1, data }).collect();
     let version = format!("voidage {}", about.version);
-    Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress }
-        .write(path)
+    let vtr =
+        Vtr { x, y, z, cell, field_data, text: vec![("program", &version), ("command", &about.command)], compress };
+    if !is_stream(path) {
+        return make_place(path).and_then(|()| vtr.write(path));
+    }
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    vtr.write_to(&mut bytes).map_err(|e| Error::new(format!("cannot make the fields for ParaView: {e}")))?;
+    print(&bytes.into_inner())
+}
+
+/// Where the picture is cut, by axis, if `--slice` says so.
+///
+/// # Errors
+/// Outside the grid.
+fn slices(args: &PorosityArgs, edges: &Edges) -> Result<[Option<f64>; 3]> {
+    let mut through = [None; 3];
+    for &(axis, at) in &args.slice {
+        let [lo, hi] = edges.bounds().map(|p| p[axis]);
+        if !(lo..=hi).contains(&at) {
+            let name = ["x", "y", "z"][axis];
+            return Err(Error::usage(format!("--slice {name}={at}: the grid reaches from {lo} to {hi} along {name}")));
+        }
+        through[axis] = Some(at);
+    }
+    Ok(through)
 }

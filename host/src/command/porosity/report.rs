@@ -1,10 +1,12 @@
 //! What a run of `voidage porosity` tells of itself: the JSON of `--report` and the lines on the terminal.
 
+use super::solids::{SolidReport, solids};
 use crate::command::cli::PorosityArgs;
 use crate::command::obstacles::Obstacles;
 use crate::command::progress::Progress;
 use crate::command::stages::command_line;
-use crate::geometry::bodies::{Bodies, SolidSummary};
+use crate::command::version::{BUILD, Build};
+use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::picture::ticks::measure;
 use crate::porosity::congestion::Congestion;
@@ -20,6 +22,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Report {
     pub(super) version: &'static str,
+    build: Build,
     pub(super) command: String,
     grid: GridReport,
     /// Of the union, within the grid in m³.
@@ -32,8 +35,8 @@ pub(super) struct Report {
     divided: usize,
     leaks: Vec<porosity::Leak>,
     sheets_off_planes: porosity::snap::OffPlanes,
-    /// Of scene files.
-    solids: Vec<SolidSummary>,
+    /// Of scene files, and of other files by name.
+    solids: Vec<SolidReport>,
     warnings: Vec<String>,
     skipped: Vec<&'static str>,
     seconds: BTreeMap<&'static str, f64>,
@@ -141,6 +144,7 @@ impl Report {
         }
         Report {
             version: env!("CARGO_PKG_VERSION"),
+            build: BUILD,
             command: command_line(),
             grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
             solid_volume: result.solid_volume,
@@ -157,7 +161,7 @@ impl Report {
             divided: result.divided,
             leaks: result.leaks.clone(),
             sheets_off_planes: result.sheets_off_planes,
-            solids: bodies.solids.clone(),
+            solids: solids(bodies),
             warnings: Vec::new(),
             skipped,
             seconds: BTreeMap::new(),

@@ -1,11 +1,11 @@
 //! The zones of `--zones`.
 
 use crate::error::{Error, Result};
-use crate::geometry::scene::table::{self, StrictTable, TomlText};
-use crate::grid::{Edges, file};
+use crate::geometry::scene::table::{self, StrictTable};
+use crate::grid::Edges;
+use crate::keys::Source;
 use crate::porosity::congestion::Zone;
 use std::path::Path;
-use toml::de::DeTable;
 
 /// No file of zones is larger, in bytes.
 const LARGEST_FILE: u64 = 1 << 24;
@@ -18,9 +18,10 @@ pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
     let whole = edges.bounds();
     let Some(path) = path else { return Ok(vec![Zone { name: "all".into(), bounds: whole }]) };
     let text = table::read_text(path, LARGEST_FILE)?;
-    let root = DeTable::parse(&text).map_err(|e| file::toml_error(path, &text, &e))?;
-    let source = TomlText::new(path, &text);
-    let mut keys = StrictTable::new(&source, "", 0, root.get_ref());
+    let source = Source::new(path, &text);
+    let root = source.toml()?;
+    let mut keys = StrictTable::new(&source, "", 0..0, root.get_ref());
+    keys.is_a("a list of zones")?;
     let zones: Vec<Zone> = keys.tables("zone")?.into_iter().map(|keys| zone(keys, whole)).collect::<Result<_>>()?;
     keys.finish()?;
     if zones.is_empty() { Err(Error::file(path, "no zones: it needs at least one [[zone]]")) } else { Ok(zones) }

@@ -3,11 +3,18 @@
 //! Lengths in metres, times in seconds, any consistent units. A state is `rho`, `u`, `v`, `w`, `p`: density, velocity
 //! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
+use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
 use crate::grid::Edges;
 use crate::grid::file::{self, GridTable};
+use crate::keys::reader::misfit;
+use crate::keys::source::another;
+use crate::keys::value::Value;
+use crate::keys::{self, PlacedValue, Source};
 use crate::porosity::throat::Faces;
 use serde::Deserialize;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, SeqAccess, Visitor};
 use std::path::{Path, PathBuf};
 
 /// Names of the axes.
@@ -66,20 +73,39 @@ pub struct PorosityKeys {
     pub from: Option<PathBuf>,
     /// Differences of the open fraction above this share are jumps and get the throat map; `inf` for none.
     pub jump: Option<f64>,
-    /// As `voidage porosity --faces`.
+    /// As `voidage porosity --faces`; `throat` if left out: a wall that leaks in silence is worse than a narrower face.
     pub faces: Option<Faces>,
     /// Merge cells of little volume behind open faces, which otherwise set the time step.
     pub merge: Option<bool>,
 }
 
 /// One path or several.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged, expecting = "a path or a list of paths")]
-pub enum Paths {
-    /// One.
-    One(PathBuf),
-    /// Several.
-    Many(Vec<PathBuf>),
+#[derive(Debug, Clone)]
+pub struct Paths(pub Vec<PathBuf>);
+
+impl<'de> Deserialize<'de> for Paths {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(PathsVisitor)
+    }
+}
+
+/// Tells one path from a list.
+struct PathsVisitor;
+
+impl<'de> Visitor<'de> for PathsVisitor {
+    type Value = Paths;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("a path or a list of paths")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, path: &str) -> std::result::Result<Paths, E> {
+        Ok(Paths(vec![path.into()]))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> std::result::Result<Paths, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(items)).map(Paths)
+    }
 }
 
 /// Which gas.
@@ -92,6 +118,18 @@ pub enum Model {
     Isothermal,
     /// p = p0 (rho/rho0)^gamma.
     Isentropic,
+}
+
+impl Model {
+    /// As a case writes it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Model::Ideal => "ideal",
+            Model::Isothermal => "isothermal",
+            Model::Isentropic => "isentropic",
+        }
+    }
 }
 
 /// `[gas]`.
@@ -175,6 +213,21 @@ pub enum Kind {
     Periodic,
 }
 
+impl Kind {
+    /// As a case writes it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::Inlet => "inlet",
+            Kind::FarField => "far-field",
+            Kind::Outlet => "outlet",
+            Kind::Wall => "wall",
+            Kind::ZeroGradient => "zero-gradient",
+            Kind::Periodic => "periodic",
+        }
+    }
+}
+
 /// `[boundary]`.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -214,29 +267,18 @@ pub enum LawName {
     Pdr,
 }
 
-/// Drag coefficients of a law.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged, expecting = "a number, or round and sharp")]
-pub enum Coefficients {
-    /// Of all bodies.
-    All(f64),
-    /// By shape.
-    ByShape {
-        /// Of round bodies.
-        round: Option<f64>,
-        /// Of bodies with edges.
-        sharp: Option<f64>,
-    },
-}
-
 /// `[drag]`: R_i = −beta_v rho (linear_i + ½ cr_i |u|) u_i, by a law from the scene, the same everywhere, or from files.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DragKeys {
     /// How the frontal area of the scene becomes `cr`.
     pub law: Option<LawName>,
-    /// Drag coefficients of the law; 1.2 for round and 2 for sharp bodies if left out.
-    pub cd: Option<Coefficients>,
+    /// Drag coefficient of the law for all bodies.
+    pub cd: Option<f64>,
+    /// For round bodies; 1.2 if left out.
+    pub cd_round: Option<f64>,
+    /// For bodies with edges; 2 if left out.
+    pub cd_sharp: Option<f64>,
     /// CR along x, y, z in 1/m.
     pub cr: Option<[f64; 3]>,
     /// Linear coefficients in 1/s.
@@ -354,10 +396,18 @@ pub enum Format {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
-    /// Name in the file.
-    pub name: String,
+    /// Name in the file; its number, if left out.
+    pub name: Option<String>,
     /// The point.
     pub at: [f64; 3],
+}
+
+impl Probe {
+    /// The name, or that of the `n`-th probe without one.
+    #[must_use]
+    pub fn name(&self, n: usize) -> String {
+        self.name.clone().unwrap_or_else(|| format!("probe {}", n + 1))
+    }
 }
 
 /// A case file with its place, for errors and for the paths in it.
@@ -365,8 +415,26 @@ pub struct Probe {
 pub struct CaseFile {
     /// Where it is.
     pub path: PathBuf,
+    /// Its text.
+    text: String,
     /// What it says.
     pub case: Case,
+}
+
+fn parse(source: &Source) -> Result<Case> {
+    let table = source.toml()?;
+    let node = PlacedValue::of_table(table.get_ref(), 0..0).map_err(|e| misfit(source, e))?;
+    if let Value::Table(entries) = &node.value {
+        let of = |key: &str| entries.iter().find(|e| e.key == key);
+        if let Some((_, reason)) = another("a case", |key| of(key).is_some()) {
+            return Err(Error::file(source.path, reason));
+        }
+        if let Some(entry) = of("grid").filter(|e| matches!(e.node.value, Value::List(_))) {
+            let reason = "a case has one table [grid]; tables [[grid]] belong to a study";
+            return Err(misfit(source, (entry.span.clone(), reason.into())));
+        }
+    }
+    keys::read(source, &PlacedValue { span: None, ..node }, "")
 }
 
 impl CaseFile {
@@ -375,9 +443,14 @@ impl CaseFile {
     /// # Errors
     /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?;
-        let case = toml::from_str(&text).map_err(|e| file::toml_error(path, &text, &e))?;
-        Ok(CaseFile { path: path.to_owned(), case })
+        let piped = text_of(path)?;
+        let path = if piped.is_some() { Path::new(INPUT) } else { path };
+        let text = match piped {
+            Some(text) => text,
+            None => std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?,
+        };
+        let case = parse(&Source::new(path, &text))?;
+        Ok(CaseFile { path: path.to_owned(), text, case })
     }
 
     /// A path of the case file, which counts from the file's own directory.
@@ -389,7 +462,7 @@ impl CaseFile {
     /// An error at a key.
     #[must_use]
     pub fn wrong(&self, key: &str, reason: impl Into<String>) -> Error {
-        Error::at(&self.path, format!("key {key}"), reason)
+        Source::new(&self.path, &self.text).at_key(key, reason)
     }
 
     /// `reason` unless `value` is left out or `holds`.
@@ -410,7 +483,7 @@ impl CaseFile {
     pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
         match self.case.grid.elsewhere() {
             Some(file) => file::read(&self.resolve(file), warnings),
-            None => self.case.grid.clone().edges(&self.path, "grid.", true),
+            None => self.case.grid.clone().edges(&Source::new(&self.path, &self.text), "grid.", true),
         }
     }
 }

@@ -154,6 +154,25 @@ pub fn create(dir: &Path) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))
 }
 
+/// Removes the frames that an earlier run has left in `dir`, and nothing else.
+///
+/// # Errors
+/// One cannot be removed.
+pub fn remove_old(dir: &Path) -> Result<()> {
+    let Ok(entries) = std::fs::read_dir(dir.join("frames")) else { return Ok(()) };
+    for path in entries.filter_map(|entry| entry.ok().map(|e| e.path())) {
+        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        let number = stem.rsplit('_').next().unwrap_or_default();
+        let numbered = number.len() >= 4 && number.bytes().all(|b| b.is_ascii_digit());
+        let ours = matches!(stem.strip_suffix(number), Some("flow_" | "speed_" | "pressure_" | ""));
+        if numbered && ours {
+            let removed = if path.is_dir() { std::fs::remove_dir_all(&path) } else { std::fs::remove_file(&path) };
+            removed.map_err(|e| Error::io(&path, "remove", &e))?;
+        }
+    }
+    Ok(())
+}
+
 /// Writes the list of frames with their times that ParaView opens as one series.
 ///
 /// # Errors

@@ -1,9 +1,10 @@
 //! `report.json` of a flow, and its few lines for the terminal.
 
-use super::case::{AXES, CaseFile};
+use super::case::{AXES, CaseFile, GasKeys};
 use super::checkpoint::Journal;
 use super::setup::{Setup, SpaceReport};
 use crate::command::progress::Progress;
+use crate::command::version::{BUILD, Build};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -20,9 +21,10 @@ pub struct Done {
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     version: &'static str,
+    build: Build,
     command: String,
     title: Option<String>,
-    gas: String,
+    gas: GasReport,
     cells: [usize; 3],
     /// The axes that flow.
     axes: Vec<&'static str>,
@@ -55,6 +57,29 @@ pub struct Report {
     stages: BTreeMap<&'static str, f64>,
 }
 
+/// The gas by its model and the numbers of that model.
+#[derive(Debug, Clone, Serialize)]
+struct GasReport {
+    model: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gamma: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sound_speed: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rho: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    p: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gas_constant: Option<f64>,
+}
+
+impl GasReport {
+    fn new(file: &CaseFile) -> Self {
+        let GasKeys { model, gamma, sound_speed, rho, p, gas_constant } = file.case.gas;
+        GasReport { model: model.word(), gamma, sound_speed, rho, p, gas_constant }
+    }
+}
+
 /// What floors changed in the content of the domain: sums of the sizes of all changes.
 #[derive(Debug, Clone, Serialize)]
 struct FloorChange {
@@ -84,9 +109,10 @@ impl Report {
         let [mass, energy] = journal.begin;
         Report {
             version: env!("CARGO_PKG_VERSION"),
+            build: BUILD,
             command: crate::command::stages::command_line(),
             title: file.case.title.clone(),
-            gas: format!("{:?}", flow.gas()),
+            gas: GasReport::new(file),
             cells: setup.edges.cells(),
             axes: setup.live.iter().map(|&a| AXES[a]).collect(),
             steps: flow.steps,

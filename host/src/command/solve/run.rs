@@ -8,13 +8,14 @@ use super::setup::{Setup, live_axes, setup};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
-use crate::command::progress::Progress;
+use crate::command::progress::{Meter, Progress, print};
 use crate::command::stages::threads;
+use crate::command::streams::is_stream;
+use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
 use crate::flow::Flow;
 use crate::grid::Edges;
-use indicatif::ProgressBar;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -25,23 +26,44 @@ use voidage_core::flow::Primitive;
 /// # Errors
 /// Anything that keeps it from writing all that the case asks for; an interrupt.
 pub fn solve(args: &SolveArgs) -> Result<()> {
+    let Some(path) = args.case.as_deref().filter(|_| !args.template) else {
+        return print(template::CASE.as_bytes());
+    };
     let mut progress = Progress::new(&args.talk);
-    let file = CaseFile::read(&args.case)?;
+    let file = CaseFile::read(path)?;
     let mut remarks = Vec::new();
     let edges = file.edges(&mut remarks)?;
     remarks.into_iter().for_each(|r| progress.warn(r));
-    let dir = match (&args.output, args.case.file_stem()) {
+    let dir = match (&args.output, path.file_stem().filter(|_| !is_stream(path))) {
         (Some(dir), _) => dir.clone(),
         (None, Some(stem)) => PathBuf::from(stem),
         (None, None) => return Err(Error::usage("give an output directory with -o")),
     };
     keep_inputs(&file, &dir)?;
+    keep_results(&dir, args)?;
     threads(args.threads)?.install(|| match live_axes(&edges)[..] {
         [a] => run(&file, &edges, [a], dir, args.resume, progress),
         [a, b] => run(&file, &edges, [a, b], dir, args.resume, progress),
         [a, b, c] => run(&file, &edges, [a, b, c], dir, args.resume, progress),
         _ => Ok(()), // there are one to three
     })
+}
+
+/// Name of the report, which a run writes last: where it is, the run is finished.
+const REPORT: &str = "report.json";
+
+/// A finished run is not replaced unless that is asked for.
+fn keep_results(dir: &Path, args: &SolveArgs) -> Result<()> {
+    let report = dir.join(REPORT);
+    if args.resume || !report.exists() {
+        return Ok(());
+    }
+    if args.force {
+        return frames::remove_old(dir)
+            .and_then(|()| std::fs::remove_file(&report).map_err(|e| Error::io(&report, "remove", &e)));
+    }
+    let reason = "holds a finished run: --force replaces it, --resume goes on from its end, -o DIR takes another place";
+    Err(Error::file(dir, reason))
 }
 
 /// The last state must not replace the first one.
@@ -75,7 +97,7 @@ fn run<const D: usize>(
     progress.stage("output", |_| run.snapshot().arrays(&run.dir.join("final"), &run.setup.edges))?;
     let summary = Report::new(file, &run.setup, &run.journal, run.done, &progress);
     summary.say(&progress);
-    json::write(&run.dir.join("report.json"), &summary)
+    json::write(&run.dir.join(REPORT), &summary)
 }
 
 /// When to do what.
@@ -220,7 +242,7 @@ impl<'a, const D: usize> Run<'a, D> {
     }
 
     /// Steps until the end, or an interrupt.
-    fn steps(&mut self, line: &ProgressBar) -> Result<()> {
+    fn steps(&mut self, line: &Meter) -> Result<()> {
         let (begun, start) = (Instant::now(), (self.setup.flow.time, self.setup.flow.steps));
         let mut saved = begun;
         while self.setup.flow.time < self.limits.end && self.setup.flow.steps < self.limits.max_steps {
@@ -237,8 +259,8 @@ impl<'a, const D: usize> Run<'a, D> {
                 self.checkpoint()?;
                 saved = Instant::now();
             }
-            if !line.is_hidden() {
-                line.set_message(self.progress(dt, start, begun.elapsed()));
+            if line.is_due() {
+                line.tell(&self.progress(dt, start, begun.elapsed()));
             }
             if interrupt::asked() {
                 self.checkpoint()?;
@@ -458,19 +480,20 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
     let mut cells = Vec::with_capacity(probes.len());
     for (n, probe) in probes.iter().enumerate() {
         let key = format!("output.probes[{n}]");
-        if probe.name.is_empty() || probe.name.contains([',', '"', '\n', '\r']) {
+        let name = probe.name(n);
+        if name.is_empty() || name.contains([',', '"', '\n', '\r']) {
             return Err(file.wrong(&format!("{key}.name"), "needs a name without commas, quotes and line ends"));
         }
-        if probes[..n].iter().any(|other| other.name == probe.name) {
-            return Err(file.wrong(&format!("{key}.name"), format!("\"{}\" is the name of another", probe.name)));
+        if probes[..n].iter().enumerate().any(|(m, other)| other.name(m) == name) {
+            return Err(file.wrong(&format!("{key}.name"), format!("\"{name}\" is the name of another")));
         }
         let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
-            file.wrong(&format!("{key}.at"), format!("{:?} of \"{}\" is outside the grid", probe.at, probe.name))
+            file.wrong(&format!("{key}.at"), format!("{:?} of \"{name}\" is outside the grid", probe.at))
         })?;
         let [nx, ny, _] = setup.edges.cells();
         let cell = (at[2] * ny + at[1]) * nx + at[0];
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
-            progress.warn(format!("{}: probe {}: its cell {at:?} is solid", file.path.display(), probe.name));
+            progress.warn(format!("{}: probe {name}: its cell {at:?} is solid", file.path.display()));
         }
         cells.push(cell);
     }
@@ -479,6 +502,6 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
 
 fn probe_head(output: &OutputKeys) -> String {
     let of_probe = |name: &str| ["rho", "u", "v", "w", "p"].map(|q| format!("{name} {q}")).join(",");
-    let all = output.probes.iter().map(|p| of_probe(&p.name));
+    let all = output.probes.iter().enumerate().map(|(n, p)| of_probe(&p.name(n)));
     ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")
 }

@@ -142,7 +142,7 @@ fn gas(file: &CaseFile, keys: &GasKeys) -> Result<Gas<f64>> {
         match (needed.contains(&key), value) {
             (true, None) => return Err(file.wrong(&format!("gas.{key}"), "is missing")),
             (false, Some(_)) => {
-                return Err(file.wrong(&format!("gas.{key}"), format!("is not a number of this model ({model:?})")));
+                return Err(file.wrong(&format!("gas.{key}"), format!("is not a key of this model ({})", model.word())));
             }
             _ => file.demand(&format!("gas.{key}"), value, positive, "needs a positive number")?,
         }
@@ -335,7 +335,9 @@ fn only_its_keys(file: &CaseFile, key: &str, keys: &StateKeys, kind: Kind) -> Re
         Kind::Wall | Kind::ZeroGradient | Kind::Periodic => false,
     };
     match keys.given().into_iter().find(|k| !of(k)) {
-        Some(other) => Err(file.wrong(&format!("{key}.{other}"), format!("is not a key of this type ({kind:?})"))),
+        Some(other) => {
+            Err(file.wrong(&format!("{key}.{other}"), format!("is not a key of this type ({})", kind.word())))
+        }
         None => Ok(()),
     }
 }

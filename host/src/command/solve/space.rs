@@ -1,7 +1,7 @@
 //! Where the open fractions of a case come from: a scene through the porosity stage, a directory of arrays, or nowhere.
 
 use super::arrays;
-use super::case::{CaseFile, Coefficients, LawName, Paths, PorosityKeys};
+use super::case::{CaseFile, LawName, Paths, PorosityKeys};
 use crate::command::cli::SceneArgs;
 use crate::command::obstacles::{Wanted, obstacles, warn_of_no_force};
 use crate::command::progress::Progress;
@@ -9,6 +9,7 @@ use crate::command::stages;
 use crate::error::Result;
 use crate::grid::Edges;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
+use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
 
 /// Open fractions of all cells and of the faces of the axes that flow.
@@ -65,10 +66,7 @@ fn from_scene<const D: usize>(
     progress: &mut Progress,
 ) -> Result<Space<D>> {
     let keys = &file.case.porosity;
-    let paths = match scene {
-        Paths::One(path) => std::slice::from_ref(path),
-        Paths::Many(paths) => paths,
-    };
+    let Paths(paths) = scene;
     if paths.is_empty() {
         return Err(file.wrong("porosity.scene", "names no file"));
     }
@@ -83,7 +81,7 @@ fn from_scene<const D: usize>(
     let wanted = Wanted {
         resistance: law.is_none() && !silent,
         drag: law,
-        faces: keys.faces.unwrap_or_default(),
+        faces: keys.faces.unwrap_or(Faces::Throat),
         warning: true,
     };
     let found = obstacles(&grid, &bodies, &mut result, options, wanted, progress);
@@ -105,11 +103,17 @@ fn given_otherwise(file: &CaseFile) -> bool {
 /// The law of `[drag]` and its coefficients.
 fn law(file: &CaseFile) -> Result<Option<(DragLaw, DragCoefficients)>> {
     let keys = &file.case.drag;
+    let given = [("drag.cd", keys.cd), ("drag.cd_round", keys.cd_round), ("drag.cd_sharp", keys.cd_sharp)];
+    for (key, value) in given {
+        file.demand(key, value, |c| c >= 0.0 && c.is_finite(), "needs a number not below 0")?;
+    }
     let law = match keys.law {
-        None | Some(LawName::None) if keys.cd.is_some() => {
-            return Err(file.wrong("drag.cd", "goes with a law: drag.law = \"bluff\" or \"pdr\""));
+        None | Some(LawName::None) => {
+            return match given.iter().find(|(_, value)| value.is_some()) {
+                Some((key, _)) => Err(file.wrong(key, "goes with drag.law = \"bluff\" or \"pdr\"")),
+                None => Ok(None),
+            };
         }
-        None | Some(LawName::None) => return Ok(None),
         Some(LawName::Bluff) => DragLaw::Bluff,
         Some(LawName::Pdr) => DragLaw::Pdr,
     };
@@ -117,16 +121,8 @@ fn law(file: &CaseFile) -> Result<Option<(DragLaw, DragCoefficients)>> {
         return Err(file.wrong("drag", "takes law, or cr or from, not both"));
     }
     let usual = DragCoefficients::default();
-    let cd = match keys.cd {
-        None => usual,
-        Some(Coefficients::All(cd)) => DragCoefficients { round: cd, sharp: cd },
-        Some(Coefficients::ByShape { round, sharp }) => {
-            DragCoefficients { round: round.unwrap_or(usual.round), sharp: sharp.unwrap_or(usual.sharp) }
-        }
-    };
-    for value in [cd.round, cd.sharp] {
-        file.demand("drag.cd", Some(value), |c| c >= 0.0 && c.is_finite(), "needs numbers not below 0")?;
-    }
+    let of = |shape: Option<f64>, usual: f64| shape.or(keys.cd).unwrap_or(usual);
+    let cd = DragCoefficients { round: of(keys.cd_round, usual.round), sharp: of(keys.cd_sharp, usual.sharp) };
     Ok(Some((law, cd)))
 }
 
@@ -142,7 +138,6 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
         ("porosity.depth", keys.depth.is_some()),
         ("porosity.faces", keys.faces.is_some()),
         ("drag.law", file.case.drag.law.is_some()),
-        ("drag.cd", file.case.drag.cd.is_some()),
     ];
     match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {
         Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene")),

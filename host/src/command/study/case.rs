@@ -31,14 +31,14 @@
 //! ```
 
 use crate::error::{Error, Result};
-use crate::geometry::scene::table::{self, StrictTable, TomlText};
+use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
 use crate::grid::Edges;
-use crate::grid::file::toml_error;
+use crate::keys::Source;
 use crate::porosity::{Leaf, Method, Options};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 /// A study.
 #[derive(Debug, Clone)]
@@ -103,10 +103,18 @@ const MOST: usize = 1024;
 /// # Errors
 /// As [`scene::read`].
 pub fn read(path: &Path) -> Result<StudyCase> {
-    let text = table::read_text(path, LARGEST_FILE)?;
-    let table = DeTable::parse(&text).map_err(|e| toml_error(path, &text, &e))?;
-    let source = TomlText::new(path, &text);
-    let mut keys = StrictTable::new(&source, "", 0, table.get_ref());
+    parse(path, &table::read_text(path, LARGEST_FILE)?)
+}
+
+/// Read the text of a case file; `path` names it in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
+    let source = Source::new(path, text);
+    let table = source.toml()?;
+    let mut keys = StrictTable::new(&source, "", 0..0, table.get_ref());
+    keys.is_a("a study")?;
     let title = keys.get("title", table::text)?.unwrap_or_default();
     let repeats = keys.get("repeats", few)?.unwrap_or(3);
     let threads = keys.get("threads", table::list(few))?.unwrap_or_else(|| vec![1]);
@@ -140,8 +148,7 @@ pub fn read(path: &Path) -> Result<StudyCase> {
 }
 
 fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
-    let name = keys.need("name", table::text)?;
-    keys.subject = format!("scene \"{name}\"");
+    let name = keys.named()?;
     let beside = path.parent().unwrap_or(Path::new(""));
     let files = keys.get("files", table::list(table::text))?.unwrap_or_default();
     let files: Vec<PathBuf> = files.iter().map(|f| beside.join(f)).collect();
@@ -165,8 +172,7 @@ fn probe(keys: &mut StrictTable) -> Result<ProbeCell> {
 }
 
 fn recipe(mut keys: StrictTable, areas: bool) -> Result<Recipe> {
-    let name = keys.need("name", table::text)?;
-    keys.subject = format!("method \"{name}\"");
+    let name = keys.named()?;
     let method = keys.get("method", choice::<Method>)?.unwrap_or_default();
     let leaf = keys.get("leaf", choice::<Leaf>)?.unwrap_or_default();
     let tol = keys.get("tol", table::fraction)?.unwrap_or(Options::default().tol);

@@ -4,7 +4,7 @@ use super::placement::Motion;
 use super::shape::Shape;
 use super::{Scene, SceneSolid};
 use crate::error::{Error, Result};
-use crate::geometry::bodies::{Bodies, Body, Doubt, SolidSummary};
+use crate::geometry::bodies::{Bodies, Body, Diagnosis, Doubt, SolidSummary};
 use crate::geometry::read;
 use glam::DVec3;
 use std::path::Path;
@@ -77,6 +77,7 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
     bodies.warnings.extend(mesh.warnings.iter().chain(&original.warnings).map(prefix));
     check_size(bodies, original.triangles.len(), solid)?;
     let centre = original.bounds().map_or(DVec3::ZERO, |[lo, hi]| lo * 0.5 + hi * 0.5);
+    let first = bodies.bodies.len();
     for (at, motion) in solid.placement.motions(centre) {
         for body in &original.bodies {
             let triangles = push_surface(bodies, &original.triangles[body.triangles.clone()], &motion);
@@ -87,7 +88,8 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
             bodies.bodies.push(Body { name, triangles, single, porosity, bounds, drag: solid.drag, ..body.clone() });
         }
     }
-    bodies.diagnoses.append(&mut original.diagnoses);
+    let range = first..bodies.bodies.len();
+    bodies.diagnoses.extend(original.diagnoses.into_iter().map(|d| Diagnosis { body_range: range.clone(), ..d }));
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use super::table::{self, StrictTable};
 use crate::error::Result;
 use crate::geometry::form::Form;
 use crate::geometry::unit::Unit;
+use crate::keys::reader::nearest;
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -71,8 +72,48 @@ pub enum Round {
     Cone,
 }
 
-/// All names of shapes.
-const NAMES: &str = "sphere, ellipsoid, box, cylinder, capsule, cone, hull, file";
+/// The shapes, each with the keys it must have and those it may have.
+pub const SHAPES: [(&str, &[&str], &[&str]); 8] = [
+    ("sphere", &["center", "radius"], &[]),
+    ("ellipsoid", &["center", "semi_axes"], &[]),
+    ("box", &["min", "max"], &[]),
+    ("cylinder", &["from", "to", "radius"], &[]),
+    ("capsule", &["from", "to", "radius"], &[]),
+    ("cone", &["from", "to", "radius"], &[]),
+    ("hull", &["points"], &[]),
+    ("file", &["path"], &["unit", "scale"]),
+];
+
+/// Keys that every solid may have.
+pub const EVERY: [&str; 8] = ["name", "shape", "porosity", "cd", "cr", "rotate", "translate", "array"];
+
+/// A table has the keys of its shape and no others.
+fn check_keys(keys: &StrictTable, shape: &str) -> Result<()> {
+    let Some((_, needed, optional)) = SHAPES.iter().find(|(name, ..)| *name == shape) else {
+        let names = SHAPES.map(|(name, ..)| name);
+        let near = nearest(shape, &names).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+        return Err(keys.wrong("shape", format!("\"{shape}\" is not known: {}{near}", names.join(", "))));
+    };
+    let own = [*needed, *optional].concat();
+    let takes = format!("{shape} takes {}", own.join(", "));
+    let given = keys.given();
+    let wrong: Vec<_> = given.iter().filter(|(key, _)| !own.contains(key) && !EVERY.contains(key)).collect();
+    let missing: Vec<&str> = needed.iter().copied().filter(|key| !keys.has(key)).collect();
+    match (wrong.first(), &missing[..]) {
+        (None, []) => Ok(()),
+        (None, missing) => {
+            let are = if missing.len() == 1 { "is" } else { "are" };
+            Err(keys.fail(format!("{takes}; {} {are} missing", missing.join(", "))))
+        }
+        (Some((_, span)), _) => {
+            let names: Vec<&str> = wrong.iter().map(|(key, _)| *key).collect();
+            Err(keys.error_at(
+                span.clone(),
+                format!("{takes}; not {} (and every solid takes {})", names.join(", "), EVERY.join(", ")),
+            ))
+        }
+    }
+}
 
 impl Shape {
     /// Read `shape` and the keys that it asks for.
@@ -88,7 +129,9 @@ impl Shape {
             }
             Ok(Shape::Round { kind, from, to, radius })
         };
-        match keys.need("shape", table::text)?.as_str() {
+        let shape = keys.need("shape", table::text)?;
+        check_keys(keys, &shape)?;
+        match shape.as_str() {
             "sphere" => Ok(Shape::Sphere {
                 center: keys.need("center", table::point)?,
                 radius: keys.need("radius", table::positive)?,
@@ -112,8 +155,7 @@ impl Shape {
                 let points = keys.need("points", table::list(table::point))?;
                 hull::HullSolid::new(&points).map(Shape::Hull).map_err(|reason| keys.wrong("points", reason))
             }
-            "file" => file(keys),
-            other => Err(keys.wrong("shape", format!("\"{other}\" is not known: {NAMES}"))),
+            _ => file(keys), // the only one left that is known
         }
     }
 

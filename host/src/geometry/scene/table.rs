@@ -2,38 +2,13 @@
 
 use crate::error::{Error, Result};
 use crate::grid::{Edges, file};
+use crate::keys::Source;
+use crate::keys::reader::not_known;
+use crate::keys::source::another;
 use glam::DVec3;
+use std::ops::Range;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
-
-/// A TOML file, for messages.
-#[derive(Debug, Clone)]
-pub struct TomlText<'a> {
-    path: &'a Path,
-    text: &'a str,
-    /// Where its line breaks are.
-    breaks: Vec<usize>,
-}
-
-impl<'a> TomlText<'a> {
-    /// A file's path and text.
-    #[must_use]
-    pub fn new(path: &'a Path, text: &'a str) -> Self {
-        TomlText { path, text, breaks: text.match_indices('\n').map(|(at, _)| at).collect() }
-    }
-
-    /// The line that a byte of the text is in.
-    #[must_use]
-    pub fn line(&self, at: usize) -> usize {
-        self.breaks.partition_point(|&end| end < at) + 1
-    }
-
-    /// An error at a byte of the text.
-    #[must_use]
-    pub fn error(&self, at: usize, reason: impl Into<String>) -> Error {
-        Error::at(self.path, format!("line {}", self.line(at)), reason)
-    }
-}
 
 /// The text of a regular file of at most `most` bytes.
 ///
@@ -56,20 +31,45 @@ type Wanted<T> = std::result::Result<T, String>;
 /// A table of which each key is asked for once.
 #[derive(Debug)]
 pub struct StrictTable<'a> {
-    source: &'a TomlText<'a>,
+    source: &'a Source<'a>,
     /// What the table describes, such as `solid "beam"`.
     pub subject: String,
-    /// Where it begins in the text.
-    pub at: usize,
+    /// Where it stands in the text.
+    pub span: Range<usize>,
     table: &'a DeTable<'a>,
     known: Vec<&'static str>,
 }
 
 impl<'a> StrictTable<'a> {
-    /// Read `table`, which begins at byte `at`.
+    /// Read `table`, which stands at the bytes `span`.
     #[must_use]
-    pub fn new(source: &'a TomlText<'a>, subject: impl Into<String>, at: usize, table: &'a DeTable<'a>) -> Self {
-        StrictTable { source, subject: subject.into(), at, table, known: Vec::new() }
+    pub fn new(source: &'a Source<'a>, subject: impl Into<String>, span: Range<usize>, table: &'a DeTable<'a>) -> Self {
+        StrictTable { source, subject: subject.into(), span, table, known: Vec::new() }
+    }
+
+    /// The keys that the table holds, each with its place in the text, in the order of the file.
+    #[must_use]
+    pub fn given(&self) -> Vec<(&str, Range<usize>)> {
+        let mut keys: Vec<_> = self.table.keys().map(|key| (key.get_ref().as_ref(), key.span())).collect();
+        keys.sort_by_key(|(_, span)| span.start);
+        keys
+    }
+
+    /// The file is what it should be: `a scene`, `a study`.
+    ///
+    /// # Errors
+    /// It has the tables of another kind of file.
+    pub fn is_a(&self, kind: &str) -> Result<()> {
+        match another(kind, |key| self.has(key)) {
+            Some((_, reason)) => Err(Error::file(self.source.path, reason)),
+            None => Ok(()),
+        }
+    }
+
+    /// A key is there.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
     }
 
     /// The value of a key, if it is there.
@@ -90,6 +90,17 @@ impl<'a> StrictTable<'a> {
         self.get(key, read)?.ok_or_else(|| self.fail(format!("key {key} is missing")))
     }
 
+    /// The key `name`, and from here on what messages call the table; without one it is called by its kind and number, `solid 3`.
+    ///
+    /// # Errors
+    /// If it is no text.
+    pub fn named(&mut self) -> Result<String> {
+        let Some(name) = self.get("name", text)? else { return Ok(self.subject.clone()) };
+        let kind = self.subject.split(' ').next().unwrap_or_default();
+        self.subject = format!("{kind} \"{name}\"");
+        Ok(name)
+    }
+
     /// The table that a key holds, if it is there.
     ///
     /// # Errors
@@ -100,9 +111,9 @@ impl<'a> StrictTable<'a> {
         match value.get_ref() {
             DeValue::Table(table) => {
                 let subject = format!("{}{key}", self.prefix());
-                Ok(Some(StrictTable::new(self.source, subject, value.span().start, table)))
+                Ok(Some(StrictTable::new(self.source, subject, value.span(), table)))
             }
-            other => Err(self.wrong(key, format!("needs a table, not {}", kind(other)))),
+            other => Err(self.wrong(key, format!("takes a table, not {}", kind(other)))),
         }
     }
 
@@ -113,12 +124,10 @@ impl<'a> StrictTable<'a> {
     pub fn tables(&mut self, key: &'static str) -> Result<Vec<StrictTable<'a>>> {
         self.known.push(key);
         let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
-        let wrong = |other: &DeValue| self.wrong(key, format!("needs tables [[{key}]], not {}", kind(other)));
+        let wrong = |other: &DeValue| self.wrong(key, format!("takes tables [[{key}]], not {}", kind(other)));
         let DeValue::Array(items) = value.get_ref() else { return Err(wrong(value.get_ref())) };
         let tables = items.iter().enumerate().map(|(n, item)| match item.get_ref() {
-            DeValue::Table(table) => {
-                Ok(StrictTable::new(self.source, format!("{key} {}", n + 1), item.span().start, table))
-            }
+            DeValue::Table(table) => Ok(StrictTable::new(self.source, format!("{key} {}", n + 1), item.span(), table)),
             other => Err(wrong(other)),
         });
         tables.collect()
@@ -131,7 +140,10 @@ impl<'a> StrictTable<'a> {
     pub fn grid(&mut self, key: &'static str) -> Result<Option<Edges>> {
         self.known.push(key);
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        file::from_value(self.source.path, self.source.text, value.clone()).map(Some)
+        if value.get_ref().is_array() {
+            return Err(self.wrong(key, format!("takes one table [{key}]; tables [[{key}]] belong to a study")));
+        }
+        file::from_value(self.source, key, value).map(Some)
     }
 
     /// The grids of a `[[key]]`; none if it is not there.
@@ -141,14 +153,16 @@ impl<'a> StrictTable<'a> {
     pub fn grids(&mut self, key: &'static str) -> Result<Vec<Edges>> {
         self.known.push(key);
         let Some(value) = self.table.get(key) else { return Ok(Vec::new()) };
-        let items = value.get_ref().as_array().ok_or_else(|| self.wrong(key, format!("needs tables [[{key}]]")))?;
-        items.iter().map(|item| file::from_value(self.source.path, self.source.text, item.clone())).collect()
+        let one = || self.wrong(key, format!("takes tables [[{key}]]; one table [{key}] belongs to a scene or a case"));
+        let items = value.get_ref().as_array().ok_or_else(one)?;
+        let read = |(n, item)| file::from_value(self.source, &format!("{key}[{n}]"), item);
+        items.iter().enumerate().map(read).collect()
     }
 
     /// The line that the table begins in.
     #[must_use]
     pub fn line(&self) -> usize {
-        self.source.line(self.at)
+        self.source.line(self.span.start)
     }
 
     /// Every key must have been asked for.
@@ -156,12 +170,11 @@ impl<'a> StrictTable<'a> {
     /// # Errors
     /// The first that was not.
     pub fn finish(&self) -> Result<()> {
-        match self.table.keys().find(|key| !self.known.contains(&key.get_ref().as_ref())) {
+        match self.given().into_iter().find(|(key, _)| !self.known.contains(key)) {
             None => Ok(()),
-            Some(key) => {
-                let known = self.known.join(", ");
-                let reason = format!("{}key {} is not known here (known: {known})", self.prefix(), key.get_ref());
-                Err(self.source.error(key.span().start, reason))
+            Some((key, span)) => {
+                let reason = format!("{}key {key} {}", self.prefix(), not_known(key, &self.known));
+                Err(self.source.error(span, reason))
             }
         }
     }
@@ -169,14 +182,20 @@ impl<'a> StrictTable<'a> {
     /// An error about a key, at its line.
     #[must_use]
     pub fn wrong(&self, key: &str, reason: impl std::fmt::Display) -> Error {
-        let at = self.table.get(key).map_or(self.at, |value| value.span().start);
-        self.source.error(at, format!("{}{key} {reason}", self.prefix()))
+        let span = self.table.get(key).map_or(self.span.clone(), |value| value.span());
+        self.source.error(span, format!("{}{key} {reason}", self.prefix()))
     }
 
     /// An error about the table, at its line.
     #[must_use]
     pub fn fail(&self, reason: impl std::fmt::Display) -> Error {
-        self.source.error(self.at, format!("{}{reason}", self.prefix()))
+        self.source.error(self.span.clone(), format!("{}{reason}", self.prefix()))
+    }
+
+    /// An error at a part of the text.
+    #[must_use]
+    pub fn error_at(&self, span: Range<usize>, reason: impl std::fmt::Display) -> Error {
+        self.source.error(span, format!("{}{reason}", self.prefix()))
     }
 
     fn prefix(&self) -> String {
@@ -187,8 +206,8 @@ impl<'a> StrictTable<'a> {
 /// A value's type, with its article.
 fn kind(value: &DeValue) -> &'static str {
     match value {
-        DeValue::String(_) => "a string",
-        DeValue::Integer(_) => "an integer",
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) => "a whole number",
         DeValue::Float(_) => "a number",
         DeValue::Boolean(_) => "a truth value",
         DeValue::Datetime(_) => "a date",
@@ -208,11 +227,11 @@ pub fn number(value: &DeValue) -> Wanted<f64> {
     let digits = match value {
         DeValue::Float(f) => f.as_str(),
         DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
-        other => return Err(format!("needs a number, not {}", kind(other))),
+        other => return Err(format!("takes a number, not {}", kind(other))),
     };
     match digits.parse::<f64>() {
         Ok(x) if x.abs() <= LARGEST => Ok(x),
-        _ => Err(format!("needs a finite number below {LARGEST:e}, not {digits}")),
+        _ => Err(format!("takes a finite number below {LARGEST:e}, not {digits}")),
     }
 }
 
@@ -248,9 +267,9 @@ pub fn fraction(value: &DeValue) -> Wanted<f64> {
 /// # Errors
 /// What it should be.
 pub fn index(value: &DeValue) -> Wanted<usize> {
-    let DeValue::Integer(i) = value else { return Err(format!("needs a whole number, not {}", kind(value))) };
+    let DeValue::Integer(i) = value else { return Err(format!("takes a whole number, not {}", kind(value))) };
     usize::from_str_radix(i.as_str(), i.radix())
-        .map_err(|_| format!("needs a whole number that can be counted, not {i}"))
+        .map_err(|_| format!("takes a whole number that can be counted, not {i}"))
 }
 
 /// A whole number of at least one.
@@ -267,7 +286,7 @@ pub fn count(value: &DeValue) -> Wanted<usize> {
 /// # Errors
 /// What it should be.
 pub fn truth(value: &DeValue) -> Wanted<bool> {
-    value.as_bool().ok_or_else(|| format!("needs true or false, not {}", kind(value)))
+    value.as_bool().ok_or_else(|| format!("takes true or false, not {}", kind(value)))
 }
 
 /// A text.
@@ -275,7 +294,7 @@ pub fn truth(value: &DeValue) -> Wanted<bool> {
 /// # Errors
 /// What it should be.
 pub fn text(value: &DeValue) -> Wanted<String> {
-    value.as_str().map(str::to_owned).ok_or_else(|| format!("needs a string, not {}", kind(value)))
+    value.as_str().map(str::to_owned).ok_or_else(|| format!("takes a text, not {}", kind(value)))
 }
 
 /// A list of values of one kind.
@@ -284,7 +303,7 @@ pub fn text(value: &DeValue) -> Wanted<String> {
 /// What the first wrong one should be.
 pub fn list<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
     move |value| {
-        let items = value.as_array().ok_or_else(|| format!("needs a list, not {}", kind(value)))?;
+        let items = value.as_array().ok_or_else(|| format!("takes a list, not {}", kind(value)))?;
         let read = |(n, item): (usize, &toml::Spanned<DeValue>)| {
             read(item.get_ref()).map_err(|reason| format!("[{n}] {reason}"))
         };
@@ -299,7 +318,7 @@ pub fn list<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) ->
 pub fn three<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<[T; 3]> {
     move |value| {
         let found = list(read)(value)?;
-        <[T; 3]>::try_from(found).map_err(|all| format!("needs three values, not {}", all.len()))
+        <[T; 3]>::try_from(found).map_err(|all| format!("takes three values, not {}", all.len()))
     }
 }
 

@@ -1,0 +1,136 @@
+//! Standard streams by the name `-`, formats by suffix, directories that are made for outputs.
+
+use crate::command::progress::print;
+use crate::error::{Error, Result};
+use crate::files::{check_target, json};
+use serde::Serialize;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// What messages call the standard input.
+pub const INPUT: &str = "standard input";
+
+/// A path stands for a standard stream.
+#[must_use]
+pub fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// All of the standard input.
+///
+/// # Errors
+/// It cannot be read.
+pub fn read_input() -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| Error::io(Path::new(INPUT), "read", &e))?;
+    Ok(bytes)
+}
+
+/// The standard input as a text, if `path` names it; `None` for any other path.
+///
+/// # Errors
+/// It cannot be read, or is no text.
+pub fn text_of(path: &Path) -> Result<Option<String>> {
+    if !is_stream(path) {
+        return Ok(None);
+    }
+    let text = String::from_utf8(read_input()?);
+    text.map(Some).map_err(|_| Error::file(Path::new(INPUT), "is no text in UTF-8"))
+}
+
+/// `option` writes one format: the suffix must say so, or there be none to say otherwise.
+///
+/// # Errors
+/// Another suffix; exit code 2.
+pub fn check_suffix(option: &str, path: &Path, wanted: &str) -> Result<()> {
+    let device = std::fs::metadata(path).is_ok_and(|m| !m.is_file());
+    let suffix = path.extension().map(|s| s.to_string_lossy().to_lowercase());
+    match suffix {
+        Some(suffix) if suffix != wanted && !device => {
+            Err(Error::usage(format!("{}: {option} writes .{wanted}, not .{suffix}", path.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// An output can be put at `path`: its directory takes a file, or can be made in one that does. Asked before long work.
+///
+/// # Errors
+/// It cannot.
+pub fn check_place(path: &Path) -> Result<()> {
+    let directory = directory(path);
+    if is_stream(path) || directory.is_dir() {
+        return if is_stream(path) { Ok(()) } else { check_target(path) };
+    }
+    let above = directory.ancestors().map(or_here).find(|d| d.exists()).unwrap_or(Path::new("."));
+    if !above.is_dir() {
+        return Err(Error::file(path, format!("cannot create: {} is no directory", above.display())));
+    }
+    check_target(&above.join("voidage")).map_err(|e| Error { path: Some(path.to_owned()), ..e })
+}
+
+/// Makes the directory of an output.
+///
+/// # Errors
+/// It cannot be made.
+pub fn make_place(path: &Path) -> Result<()> {
+    let directory = directory(path);
+    if is_stream(path) || directory.is_dir() {
+        return Ok(());
+    }
+    std::fs::create_dir_all(directory).map_err(|e| Error::io(directory, "create the directory", &e))
+}
+
+fn directory(path: &Path) -> &Path {
+    or_here(path.parent().unwrap_or(Path::new("")))
+}
+
+fn or_here(directory: &Path) -> &Path {
+    if directory.as_os_str().is_empty() { Path::new(".") } else { directory }
+}
+
+/// Formats of `-o`, by suffix.
+const FORMATS: &str =
+    ".vtr (fields for ParaView), .png (picture), .json (report); NumPy arrays go into a directory by --npy DIR";
+
+/// What `-o` asks for, by its suffix; without one, and for a stream or a device, fields for ParaView.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutputFormat {
+    /// `.vtr`
+    Fields,
+    /// `.png`
+    Picture,
+    /// `.json`
+    Report,
+}
+
+impl OutputFormat {
+    /// Of a path.
+    ///
+    /// # Errors
+    /// A suffix that is not known; exit code 2.
+    pub fn of(path: &PathBuf) -> Result<Self> {
+        let device = is_stream(path) || std::fs::metadata(path).is_ok_and(|m| !m.is_file());
+        let suffix = path.extension().map(|s| s.to_string_lossy().to_lowercase());
+        match suffix.as_deref() {
+            Some("vtr") => Ok(OutputFormat::Fields),
+            Some("png") => Ok(OutputFormat::Picture),
+            Some("json") => Ok(OutputFormat::Report),
+            _ if device => Ok(OutputFormat::Fields),
+            _ => Err(Error::usage(format!("{}: the suffix tells no format; known are {FORMATS}", path.display()))),
+        }
+    }
+}
+
+/// Writes a report to a file or to the standard output.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    if !is_stream(path) {
+        make_place(path)?;
+        return json::write(path, value);
+    }
+    let text = serde_json::to_string_pretty(value).map_err(|e| Error::new(format!("cannot write JSON: {e}")))?;
+    print(format!("{text}\n").as_bytes())
+}

@@ -1,0 +1,116 @@
+//! The text of a file, for messages that show the place: line, column, the line itself with a mark.
+
+use super::value::{PlacedValue, Value};
+use crate::error::{Error, Result};
+use std::ops::Range;
+use std::path::Path;
+use toml::de::DeTable;
+
+/// A text and the file it is from.
+#[derive(Debug, Clone)]
+pub struct Source<'a> {
+    /// The file.
+    pub path: &'a Path,
+    /// Its text.
+    pub text: &'a str,
+    /// Where its line breaks are.
+    breaks: Vec<usize>,
+}
+
+/// Characters of a line that a message shows at most.
+const SHOWN: usize = 100;
+
+impl<'a> Source<'a> {
+    /// A file's path and text.
+    #[must_use]
+    pub fn new(path: &'a Path, text: &'a str) -> Self {
+        Source { path, text, breaks: text.match_indices('\n').map(|(at, _)| at).collect() }
+    }
+
+    /// The text as a table of TOML.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn toml(&self) -> Result<toml::Spanned<DeTable<'a>>> {
+        DeTable::parse(self.text).map_err(|e| {
+            let reason = e.message().lines().collect::<Vec<_>>().join(", ");
+            e.span().map_or_else(|| Error::file(self.path, &reason), |span| self.error(span, &reason))
+        })
+    }
+
+    /// The line that a byte of the text is in, from 1.
+    #[must_use]
+    pub fn line(&self, at: usize) -> usize {
+        self.breaks.partition_point(|&end| end < at) + 1
+    }
+
+    /// An error at a part of the text.
+    #[must_use]
+    pub fn error(&self, span: Range<usize>, reason: impl Into<String>) -> Error {
+        let (line, begin) = (self.line(span.start), self.begin(span.start));
+        let column = self.text.get(begin..span.start).map_or(1, |before| before.chars().count() + 1);
+        let error = Error::at(self.path, format!("line {line}, column {column}"), reason);
+        Error { excerpt: Some(self.excerpt(span)), ..error }
+    }
+
+    /// An error at a key such as `initial.regions[0].rho`, or at the deepest table above it that is there.
+    #[must_use]
+    pub fn at_key(&self, key: &str, reason: impl Into<String>) -> Error {
+        let reason = format!("key {key}: {}", reason.into());
+        let table = self.toml().ok().and_then(|table| PlacedValue::of_table(table.get_ref(), table.span()).ok());
+        match table.and_then(|table| deepest(&table, key)) {
+            Some(span) => self.error(span, reason),
+            None => Error::file(self.path, reason),
+        }
+    }
+
+    /// Where the line begins that a byte of the text is in.
+    fn begin(&self, at: usize) -> usize {
+        self.line(at).checked_sub(2).map_or(0, |before| self.breaks[before] + 1)
+    }
+
+    /// The line of a part of the text, and a mark under that part.
+    fn excerpt(&self, span: Range<usize>) -> String {
+        let (number, begin) = (self.line(span.start), self.begin(span.start));
+        let end = self.breaks.get(number - 1).copied().unwrap_or(self.text.len());
+        let text = |range: Range<usize>| self.text.get(range).unwrap_or("");
+        let line: Vec<char> = text(begin..end).trim_end().replace('\t', " ").chars().collect();
+        let column = text(begin..span.start.min(end)).chars().count().min(line.len());
+        let first = column.saturating_sub(SHOWN / 2);
+        let shown: String = line[first..].iter().take(SHOWN).collect();
+        let width = text(span.start.min(end)..span.end.clamp(span.start.min(end), end)).trim_end().chars().count();
+        let room = (shown.chars().count() + first).saturating_sub(column);
+        let (mark, number) = ("^".repeat(width.min(room).max(1)), number.to_string());
+        format!("{number:>4} | {shown}\n{:>4} | {}{mark}", "", " ".repeat(column - first))
+    }
+}
+
+/// Where a key stands; where it does not, the deepest of the tables and lists that lead to it, unless that is the whole file.
+fn deepest(table: &PlacedValue, key: &str) -> Option<Range<usize>> {
+    let (mut node, mut found) = (table, None);
+    for part in key.split(['.', '[']).map(|part| part.trim_end_matches(']')) {
+        let next = match &node.value {
+            Value::Table(entries) => entries.iter().find(|e| e.key == part).map(|e| &e.node),
+            Value::List(items) => part.parse::<usize>().ok().and_then(|n| items.get(n)),
+            _ => None,
+        };
+        let Some(next) = next else { break };
+        (node, found) = (next, next.span.clone());
+    }
+    found
+}
+
+/// Kinds of files, a key that only they have, and what reads them.
+const KINDS: [(&str, &str, &str); 4] = [
+    ("a case", "gas", "voidage solve reads it"),
+    ("a case", "initial", "voidage solve reads it"),
+    ("a study", "method", "voidage study reads it"),
+    ("a scene", "solid", "voidage porosity reads it, and [porosity] scene = \"FILE\" of a case names it"),
+];
+
+/// A key that tells a file to be of another kind than `kind`, and a sentence about it.
+pub fn another(kind: &str, has: impl Fn(&str) -> bool) -> Option<(&'static str, String)> {
+    let own = KINDS.iter().any(|(k, key, _)| *k == kind && has(key));
+    let (other, key, reader) = KINDS.iter().find(|(k, key, _)| *k != kind && has(key)).filter(|_| !own)?;
+    Some((key, format!("this is {other}, not {kind}: it has the key {key}; {reader}")))
+}

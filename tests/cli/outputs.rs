@@ -1,0 +1,111 @@
+//! The page of outputs and what runs write say the same: each field and column stands in a table, and no other does.
+
+use crate::kit::{Scratch, fixture, json, solved, stderr, voidage};
+use crate::reference::{page, rows};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+
+/// Names of the first column of a table of the page.
+fn documented(table: &str) -> BTreeSet<String> {
+    rows(&page("outputs.md"), "fields")[table].keys().cloned().collect()
+}
+
+/// Tables whose keys are names of stages, not fields.
+const STAGES: [&str; 2] = ["seconds", "stages"];
+
+/// The fields of a report: `a.b`, and `a[].b` for those of the tables in a list.
+fn fields(value: &Value, path: &str, found: &mut BTreeSet<String>) {
+    let list = |v: &Value| v.as_array().is_some_and(|items| items.iter().any(Value::is_object));
+    match value {
+        Value::Object(table) if !STAGES.contains(&path) => {
+            let prefix = if path.is_empty() { String::new() } else { format!("{path}.") };
+            table.iter().for_each(|(key, v)| fields(v, &format!("{prefix}{key}"), found));
+        }
+        Value::Array(items) if list(value) => items.iter().for_each(|v| fields(v, &format!("{path}[]"), found)),
+        _ => drop(found.insert(path.to_owned())),
+    }
+}
+
+/// All that reports say is in the table, and what is in the table some report says.
+fn assert_told(table: &str, reports: &[Value]) {
+    let mut found = BTreeSet::new();
+    reports.iter().for_each(|report| fields(report, "", &mut found));
+    let page = documented(table);
+    let missing: Vec<_> = found.difference(&page).collect();
+    assert!(missing.is_empty(), "{table}: not in docs/outputs.md: {missing:?}");
+    let idle: Vec<_> = page.difference(&found).collect();
+    assert!(idle.is_empty(), "{table}: in docs/outputs.md, but in no report: {idle:?}");
+}
+
+const SCENE: &str = "[[solid]]\nshape = \"cylinder\"\nfrom = [0, 0, 0]\nto = [2, 0, 0]\nradius = 0.3\n";
+
+#[test]
+fn reports_of_porosity_and_inspect() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), SCENE).expect("written");
+    let run = |name: &str, arguments: &[&dyn AsRef<std::ffi::OsStr>]| {
+        let report = at.file(name);
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = arguments.to_vec();
+        all.extend([&"--report" as &dyn AsRef<std::ffi::OsStr>, &report, &"-q"]);
+        let output = voidage(&all);
+        assert!(output.status.success(), "{}", stderr(&output));
+        json(&report)
+    };
+    let skid = fixture("cad_skid.stl");
+    let crack = fixture("bad_inputs/geo_tjunction_crack.stl");
+    let scene = at.file("scene.toml");
+    assert_told(
+        "porosity",
+        &[
+            run("a.json", &[&"porosity", &skid, &scene, &"--spacing", &"0.3", &"--resistance"]),
+            run("b.json", &[&"porosity", &crack, &"--cells", &"6x6x6"]),
+        ],
+    );
+    assert_told("inspect", &[run("c.json", &[&"inspect", &skid, &scene])]);
+}
+
+/// A case of one axis, with its gas and its initial state.
+fn tube(gas: &str, state: &str, more: &str) -> String {
+    format!(
+        "[grid]\nx = {{ points = [0, 1], cells = [8] }}\n[gas]\n{gas}\n[initial]\nuniform = {{ {state} }}\n\
+         [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n[time]\nmax_steps = 2\n{more}"
+    )
+}
+
+fn columns(path: &std::path::Path) -> BTreeSet<String> {
+    let text = fs::read_to_string(path).expect("a table");
+    text.lines().next().expect("a head").split(',').map(str::to_owned).collect()
+}
+
+#[test]
+fn reports_and_tables_of_solve() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), "[[solid]]\nshape = \"box\"\nmin = [0.5, 0, 0]\nmax = [0.7, 1, 1]\n")
+        .expect("written");
+    let ideal = "model = \"ideal\"\ngamma = 1.4\ngas_constant = 287";
+    let more = "[porosity]\nscene = \"scene.toml\"\n[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\n";
+    let isentropic = "model = \"isentropic\"\ngamma = 1.4\nrho = 1.2\np = 1e5";
+    let cases = [
+        ("ideal", tube(ideal, "T = 300, p = 1e5", more)),
+        ("isothermal", tube("model = \"isothermal\"\nsound_speed = 340", "rho = 1.2", "")),
+        ("isentropic", tube(isentropic, "rho = 1.2", "")),
+    ];
+    let reports = cases.map(|(name, case)| {
+        solved(&at, &case, name, &["-q"]);
+        json(&at.file(name).join("report.json"))
+    });
+    assert_told("solve", &reports);
+    assert_eq!(columns(&at.file("ideal/log.csv")), documented("log"));
+    assert_eq!(columns(&at.file("ideal/probes.csv")), documented("probes"));
+}
+
+#[test]
+fn tables_of_studies() {
+    let at = Scratch::new();
+    let template = String::from_utf8(voidage(&[&"study", &"--template"]).stdout).expect("UTF-8");
+    fs::write(at.file("study.toml"), template.replace("repeats = 3", "repeats = 1")).expect("written");
+    let output = voidage(&[&"study", &at.file("study.toml"), &"-o", &at.file("out"), &"-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(columns(&at.file("out/study.csv")), documented("study"));
+}

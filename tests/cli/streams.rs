@@ -1,0 +1,205 @@
+//! Pipes, suffixes, directories that are made, a full disk.
+
+use crate::kit::{Scratch, fixture, json, program, stderr, stdout, voidage};
+use std::fs::{self, File};
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+/// Runs the command with `input` at its standard input.
+fn piped(arguments: &[&str], input: &[u8], at: &Scratch) -> Output {
+    let mut command = Command::new(program());
+    command.args(arguments).current_dir(&at.0).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program runs");
+    let mut pipe = child.stdin.take().expect("a pipe");
+    let input = input.to_owned();
+    let writer = std::thread::spawn(move || drop(pipe.write_all(&input))); // it may be closed early
+    let output = child.wait_with_output().expect("the program ends");
+    writer.join().expect("written");
+    output
+}
+
+const SCENE: &str = "[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n";
+
+#[test]
+fn a_surface_through_a_pipe() {
+    let at = Scratch::new();
+    let mesh = fixture("cad_skid.stl");
+    let bytes = fs::read(&mesh).expect("a fixture");
+    let summary = |text: String| text.lines().filter(|l| !l.starts_with("time")).map(str::to_owned).collect::<Vec<_>>();
+    let through = piped(&["porosity", "-", "--spacing", "0.5"], &bytes, &at);
+    assert!(through.status.success(), "{}", stderr(&through));
+    assert_eq!(summary(stdout(&through)), summary(stdout(&voidage(&[&"porosity", &mesh, &"--spacing", &"0.5"]))));
+    let scene = piped(&["porosity", "-", "--spacing", "0.5"], SCENE.as_bytes(), &at);
+    assert!(stdout(&scene).contains("bodies        1 "), "{}", stderr(&scene));
+    let grid = "x = [-2, 2]\ny = [-2, 2]\nz = [-2, 2]\n";
+    let by_grid = piped(&["porosity", mesh.to_str().expect("a path"), "--grid", "-", "-q"], grid.as_bytes(), &at);
+    assert!(by_grid.status.success(), "{}", stderr(&by_grid));
+    let wrong = piped(&["porosity", "-"], b"nothing of use\n", &at);
+    assert_eq!(wrong.status.code(), Some(1));
+    assert!(stderr(&wrong).contains("standard input: is neither"), "{}", stderr(&wrong));
+    let empty = piped(&["inspect", "-"], b"", &at);
+    assert!(stderr(&empty).contains("standard input: is empty"), "{}", stderr(&empty));
+    assert!(at.names().is_empty());
+}
+
+#[test]
+fn cases_through_a_pipe() {
+    let at = Scratch::new();
+    let case = stdout(&voidage(&[&"solve", &"--template"])).replace("end = 0.006", "max_steps = 1");
+    let run = piped(&["solve", "-", "-o", "out", "-q"], case.as_bytes(), &at);
+    assert!(run.status.success() && at.file("out/report.json").is_file(), "{}", stderr(&run));
+    assert_eq!(piped(&["solve", "-"], case.as_bytes(), &at).status.code(), Some(2));
+    let wrong = piped(&["solve", "-", "-o", "other"], b"[gas]\nmodel = 3\n", &at);
+    assert!(stderr(&wrong).contains("standard input: line 2, column 9: key gas.model"), "{}", stderr(&wrong));
+    let study = stdout(&voidage(&[&"study", &"--template"])).replace("repeats = 3", "repeats = 1");
+    let run = piped(&["study", "-", "-q"], study.as_bytes(), &at);
+    assert!(stdout(&run).starts_with("# A ball and a pipe"), "{}", stderr(&run));
+}
+
+/// A file of the run at the standard output is that file and nothing else.
+#[test]
+fn outputs_through_a_pipe() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), SCENE).expect("written");
+    let run = |arguments: &[&str]| {
+        let output = piped(&[&["porosity", "scene.toml", "--spacing", "0.5"], arguments].concat(), b"", &at);
+        assert!(output.status.success(), "{}", stderr(&output));
+        output
+    };
+    let report = run(&["--report", "-"]);
+    let value: serde_json::Value = serde_json::from_slice(&report.stdout).expect("JSON alone");
+    assert_eq!(value["bodies"], 1);
+    assert!(stderr(&report).contains("solid volume"), "{}", stderr(&report));
+    assert!(run(&["--png", "-"]).stdout.starts_with(b"\x89PNG"));
+    let fields = run(&["-o", "-"]).stdout;
+    run(&["-o", "fields.vtr"]);
+    // The command stands in the file.
+    let whole = fs::read(at.file("fields.vtr")).expect("a file");
+    assert!(fields.starts_with(b"<?xml") && fields.ends_with(b"</VTKFile>\n") && fields.len() + 100 > whole.len());
+}
+
+#[test]
+fn the_suffix_tells_the_format() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), SCENE).expect("written");
+    let run = |arguments: &[&str]| {
+        piped(&[&["porosity", "scene.toml", "--spacing", "0.5", "-q"], arguments].concat(), b"", &at)
+    };
+    for (name, start) in [("a/b.vtr", &b"<?xml"[..]), ("a/c/d.png", b"\x89PNG"), ("e/f.json", b"{")] {
+        let output = run(&["-o", name]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(fs::read(at.file(name)).expect("a file").starts_with(start), "{name}");
+    }
+    for (arguments, words) in [
+        (
+            &["-o", "out.vtu"][..],
+            "out.vtu: the suffix tells no format; known are .vtr (fields for ParaView), .png (picture), .json",
+        ),
+        (&["-o", "out"], "out: the suffix tells no format"),
+        (&["--png", "out.jpg"], "out.jpg: --png writes .png, not .jpg"),
+        (&["--report", "out.yaml"], "out.yaml: --report writes .json, not .yaml"),
+        (&["-o", "a.png", "--png", "b.png"], "b.png: --png and -o ask for the same"),
+        (&["--slice", "x=0"], "--slice cuts a picture: give --png"),
+        (&["--slice", "x=9", "--png", "a.png"], "--slice x=9: the grid reaches from"),
+        (&["--slice", "q=9", "--png", "a.png"], "the axis is x, y or z"),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
+    }
+    assert_eq!(at.names(), ["a", "e", "scene.toml"]);
+    let cut = |slice: &str| {
+        let output = run(&["--png", "cut.png", "--slice", slice]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        fs::read(at.file("cut.png")).expect("a picture")
+    };
+    assert!(cut("x=-0.9") != cut("x=0") && cut("x=0,y=0.9") != cut("x=0,y=0"));
+}
+
+/// What cannot be written is an error, be it a summary, the help or the version.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_at_the_standard_output() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), SCENE).expect("written");
+    let calls: [&[&str]; 7] = [
+        &["porosity", "scene.toml"],
+        &["porosity", "scene.toml", "--report", "-"],
+        &["inspect", "scene.toml"],
+        &["porosity", "--help"],
+        &["--version"],
+        &["man"],
+        &["solve", "--template"],
+    ];
+    for arguments in calls {
+        let full = File::create("/dev/full").expect("writable");
+        let output =
+            Command::new(program()).args(arguments).current_dir(&at.0).stdout(full).output().expect("the program runs");
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(stderr(&output).contains("cannot write to standard output"), "{arguments:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn the_version_tells_the_build() {
+    let text = stdout(&voidage(&[&"--version"]));
+    for word in [env!("CARGO_PKG_VERSION"), "commit ", "features cli pictures scene serde", "target   "] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    assert!(text.lines().last().is_some_and(|l| l.contains(std::env::consts::ARCH)), "{text}");
+}
+
+/// Every solid with its volume and its areas; groups of an OBJ keep their names.
+#[test]
+fn solids_are_told_one_by_one() {
+    let at = Scratch::new();
+    let cube = |lo: f64, first: usize| {
+        let corner = |n: usize| [n & 1, n >> 1 & 1, n >> 2].map(|b| lo + b as f64);
+        let corners: String = (0..8)
+            .map(|n| {
+                let [x, y, z] = corner(n);
+                format!("v {x} {y} {z}\n")
+            })
+            .collect();
+        let faces = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+        let faces: String =
+            faces.map(|f| format!("f {}\n", f.map(|n: usize| (n + first).to_string()).join(" "))).concat();
+        (corners, faces)
+    };
+    let (one, other) = (cube(0.0, 0), cube(5.0, 8));
+    fs::write(at.file("two.obj"), format!("{}g tank\n{}{}g pump house\n{}", one.0, one.1, other.0, other.1))
+        .expect("written");
+    let pipe = "[[solid]]\nname = \"pipe\"\nshape = \"cylinder\"\nfrom = [0, 0, 3]\nto = [4, 0, 3]\nradius = 0.5\narray = { count = [1, 2, 1], step = [0, 2, 0] }\n";
+    fs::write(at.file("scene.toml"), format!("{pipe}{SCENE}")).expect("written");
+    let output = voidage(&[
+        &"porosity",
+        &at.file("two.obj"),
+        &at.file("scene.toml"),
+        &"--spacing",
+        &"1",
+        &"--report",
+        &at.file("r.json"),
+        &"-q",
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report = json(&at.file("r.json"));
+    let solids = report["solids"].as_array().expect("solids");
+    let names: Vec<&str> = solids.iter().filter_map(|s| s["name"].as_str()).collect();
+    assert_eq!(names, ["pipe", "solid 2", "tank", "pump house"]);
+    let pi = std::f64::consts::PI;
+    // Frontal area by axis, wetted area, volume; two pipes of length 4 and radius 1/2 with flat ends, a ball of radius 1.
+    let truth = [
+        ([0.5 * pi, 8.0, 8.0], 8.0 * pi + pi, 2.0 * pi),
+        ([pi, pi, pi], 4.0 * pi, 4.0 / 3.0 * pi),
+        ([1.0; 3], 6.0, 1.0),
+        ([1.0; 3], 6.0, 1.0),
+    ];
+    for (solid, (frontal, wetted, volume)) in solids.iter().zip(truth) {
+        let number = |v: &serde_json::Value| v.as_f64().expect("a number");
+        let pairs = (0..3).map(|a| (number(&solid["frontal_area"][a]), frontal[a]));
+        for (found, exact) in pairs.chain([(number(&solid["wetted_area"]), wetted), (number(&solid["volume"]), volume)])
+        {
+            assert!((found / exact - 1.0).abs() < 6e-4, "{found}, not {exact}: {solid}");
+        }
+    }
+}
