@@ -1,7 +1,8 @@
 //! Pictures of fields, from the pixel upwards.
 //!
-//! In reading order: `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`chart`].
+//! In reading order: `accents`, `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`chart`].
 
+mod accents;
 pub mod canvas;
 pub mod chart;
 pub mod colour;

@@ -4,6 +4,7 @@ mod bad_inputs;
 mod drag;
 mod inspect;
 mod kit;
+mod maxima;
 mod outputs;
 mod outside;
 mod packages;

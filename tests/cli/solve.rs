@@ -217,7 +217,10 @@ probes = [{ name = "corner", at = [8.9, 4.9, 3.9] }, { name = "middle", at = [4,
     };
     let steps = report["steps"].as_u64().expect("a count") as usize;
     let (head, log) = table("log.csv");
-    assert_eq!(head, "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy");
+    assert_eq!(
+        head,
+        "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy,force_x,force_y,force_z"
+    );
     assert_eq!(log.len(), steps + 1);
     assert!(log.iter().enumerate().all(|(n, row)| row[0] == n as f64));
     let mass = log[0][3];

@@ -37,6 +37,7 @@ g = [0, 0, -9.81]
 {time}
 [output]
 every = 0.004
+maxima = {{ threshold = 20 }}
 probes = [{{ name = "P", at = [5, 2, 4.5] }}]
 {output}
 "#,
@@ -49,8 +50,9 @@ fn results(at: &Scratch, dir: &str) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     let final_fields = ["rho", "u", "v", "w", "p"].map(|f| format!("final/{f}.npy"));
     let tables = ["log.csv", "probes.csv", "flow.pvd"].map(str::to_owned);
+    let maxima = ["overpressure", "impulse", "arrival", "dynamic_pressure"].map(|f| format!("maxima/{f}.npy"));
     let frames = (0..4).map(|n| format!("frames/flow_{n:04}.vtr"));
-    for name in final_fields.into_iter().chain(tables).chain(frames) {
+    for name in final_fields.into_iter().chain(tables).chain(maxima).chain(frames) {
         all.push((name.clone(), fs::read(at.file(dir).join(&name)).expect("a file")));
     }
     all
@@ -228,6 +230,8 @@ fn checkpoints_that_do_not_fit_are_refused() {
         ("-9.81", "-9.8", "its gravity differs"),
         ("[time]", "[scheme]\ncfl = 0.5\n[time]", "its scheme differs"),
         ("scene = '", "jump = 0.2\nscene = '", "its treatment of the porosity differs"),
+        ("threshold = 20", "threshold = 30", "its output.maxima or output.ambient differs"),
+        ("maxima = { threshold = 20 }", "", "knows other largest values over time"),
     ] {
         assert!(case.contains(from), "{from}");
         refused(&case.replacen(from, to, 1), part);

@@ -1,13 +1,16 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and [`setup`], from the case to a flow; [`frames`],
+//! In reading order: [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`],
 //! [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
 
 mod arrays;
 pub mod case;
 pub mod checkpoint;
+pub mod force;
 pub mod frames;
 pub mod inlet;
+pub mod maxima;
+pub mod pictures;
 pub mod report;
 pub mod run;
 pub mod setup;

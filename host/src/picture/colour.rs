@@ -5,7 +5,7 @@
 //! B. Ottosson, *A perceptual color space for image processing*, 2020, <https://bottosson.github.io/posts/oklab/>.
 //! Lightness alone carries the value, so the maps also work in grey and for colour-blind readers.
 
-use super::canvas::{Colour, WHITE};
+use super::canvas::Colour;
 
 /// No number: missing or not finite.
 pub const NO_VALUE: Colour = [186, 160, 172];
@@ -18,8 +18,8 @@ pub struct ColourMap {
 
 const STEPS: usize = 256;
 
-/// The step of the even map that just under 1 has where 1 itself is white.
-const LIGHTEST: usize = 230;
+/// The step of the even map that just under 1 has where 1 itself has the last.
+const LIGHTEST: usize = 222;
 
 /// Means over a pixel miss 1 by no more.
 const ROUNDING: f64 = 1e-9;
@@ -37,14 +37,14 @@ impl ColourMap {
         ])
     }
 
-    /// As [`ColourMap::sequential`], for open fractions: what is open to the last is white, and what is not is told from it by its colour,
+    /// As [`ColourMap::sequential`], for open fractions: what is open to the last has the lightest colour, and what is not is told from it,
     /// be it open to 0.999.
     #[must_use]
     pub fn open_fraction() -> Self {
-        let ColourMap { table } = Self::sequential();
-        // The lightest colours are left out: 0.999 has the lightness of 0.9 in the even map.
-        let mut table: Vec<Colour> = (0..STEPS).map(|step| table[step * LIGHTEST / (STEPS - 1)]).collect();
-        table.push(WHITE);
+        let ColourMap { table: even } = Self::sequential();
+        // The colours just below the lightest are left out.
+        let mut table: Vec<Colour> = (0..STEPS).map(|step| even[step * LIGHTEST / (STEPS - 1)]).collect();
+        table.push(even[STEPS - 1]);
         ColourMap { table }
     }
 
@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn nearly_open_is_told_from_open() {
         let map = ColourMap::open_fraction();
-        assert_eq!(map.colour(1.0), WHITE);
+        assert_eq!(map.colour(1.0), ColourMap::sequential().colour(1.0));
         for value in [0.95, 0.99, 0.999, 0.999_99] {
             assert!(
                 lightness(map.colour(1.0)) - lightness(map.colour(value)) > 8.0,

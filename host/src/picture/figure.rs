@@ -70,10 +70,21 @@ impl Figure<'_> {
     /// # Errors
     /// The reason, if a length does not fit the grid, a slice is outside, or edges do not ascend.
     pub fn draw(&self) -> std::result::Result<Canvas, String> {
-        Figure { range: usable(self.range), ..*self }.draw_usable()
+        Figure { range: usable(self.range), ..*self }.draw_usable(None)
     }
 
-    fn draw_usable(&self) -> std::result::Result<Canvas, String> {
+    /// Draws, with hatching where a cell is partly solid: the darker, the more of it; `blocked` is its solid fraction.
+    ///
+    /// # Errors
+    /// As [`Figure::draw`]; or `blocked` does not fit the grid.
+    pub fn draw_hatched(&self, blocked: &[f64]) -> std::result::Result<Canvas, String> {
+        if blocked.len() != self.values.len() {
+            return Err(format!("{} solid fractions do not fit {} values", blocked.len(), self.values.len()));
+        }
+        Figure { range: usable(self.range), ..*self }.draw_usable(Some(blocked))
+    }
+
+    fn draw_usable(&self, blocked: Option<&[f64]>) -> std::result::Result<Canvas, String> {
         let cells = self.check()?;
         let lengths = self.edges.map(|e| e[e.len() - 1] - e[0]);
         let rooms = Rooms {
@@ -89,7 +100,7 @@ impl Figure<'_> {
         let pointers = layout.panels.len() > 1;
         self.head(&mut canvas, pointers);
         for panel in &layout.panels {
-            self.panel(&mut canvas, panel, pointers);
+            self.panel(&mut canvas, panel, pointers, blocked);
         }
         self.bar(&mut canvas, shifted(layout.bar));
         Ok(canvas)
@@ -146,16 +157,21 @@ impl Figure<'_> {
         }
     }
 
-    fn panel(&self, canvas: &mut Canvas, panel: &Panel, pointers: bool) {
+    fn panel(&self, canvas: &mut Canvas, panel: &Panel, pointers: bool, blocked: Option<&[f64]>) {
         let [nx, ny] = [self.edges[0].len() - 1, self.edges[1].len() - 1];
         let [a, b] = panel.axes();
         let strides = [1, nx, nx * ny];
         let start = self.at[panel.normal] * strides[panel.normal];
-        let value = |i: usize, j: usize| self.values[start + i * strides[a] + j * strides[b]];
+        let of = |values: &[f64], i: usize, j: usize| values[start + i * strides[a] + j * strides[b]];
+        let value = |i: usize, j: usize| of(self.values, i, j);
         let title = self.panel_title(panel);
         let (across, up) = (self.axis(a), self.axis(b));
         let area = shifted(panel.area);
-        Heatmap { across, up, value: &value, range: self.range, map: self.map, title: &title }.draw(canvas, area);
+        let heatmap = Heatmap { across, up, value: &value, range: self.range, map: self.map, title: &title };
+        heatmap.draw(canvas, area);
+        if let Some(blocked) = blocked {
+            heatmap.hatch(canvas, area, &|i, j| of(blocked, i, j));
+        }
         if pointers {
             pointer(canvas, area, &across, self.position(a), true, MARK);
             pointer(canvas, area, &up, self.position(b), false, MARK);

@@ -4,6 +4,8 @@
 //! A path is a list of points `x,y`; `~x,y` is the control point of a quadratic curve to the next point (two controls
 //! in a row have an implied point half way); `|` lifts the pen.
 
+use super::accents::split;
+
 /// Room after a letter, between the centres of the strokes.
 const GAP: f64 = 2.9;
 /// Advance of a space.
@@ -34,13 +36,32 @@ fn layout(text: &str, mut place: impl FnMut(f64, &[Stroke])) -> f64 {
             x += SPACE;
             continue;
         }
-        let glyph = flatten(path(letter));
+        let glyph = glyph(letter);
         place(x, &glyph);
         end = x + glyph.iter().flatten().fold(0.0, |w: f64, p| w.max(p[0]));
         x = end + GAP;
     }
     end
 }
+
+/// The strokes of a letter, with its mark if it has one.
+fn glyph(letter: char) -> Vec<Stroke> {
+    let Some((plain, mark)) = split(letter) else { return flatten(path(letter)) };
+    let mut strokes = flatten(path(plain));
+    let points = || strokes.iter().flatten();
+    let (left, right) =
+        points().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[0]), high.max(p[0])));
+    let top = points().fold(0.0, |top: f64, p| top.max(p[1]));
+    let (x, y) = (f64::midpoint(left, right), if mark.below { 0.0 } else { top + ABOVE });
+    let mut marks: Vec<Stroke> = flatten(mark.path).iter().map(|s| s.map(|p| [p[0] + x, p[1] + y])).collect();
+    // A mark that is wider than its letter moves both to the right.
+    let out = marks.iter().flatten().fold(0.0, |out: f64, p| out.min(p[0]));
+    marks.append(&mut strokes);
+    marks.iter().map(|s| s.map(|p| [p[0] - out, p[1]])).collect()
+}
+
+/// From the top of a letter to the origin of the mark above it.
+const ABOVE: f64 = 1.5;
 
 /// Pen path to straight strokes.
 fn flatten(path: &str) -> Vec<Stroke> {
@@ -197,6 +218,31 @@ fn path(letter: char) -> &'static str {
         '±' => "0,5.4 5.6,5.4 | 2.8,2.6 2.8,8.2 | 0,0 5.6,0",
         'µ' | 'μ' => "0,7 0,-3 | 0,2.8 ~0,0 2.5,0 ~5,0 5.2,3 | 5.2,7 5.2,0",
         'β' => "0,-3 0,7.4 ~0,10 2.6,10 ~5,10 5,7.9 ~5,5.8 2.4,5.6 ~5.6,5.4 5.6,2.7 ~5.6,0 2.8,0 ~0.6,0 0,1.6",
+        'ı' => "0,7 0,0",
+        'ß' => "0,0 0,7.4 ~0,10 2.6,10 ~5,10 5,7.9 ~5,6 2.4,5.6 ~5.6,5.2 5.6,2.6 ~5.6,0 3,0 2.4,0.1",
+        'ø' => "2.8,7 ~5.6,7 5.6,3.5 ~5.6,0 2.8,0 ~0,0 0,3.5 ~0,7 2.8,7 | 0.2,-0.6 5.4,7.6",
+        'Ø' => "3.6,10 ~7.2,10 7.2,5 ~7.2,0 3.6,0 ~0,0 0,5 ~0,10 3.6,10 | 0.4,-0.6 6.8,10.6",
+        'æ' => "0.5,5.8 ~1,7 2.4,7 ~4.4,7 4.4,4.6 4.4,2 ~4.2,0 2.2,0 ~0,0 0,2 ~0,3.9 2.4,3.9 4.4,3.9 | 4.4,3.7 8.9,3.7 ~8.9,7 6.6,7 ~4.6,7 4.4,4.6 | 4.4,2.6 ~4.8,0 6.9,0 ~8.2,0 8.7,1.3",
+        'Æ' => "0,0 4.6,10 9.6,10 | 1.6,3.4 5,3.4 | 5,10 5,0 9.6,0 | 5,5.3 9,5.3",
+        'ł' => "1.2,10 1.2,1.8 ~1.2,0 3,0 | 0,4.2 2.6,6.2",
+        'Ł' => "1.2,10 1.2,0 6.2,0 | 0,4 3.4,6.4",
+        'α' => "5.6,7 ~4.6,0 2.4,0 ~0,0 0,3.5 ~0,7 2.4,7 ~4.4,7 5,2 ~5.2,0 6.2,0",
+        'γ' => "0,7 2.8,0 2.8,-3 | 5.6,7 2.8,0",
+        'δ' => "4.8,9.4 ~3.8,10 2.6,10 ~1,10 1,8.6 ~1,7.4 3,6.6 ~5.6,5.6 5.6,3.2 ~5.6,0 2.8,0 ~0,0 0,3 ~0,6.2 3,6.4",
+        'ε' => "4.6,6 ~4,7 2.5,7 ~0.4,7 0.4,5.3 ~0.4,3.8 2.6,3.7 ~0,3.6 0,1.8 ~0,0 2.5,0 ~4.2,0 4.8,1",
+        'λ' => "0,10 ~1,10 1.4,9 5.2,0 | 2.6,5.8 0,0",
+        'π' => "0,7 6.2,7 | 1.6,7 1.2,0 | 4.4,7 4.4,1.2 ~4.4,0 5.6,0",
+        'σ' => "6.2,7 2.8,7 ~0,7 0,3.5 ~0,0 2.8,0 ~5.6,0 5.6,3.5 ~5.6,6.6 3.4,7",
+        'τ' => "0,7 4.8,7 | 2.4,7 2.4,1.4 ~2.4,0 3.8,0",
+        'φ' => "3,7 ~6,7 6,3.5 ~6,0 3,0 ~0,0 0,3.5 ~0,7 3,7 | 3,10 3,-3",
+        'ω' => "1.4,7 ~0,5.6 0,3 ~0,0 2,0 ~3.6,0 3.6,4 ~3.6,0 5.2,0 ~7.2,0 7.2,3 ~7.2,5.6 5.8,7",
+        'Δ' => "0,0 3.5,10 7,0 0,0",
+        'Ω' => "0,0 2.4,0 ~0,2.4 0,5.4 ~0,10 3.6,10 ~7.2,10 7.2,5.4 ~7.2,2.4 4.8,0 7.2,0",
+        'Σ' => "5.8,10 0,10 3.4,5 0,0 5.8,0",
+        '€' => "6.3,8 ~5.6,10 4.2,10 ~1,10 1,5 ~1,0 4.2,0 ~5.6,0 6.3,2 | 0,6.2 4.6,6.2 | 0,4 4.4,4",
+        '…' => "0,0 0,0.3 | 2.6,0 2.6,0.3 | 5.2,0 5.2,0.3",
+        '→' => "0,4 6,4 | 4,6 6,4 4,2",
+        '„' | '“' | '”' => "0,10 0.3,7.6 | 2,10 2.3,7.6",
         'ρ' => "0,-3.2 0,3.5 ~0,7 2.8,7 ~5.6,7 5.6,3.5 ~5.6,0 2.8,0 ~0.4,0 0,2.4",
         _ => "0,0 0,10 5,10 5,0 0,0",
     }
@@ -208,7 +254,7 @@ mod tests {
 
     /// Every letter that is drawn; control characters are not.
     const LETTERS: &str = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz\
-                           .,:;!?'\"()[]{}<>/\\|_-+*=#%&@^~`$×·°²³±µβρ−–";
+                           .,:;!?'\"()[]{}<>/\\|_-+*=#%&@^~`$×·°²³±µβρ−–ıßøØæÆłŁαγδελπστφωΔΩΣ€…→“";
 
     #[test]
     fn paths_are_numbers_within_the_line() {
@@ -220,6 +266,25 @@ mod tests {
             }
             assert!(!flatten(path(letter)).is_empty(), "{letter}");
         }
+    }
+
+    /// Letters with marks are those without, and more; they stay within the line and are told apart.
+    #[test]
+    fn letters_with_marks() {
+        let plain = glyph('?').len();
+        assert!(plain > 0);
+        let mut drawn: Vec<String> = Vec::new();
+        for letter in crate::picture::accents::all() {
+            let strokes = glyph(letter);
+            let (base, _) = split(letter).expect("a letter with a mark");
+            assert!(strokes.len() > glyph(base).len(), "{letter}");
+            assert_ne!(path(base), path('\u{1}'), "{letter}: its plain letter is not drawn");
+            let inside = |p: &[f64; 2]| (0.0..10.0).contains(&p[0]) && (-3.5..13.2).contains(&p[1]);
+            assert!(strokes.iter().flatten().all(inside), "{letter}");
+            drawn.push(format!("{strokes:?}"));
+        }
+        drawn.sort_unstable();
+        assert!(drawn.windows(2).all(|w| w[0] != w[1]));
     }
 
     #[test]

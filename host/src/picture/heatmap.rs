@@ -18,6 +18,10 @@ const TICK: usize = 5;
 const TICK_GAP: f64 = 5.0;
 /// Cells at least this many pixels wide and high are outlined.
 const OUTLINED: f64 = 11.0;
+/// Pixels between lines of hatching.
+const HATCH: usize = 6;
+/// Solid fraction from which a cell is hatched.
+const LEAST_HATCHED: f64 = 0.01;
 /// Share of ink in the outlines.
 const OUTLINE: f64 = 0.13;
 
@@ -111,6 +115,20 @@ impl Heatmap<'_> {
             for (x, column) in columns.iter().enumerate() {
                 let mean = mean(row, column, self.value);
                 canvas.set(area.x + x, area.y + y, self.map.colour((mean - low) / (high - low)));
+            }
+        }
+    }
+
+    /// Draws lines over cells that are partly solid, the stronger, the more of them is; whole solid is left as it is.
+    pub fn hatch(&self, canvas: &mut Canvas, area: Area, blocked: &dyn Fn(usize, usize) -> f64) {
+        let columns = shares(self.across.edges, area.width);
+        let rows = shares(self.up.edges, area.height);
+        for (y, row) in rows.iter().rev().enumerate() {
+            for (x, column) in columns.iter().enumerate().filter(|(x, _)| (x + y).is_multiple_of(HATCH)) {
+                let share = mean(row, column, blocked);
+                if (LEAST_HATCHED..1.0 - LEAST_HATCHED).contains(&share) {
+                    canvas.blend(area.x + x, area.y + y, INK, 0.25 + 0.6 * share);
+                }
             }
         }
     }

@@ -374,10 +374,35 @@ pub struct OutputKeys {
     pub probes: Vec<Probe>,
     /// Point through which pictures are cut.
     pub slice: Option<[f64; 3]>,
+    /// Ends of the colours of pictures.
+    #[serde(default)]
+    pub range: RangeKeys,
+    /// Largest values over time, if they are wanted.
+    pub maxima: Option<MaximaKeys>,
+    /// Pressure that overpressures are counted from.
+    pub ambient: Option<f64>,
     /// Steps between lines of the log.
     pub log_every: Option<usize>,
     /// Seconds of work between checkpoints.
     pub checkpoint_every: Option<f64>,
+}
+
+/// `range` of `[output]`; what is left out is the range of the whole run.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RangeKeys {
+    /// In m/s.
+    pub speed: Option<[f64; 2]>,
+    /// In kPa.
+    pub overpressure: Option<[f64; 2]>,
+}
+
+/// `maxima` of `[output]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaximaKeys {
+    /// Overpressure whose arrival is told.
+    pub threshold: Option<f64>,
 }
 
 /// Files of a frame.

@@ -1,10 +1,11 @@
 //! Checkpoints: all that a run needs to go on to the bit, in one file that appears whole or not at all.
 //!
 //! Layout: eight bytes of magic and version, the length of a JSON header (u64), the header, the conserved fields as f64 (density, momentum along
-//! each axis of the flow, energy if there is any), CRC-32 of all before; everything little endian. The header names the
+//! each axis of the flow, energy if there is any), the largest values over time if they are kept, CRC-32 of all before; everything little endian. The header names the
 //! case by checksums of its parts, so that a checkpoint of another case is refused with the part that differs.
 
 use super::inlet::Inlet;
+use super::maxima::Maxima;
 use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::files::atomically;
@@ -17,7 +18,7 @@ use std::path::Path;
 use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primitive, Report, Riemann, Scheme};
 
 /// First bytes of the file; the last is the version of the layout.
-const MAGIC: &[u8; 8] = b"VOIDAGE\x02";
+const MAGIC: &[u8; 8] = b"VOIDAGE\x03";
 
 /// Name of the file in the output directory.
 pub const NAME: &str = "checkpoint.bin";
@@ -67,6 +68,8 @@ struct Header {
     case: Fingerprint,
     journal: Journal,
     values: usize,
+    /// Values of the largest values over time, after those of the state.
+    maxima: usize,
     time: f64,
     steps: usize,
     repeated: usize,
@@ -112,6 +115,15 @@ impl Fingerprint {
             ("scheme", of_numbers(&scheme)),
         ];
         Fingerprint(parts.map(|(name, sum)| (name.to_owned(), sum)).to_vec())
+    }
+
+    /// With the numbers that decide which largest values are kept.
+    #[must_use]
+    pub fn with_maxima(mut self, maxima: &Maxima) -> Self {
+        let mut hasher = crc32fast::Hasher::new();
+        maxima.numbers().iter().for_each(|x| hasher.update(&x.to_le_bytes()));
+        self.0.push(("output.maxima or output.ambient".to_owned(), hasher.finalize()));
+        self
     }
 }
 
@@ -182,6 +194,7 @@ pub fn write<const D: usize>(
     setup: &Setup<D>,
     clock: &Clock<f64, D>,
     journal: &Journal,
+    maxima: Option<&Maxima>,
 ) -> Result<()> {
     let flow = &setup.flow;
     let Clock { time, steps, repeated, total } = *clock;
@@ -190,6 +203,7 @@ pub fn write<const D: usize>(
         case: case.clone(),
         journal: journal.clone(),
         values: columns(&flow.state).map(<[f64]>::len).sum(),
+        maxima: maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum(),
         time,
         steps,
         repeated,
@@ -207,6 +221,7 @@ pub fn write<const D: usize>(
         out.write_all(&(text.len() as u64).to_le_bytes())?;
         out.write_all(&text)?;
         columns(&flow.state).try_for_each(|values| write_f64(&mut out, values))?;
+        maxima.iter().flat_map(|m| m.arrays()).try_for_each(|values| write_f64(&mut out, values))?;
         let sum = out.hasher.finalize();
         out.inner.write_all(&sum.to_le_bytes())
     })
@@ -216,7 +231,12 @@ pub fn write<const D: usize>(
 ///
 /// # Errors
 /// The file cannot be read, is damaged, or belongs to another case.
-pub fn resume<const D: usize>(path: &Path, case: &Fingerprint, setup: &mut Setup<D>) -> Result<Journal> {
+pub fn resume<const D: usize>(
+    path: &Path,
+    case: &Fingerprint,
+    setup: &mut Setup<D>,
+    maxima: Option<&mut Maxima>,
+) -> Result<Journal> {
     let bytes = std::fs::read(path).map_err(|e| match e.kind() {
         io::ErrorKind::NotFound => Error::file(path, "there is no checkpoint to resume from; run without --resume"),
         _ => Error::io(path, "read", &e),
@@ -233,6 +253,14 @@ pub fn resume<const D: usize>(path: &Path, case: &Fingerprint, setup: &mut Setup
     let density = take(&old.density);
     let momentum = old.momentum.each_ref().map(&mut take);
     let state = Field { density, momentum, energy: take(&old.energy) };
+    let wanted: usize = maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum();
+    if wanted != header.maxima {
+        let reason = "knows other largest values over time than output.maxima asks for; run without --resume";
+        return Err(Error::file(path, reason));
+    }
+    for array in maxima.into_iter().flat_map(|m| m.arrays_mut()) {
+        array.iter_mut().zip(values.by_ref()).for_each(|(into, from)| *into = from);
+    }
     let Header { time, steps, repeated, rate, first_order, floored, .. } = header;
     let mut total = Report { rate, first_order, floored, ..Report::new() };
     let lengths = header.inflow.len() == 2 * D * (D + 2) && header.floor_change.len() == D + 2;
@@ -266,7 +294,7 @@ fn parse(bytes: &[u8]) -> std::result::Result<(Header, &[u8]), String> {
     let text = rest.get(..length).ok_or_else(|| damaged("it ends too early"))?;
     let header: Header = serde_json::from_slice(text).map_err(|e| damaged(&e.to_string()))?;
     let values = &rest[length..rest.len().saturating_sub(4).max(length)];
-    if header.values.checked_mul(8) != Some(values.len()) {
+    if header.values.checked_add(header.maxima).and_then(|n| n.checked_mul(8)) != Some(values.len()) {
         return Err(damaged("it ends too early"));
     }
     Ok((header, values))

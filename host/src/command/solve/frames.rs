@@ -1,17 +1,12 @@
 //! The state of a moment as files: NumPy arrays, ParaView frames with their times, pictures.
 
-use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::files::{atomically, npy};
 use crate::flow::Flow;
 use crate::grid::Edges;
-use crate::picture::colour::ColourMap;
-use crate::picture::figure::Figure;
-use crate::picture::png;
-use crate::picture::ticks::number;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Primitive variables of all cells, x fastest.
 #[derive(Debug, Clone)]
@@ -70,64 +65,10 @@ impl Snapshot {
     }
 
     /// Speed of all cells.
-    fn speed(&self) -> Vec<f64> {
+    #[must_use]
+    pub fn speed(&self) -> Vec<f64> {
         let [u, v, w] = &self.velocity;
         (0..u.len()).map(|c| (u[c] * u[c] + v[c] * v[c] + w[c] * w[c]).sqrt()).collect()
-    }
-}
-
-/// Where pictures are cut and what is written over them.
-#[derive(Debug, Clone)]
-pub struct Pictures {
-    title: String,
-    at: [usize; 3],
-}
-
-impl Pictures {
-    /// Cuts through `point`, or where the porosity shows most, or in the middle.
-    #[must_use]
-    pub fn new<const D: usize>(setup: &Setup<D>, title: &str, point: Option<[f64; 3]>) -> Self {
-        let edges = &setup.edges;
-        let middle = edges.cells().map(|n| n / 2);
-        let at = match (point, setup.flow.beta_v()) {
-            (Some(point), _) => cell_at(edges, point).unwrap_or(middle),
-            (None, Some(beta)) => png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta).unwrap_or(middle),
-            (None, None) => middle,
-        };
-        Pictures { title: title.to_owned(), at }
-    }
-
-    /// Draws speed and pressure into files of these names.
-    ///
-    /// # Errors
-    /// A file cannot be written.
-    pub fn draw<const D: usize>(
-        &self,
-        setup: &Setup<D>,
-        shot: &Snapshot,
-        time: f64,
-        paths: [PathBuf; 2],
-    ) -> Result<()> {
-        let solid = setup.space.is_some_and(|s| s.closed_cells > 0);
-        let fields = [("speed [m/s]", shot.speed(), true), ("pressure [Pa]", shot.pressure.clone(), false)];
-        for ((name, mut values, from_zero), path) in fields.into_iter().zip(paths) {
-            if let Some(beta) = setup.flow.beta_v() {
-                values.iter_mut().zip(beta).filter(|(_, b)| **b == 0.0).for_each(|(v, _)| *v = f64::NAN);
-            }
-            let least = if from_zero { 0.0 } else { f64::INFINITY };
-            let range = values
-                .iter()
-                .filter(|v| !v.is_nan())
-                .fold([least, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
-            let edges = setup.edges.0.each_ref().map(|e| &e[..]);
-            let title = format!("{} · t = {} s", self.title, number(time));
-            let note = png::grid_note(edges, "m") + if solid { " · solid in mauve" } else { "" };
-            let map = &ColourMap::sequential();
-            let (unit, ends) = ("m", ["", ""]);
-            Figure { title: &title, note: &note, edges, unit, values: &values, at: self.at, name, range, ends, map }
-                .write(&path)?;
-        }
-        Ok(())
     }
 }
 
@@ -154,6 +95,9 @@ pub fn create(dir: &Path) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))
 }
 
+/// Name of the directory in `frames` that holds the planes of pictures.
+pub const SLICES: &str = "slices";
+
 /// Removes the frames that an earlier run has left in `dir`, and nothing else.
 ///
 /// # Errors
@@ -165,7 +109,7 @@ pub fn remove_old(dir: &Path) -> Result<()> {
         let number = stem.rsplit('_').next().unwrap_or_default();
         let numbered = number.len() >= 4 && number.bytes().all(|b| b.is_ascii_digit());
         let ours = matches!(stem.strip_suffix(number), Some("flow_" | "speed_" | "pressure_" | ""));
-        if numbered && ours {
+        if numbered && ours || stem == SLICES && path.is_dir() {
             let removed = if path.is_dir() { std::fs::remove_dir_all(&path) } else { std::fs::remove_file(&path) };
             removed.map_err(|e| Error::io(&path, "remove", &e))?;
         }

@@ -2,6 +2,7 @@
 
 use super::case::{AXES, CaseFile, GasKeys};
 use super::checkpoint::Journal;
+use super::maxima::{Maxima, Peaks};
 use super::setup::{Setup, SpaceReport};
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
@@ -51,6 +52,8 @@ pub struct Report {
     /// Times of the frames.
     frames: Vec<f64>,
     porosity: Option<SpaceReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    maxima: Option<MaximaReport>,
     skipped: Vec<String>,
     warnings: Vec<String>,
     /// Seconds of this session by stage.
@@ -78,6 +81,16 @@ impl GasReport {
         let GasKeys { model, gamma, sound_speed, rho, p, gas_constant } = file.case.gas;
         GasReport { model: model.word(), gamma, sound_speed, rho, p, gas_constant }
     }
+}
+
+/// Largest values over time.
+#[derive(Debug, Clone, Serialize)]
+struct MaximaReport {
+    /// Pressure that overpressures are counted from.
+    ambient: f64,
+    /// Overpressure whose arrival is told.
+    threshold: f64,
+    probes: Vec<Peaks>,
 }
 
 /// What floors changed in the content of the domain: sums of the sizes of all changes.
@@ -135,10 +148,18 @@ impl Report {
             repeated_steps: flow.repeated,
             frames: journal.frames.clone(),
             porosity: setup.space,
+            maxima: None,
             skipped: setup.skipped.clone(),
             warnings: progress.warnings.clone(),
             stages: progress.seconds.clone(),
         }
+    }
+
+    /// With the largest values over time, if they were kept, and those at the probes.
+    #[must_use]
+    pub fn with_maxima(self, maxima: Option<&Maxima>, probes: Vec<Peaks>) -> Self {
+        let report = |m: &Maxima| MaximaReport { ambient: m.ambient, threshold: m.threshold, probes };
+        Report { maxima: maxima.map(report), ..self }
     }
 
     /// A few lines for the terminal.

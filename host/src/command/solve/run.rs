@@ -2,7 +2,10 @@
 
 use super::case::{CaseFile, Format, OutputKeys, VELOCITIES};
 use super::checkpoint::{self, Fingerprint, Journal};
-use super::frames::{self, Pictures, Snapshot, cell_at, create};
+use super::force::force;
+use super::frames::{self, Snapshot, cell_at, create};
+use super::maxima::{Maxima, Peaks, lowest_pressure};
+use super::pictures::Pictures;
 use super::report::{Done, Report};
 use super::setup::{Setup, live_axes, setup};
 use super::table::Table;
@@ -94,8 +97,10 @@ fn run<const D: usize>(
         progress.stage("steps", |p| run.steps(&p.line()))
     };
     stepped?;
-    progress.stage("output", |_| run.snapshot().arrays(&run.dir.join("final"), &run.setup.edges))?;
-    let summary = Report::new(file, &run.setup, &run.journal, run.done, &progress);
+    progress.stage("output", |_| run.last())?;
+    let peaks = run.peaks(file);
+    let summary =
+        Report::new(file, &run.setup, &run.journal, run.done, &progress).with_maxima(run.maxima.as_ref(), peaks);
     summary.say(&progress);
     json::write(&run.dir.join(REPORT), &summary)
 }
@@ -155,8 +160,9 @@ impl Limits {
 /// Frames of a run: more is a slip of the pen.
 const MOST_FRAMES: f64 = 1e6;
 
-/// Columns of `log.csv`. The last three are what floors have changed so far, as sums of sizes; the momentum over all axes.
-const LOG_HEAD: &str = "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy";
+/// Columns of `log.csv`. Of floors: what they have changed so far, as sums of sizes; the momentum over all axes. Of forces: on all solids, now.
+const LOG_HEAD: &str =
+    "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy,force_x,force_y,force_z";
 
 /// Share of the mass, momentum or energy in the domain that floors may change before a run stops.
 const MOST_FLOORED: f64 = 1e-6;
@@ -183,6 +189,9 @@ struct Run<'a, const D: usize> {
     log: Table,
     probes: Option<(Table, Vec<usize>)>,
     pictures: Option<Pictures>,
+    maxima: Option<Maxima>,
+    /// Pressure that overpressures are counted from.
+    ambient: f64,
     done: Done,
     /// The checkpoint on disk is from before the first floor.
     untouched: bool,
@@ -197,17 +206,26 @@ impl<'a, const D: usize> Run<'a, D> {
         resume: bool,
         progress: &mut Progress,
     ) -> Result<Self> {
-        let fingerprint = Fingerprint::new(&setup);
         let output = &file.case.output;
+        let ambient = ambient(file, &setup)?;
+        let mut maxima = maxima(file, &setup, ambient)?;
+        let fingerprint = Fingerprint::new(&setup);
+        let fingerprint = match &maxima {
+            Some(maxima) => fingerprint.with_maxima(maxima),
+            None => fingerprint,
+        };
         let cells = probe_cells(file, &setup, progress)?;
         let title =
             file.case.title.clone().unwrap_or_else(|| {
                 file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
             });
         let wants = |format: Format| formats(output).contains(&format);
-        let pictures = wants(Format::Png).then(|| Pictures::new(&setup, &title, output.slice));
+        let pictures = match wants(Format::Png) {
+            true => Some(pictures(file, &setup, &title, ambient)?),
+            false => None,
+        };
         let journal = match resume {
-            true => checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup)?,
+            true => checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup, maxima.as_mut())?,
             false => {
                 if let Err(error) = setup.flow.rate() {
                     return Err(Error::at(&file.path, "initial", trouble(&mut setup, Some(error))));
@@ -231,7 +249,21 @@ impl<'a, const D: usize> Run<'a, D> {
         };
         let begun = journal.log > 0;
         let (done, untouched) = (Done::default(), setup.flow.total.floored == 0);
-        let mut run = Run { setup, limits, dir, output, fingerprint, journal, log, probes, pictures, done, untouched };
+        let mut run = Run {
+            setup,
+            limits,
+            dir,
+            output,
+            fingerprint,
+            journal,
+            log,
+            probes,
+            pictures,
+            maxima,
+            ambient,
+            done,
+            untouched,
+        };
         if !begun {
             checkpoint::forget_untouched(&run.dir)?;
             run.record(0.0)?;
@@ -284,6 +316,9 @@ impl<'a, const D: usize> Run<'a, D> {
         let sound = flow.total.rate.is_finite() && flow.time > before && flow.time.is_finite();
         match stepped {
             Ok(dt) if sound => {
+                if let Some(maxima) = &mut self.maxima {
+                    maxima.step(flow, dt);
+                }
                 for inlet in &self.setup.inlets {
                     inlet.relax(&mut self.setup.flow, dt);
                 }
@@ -337,8 +372,9 @@ impl<'a, const D: usize> Run<'a, D> {
             let (floors, change) = (flow.total.floored, flow.total.floor_change);
             let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
             let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
+            let [x, y, z] = force(flow, self.setup.live, &self.setup.edges, self.ambient);
             let line = format!(
-                "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy}",
+                "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
                 change.density
             );
             self.log.line(&line)?;
@@ -357,6 +393,24 @@ impl<'a, const D: usize> Run<'a, D> {
             table.line(&line)?;
         }
         Ok(())
+    }
+
+    /// The last state, the largest values over time, and the pictures with the colours of the whole run.
+    fn last(&mut self) -> Result<()> {
+        self.snapshot().arrays(&self.dir.join("final"), &self.setup.edges)?;
+        let beta_v = self.setup.flow.beta_v();
+        if let Some(pictures) = &mut self.pictures {
+            pictures.again(&self.setup, &self.journal.frames, &self.dir.join("frames"))?;
+        }
+        self.maxima.iter().try_for_each(|m| m.write(&self.dir.join("maxima"), &self.setup.edges, beta_v))
+    }
+
+    /// The largest values over time at the probes.
+    fn peaks(&self, file: &CaseFile) -> Vec<Peaks> {
+        let cells = self.probes.iter().flat_map(|(_, cells)| cells);
+        let named = file.case.output.probes.iter().enumerate().map(|(n, probe)| probe.name(n)).zip(cells);
+        let of = |maxima: &Maxima| named.map(|(name, &cell)| maxima.peaks(name, cell)).collect();
+        self.maxima.as_ref().map_or_else(Vec::new, of)
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -380,9 +434,8 @@ impl<'a, const D: usize> Run<'a, D> {
                 }
                 Format::Npy => shot.arrays(&dir.join(format!("{n:04}")), &self.setup.edges)?,
                 Format::Png => {
-                    let paths = ["speed", "pressure"].map(|f| dir.join(format!("{f}_{n:04}.png")));
-                    if let Some(pictures) = &self.pictures {
-                        pictures.draw(&self.setup, &shot, time, paths)?;
+                    if let Some(pictures) = &mut self.pictures {
+                        pictures.frame(&self.setup, &shot, (n, time), &dir)?;
                     }
                 }
             }
@@ -407,7 +460,7 @@ impl<'a, const D: usize> Run<'a, D> {
             self.untouched = false;
         }
         let path = self.dir.join(checkpoint::NAME);
-        checkpoint::write(&path, &self.fingerprint, &self.setup, &clock, &journal)
+        checkpoint::write(&path, &self.fingerprint, &self.setup, &clock, &journal, self.maxima.as_ref())
     }
 
     /// What the terminal shows while it runs.
@@ -472,6 +525,32 @@ fn state_of<const D: usize>(setup: &Setup<D>, cell: usize) -> String {
         let _ = write!(text, "{} = {u:?}, ", VELOCITIES[*axis]); // a String takes anything
     }
     format!("{text}p = {:?}", w.pressure)
+}
+
+/// The pressure that overpressures are counted from.
+fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> Result<f64> {
+    let given = file.case.output.ambient;
+    file.demand("output.ambient", given, |p| p > 0.0 && p.is_finite(), "needs a positive pressure")?;
+    Ok(given.unwrap_or_else(|| lowest_pressure(&setup.flow)))
+}
+
+/// How frames are drawn.
+fn pictures<const D: usize>(file: &CaseFile, setup: &Setup<D>, title: &str, ambient: f64) -> Result<Pictures> {
+    let OutputKeys { slice, range, .. } = &file.case.output;
+    for (name, ends) in [("speed", range.speed), ("overpressure", range.overpressure)] {
+        if ends.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
+            return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
+        }
+    }
+    Ok(Pictures::new(setup, title, *slice, ambient, range))
+}
+
+/// Largest values over time of a flow at its beginning, if the case asks for them.
+fn maxima<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> Result<Option<Maxima>> {
+    let Some(keys) = &file.case.output.maxima else { return Ok(None) };
+    let positive = |v: f64| v > 0.0 && v.is_finite();
+    file.demand("output.maxima.threshold", keys.threshold, positive, "needs a positive overpressure")?;
+    Ok(Some(Maxima::new(keys, ambient, &setup.flow)))
 }
 
 /// The cells of the probes.

@@ -1,0 +1,82 @@
+//! The force of the gas on all that stands in it.
+//!
+//! Walls inside a cell and in its faces have the vector area A⁻β⁻ − A⁺β⁺ along an axis, β⁻ and β⁺ being the open fractions of the two faces of area A:
+//! by Gauss' theorem the surface of the gas is closed. The pressure of the cell acts on them; it is counted from that of the surroundings, so that what
+//! leans on a wall of the domain feels the difference alone. Obstacles that the cells do not resolve feel their drag,
+//! β_v ρ (a_i + ½ CR_i |u|) u_i V. Walls of the domain do not count.
+
+use crate::flow::Flow;
+use crate::grid::Edges;
+use rayon::prelude::*;
+
+/// Force on all solids along x, y and z; per metre of the axes that do not flow. The same bits for any number of threads.
+pub fn force<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], edges: &Edges, ambient: f64) -> [f64; 3] {
+    let Some(solids) = Solids::of(flow, live, edges) else { return [0.0; 3] };
+    let n = flow.cells()[0];
+    let rows: Vec<[f64; D]> = (0..flow.len() / n)
+        .into_par_iter()
+        .map(|row| {
+            let mut sum = [0.0; D];
+            (row * n..(row + 1) * n).for_each(|cell| solids.add(flow, cell, ambient, &mut sum));
+            sum
+        })
+        .collect();
+    let mut force = [0.0; 3];
+    for (d, axis) in live.into_iter().enumerate() {
+        force[axis] = rows.iter().fold(0.0, |sum, row| sum + row[d]);
+    }
+    force
+}
+
+/// What the gas pushes.
+struct Solids<'a, const D: usize> {
+    widths: [Vec<f64>; D],
+    cells: [usize; D],
+    beta_v: Option<&'a [f64]>,
+    faces: [Option<&'a [f64]>; D],
+    /// Quadratic and linear coefficients; empty where zero.
+    drag: [[&'a [f64]; D]; 2],
+}
+
+impl<'a, const D: usize> Solids<'a, D> {
+    /// Those of a flow; none if its space is open and nothing drags.
+    fn of(flow: &'a Flow<f64, D>, live: [usize; D], edges: &Edges) -> Option<Self> {
+        let (mut faces, mut drag) = ([None; D], [[&[][..]; D]; 2]);
+        faces.iter_mut().zip(flow.faces()).for_each(|(to, from)| *to = Some(from));
+        drag.iter_mut().flatten().zip(flow.drag()).for_each(|(to, from)| *to = from);
+        let (widths, beta_v) = (live.map(|axis| edges.widths(axis)), flow.beta_v());
+        let nothing = beta_v.is_none() && drag.iter().flatten().all(|c| c.is_empty());
+        (!nothing).then(|| Solids { widths, cells: flow.cells(), beta_v, faces, drag })
+    }
+
+    /// Adds the force on what is in a cell and in its faces.
+    fn add(&self, flow: &Flow<f64, D>, cell: usize, ambient: f64, sum: &mut [f64; D]) {
+        let open = self.beta_v.map_or(1.0, |b| b[cell]);
+        if open == 0.0 {
+            return;
+        }
+        let mut rest = cell;
+        let at: [usize; D] = self.cells.map(|n| {
+            let i = rest % n;
+            rest /= n;
+            i
+        });
+        let volume = (0..D).fold(1.0, |v, d| v * self.widths[d][at[d]]);
+        let w = flow.get(cell);
+        let speed = w.velocity.iter().fold(0.0, |s, u| s + u * u).sqrt();
+        for d in 0..D {
+            if let Some(faces) = self.faces[d] {
+                let face = |side: usize| {
+                    (0..D).rev().fold(0, |i, a| {
+                        let (n, k) = if a == d { (self.cells[a] + 1, at[a] + side) } else { (self.cells[a], at[a]) };
+                        i * n + k
+                    })
+                };
+                let area = volume / self.widths[d][at[d]];
+                sum[d] += (w.pressure - ambient) * (faces[face(0)] - faces[face(1)]) * area;
+            }
+            let [quadratic, linear] = [0, 1].map(|n| self.drag[n][d].get(cell).copied().unwrap_or(0.0));
+            sum[d] += open * w.density * (linear + 0.5 * quadratic * speed) * w.velocity[d] * volume;
+        }
+    }
+}

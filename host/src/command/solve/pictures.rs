@@ -1,0 +1,174 @@
+//! Pictures of frames: speed and overpressure in three planes, with one range of colours for all frames of a run.
+//!
+//! A frame is drawn when it is reached, with the range that the run has had so far, unless the case gives one; its planes are kept in `frames/slices`,
+//! and at the end of the run all frames are drawn again with the range of the whole run.
+
+use super::case::RangeKeys;
+use super::frames::{SLICES, Snapshot, cell_at};
+use super::setup::Setup;
+use crate::error::{Error, Result};
+use crate::files::npy;
+use crate::picture::colour::ColourMap;
+use crate::picture::figure::Figure;
+use crate::picture::png;
+use crate::picture::ticks::number;
+use std::path::{Path, PathBuf};
+
+/// Where pictures are cut, what is written over them, and their colours.
+#[derive(Debug, Clone)]
+pub struct Pictures {
+    title: String,
+    at: [usize; 3],
+    ambient: f64,
+    given: [Option<[f64; 2]>; 2],
+    /// The frames drawn so far with a range that may not be the last.
+    seen: [[f64; 2]; 2],
+}
+
+/// Names over the colours, and of the files.
+const FIELDS: [(&str, &str); 2] = [("speed [m/s]", "speed"), ("overpressure [kPa]", "pressure")];
+
+/// Pascals in the unit of the pictures.
+const KILO: f64 = 1e3;
+
+impl Pictures {
+    /// Cuts through `point`, or where the porosity shows most, or in the middle; overpressures are counted from `ambient`.
+    #[must_use]
+    pub fn new<const D: usize>(
+        setup: &Setup<D>,
+        title: &str,
+        point: Option<[f64; 3]>,
+        ambient: f64,
+        range: &RangeKeys,
+    ) -> Self {
+        let edges = &setup.edges;
+        let middle = edges.cells().map(|n| n / 2);
+        let at = match (point, setup.flow.beta_v()) {
+            (Some(point), _) => cell_at(edges, point).unwrap_or(middle),
+            (None, Some(beta)) => png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta).unwrap_or(middle),
+            (None, None) => middle,
+        };
+        let given = [range.speed, range.overpressure];
+        Pictures { title: title.to_owned(), at, ambient, given, seen: [NOTHING; 2] }
+    }
+
+    /// Draws the `n`-th frame into `dir`, and keeps its planes if its colours may change.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn frame<const D: usize>(
+        &mut self,
+        setup: &Setup<D>,
+        shot: &Snapshot,
+        (n, time): (usize, f64),
+        dir: &Path,
+    ) -> Result<()> {
+        let over = shot.pressure.iter().map(|p| (p - self.ambient) / KILO).collect();
+        let mut fields = [shot.speed(), over];
+        if let Some(beta) = setup.flow.beta_v() {
+            for values in &mut fields {
+                values.iter_mut().zip(beta).filter(|(_, b)| **b == 0.0).for_each(|(v, _)| *v = f64::NAN);
+            }
+        }
+        let planes = fields.each_ref().map(|values| self.cut(setup, values));
+        self.see(&planes);
+        if self.given.contains(&None) {
+            let both = planes.concat();
+            npy::write_all(&dir.join(SLICES), &[(format!("{n:04}"), [both.len() / 2, 2, 1], &both)])?;
+        }
+        self.draw(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))
+    }
+
+    /// Draws all frames again with the range of the whole run, if it is not given.
+    ///
+    /// # Errors
+    /// A file cannot be read or written.
+    pub fn again<const D: usize>(&mut self, setup: &Setup<D>, times: &[f64], dir: &Path) -> Result<()> {
+        let kept = |n: usize| dir.join(SLICES).join(format!("{n:04}.npy"));
+        if !self.given.contains(&None) {
+            return Ok(());
+        }
+        for pass in 0..2 {
+            for (n, &time) in times.iter().enumerate().filter(|(n, _)| kept(*n).exists()) {
+                let (_, both) = npy::read(&kept(n))?;
+                let planes: [Vec<f64>; 2] = [both[..both.len() / 2].to_vec(), both[both.len() / 2..].to_vec()];
+                if self.cut(setup, &vec![0.0; setup.flow.len()]).len() != planes[0].len() {
+                    return Err(Error::file(&kept(n), "is of another case: remove it"));
+                }
+                match pass {
+                    0 => self.see(&planes),
+                    _ => {
+                        let fields = planes.each_ref().map(|values| self.spread(setup, values));
+                        self.draw(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The values in the three planes that are drawn.
+    fn cut<const D: usize>(&self, setup: &Setup<D>, values: &[f64]) -> Vec<f64> {
+        self.cells(setup).map(|cell| values[cell]).collect()
+    }
+
+    /// A field that holds the values of the three planes and nothing else.
+    fn spread<const D: usize>(&self, setup: &Setup<D>, planes: &[f64]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; setup.flow.len()];
+        self.cells(setup).zip(planes).for_each(|(cell, v)| values[cell] = *v);
+        values
+    }
+
+    /// The cells of the planes across x, y and z.
+    fn cells<const D: usize>(&self, setup: &Setup<D>) -> impl Iterator<Item = usize> {
+        let ([nx, ny, nz], [i, j, k]) = (setup.edges.cells(), self.at);
+        let cell = move |i: usize, j: usize, k: usize| (k * ny + j) * nx + i;
+        let across_x = (0..nz).flat_map(move |k| (0..ny).map(move |j| cell(i, j, k)));
+        let across_y = (0..nz).flat_map(move |k| (0..nx).map(move |i| cell(i, j, k)));
+        let across_z = (0..ny).flat_map(move |j| (0..nx).map(move |i| cell(i, j, k)));
+        across_x.chain(across_y).chain(across_z)
+    }
+
+    /// Widens the ranges of the run; both hold 0.
+    fn see(&mut self, planes: &[Vec<f64>; 2]) {
+        for (seen, values) in self.seen.iter_mut().zip(planes) {
+            let widened = values.iter().filter(|v| !v.is_nan());
+            *seen = widened.fold(*seen, |[low, high], &v| [low.min(v), high.max(v)]);
+        }
+    }
+
+    fn draw<const D: usize>(
+        &self,
+        setup: &Setup<D>,
+        fields: [&[f64]; 2],
+        time: f64,
+        paths: [PathBuf; 2],
+    ) -> Result<()> {
+        let edges = setup.edges.0.each_ref().map(|e| &e[..]);
+        let blocked: Option<Vec<f64>> = setup.flow.beta_v().map(|beta| beta.iter().map(|b| 1.0 - b).collect());
+        let title = format!("{} · t = {} s", self.title, number(time));
+        let solid = setup.space.is_some_and(|s| s.closed_cells > 0);
+        let note = png::grid_note(edges, "m")
+            + if solid { " · solid in mauve" } else { "" }
+            + if blocked.is_some() { " · partly solid hatched" } else { "" };
+        let (map, unit, ends, at) = (&ColourMap::sequential(), "m", ["", ""], self.at);
+        for (n, path) in paths.iter().enumerate() {
+            let (name, range) = (FIELDS[n].0, self.given[n].unwrap_or(self.seen[n]));
+            let figure =
+                Figure { title: &title, note: &note, edges, unit, values: fields[n], at, name, range, ends, map };
+            let canvas = match &blocked {
+                Some(blocked) => figure.draw_hatched(blocked),
+                None => figure.draw(),
+            };
+            canvas.map_err(|reason| Error::file(path, reason))?.write(path)?;
+        }
+        Ok(())
+    }
+}
+
+/// A range that holds 0 and nothing else yet.
+const NOTHING: [f64; 2] = [0.0, 0.0];
+
+fn file_names(dir: &Path, n: usize) -> [PathBuf; 2] {
+    FIELDS.map(|(_, name)| dir.join(format!("{name}_{n:04}.png")))
+}

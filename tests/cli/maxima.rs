@@ -1,0 +1,244 @@
+//! Largest values over time and forces on solids, against what they must be.
+
+use crate::kit::{Scratch, array, json, solved};
+use std::fs;
+
+/// Lines of `log.csv` as numbers.
+fn log(at: &Scratch, dir: &str) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(at.file(dir).join("log.csv")).expect("a log");
+    text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().expect("a number")).collect()).collect()
+}
+
+/// Columns of the forces.
+const FORCE: std::ops::Range<usize> = 10..13;
+
+/// Gas that is stopped by a wall: the pressure at the wall and the speed of the shock that runs back, by the conditions of Rankine and Hugoniot
+/// (Toro, eq. 4.6 and ch. 3.1.3).
+fn stopped(gamma: f64, rho: f64, p: f64, u: f64) -> (f64, f64) {
+    let (a, b) = (2.0 / ((gamma + 1.0) * rho), (gamma - 1.0) / (gamma + 1.0) * p);
+    let (mut low, mut high) = (p, 1e3 * p);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if (middle - p) * (a / (middle + b)).sqrt() < u { low = middle } else { high = middle }
+    }
+    let sound = (gamma * p / rho).sqrt();
+    let mach = ((gamma + 1.0) / (2.0 * gamma) * (low / p) + (gamma - 1.0) / (2.0 * gamma)).sqrt();
+    (low, mach * sound - u)
+}
+
+/// A stream meets a block that fills the end of a channel of 0.5 m: force, overpressure, arrival, impulse.
+#[test]
+fn a_stream_against_a_block() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), "[[solid]]\nshape = \"box\"\nmin = [0.8, -1, -1]\nmax = [2, 2, 2]\n")
+        .expect("written");
+    let (gamma, rho, p, u) = (1.4, 1.2, 1e5, 100.0);
+    let case = format!(
+        r#"
+[grid]
+x = {{ points = [0, 1], cells = [200] }}
+y = [0, 0.25, 0.5]
+[porosity]
+scene = "scene.toml"
+[gas]
+model = "ideal"
+gamma = {gamma}
+[initial]
+uniform = {{ rho = {rho}, u = {u}, p = {p} }}
+[boundary]
+x_min = {{ type = "far-field", rho = {rho}, u = {u}, p = {p} }}
+x_max = "wall"
+y_min = "wall"
+y_max = "wall"
+[time]
+end = 0.0015
+[output]
+maxima = {{ threshold = 2e4 }}
+probes = [{{ name = "wall", at = [0.799, 0.1, 0.1] }}, {{ name = "far", at = [0.5, 0.1, 0.1] }}]
+"#
+    );
+    solved(&at, &case, "out", &["-q"]);
+    let (wall, speed) = stopped(gamma, rho, p, u);
+    assert!((wall / 1.489e5 - 1.0).abs() < 1e-3 && speed > 250.0 && speed < 340.0, "{wall} Pa, {speed} m/s");
+    // The block's face is 0.5 m high, and a metre deep as there is no z; after a few steps the shock has left it.
+    let area = 0.5;
+    for line in log(&at, "out").iter().filter(|l| l[1] > 2e-4) {
+        let [x, y, z] = [0, 1, 2].map(|a| line[FORCE][a]);
+        let truth = (wall - p) * area;
+        assert!((x / truth - 1.0).abs() < 5e-3, "{x} N at {} s, not {truth}", line[1]);
+        assert!(y.abs() < 1e-6 * x && z == 0.0, "{y}, {z}");
+    }
+    let maxima = &json(&at.file("out/report.json"))["maxima"];
+    assert_eq!((maxima["ambient"].as_f64(), maxima["threshold"].as_f64()), (Some(p), Some(2e4)));
+    let end = 0.0015;
+    // The cell at the wall overshoots in the first steps, where the shock has no width yet.
+    for (probe, away, error) in [(0, 0.8 - 0.7975, 0.05), (1, 0.8 - 0.5025, 0.01)] {
+        let number = |key: &str| maxima["probes"][probe][key].as_f64().expect("a number");
+        assert!((number("overpressure") / (wall - p) - 1.0).abs() < error, "{maxima}");
+        // The moment is that of the middle of the cell, to a cell.
+        let arrival = away / speed;
+        assert!((number("arrival") - arrival).abs() < 0.005 / speed, "{maxima}, arrival {arrival}");
+        assert!((number("impulse") / ((wall - p) * (end - arrival)) - 1.0).abs() < 0.02, "{maxima}");
+        assert!((number("dynamic_pressure") / (0.5 * rho * u * u) - 1.0).abs() < 0.02, "{maxima}");
+    }
+    // Nothing is told of the inside of the block.
+    let over = array(&at.file("out/maxima/overpressure.npy"));
+    assert!((0..400).all(|c| over[c].is_nan() == (c % 200 >= 160)));
+}
+
+/// Drag is a force: gas of one speed through cells that drag, in a closed form.
+#[test]
+fn drag_is_a_force() {
+    let at = Scratch::new();
+    let case = "[grid]\nx = { points = [0, 2], cells = [8] }\ny = { points = [0, 3], cells = [4] }\n\
+                [gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = { rho = 1.2, u = 4, v = 3, p = 1e5 }\n\
+                [boundary]\nx_min = \"periodic\"\nx_max = \"periodic\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n\
+                [drag]\ncr = [0.5, 0, 0]\nlinear = [0, 2, 0]\n[time]\nmax_steps = 3\n";
+    solved(&at, case, "out", &["-q"]);
+    let lines = log(&at, "out");
+    // ½ cr ρ |u| u V along x, linear ρ v V along y, in 2 × 3 × 1 m³.
+    let first = &lines[0][FORCE];
+    assert!(
+        (first[0] - 0.5 * 0.5 * 1.2 * 5.0 * 4.0 * 6.0).abs() < 1e-9 && (first[1] - 2.0 * 1.2 * 3.0 * 6.0).abs() < 1e-9
+    );
+    // What the gas loses is what the obstacles take: momentum ρ u V, by the mean of the forces before and after a step.
+    let speed = |n: usize| {
+        // From the force along y, which is linear in v.
+        lines[n][FORCE][1] / (2.0 * 1.2 * 6.0)
+    };
+    for n in 1..lines.len() {
+        let (dt, mean) = (lines[n][2], 0.5 * (lines[n - 1][FORCE][1] + lines[n][FORCE][1]));
+        let lost = 1.2 * 6.0 * (speed(n - 1) - speed(n)) / dt;
+        assert!((lost / mean - 1.0).abs() < 0.01, "{lost} N lost, {mean} N taken");
+    }
+}
+
+/// Gas at rest presses on all sides alike; its weight is no force on a room without solids.
+#[test]
+fn gas_at_rest_pushes_nothing() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), "[[solid]]\nshape = \"sphere\"\ncenter = [0.5, 0.5, 0.4]\nradius = 0.23\n")
+        .expect("written");
+    let case = |porosity: &str, gravity: f64| {
+        format!(
+            "[grid]\norigin = [0, 0, 0]\nspacing = [0.1, 0.1, 0.1]\ncells = [10, 10, 10]\n{porosity}\n\
+             [gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = {{ rho = 1.2, p = 1e5 }}\n\
+             [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\nz_min = \"wall\"\nz_max = \"wall\"\n\
+             [gravity]\ng = [0, 0, {gravity}]\n[time]\nmax_steps = 12\n"
+        )
+    };
+    let largest =
+        |dir: &str| log(&at, dir).iter().flat_map(|l| l[FORCE].to_vec()).fold(0.0, |m: f64, f| m.max(f.abs()));
+    solved(&at, &case("[porosity]\nscene = \"scene.toml\"", 0.0), "still", &["-q"]);
+    // A pressure of 1e5 Pa on sides of 1 m².
+    assert!(largest("still") < 1e-9 * 1e5, "{} N", largest("still"));
+    solved(&at, &case("", -9.81), "weight", &["-q"]);
+    assert_eq!(largest("weight"), 0.0);
+    // With a solid in it, the pressure that builds up below bears it: less than the weight of all the gas while it begins to move.
+    solved(&at, &case("[porosity]\nscene = \"scene.toml\"", -9.81), "falling", &["-q"]);
+    let last = log(&at, "falling").pop().expect("lines");
+    let weight = 1.2 * 9.81;
+    assert!(last[12].abs() > 1e-3 && last[12].abs() < weight && last[10].abs() < 1e-6 * weight, "{last:?}");
+}
+
+/// With a frame after every step the largest values are those of the frames.
+#[test]
+fn peaks_are_those_of_finely_sampled_frames() {
+    let at = Scratch::new();
+    let every = 1e-5;
+    let case = format!(
+        r#"
+[grid]
+x = {{ points = [0, 1], cells = [24] }}
+y = {{ points = [0, 1], cells = [18] }}
+[gas]
+model = "ideal"
+gamma = 1.4
+[initial]
+uniform = {{ rho = 1.2, p = 1e5 }}
+regions = [{{ center = [0.4, 0.5], radius = 0.2, p = 6e5 }}]
+[boundary]
+x_min = "wall"
+x_max = "wall"
+y_min = "wall"
+y_max = {{ type = "far-field", rho = 1.2, p = 1e5 }}
+[scheme]
+careful_steps = 0
+[time]
+end = 6e-4
+[output]
+every = {every}
+formats = ["npy"]
+maxima = {{}}
+"#
+    );
+    solved(&at, &case, "out", &["-q"]);
+    let report = json(&at.file("out/report.json"));
+    let times: Vec<f64> = report["frames"].as_array().expect("frames").iter().filter_map(|t| t.as_f64()).collect();
+    assert_eq!(report["steps"], times.len() - 1, "a frame after every step");
+    let read = |n: usize, field: &str| array(&at.file(&format!("out/frames/{n:04}/{field}.npy")));
+    let over: Vec<Vec<f64>> = (0..times.len()).map(|n| read(n, "p").iter().map(|p| p - 1e5).collect()).collect();
+    let dynamic = |n: usize| -> Vec<f64> {
+        let [rho, u, v] = ["rho", "u", "v"].map(|f| read(n, f));
+        (0..rho.len()).map(|c| 0.5 * rho[c] * (u[c] * u[c] + v[c] * v[c])).collect()
+    };
+    let dynamic: Vec<Vec<f64>> = (0..times.len()).map(dynamic).collect();
+    let peak = |name: &str| array(&at.file(&format!("out/maxima/{name}.npy")));
+    let [most, impulse, arrival, wind] = ["overpressure", "impulse", "arrival", "dynamic_pressure"].map(peak);
+    let mut reached = 0;
+    for cell in 0..most.len() {
+        let of = |frames: &[Vec<f64>]| frames.iter().fold(f64::NEG_INFINITY, |m, f| m.max(f[cell]));
+        assert_eq!(most[cell], of(&over), "cell {cell}");
+        assert!((wind[cell] - of(&dynamic)).abs() <= 1e-12 * wind[cell], "cell {cell}");
+        let (mut sum, mut largest) = (0.0, 0.0_f64);
+        for n in 1..times.len() {
+            sum += 0.5 * (times[n] - times[n - 1]) * (over[n - 1][cell] + over[n][cell]);
+            largest = largest.max(sum);
+        }
+        assert!((impulse[cell] - largest).abs() < 1e-9 * 1e5 * 6e-4, "cell {cell}: {} {largest}", impulse[cell]);
+        match (0..times.len()).find(|&n| over[n][cell] >= 1000.0) {
+            None => assert!(arrival[cell].is_nan(), "cell {cell}"),
+            Some(0) => assert_eq!(arrival[cell], 0.0),
+            Some(n) => {
+                reached += 1;
+                let within = arrival[cell] > times[n - 1] - 1e-12 && arrival[cell] <= times[n] + 1e-12;
+                assert!(within, "cell {cell}: {} between {} and {}", arrival[cell], times[n - 1], times[n]);
+            }
+        }
+    }
+    assert!(reached > 100, "{reached} cells were reached");
+}
+
+/// Pictures of a run: one range for all frames, known or given; walls of a grating show.
+#[test]
+fn pictures_have_one_range() {
+    let at = Scratch::new();
+    let template = crate::kit::stdout(&crate::kit::voidage(&[&"solve", &"--template"]));
+    let case = template.replace("end = 0.006", "end = 0.0009").replace("every = 0.002", "every = 0.0003");
+    let png = |dir: &str, name: &str| fs::read(at.file(&format!("{dir}/frames/{name}.png"))).expect("a picture");
+    solved(&at, &case, "own", &["-q"]);
+    solved(
+        &at,
+        &case.replace("[output]", "[output]\nrange = { speed = [0, 2000], overpressure = [0, 700] }"),
+        "given",
+        &["-q"],
+    );
+    assert!(!at.file("given/frames/slices").exists() && at.file("own/frames/slices/0003.npy").is_file());
+    // At rest at the beginning: one colour, unless the range of the run is another than that of the frame.
+    assert!(png("own", "speed_0000") != png("given", "speed_0000"));
+    // In two parts the pictures are those of the whole.
+    solved(&at, &case.replace("end = 0.0009", "end = 0.0009\nmax_steps = 12"), "parts", &["-q"]);
+    solved(&at, &case, "parts", &["-q", "--resume"]);
+    let frames = json(&at.file("own/report.json"))["frames"].as_array().expect("frames").len();
+    assert_eq!(frames, 4);
+    for name in (0..frames).flat_map(|n| [format!("speed_{n:04}"), format!("pressure_{n:04}")]) {
+        assert!(png("own", &name) == png("parts", &name), "{name}");
+    }
+    fs::write(
+        at.file("scene.toml"),
+        "[[solid]]\nshape = \"box\"\nmin = [2, 0, 0]\nmax = [2.1, 2, 2]\nporosity = 0.6\n",
+    )
+    .expect("written");
+    solved(&at, &case.replace("[gas]", "[porosity]\nscene = \"scene.toml\"\n[gas]"), "wall", &["-q"]);
+    assert!(png("wall", "pressure_0000") != png("own", "pressure_0000"));
+}
