@@ -51,6 +51,9 @@ pub struct SizeClass {
     pub length: f64,
 }
 
+/// A size that is beyond the end of its class by no more than this share is of that class: pipes are often made of facets.
+const SLACK: f64 = 1e-3;
+
 /// Ends of the classes in m.
 const SIZES: [f64; 7] = [0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
@@ -75,7 +78,7 @@ fn of_zone(grid: &Grid<f64>, zone: &Zone, result: &Porosity, obstacles: &Resista
         (count, volume, solid_volume) = (count + 1, volume + size, solid_volume + solid);
         let length = obstacles.l_obs[n];
         if length > 0.0 {
-            let class = &mut classes[SIZES.partition_point(|&end| end < length)];
+            let class = &mut classes[SIZES.partition_point(|&end| end * (1.0 + SLACK) < length)];
             class.solid_volume += solid;
             class.length += obstacles.s[n] * size / (std::f64::consts::PI * length);
             class.frontal_area.iter_mut().zip(&obstacles.a).for_each(|(sum, a)| *sum += a[n] * size);
