@@ -1,6 +1,6 @@
 //! One picture of a plane field: cells to scale, ticks with numbers, axis names, a title.
 
-use super::canvas::{Canvas, Colour, GREY, INK, Style, text_width};
+use super::canvas::{Canvas, Colour, GREY, INK, Style, WHITE, text_width};
 use super::colour::ColourMap;
 use super::ticks::{Ticks, ticks};
 
@@ -20,6 +20,8 @@ const TICK_GAP: f64 = 5.0;
 const OUTLINED: f64 = 11.0;
 /// Pixels between lines of hatching.
 const HATCH: usize = 6;
+/// Sum of red, green and blue below which lines are white rather than of ink.
+const DARK: u32 = 330;
 /// Solid fraction from which a cell is hatched.
 const LEAST_HATCHED: f64 = 0.01;
 /// Share of ink in the outlines.
@@ -127,7 +129,9 @@ impl Heatmap<'_> {
             for (x, column) in columns.iter().enumerate().filter(|(x, _)| (x + y).is_multiple_of(HATCH)) {
                 let share = mean(row, column, blocked);
                 if (LEAST_HATCHED..1.0 - LEAST_HATCHED).contains(&share) {
-                    canvas.blend(area.x + x, area.y + y, INK, 0.25 + 0.6 * share);
+                    let (x, y) = (area.x + x, area.y + y);
+                    let dark = canvas.get(x, y).iter().map(|c| u32::from(*c)).sum::<u32>() < DARK;
+                    canvas.blend(x, y, if dark { WHITE } else { INK }, 0.3 + 0.5 * share);
                 }
             }
         }
@@ -293,6 +297,29 @@ mod tests {
                 let cells: std::collections::BTreeSet<_> = all.iter().flatten().map(|s| s.0).collect();
                 assert_eq!(cells.len(), edges.len() - 1, "{edges:?} {pixels}");
             }
+        }
+    }
+
+    /// Hatching shows on dark and on light colours, grows with the solid fraction, and leaves open and solid cells alone.
+    #[test]
+    fn hatching_shows_on_any_colour() {
+        let edges = [0.0, 1.0, 2.0];
+        let axis = EdgeAxis { name: "x", unit: "m", edges: &edges };
+        let area = Area { x: 0, y: 0, width: 60, height: 60 };
+        let map = &ColourMap::sequential();
+        for value in [0.0, 0.3, 0.5, 0.7, 1.0] {
+            let field = |_: usize, _: usize| value;
+            let heatmap = Heatmap { across: axis, up: axis, value: &field, range: [0.0, 1.0], map, title: "" };
+            let colour = map.colour(value);
+            let changed = |share: f64| {
+                let mut canvas = Canvas::new(60, 60);
+                canvas.rect(0, 0, 60, 60, colour);
+                heatmap.hatch(&mut canvas, area, &|_, _| share);
+                let far = |c: Colour| c.iter().zip(colour).map(|(a, b)| u32::from(a.abs_diff(b))).sum::<u32>();
+                (0..3600).map(|n| far(canvas.get(n % 60, n / 60))).max().unwrap_or(0)
+            };
+            assert_eq!([changed(0.0), changed(1.0)], [0, 0]);
+            assert!(changed(0.1) > 60 && changed(0.6) > changed(0.1), "{value}: {} {}", changed(0.1), changed(0.6));
         }
     }
 
