@@ -19,8 +19,3 @@ pub mod random;
 pub mod recipe;
 pub mod solids;
 pub mod truth;
-
-/// The README's example compiles and holds.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-pub struct Readme;

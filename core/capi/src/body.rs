@@ -157,7 +157,7 @@ pub unsafe fn meets<R: Real>(pair: &Pair<R>, contact: *mut i32) -> Answer {
     if contact.is_null() {
         return Err(Status::Null.of(c"contact"));
     }
-    let found = unsafe { pair.ask(|query| query.meets().contact())? };
+    let found = unsafe { pair.ask(|query| query.contact())? };
     let found = match found {
         Some(exact::Contact::Disjoint) => Contact::Apart,
         Some(exact::Contact::Touching) => Contact::Touching,

@@ -62,3 +62,28 @@ fn the_version_is_that_of_the_package() {
     assert_eq!(vdg_version(), 10000 * major + 100 * minor + patch);
     assert!(read("include/voidage.h").contains(&format!("#define VDG_VERSION {VDG_VERSION}\n")));
 }
+
+/// A block of an example, without the margin that all its lines have.
+fn block(file: &str, name: &str) -> String {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)).expect(file);
+    let mark = |line: &str| line.trim_matches(|c| " /*!#".contains(c)).to_owned();
+    let lines = text.lines().skip_while(|line| mark(line) != format!("docs: {name}")).skip(1);
+    let lines: Vec<&str> = lines.take_while(|line| mark(line) != "docs: end").collect();
+    let margin = lines.iter().filter(|l| !l.is_empty()).map(|l| l.len() - l.trim_start().len()).min().unwrap_or(0);
+    lines.iter().map(|line| line.get(margin..).unwrap_or("")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_page_on_linking_shows_what_is_tested() {
+    let page = std::fs::read_to_string(file("../../docs/link.md")).expect("docs/link.md");
+    let mut blocks = 0;
+    for part in page.split("<!-- ").skip(1) {
+        let (mark, rest) = part.split_once(" -->\n").expect("the end of a mark");
+        let (file, name) = mark.split_once(": ").expect("a file and a name");
+        let shown = rest.split_once('\n').expect("a fence").1.split("\n```").next().expect("a block");
+        assert_eq!(shown, block(file, name), "{mark}: python3 core/capi/docs.py");
+        assert!(shown.lines().count() > 2, "{mark} shows something");
+        blocks += 1;
+    }
+    assert!(blocks >= 13, "blocks were seen");
+}

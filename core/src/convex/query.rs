@@ -171,6 +171,26 @@ impl<'q, 'a, 'b, V: Vector> BodyQuery<'q, 'a, 'b, V> {
         }
     }
 
+    /// The answer of [`BodyQuery::meets`] without its proof; none if undecided. Proofs of the exact stage are large: where rounding can tell, this
+    /// takes far less stack.
+    pub fn contact(&self) -> Option<Contact> {
+        let found = match self.sharp() {
+            Some((a, b)) => gjk::intersect(&a, &b, self.hint),
+            None => gjk::intersect(self.a, self.b, self.hint),
+        };
+        match found {
+            Intersection::Apart { .. } => Some(Contact::Disjoint),
+            Intersection::Overlapping { .. } => Some(Contact::Overlapping),
+            Intersection::Undecided { axis, .. } => self.exact_contact(axis),
+        }
+    }
+
+    /// In a frame of its own, so that queries which do not come here have none of its memory.
+    #[inline(never)]
+    fn exact_contact(&self, axis: V) -> Option<Contact> {
+        self.exactly(axis)?.contact()
+    }
+
     /// How far apart are the bodies?
     pub fn distance(&self) -> Clearance<V> {
         let found = match self.sharp() {

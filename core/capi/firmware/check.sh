@@ -1,0 +1,31 @@
+#!/bin/sh
+# Runs the jobs on the host and on a Cortex-M4F under QEMU: all hashes are equal. Prints for each job bytes of stack and thousands of instructions, and
+# the size of the program. Stack beyond the limits fails.
+# Needs the sources of Rust's core for the other processor: on Debian `apt install rust-web-src rustc-web cargo-web qemu-system-arm`.
+set -eu
+cd "$(dirname "$0")"
+target=${CARGO_TARGET_DIR:-$(cd ../../.. && pwd)/target}/firmware
+for tool in qemu-system-arm /usr/bin/rustc; do
+    command -v $tool >/dev/null || { echo "SKIPPED the firmware: $tool is not installed"; exit 0; }
+done
+[ -d /usr/lib/rustlib/src/rust/library/core ] || { echo "SKIPPED the firmware: Debian's rust-web-src is not installed"; exit 0; }
+mkdir -p "$target"
+cargo run --quiet --release --target-dir "$target/host" >"$target/host.txt"
+
+lld=$(rustc --print sysroot)/lib/rustlib/x86_64-unknown-linux-gnu/bin/rust-lld
+RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 cargo build --quiet --release --target thumbv7em-none-eabihf -Z build-std=core --target-dir "$target" \
+    --config "target.thumbv7em-none-eabihf.linker='$lld'" \
+    --config "target.thumbv7em-none-eabihf.rustflags=['-Clink-arg=-T$(pwd)/memory.ld', '-Clink-arg=--gc-sections']"
+program="$target/thumbv7em-none-eabihf/release/voidage-firmware"
+timeout 300 qemu-system-arm -machine mps2-an386 -icount shift=0 -nographic -monitor none -serial none \
+    -semihosting-config enable=on,target=native -kernel "$program" >"$target/board.txt" 2>&1
+echo "precision, job, hash, bytes of stack, thousands of instructions:"
+cat "$target/board.txt"
+cut -d' ' -f1-3 "$target/board.txt" | diff "$target/host.txt" - || { echo "the hashes of host and board differ"; exit 1; }
+[ "$(wc -l <"$target/host.txt")" = 10 ] || { echo "not all jobs ran"; exit 1; }
+echo "all jobs have the bits of the host"
+size "$program"
+while read -r precision job _ stack _; do
+    most=$(sed -n "s/^$precision $job //p" stack.txt)
+    [ "$stack" -le "$most" ] || { echo "$precision $job takes $stack bytes of stack, more than $most"; exit 1; }
+done <"$target/board.txt"
