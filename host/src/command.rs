@@ -5,6 +5,7 @@
 pub mod cli;
 pub mod inspect;
 pub mod interrupt;
+pub mod obstacles;
 pub mod porosity;
 pub mod progress;
 pub mod solve;

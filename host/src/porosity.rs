@@ -3,8 +3,10 @@
 //! A layer of cells depends on no other, and what a thread writes depends only on the layer: the bits are the same for
 //! any number of threads.
 
+pub mod congestion;
 pub mod convex;
 mod doubt;
+pub mod drag;
 mod fields;
 mod formulas;
 mod layers;
@@ -17,6 +19,7 @@ mod road;
 pub mod shadows;
 pub mod snap;
 mod targets;
+pub mod throat;
 
 use crate::geometry::bodies::{self, Bodies};
 pub use crate::huge::HugeVec;

@@ -1,6 +1,7 @@
 //! The command, as from a shell.
 
 mod bad_inputs;
+mod drag;
 mod inspect;
 mod kit;
 mod maxima;

@@ -58,7 +58,7 @@ fn reports_of_porosity_and_inspect() {
     assert_told(
         "porosity",
         &[
-            run("a.json", &[&"porosity", &skid, &scene, &"--spacing", &"0.3", &"--resistance"]),
+            run("a.json", &[&"porosity", &skid, &scene, &"--spacing", &"0.3", &"--drag", &"pdr"]),
             run("b.json", &[&"porosity", &crack, &"--cells", &"6x6x6"]),
         ],
     );

@@ -170,7 +170,8 @@ fn a_scene_and_its_arrays_give_the_same_flow() {
     solved(&at, &from_scene, "scene", &["-q"]);
     let grid = at.file("grid.toml");
     fs::write(&grid, from_scene.lines().skip(2).take(3).collect::<Vec<_>>().join("\n")).expect("a grid file");
-    let output = voidage(&[&"porosity", &scene, &"--grid", &grid, &"--npy", &at.file("beta"), &"-q"]);
+    let output =
+        voidage(&[&"porosity", &scene, &"--grid", &grid, &"--faces", &"throat", &"--npy", &at.file("beta"), &"-q"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let arrays = skid("from = 'beta'", "");
     let (_, after) = arrays.split_once("[porosity]").expect("a table");

@@ -1,7 +1,7 @@
 //! Triangulated solids, outward, and scenes of them.
 
 use glam::{DMat3, DVec3};
-use voidage::geometry::bodies::{Bodies, Body, Doubt};
+use voidage::geometry::bodies::{Bodies, Body, Doubt, OwnDrag};
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::{Mesh, Solid};
 use voidage::geometry::scene::hull::HullSolid;
@@ -177,6 +177,7 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         doubt: Doubt::None,
         rounding: 0.0,
         sheet: false,
+        drag: OwnDrag::default(),
     };
     Bodies { bodies: forms.iter().enumerate().map(body).collect(), ..Bodies::default() }
 }

@@ -3,6 +3,7 @@
 mod boxes;
 mod core_alone;
 mod dirty;
+mod drag;
 mod hulls;
 mod invariance;
 mod known;

@@ -111,3 +111,28 @@ pub(super) fn gather<V: Vector>(
         }
     }
 }
+
+/// Add the frontal areas of single bodies in each cell of layer `k`, multiplied by weights of the body; `cells` is `ny*nx`, x fastest.
+pub(super) fn gather_weighted<V: Vector, const N: usize>(
+    bins: &Bins<V>,
+    grid: &Grid<V::Scalar>,
+    k: usize,
+    weights: &[[V::Scalar; N]],
+    cells: &mut [[[V::Scalar; 3]; N]],
+) {
+    let nx = grid.cells()[0];
+    for group in bins.groups(k) {
+        let (triangles, Some(weights)) = (bins.triangles(group), weights.get(group.body as usize)) else { continue };
+        for corners in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
+            spread(grid, k, &corners.map(Vector::to_array), &mut |[i, j], place, polygon| {
+                let Some(cell) = cells.get_mut(j * nx + i).filter(|_| place == Place::Inside) else { return };
+                let area = SurfaceArea::of_polygon(polygon.doubled_area()).frontal;
+                for (sum, &weight) in cell.iter_mut().zip(weights) {
+                    for (sum, area) in sum.iter_mut().zip(area) {
+                        *sum += weight * area;
+                    }
+                }
+            });
+        }
+    }
+}

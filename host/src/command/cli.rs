@@ -2,6 +2,8 @@
 
 use crate::command::version::VERSION;
 use crate::geometry::unit::Unit;
+use crate::porosity::drag::{DragCoefficients, DragLaw};
+use crate::porosity::throat::Faces;
 use crate::porosity::{Leaf, Method};
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -69,6 +71,34 @@ impl ValueEnum for Method {
                 "gjk",
                 "Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close",
             ),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl ValueEnum for Faces {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Faces::Plane, Faces::Throat]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Faces::Plane => ("plane", "What is open in its plane: exact, but a wall between two planes is not seen"),
+            Faces::Throat => ("throat", "What can pass: a wall is tight wherever it lies"),
+        };
+        Some(PossibleValue::new(name).help(help))
+    }
+}
+
+impl ValueEnum for DragLaw {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[DragLaw::Bluff, DragLaw::Pdr]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            DragLaw::Bluff => ("bluff", "C_D times the frontal area density: sparse obstacles"),
+            DragLaw::Pdr => ("pdr", "With the speed-up between rows of obstacles, as PDRsetFields of OpenFOAM v1912"),
         };
         Some(PossibleValue::new(name).help(help))
     }
@@ -150,9 +180,21 @@ pub struct PorosityArgs {
     /// Only the volume porosity
     #[arg(long)]
     pub no_areas: bool,
-    /// Also the obstacles in every cell: frontal area density a_x, a_y, a_z and wetted area density s in 1/m, hydraulic diameter d_h and mean obstacle size l_obs in m
+    /// What the open fraction of a face means
+    #[arg(long, value_enum, default_value_t = Faces::Plane, conflicts_with = "no_areas")]
+    pub faces: Faces,
+    /// Also the obstacles in every cell: frontal area density a_x, a_y, a_z and wetted area density s in 1/m, hydraulic diameter d_h and mean obstacle size l_obs in m, shadows tau_x, tau_y, tau_z
     #[arg(long, conflicts_with = "no_areas")]
     pub resistance: bool,
+    /// Also their resistance cr_x, cr_y, cr_z in 1/m, as solve takes it, and ct_x, ct_y, ct_z; goes with all of --resistance
+    #[arg(long, value_name = "LAW", value_enum, conflicts_with = "no_areas")]
+    pub drag: Option<DragLaw>,
+    /// Drag coefficient: a number, or round=NUMBER,sharp=NUMBER (default: round=1.2,sharp=2)
+    #[arg(long, value_name = "CD", requires = "drag", value_parser = parse_cd)]
+    pub cd: Option<DragCoefficients>,
+    /// Zones of the table of congestion (TOML): [[zone]] with name, min, max in metres (default: the whole grid)
+    #[arg(long, value_name = "FILE", conflicts_with = "no_areas")]
+    pub zones: Option<PathBuf>,
     /// Number of threads (default: all cores)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
@@ -273,6 +315,25 @@ fn parse_tol(text: &str) -> Result<f64, String> {
         Ok(t) if (0.0..=1.0).contains(&t) => Ok(t),
         _ => Err("needs a fraction from 0 to 1".into()),
     }
+}
+
+fn parse_cd(text: &str) -> Result<DragCoefficients, String> {
+    let number = |text: &str| match text.trim().parse::<f64>() {
+        Ok(cd) if cd >= 0.0 && cd.is_finite() => Ok(cd),
+        _ => Err(format!("'{text}' is no drag coefficient: needs a number not below 0")),
+    };
+    if !text.contains('=') {
+        return number(text).map(|cd| DragCoefficients { round: cd, sharp: cd });
+    }
+    let mut found = DragCoefficients::default();
+    for part in text.split(',') {
+        match part.split_once('=').map(|(key, value)| (key.trim(), value)) {
+            Some(("round", value)) => found.round = number(value)?,
+            Some(("sharp", value)) => found.sharp = number(value)?,
+            _ => return Err(format!("'{part}': needs a number, or round=NUMBER,sharp=NUMBER")),
+        }
+    }
+    Ok(found)
 }
 
 fn parse_bounds(text: &str) -> Result<[DVec3; 2], String> {

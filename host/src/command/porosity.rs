@@ -3,8 +3,10 @@
 mod files;
 mod report;
 mod solids;
+mod zones;
 
 use super::cli::PorosityArgs;
+use super::obstacles::{Wanted, obstacles};
 use super::progress::{Progress, print};
 use super::stages::{load, measure, need_surfaces, threads};
 use super::streams::{self, INPUT, is_stream, text_of};
@@ -12,8 +14,8 @@ use super::template;
 use crate::error::Result;
 use crate::geometry::bodies::Bodies;
 use crate::grid::{self, Edges, GridSpec};
-use crate::porosity::resistance::{Resistance, resistance};
-use crate::porosity::{Method, Options, Porosity};
+use crate::porosity::congestion::congestion;
+use crate::porosity::{Method, Options};
 use report::Report;
 use std::path::Path;
 
@@ -43,39 +45,25 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
             None => grid::edges(&spec(args, &bodies, own_grid), bodies.bounds(), &mut remarks)?,
         };
         remarks.into_iter().for_each(|r| progress.warn(r));
+        let zones = zones::read(args.zones.as_deref(), &edges)?;
         let depth = args.depth.unwrap_or(args.leaf.depth());
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
-        let result = measure(&bodies, &edges, options, &mut progress)?;
-        let obstacles =
-            args.resistance.then(|| obstacles(&bodies, &edges, &result, options, &mut progress)).transpose()?;
-        let report = Report::new(args, &edges, &bodies, &result, obstacles.as_ref());
-        files::write(args, &edges, (&result, obstacles.as_ref()), &report, &mut progress)?;
+        let mut result = measure(&bodies, &edges, options, &mut progress)?;
+        let (grid, coefficients) = (edges.grid(None)?, args.cd.unwrap_or_default());
+        let drag = args.drag.map(|law| (law, coefficients));
+        let resistance = args.resistance || args.zones.is_some();
+        let wanted = Wanted { resistance, drag, faces: args.faces, warning: false };
+        let found = obstacles(&grid, &bodies, &mut result, options, wanted, &mut progress);
+        let congestion = found.resistance.as_ref().map(|r| congestion(&grid, &zones, &result, r)).unwrap_or_default();
+        let report = Report::new(args, &edges, &bodies, &result, (&found, congestion));
+        files::write(args, &edges, (&result, &found), &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {
             streams::write_json(path, &report.finished(&progress))?;
         }
         Ok(())
     })
-}
-
-/// The obstacles, and what is to be said about them.
-fn obstacles(
-    bodies: &Bodies,
-    edges: &Edges,
-    result: &Porosity,
-    options: Options,
-    progress: &mut Progress,
-) -> Result<Resistance> {
-    let grid = edges.grid(None)?;
-    let found = progress.stage("resistance", |_| resistance(&grid, bodies, result, options));
-    if found.totals.unproved > 0 {
-        progress.warn(format!(
-            "the surface of the union is not known for certain in {} cells; up to {:.1e} m² of wetted area in one of them",
-            found.totals.unproved, found.totals.max_doubt
-        ));
-    }
-    Ok(found)
 }
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.

@@ -67,6 +67,18 @@ pub struct Body {
     pub rounding: f64,
     /// No volume: a sheet, which blocks faces where it lies in their plane.
     pub sheet: bool,
+    /// Drag given for it, in place of what a law says of its shape.
+    pub drag: OwnDrag,
+}
+
+/// Drag that a scene gives for a solid.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct OwnDrag {
+    /// Drag coefficient C_D of its frontal area.
+    pub cd: Option<f64>,
+    /// Resistance CR in 1/m, the same along all axes, of a cell that it fills.
+    pub cr: Option<f64>,
 }
 
 /// A solid of a scene file, in numbers.
@@ -200,6 +212,7 @@ impl Bodies {
                 doubt,
                 rounding,
                 sheet,
+                drag: OwnDrag::default(),
             });
         }
         d.bodies = self.bodies.len() - first;

@@ -29,6 +29,7 @@ pub mod shape;
 pub mod table;
 
 use crate::error::{Error, Result};
+use crate::geometry::bodies::OwnDrag;
 use crate::grid::Edges;
 use crate::keys::Source;
 use placement::{MOST_COPIES, Placement};
@@ -58,6 +59,8 @@ pub struct SceneSolid {
     pub shape: Shape,
     /// Its own open fraction: 0 is solid.
     pub porosity: f64,
+    /// Its drag, if it is given.
+    pub drag: OwnDrag,
     /// Where it and its copies are.
     pub placement: Placement,
 }
@@ -117,7 +120,15 @@ fn solid(mut keys: StrictTable<'_>) -> Result<(SceneSolid, StrictTable<'_>)> {
     let name = keys.named()?;
     let shape = Shape::read(&mut keys)?;
     let porosity = keys.get("porosity", table::fraction)?.unwrap_or(0.0);
+    let drag = OwnDrag { cd: keys.get("cd", table::not_negative)?, cr: keys.get("cr", table::not_negative)? };
+    if drag.cd.is_some() && drag.cr.is_some() {
+        return Err(keys
+            .fail("takes cd, the drag coefficient of its frontal area, or cr, the resistance of the whole, not both"));
+    }
+    if drag.cd.is_some() && porosity > 0.0 {
+        return Err(keys.wrong("cd", "is of solid obstacles; the resistance of a porous one is cr"));
+    }
     let placement = Placement::read(&mut keys)?;
     keys.finish()?;
-    Ok((SceneSolid { name, line: keys.line(), shape, porosity, placement }, keys))
+    Ok((SceneSolid { name, line: keys.line(), shape, porosity, drag, placement }, keys))
 }

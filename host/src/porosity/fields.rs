@@ -46,6 +46,15 @@ impl FieldSet {
         [&self.x, &self.y, &self.z][axis]
     }
 
+    /// The faces normal to an axis, to be changed.
+    pub fn faces_mut(&mut self, axis: usize) -> &mut [f64] {
+        match axis {
+            0 => &mut self.x,
+            1 => &mut self.y,
+            _ => &mut self.z,
+        }
+    }
+
     /// One layer into another set's.
     pub fn copy_layer(&self, k: usize, into: &mut Slices) {
         let copy = |from: &[f64], into: &mut [f64]| into.copy_from_slice(&from[k * into.len()..][..into.len()]);

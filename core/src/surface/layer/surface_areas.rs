@@ -14,7 +14,7 @@ use crate::surface::bins::Row;
 use crate::surface::cell_unions::{
     Effort, Refined, Room, Shared, Site, bodies_in, divide, rounding, with_effort, with_least_blur,
 };
-use crate::surface::surface_area::{Bodies, CellSurface, SurfaceArea, gather};
+use crate::surface::surface_area::{Bodies, CellSurface, SurfaceArea, gather, gather_weighted};
 use crate::surface::union::NoProof;
 
 /// Open fractions of a layer that are known already: cells `ny*nx`, x faces `ny*(nx+1)`, y faces `(ny+1)*nx`, z faces below and above
@@ -136,6 +136,29 @@ impl<V: Vector> Layers<'_, V> {
             }
         }
         Ok(report)
+    }
+}
+
+impl<V: Vector> Layers<'_, V> {
+    /// Sums over all bodies, whether they overlap or not, of the frontal areas along x, y and z in the cells of layer `k`, each multiplied by `N`
+    /// weights of its body; `sums` is `ny*nx`, x fastest, and a body without weights does not count.
+    ///
+    /// # Errors
+    /// [`LayerError`]: no such layer, a slice of wrong length.
+    pub fn weighted_frontal_areas<const N: usize>(
+        &self,
+        k: usize,
+        weights: &[[V::Scalar; N]],
+        sums: &mut [[[V::Scalar; 3]; N]],
+    ) -> Result<(), LayerError> {
+        let [nx, ny, layers] = self.grid.cells();
+        if k >= layers {
+            return Err(LayerError::NoLayer { layer: k, layers });
+        }
+        exactly(nx * ny, sums.len())?;
+        sums.fill([[V::Scalar::ZERO; 3]; N]);
+        gather_weighted(&self.bins, &self.grid, k, weights, sums);
+        Ok(())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::report::Report;
 use crate::command::cli::PorosityArgs;
+use crate::command::obstacles::Obstacles;
 use crate::command::progress::{Progress, print};
 use crate::command::streams::{OutputFormat, check_place, check_suffix, is_stream, make_place};
 use crate::error::{Error, Result};
@@ -10,6 +11,7 @@ use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::grid::Edges;
 use crate::picture::png;
 use crate::porosity::Porosity;
+use crate::porosity::drag::Drag;
 use crate::porosity::resistance::Resistance;
 use std::path::{Path, PathBuf};
 
@@ -67,8 +69,9 @@ fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
     let suffixes: &[&str] = if args.bounds_fields { &["", "_lower", "_upper"] } else { &[""] };
     let fields: &[&str] = if args.no_areas { &["v"] } else { &["v", "x", "y", "z"] };
     let names = suffixes.iter().flat_map(|suffix| fields.iter().map(move |field| format!("beta_{field}{suffix}.npy")));
-    let obstacles = OBSTACLES.iter().filter(|_| args.resistance).map(|name| format!("{name}.npy"));
-    let names: Vec<String> = names.chain(obstacles).collect();
+    let wants = args.resistance || args.drag.is_some();
+    let obstacles = OBSTACLES.iter().filter(|_| wants).chain(DRAG.iter().filter(|_| args.drag.is_some()));
+    let names: Vec<String> = names.chain(obstacles.map(|name| format!("{name}.npy"))).collect();
     args.npy.iter().flat_map(|dir| names.iter().map(move |name| dir.join(name))).collect()
 }
 
@@ -79,7 +82,7 @@ fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
 pub(super) fn write(
     args: &PorosityArgs,
     edges: &Edges,
-    (result, obstacles): (&Porosity, Option<&Resistance>),
+    (result, obstacles): (&Porosity, &Obstacles),
     about: &Report,
     progress: &mut Progress,
 ) -> Result<()> {
@@ -128,19 +131,28 @@ fn fields<'a>(edges: &Edges, result: &'a Porosity) -> Vec<(String, [usize; 3], &
 /// Names of the arrays of `--resistance`.
 const OBSTACLES: [&str; 9] = ["a_x", "a_y", "a_z", "s", "d_h", "l_obs", "tau_x", "tau_y", "tau_z"];
 
-/// The obstacles with names, as [`fields`].
-fn obstacle_fields<'a>(edges: &Edges, obstacles: Option<&'a Resistance>) -> Vec<(String, [usize; 3], &'a [f64])> {
-    let Some(Resistance { a: [x, y, z], s, d_h, l_obs, shadows, .. }) = obstacles else { return Vec::new() };
-    let [tau_x, tau_y, tau_z] = &shadows.tau;
-    let values = [x, y, z, s, d_h, l_obs, tau_x, tau_y, tau_z];
-    OBSTACLES.iter().zip(values).map(|(name, values)| ((*name).to_owned(), edges.cells(), &values[..])).collect()
+/// Names of the arrays of `--drag`.
+const DRAG: [&str; 6] = ["cr_x", "cr_y", "cr_z", "ct_x", "ct_y", "ct_z"];
+
+/// The obstacles and their drag with names, as [`fields`].
+fn obstacle_fields<'a>(edges: &Edges, obstacles: &'a Obstacles) -> Vec<(String, [usize; 3], &'a [f64])> {
+    let mut all: Vec<(&str, &[f64])> = Vec::new();
+    if let Some(Resistance { a: [x, y, z], s, d_h, l_obs, shadows, .. }) = &obstacles.resistance {
+        let [tau_x, tau_y, tau_z] = &shadows.tau;
+        let values: [&[f64]; 9] = [x, y, z, s, d_h, l_obs, tau_x, tau_y, tau_z];
+        all.extend(OBSTACLES.into_iter().zip(values));
+    }
+    if let Some(Drag { cr, ct, .. }) = &obstacles.drag {
+        all.extend(DRAG.into_iter().zip(cr.iter().chain(ct).map(|values| &values[..])));
+    }
+    all.into_iter().map(|(name, values)| (name.to_owned(), edges.cells(), values)).collect()
 }
 
 fn write_vtr(
     path: &Path,
     compress: bool,
     edges: &Edges,
-    (result, obstacles): (&Porosity, Option<&Resistance>),
+    (result, obstacles): (&Porosity, &Obstacles),
     about: &Report,
 ) -> Result<()> {
     let [x, y, z] = &edges.0;

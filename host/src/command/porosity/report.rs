@@ -2,12 +2,15 @@
 
 use super::solids::{SolidReport, solids};
 use crate::command::cli::PorosityArgs;
+use crate::command::obstacles::Obstacles;
 use crate::command::progress::Progress;
 use crate::command::stages::command_line;
 use crate::command::version::{BUILD, Build};
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::picture::ticks::measure;
+use crate::porosity::congestion::Congestion;
+use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::resistance::{Resistance, Totals};
 use crate::porosity::shadows::{HiddenPassages, Shadows};
 use crate::porosity::{self, Leaf, Porosity};
@@ -44,7 +47,7 @@ pub(super) struct Report {
 }
 
 /// Totals of the obstacles, and what stands between faces that do not see it.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct ObstacleReport {
     #[serde(flatten)]
     totals: Totals,
@@ -52,12 +55,46 @@ struct ObstacleReport {
     hidden_passages: [HiddenPassages; 3],
     /// Cells that hold too much surface for a shadow.
     unproved_shadows: usize,
+    /// Faces lowered to what passes, with `--faces throat`.
+    lowered_faces: usize,
+    /// With `--drag`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drag: Option<DragReport>,
+    /// By zone and size.
+    congestion: Vec<Congestion>,
+}
+
+/// How frontal area became resistance.
+#[derive(Debug, Clone, Copy, Serialize)]
+struct DragReport {
+    law: DragLaw,
+    cd: DragCoefficients,
+    /// Bodies taken for round.
+    round_bodies: usize,
+    /// Bodies taken for sharp.
+    sharp_bodies: usize,
+    /// Cells and axes where the blockage of a row was limited to 0.95.
+    capped: usize,
 }
 
 impl ObstacleReport {
-    fn new(found: &Resistance) -> Self {
+    fn new(args: &PorosityArgs, found: &Resistance, obstacles: &Obstacles, congestion: Vec<Congestion>) -> Self {
+        let drag = args.drag.zip(obstacles.drag.as_ref()).map(|(law, drag)| DragReport {
+            law,
+            cd: args.cd.unwrap_or_default(),
+            round_bodies: drag.bodies[0],
+            sharp_bodies: drag.bodies[1],
+            capped: drag.capped,
+        });
         let Shadows { hidden, too_full, .. } = &found.shadows;
-        ObstacleReport { totals: found.totals, hidden_passages: *hidden, unproved_shadows: *too_full }
+        ObstacleReport {
+            totals: found.totals,
+            hidden_passages: *hidden,
+            unproved_shadows: *too_full,
+            lowered_faces: obstacles.lowered_faces,
+            drag,
+            congestion,
+        }
     }
 }
 
@@ -87,7 +124,7 @@ impl Report {
         edges: &Edges,
         bodies: &Bodies,
         result: &Porosity,
-        obstacles: Option<&Resistance>,
+        (obstacles, congestion): (&Obstacles, Vec<Congestion>),
     ) -> Self {
         let mut skipped = Vec::new();
         if result.subdivided == 0 && result.gjk.queries == 0 {
@@ -99,7 +136,7 @@ impl Report {
         if !args.bounds_fields {
             skipped.push("bound fields: not asked for (--bounds-fields)");
         }
-        if obstacles.is_none() {
+        if obstacles.resistance.is_none() {
             skipped.push("frontal and wetted areas: not asked for (--resistance)");
         }
         if result.cells.ambiguous == 0 {
@@ -129,7 +166,10 @@ impl Report {
             skipped,
             seconds: BTreeMap::new(),
             gjk: result.gjk,
-            obstacles: obstacles.map(ObstacleReport::new),
+            obstacles: obstacles
+                .resistance
+                .as_ref()
+                .map(|found| ObstacleReport::new(args, found, obstacles, congestion)),
         }
     }
 
@@ -153,8 +193,8 @@ impl Report {
             "cells         {} open, {} cut, {} closed; {} shared by bodies",
             c.open, c.cut, c.closed, c.ambiguous
         ));
-        if let Some(ObstacleReport { totals: Totals { frontal_area: [x, y, z], wetted_area, .. }, .. }) = self.obstacles
-        {
+        if let Some(ObstacleReport { totals, .. }) = &self.obstacles {
+            let Totals { frontal_area: [x, y, z], wetted_area, .. } = *totals;
             let [x, y, z] = [x, y, z].map(measure);
             progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {} m²", measure(wetted_area)));
         }

@@ -11,6 +11,7 @@ use crate::keys::reader::misfit;
 use crate::keys::source::another;
 use crate::keys::value::Value;
 use crate::keys::{self, PlacedValue, Source};
+use crate::porosity::throat::Faces;
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
@@ -72,6 +73,8 @@ pub struct PorosityKeys {
     pub from: Option<PathBuf>,
     /// Differences of the open fraction above this share are jumps and get the throat map; `inf` for none.
     pub jump: Option<f64>,
+    /// As `voidage porosity --faces`; `throat` if left out: a wall that leaks in silence is worse than a narrower face.
+    pub faces: Option<Faces>,
     /// Merge cells of little volume behind open faces, which otherwise set the time step.
     pub merge: Option<bool>,
 }
@@ -252,10 +255,30 @@ impl Sides {
     }
 }
 
-/// `[drag]`: R_i = −beta_v rho (linear_i + ½ cr_i |u|) u_i, the same everywhere or from files.
+/// A law, or the choice of none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LawName {
+    /// Obstacles inside cells exert no force.
+    None,
+    /// As `voidage porosity --drag bluff`.
+    Bluff,
+    /// As `voidage porosity --drag pdr`.
+    Pdr,
+}
+
+/// `[drag]`: R_i = −beta_v rho (linear_i + ½ cr_i |u|) u_i, by a law from the scene, the same everywhere, or from files.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DragKeys {
+    /// How the frontal area of the scene becomes `cr`.
+    pub law: Option<LawName>,
+    /// Drag coefficient of the law for all bodies.
+    pub cd: Option<f64>,
+    /// For round bodies; 1.2 if left out.
+    pub cd_round: Option<f64>,
+    /// For bodies with edges; 2 if left out.
+    pub cd_sharp: Option<f64>,
     /// CR along x, y, z in 1/m.
     pub cr: Option<[f64; 3]>,
     /// Linear coefficients in 1/s.

@@ -84,10 +84,11 @@ pub fn setup<const D: usize>(
 
     let (keys, usual) = (&case.porosity, Treatment::default());
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
-    let mut report = None;
+    let (mut report, mut by_law) = (None, None);
     match space::load(file, edges, live, progress)? {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
+            by_law = space.drag;
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
             let Tidied { dust_cells, dust_faces, closed_faces } = tidied;
             report = Some(SpaceReport {
@@ -100,7 +101,7 @@ pub fn setup<const D: usize>(
             });
         }
     }
-    match drag(file, edges, live)? {
+    match drag(file, edges, live, by_law)? {
         Some([quadratic, linear]) => flow.set_drag(quadratic, linear),
         None => skipped.push("drag: none".into()),
     }
@@ -209,7 +210,12 @@ fn gravity<const D: usize>(file: &CaseFile, live: [usize; D]) -> Result<[f64; D]
 type Coefficients<const D: usize> = [[Vec<f64>; D]; 2];
 
 /// Quadratic and linear coefficients of the live axes; empty where zero. None if all are.
-fn drag<const D: usize>(file: &CaseFile, edges: &Edges, live: [usize; D]) -> Result<Option<Coefficients<D>>> {
+fn drag<const D: usize>(
+    file: &CaseFile,
+    edges: &Edges,
+    live: [usize; D],
+    by_law: Option<[Vec<f64>; D]>,
+) -> Result<Option<Coefficients<D>>> {
     let keys = &file.case.drag;
     let count: usize = edges.cells().iter().product();
     let mut all: Coefficients<D> = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
@@ -229,6 +235,9 @@ fn drag<const D: usize>(file: &CaseFile, edges: &Edges, live: [usize; D]) -> Res
                 (None, None) => Vec::new(),
             };
         }
+    }
+    if let Some(by_law) = by_law {
+        all[0] = by_law;
     }
     if let Some(dir) = keys.from.as_deref().filter(|_| all.iter().flatten().all(Vec::is_empty)) {
         return Err(nothing_in(&file.resolve(dir)));

@@ -1,12 +1,15 @@
 //! Where the open fractions of a case come from: a scene through the porosity stage, a directory of arrays, or nowhere.
 
 use super::arrays;
-use super::case::{CaseFile, Paths, PorosityKeys};
+use super::case::{CaseFile, LawName, Paths, PorosityKeys};
 use crate::command::cli::SceneArgs;
+use crate::command::obstacles::{Wanted, obstacles, warn_of_no_force};
 use crate::command::progress::Progress;
 use crate::command::stages;
 use crate::error::Result;
 use crate::grid::Edges;
+use crate::porosity::drag::{DragCoefficients, DragLaw};
+use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
 
 /// Open fractions of all cells and of the faces of the axes that flow.
@@ -16,6 +19,8 @@ pub struct Space<const D: usize> {
     pub volume: Vec<f64>,
     /// `beta_x`, `beta_y`, `beta_z` of the axes that flow.
     pub faces: [Vec<f64>; D],
+    /// `cr` of the axes that flow, by the law of the case.
+    pub drag: Option<[Vec<f64>; D]>,
 }
 
 /// The open fractions of a case; none where all of the space is open.
@@ -41,12 +46,14 @@ pub fn load<const D: usize>(
                 .map(|&d| read(["x", "y", "z"][d], std::array::from_fn(|a| cells[a] + usize::from(a == d))))
                 .collect::<Result<_>>()?;
             let mut faces = faces.into_iter();
-            Space { volume: read("v", cells)?, faces: std::array::from_fn(|_| faces.next().unwrap_or_default()) }
+            let faces = std::array::from_fn(|_| faces.next().unwrap_or_default());
+            Space { volume: read("v", cells)?, faces, drag: None }
         }
         (None, None) => return Ok(None),
         (Some(_), Some(_)) => return Err(file.wrong("porosity", "takes scene or from, not both")),
     };
-    let open = space.volume.iter().chain(space.faces.iter().flatten()).all(|&b| b == 1.0);
+    let resists = space.drag.iter().flatten().flatten().any(|&cr| cr > 0.0);
+    let open = !resists && space.volume.iter().chain(space.faces.iter().flatten()).all(|&b| b == 1.0);
     Ok(if open { None } else { Some(space) })
 }
 
@@ -68,9 +75,55 @@ fn from_scene<const D: usize>(
     let (bodies, _) = stages::load(&scene, progress)?;
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
-    let FieldSet { v, x, y, z } = stages::measure(&bodies, edges, options, progress)?.beta;
+    let mut result = stages::measure(&bodies, edges, options, progress)?;
+    let (grid, law) = (edges.grid(None)?, law(file)?);
+    let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);
+    let wanted = Wanted {
+        resistance: law.is_none() && !silent,
+        drag: law,
+        faces: keys.faces.unwrap_or(Faces::Throat),
+        warning: true,
+    };
+    let found = obstacles(&grid, &bodies, &mut result, options, wanted, progress);
+    if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none()) {
+        warn_of_no_force(&bodies, resistance, progress);
+    }
+    let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));
+    let FieldSet { v, x, y, z } = result.beta;
     let faces = [x, y, z];
-    Ok(Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()) })
+    Ok(Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()), drag })
+}
+
+/// Is there a resistance that needs no law?
+fn given_otherwise(file: &CaseFile) -> bool {
+    let keys = &file.case.drag;
+    keys.cr.is_some() || keys.from.is_some()
+}
+
+/// The law of `[drag]` and its coefficients.
+fn law(file: &CaseFile) -> Result<Option<(DragLaw, DragCoefficients)>> {
+    let keys = &file.case.drag;
+    let given = [("drag.cd", keys.cd), ("drag.cd_round", keys.cd_round), ("drag.cd_sharp", keys.cd_sharp)];
+    for (key, value) in given {
+        file.demand(key, value, |c| c >= 0.0 && c.is_finite(), "needs a number not below 0")?;
+    }
+    let law = match keys.law {
+        None | Some(LawName::None) => {
+            return match given.iter().find(|(_, value)| value.is_some()) {
+                Some((key, _)) => Err(file.wrong(key, "goes with drag.law = \"bluff\" or \"pdr\"")),
+                None => Ok(None),
+            };
+        }
+        Some(LawName::Bluff) => DragLaw::Bluff,
+        Some(LawName::Pdr) => DragLaw::Pdr,
+    };
+    if given_otherwise(file) {
+        return Err(file.wrong("drag", "takes law, or cr or from, not both"));
+    }
+    let usual = DragCoefficients::default();
+    let of = |shape: Option<f64>, usual: f64| shape.or(keys.cd).unwrap_or(usual);
+    let cd = DragCoefficients { round: of(keys.cd_round, usual.round), sharp: of(keys.cd_sharp, usual.sharp) };
+    Ok(Some((law, cd)))
 }
 
 fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
@@ -79,9 +132,15 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
     if keys.depth.is_some_and(|d| d > 10) {
         return Err(file.wrong("porosity.depth", "is at most 10"));
     }
-    let of_scene = [("unit", keys.unit.is_some()), ("tol", keys.tol.is_some()), ("depth", keys.depth.is_some())];
-    match of_scene.iter().find(|(_, given)| *given && keys.scene.is_none()) {
-        Some((key, _)) => Err(file.wrong(&format!("porosity.{key}"), "goes with porosity.scene")),
+    let given = [
+        ("porosity.unit", keys.unit.is_some()),
+        ("porosity.tol", keys.tol.is_some()),
+        ("porosity.depth", keys.depth.is_some()),
+        ("porosity.faces", keys.faces.is_some()),
+        ("drag.law", file.case.drag.law.is_some()),
+    ];
+    match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {
+        Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene")),
         None => Ok(()),
     }
 }

@@ -51,9 +51,21 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
             let (volume, porosity) = (solid.shape.volume(), solid.porosity);
             let (name, single) = (name(solid, at, ""), None);
             let (cavities, doubt, rounding, sheet) = (0, Doubt::None, 0.0, false);
-            let body =
-                Body { name, triangles, form, single, porosity, volume, bounds, cavities, doubt, rounding, sheet };
-            bodies.bodies.push(body);
+            let drag = solid.drag;
+            bodies.bodies.push(Body {
+                name,
+                triangles,
+                form,
+                single,
+                porosity,
+                volume,
+                bounds,
+                cavities,
+                doubt,
+                rounding,
+                sheet,
+                drag,
+            });
         }
         return Ok(());
     };
@@ -73,7 +85,7 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
             let bounds = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &p| [a.min(p), b.max(p)]);
             let (name, porosity) = (name(solid, at, &body.name), solid.porosity);
             let single = body.single.map(|s| s.moved(motion.matrix(), motion.apply(DVec3::ZERO)));
-            bodies.bodies.push(Body { name, triangles, single, porosity, bounds, ..body.clone() });
+            bodies.bodies.push(Body { name, triangles, single, porosity, bounds, drag: solid.drag, ..body.clone() });
         }
     }
     let range = first..bodies.bodies.len();

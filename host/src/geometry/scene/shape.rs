@@ -85,7 +85,7 @@ pub const SHAPES: [(&str, &[&str], &[&str]); 8] = [
 ];
 
 /// Keys that every solid may have.
-pub const EVERY: [&str; 6] = ["name", "shape", "porosity", "rotate", "translate", "array"];
+pub const EVERY: [&str; 8] = ["name", "shape", "porosity", "cd", "cr", "rotate", "translate", "array"];
 
 /// A table has the keys of its shape and no others.
 fn check_keys(keys: &StrictTable, shape: &str) -> Result<()> {

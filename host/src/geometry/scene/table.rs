@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::grid::{Edges, file};
 use crate::keys::Source;
-use crate::keys::reader::not_known;
+use crate::keys::reader::{nearest, not_known};
 use crate::keys::source::another;
 use glam::DVec3;
 use std::ops::Range;
@@ -87,7 +87,19 @@ impl<'a> StrictTable<'a> {
     /// # Errors
     /// If it is missing or not what `read` wants.
     pub fn need<T>(&mut self, key: &'static str, read: impl FnOnce(&DeValue) -> Wanted<T>) -> Result<T> {
-        self.get(key, read)?.ok_or_else(|| self.fail(format!("key {key} is missing")))
+        self.get(key, read)?.ok_or_else(|| {
+            match self.given().into_iter().find(|(typed, _)| self.may_mean(typed, key)) {
+                Some((typed, span)) => {
+                    self.error_at(span, format!("key {typed} is not known here; did you mean {key}?"))
+                }
+                None => self.fail(format!("key {key} is missing")),
+            }
+        })
+    }
+
+    /// A key that nobody has asked for may be a slip of the pen for `key`.
+    fn may_mean(&self, typed: &str, key: &str) -> bool {
+        !self.known.contains(&typed) && nearest(typed, &[key]).is_some()
     }
 
     /// The key `name`, and from here on what messages call the table; without one it is called by its kind and number, `solid 3`.
@@ -242,6 +254,15 @@ pub fn number(value: &DeValue) -> Wanted<f64> {
 pub fn positive(value: &DeValue) -> Wanted<f64> {
     let x = number(value)?;
     if x > 0.0 { Ok(x) } else { Err(format!("must be positive, not {x}")) }
+}
+
+/// A number that is not below zero.
+///
+/// # Errors
+/// What it should be.
+pub fn not_negative(value: &DeValue) -> Wanted<f64> {
+    let x = number(value)?;
+    if x >= 0.0 { Ok(x) } else { Err(format!("must not be below 0, not {x}")) }
 }
 
 /// A number from 0 to 1.

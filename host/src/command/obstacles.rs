@@ -1,0 +1,114 @@
+//! The stage of obstacles, shared by `porosity` and `solve`: what stands between the faces of cells, and what it resists.
+
+use super::progress::Progress;
+use crate::geometry::bodies::Bodies;
+use crate::picture::ticks::measure;
+use crate::porosity::drag::{Drag, DragCoefficients, DragLaw, drag};
+use crate::porosity::resistance::{Resistance, resistance};
+use crate::porosity::shadows::{HIDDEN, Shadows, shadows};
+use crate::porosity::throat::{self, Faces};
+use crate::porosity::{Options, Porosity};
+use voidage_core::grid::Grid;
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// The obstacles of every cell.
+    pub resistance: bool,
+    /// Their drag.
+    pub drag: Option<(DragLaw, DragCoefficients)>,
+    /// What faces mean.
+    pub faces: Faces,
+    /// A warning of hidden passages, even if nothing else needs their search.
+    pub warning: bool,
+}
+
+/// What was found.
+#[derive(Debug, Default)]
+pub struct Obstacles {
+    /// The obstacles of every cell.
+    pub resistance: Option<Resistance>,
+    /// Their drag.
+    pub drag: Option<Drag>,
+    /// Faces lowered to what passes.
+    pub lowered_faces: usize,
+}
+
+/// Find what is wanted; with [`Faces::Throat`] the faces of `result` are lowered.
+pub fn obstacles(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    result: &mut Porosity,
+    options: Options,
+    wanted: Wanted,
+    progress: &mut Progress,
+) -> Obstacles {
+    let mut found = Obstacles::default();
+    if wanted.resistance || wanted.drag.is_some() {
+        let obstacles = progress.stage("resistance", |_| resistance(grid, bodies, result, options));
+        warn_of_doubt(bodies, &obstacles, progress);
+        found.resistance = Some(obstacles);
+    }
+    let alone = (found.resistance.is_none() && (wanted.warning || wanted.faces == Faces::Throat))
+        .then(|| progress.stage("shadows", |_| shadows(grid, bodies, result, options)));
+    let Some(shadows) = found.resistance.as_ref().map(|r| &r.shadows).or(alone.as_ref()) else { return found };
+    // Drag is that of the cell's own surface: it asks for faces as they are.
+    if let (Some(law), Some(obstacles)) = (wanted.drag, &found.resistance) {
+        let drag = progress.stage("drag", |_| drag(grid, bodies, (result, obstacles), options, law));
+        if drag.capped > 0 {
+            progress.warn(format!(
+                "drag: in {} cells (counted once for each axis) a row of obstacles blocks more than 95 % of the section; the law is used at 95 %",
+                drag.capped
+            ));
+        }
+        found.drag = Some(drag);
+    }
+    match wanted.faces {
+        Faces::Plane => warn_of_hidden_passages(bodies, shadows, progress),
+        Faces::Throat => found.lowered_faces = throat::lower(grid, result, shadows),
+    }
+    found
+}
+
+fn warn_of_doubt(bodies: &Bodies, found: &Resistance, progress: &mut Progress) {
+    let (totals, files) = (&found.totals, bodies.files());
+    if totals.unproved > 0 {
+        progress.warn(format!(
+            "{files}: the surface of the union is not known for certain in {} cells; up to {:.1e} m² of wetted area in one of them",
+            totals.unproved, totals.max_doubt
+        ));
+    }
+    if found.shadows.too_full > 0 {
+        progress.warn(format!(
+            "{files}: {} cells hold too much surface for a shadow; what their faces show stands in its place",
+            found.shadows.too_full
+        ));
+    }
+}
+
+/// What blocks a cell between two open faces is not seen by the flow.
+fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Progress) {
+    for (axis, hidden) in ["x", "y", "z"].into_iter().zip(shadows.hidden) {
+        let Some([i, j, k]) = hidden.first else { continue };
+        progress.warn(format!(
+            "{}: {} cells are blocked along {axis} by more than {:.0} % between two faces that show nothing of it, the first at cell {i}, {j}, {k} \
+             (counted from 0): gas passes through; faces \"throat\" makes such walls tight",
+            bodies.files(),
+            hidden.cells,
+            HIDDEN * 100.0
+        ));
+    }
+}
+
+/// Say how much stands in the way of a flow and exerts no force.
+pub fn warn_of_no_force(bodies: &Bodies, found: &Resistance, progress: &mut Progress) {
+    let area = found.totals.frontal_area;
+    if area.iter().any(|&a| a > 0.0) {
+        let [x, y, z] = area.map(measure);
+        progress.warn(format!(
+            "{}: {x}, {y}, {z} m² of frontal area along x, y, z lie inside cells and exert no force: [drag] law = \"pdr\" or \"bluff\" gives \
+             them one, law = \"none\" says that it is meant so",
+            bodies.files()
+        ));
+    }
+}

@@ -1,0 +1,43 @@
+//! Faces that see what stands between them: walls are tight wherever they lie.
+
+use super::Porosity;
+use super::shadows::{Shadows, cells, faces_of_cell};
+use voidage_core::grid::Grid;
+
+/// What the open fraction of a face means.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Faces {
+    /// What is open in the plane of the face: exact, but a wall between two planes is not seen.
+    #[default]
+    Plane,
+    /// What can pass: where a cell blocks more than its two faces show, the nearer one is lowered to that.
+    Throat,
+}
+
+/// A face is lowered only by more than this: less is rounding.
+const LEAST: f64 = 1e-9;
+
+/// Lower, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass; ties go to the low face.
+/// How many faces were lowered.
+pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usize {
+    let mut lowered = 0;
+    let Porosity { beta, bounds, .. } = result;
+    for axis in 0..3 {
+        let before = beta.faces(axis).to_vec();
+        for (n, at) in cells(grid).enumerate() {
+            let passes = 1.0 - shadows.tau[axis][n];
+            let faces = faces_of_cell(grid, axis, at);
+            if !(passes < before[faces[0]].min(before[faces[1]]) - LEAST) {
+                continue;
+            }
+            let face = faces[usize::from(shadows.place[axis][n] > 0.5)];
+            let fields = bounds.iter_mut().flatten().chain([&mut *beta]);
+            for field in fields.map(|set| set.faces_mut(axis)) {
+                field[face] = field[face].min(passes);
+            }
+            lowered += 1;
+        }
+    }
+    lowered
+}
