@@ -1,8 +1,10 @@
-//! Gives the shared library its SONAME: the number after `.so` changes when programs that were linked before no longer run.
+//! Gives the shared library its SONAME, if the environment asks for it as `install.sh` does. Not always: Cargo would pass the argument on to
+//! shared libraries of other packages that use this one.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "linux") {
-        println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libvoidage.so.0");
+    println!("cargo::rerun-if-env-changed=VOIDAGE_SONAME");
+    if let Ok(name) = std::env::var("VOIDAGE_SONAME") {
+        println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,{name}");
     }
 }

@@ -13,7 +13,8 @@ cd "$(dirname "$0")"
 target=${CARGO_TARGET_DIR:-$(cd ../.. && pwd)/target}
 version=$(sed -n '/^\[workspace.package\]/,/^version/s/^version = "\(.*\)"/\1/p' ../../Cargo.toml)
 
-cargo build --quiet --release -p voidage-capi
+# The number after `.so` changes when programs that were linked before no longer run.
+VOIDAGE_SONAME=libvoidage.so.0 cargo build --quiet --release -p voidage-capi
 # What the archive asks of the system, as the compiler tells it.
 libs="-lpthread -ldl -lm -lgcc_s -lc"
 
