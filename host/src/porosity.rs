@@ -18,6 +18,7 @@ mod result;
 mod road;
 pub mod shadows;
 pub mod snap;
+mod solid;
 mod targets;
 pub mod throat;
 

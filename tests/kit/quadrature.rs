@@ -84,6 +84,16 @@ impl Exact {
         }
     }
 
+    /// Chords of large solids are rough by rounding, and halving them further finds nothing: by how much tolerances must be wider.
+    fn roughness(&self) -> f64 {
+        let size = match *self {
+            Exact::Ball(_, r) => r,
+            Exact::Ellipsoid(_, axes) => axes.map(DVec3::length).into_iter().fold(0.0, f64::max),
+            Exact::Cylinder(a, b, r) | Exact::Capsule(a, b, r) | Exact::Cone(a, b, r) => r.max(a.distance(b)),
+        };
+        (0.05 * size).max(1.0)
+    }
+
     /// Area that the solid has of a rectangle across axis `n` at a coordinate.
     #[must_use]
     pub fn area(&self, n: usize, at: f64, u: [f64; 2], v: [f64; 2]) -> f64 {
@@ -95,7 +105,7 @@ impl Exact {
         };
         let chord = |y: f64| self.chord(place(u[0], y), iu).map_or(0.0, |c| (c[1].min(u[1]) - c[0].max(u[0])).max(0.0));
         let depth = |y: f64| least(&|x| self.depth(place(x, y)), u);
-        integral(&chord, &depth, v, 4e-16 * (u[1] - u[0]) * (v[1] - v[0]), 18)
+        integral(&chord, &depth, v, 4e-16 * self.roughness() * (u[1] - u[0]) * (v[1] - v[0]), 18)
     }
 
     /// Volume in a box. Integrated in two orders of the axes; where they disagree the middle of three.
@@ -123,7 +133,13 @@ impl Exact {
             };
             least(&|y| least(&|x| self.depth(place(x, y)), u), v)
         };
-        integral(&|at| self.area(n, at, u, v), &depth, [lo[n], hi[n]], 1e-14 * (hi - lo).element_product(), 10)
+        integral(
+            &|at| self.area(n, at, u, v),
+            &depth,
+            [lo[n], hi[n]],
+            1e-14 * self.roughness() * (hi - lo).element_product(),
+            10,
+        )
     }
 }
 

@@ -243,6 +243,9 @@ fn volume_of_parts(exact: &Exact, lo: DVec3, hi: DVec3) -> f64 {
         .sum()
 }
 
+/// A plane so far from another is another, wherever in the grid it lies.
+const BESIDE: f64 = 1e-15;
+
 /// The area that a solid has of a face; a flat end in its plane belongs to the solid.
 fn closed_area(exact: &Exact, n: usize, at: f64, u: [f64; 2], v: [f64; 2]) -> f64 {
     let ends = match *exact {
@@ -253,8 +256,8 @@ fn closed_area(exact: &Exact, n: usize, at: f64, u: [f64; 2], v: [f64; 2]) -> f6
     let flush =
         ends.iter().find(|(end, other)| end[n] == at && (other - end).abs() == DVec3::AXES[n] * (other[n] - at).abs());
     match flush {
-        Some((_, other)) if other[n] > at => exact.area(n, at.next_up(), u, v),
-        Some(_) => exact.area(n, at.next_down(), u, v),
+        Some((_, other)) if other[n] > at => exact.area(n, at + BESIDE, u, v),
+        Some(_) => exact.area(n, at - BESIDE, u, v),
         None => exact.area(n, at, u, v),
     }
 }

@@ -5,7 +5,7 @@ use voidage::geometry::bodies::{Bodies, OwnDrag};
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::congestion::{Zone, congestion};
-use voidage::porosity::drag::{Drag, DragCoefficients, DragLaw, drag};
+use voidage::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_core::convex::shape::Cylinder;
@@ -23,7 +23,7 @@ fn found(edges: &Edges, bodies: &Bodies) -> (Porosity, Resistance) {
     (result, obstacles)
 }
 
-fn drag_of(edges: &Edges, bodies: &Bodies, law: DragLaw, coefficients: DragCoefficients) -> Drag {
+fn drag_of(edges: &Edges, bodies: &Bodies, law: DragLaw, coefficients: DragCoefficients) -> ObstacleDrag {
     let (result, obstacles) = found(edges, bodies);
     let grid = edges.grid(None).expect("a grid");
     drag(&grid, bodies, (&result, &obstacles), Options::default(), (law, coefficients))

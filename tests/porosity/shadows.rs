@@ -8,6 +8,9 @@ use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::shadows::{cells, faces_of_cell};
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_core::grid::Grid;
+use voidage_core::surface::bins::{Group, Surface};
+use voidage_core::surface::layer::{LayerOptions, Layers, OpenLayer};
+use voidage_core::surface::shadow::{Shadow, ShadowEdge, ShadowMemory};
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, turned_box};
 
@@ -181,6 +184,42 @@ fn a_thin_wall_is_a_hidden_passage() {
         if expected > 0 {
             assert!((found.shadows.place[0][1] - place - 0.025).abs() < 1e-12);
             assert_eq!(found.shadows.tau[0][1], 1.0);
+        }
+    }
+}
+
+/// What sheets at random cover in one cell, against lines: they cross each other anyhow.
+#[test]
+fn crossing_sheets_against_lines() {
+    const LINES: usize = 400;
+    let mut random = Random::new(8);
+    let one = [0.0, 1.0];
+    let grid = Grid::new(&one, &one, &one).expect("a grid");
+    for count in [1, 2, 3, 7, 20, 60] {
+        let point = |random: &mut Random| random.point(DVec3::ZERO, DVec3::ONE);
+        let sheets: Vec<Triangle> = (0..count).map(|_| [0; 3].map(|_| point(&mut random))).collect();
+        let both: Vec<Triangle> = sheets.iter().flat_map(|&[a, b, c]| [[a, b, c], [a, c, b]]).collect();
+        let bodies = [Surface::sheet(&both)];
+        let needed = Layers::needed(&grid, &bodies);
+        let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
+        let layers = Layers::new(&grid, &bodies, LayerOptions::default(), &mut numbers, &mut groups).expect("memory");
+        let (mut edges, mut crossed) = (vec![ShadowEdge::default(); 9 * 2 * count], vec![0; 3 * 2 * count]);
+        let mut lists = vec![0; layers.shadow_lists_needed(0)];
+        let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut lists };
+        let open = OpenLayer { cell: &[1.0], x: &[1.0; 2], y: &[1.0; 2], z: &[1.0], top: &[1.0] };
+        let mut found = [Shadow::default()];
+        assert_eq!(layers.shadows(0, &open, &mut found, memory), Ok(0));
+        for axis in 0..3 {
+            let (iu, iv) = ((axis + 1) % 3, (axis + 2) % 3);
+            let meets = |[a, b, c]: &Triangle, u: f64, v: f64| {
+                let side = |a: DVec3, b: DVec3| (b[iu] - a[iu]) * (v - a[iv]) - (b[iv] - a[iv]) * (u - a[iu]);
+                let sides = [side(*a, *b), side(*b, *c), side(*c, *a)];
+                sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
+            };
+            let at = |n: usize| (n as f64 + 0.5) / LINES as f64;
+            let met = (0..LINES * LINES).filter(|n| sheets.iter().any(|t| meets(t, at(n % LINES), at(n / LINES))));
+            let truth = met.count() as f64 / (LINES * LINES) as f64;
+            assert!((found[0].share[axis] - truth).abs() < 3e-3, "{count} along {axis}: {found:?} and {truth}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::progress::Progress;
 use crate::geometry::bodies::Bodies;
 use crate::picture::ticks::measure;
-use crate::porosity::drag::{Drag, DragCoefficients, DragLaw, drag};
+use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use crate::porosity::resistance::{Resistance, resistance};
 use crate::porosity::shadows::{HIDDEN, Shadows, shadows};
 use crate::porosity::throat::{self, Faces};
@@ -29,7 +29,7 @@ pub struct Obstacles {
     /// The obstacles of every cell.
     pub resistance: Option<Resistance>,
     /// Their drag.
-    pub drag: Option<Drag>,
+    pub drag: Option<ObstacleDrag>,
     /// Faces lowered to what passes.
     pub lowered_faces: usize,
 }
@@ -52,7 +52,7 @@ pub fn obstacles(
     let alone = (found.resistance.is_none() && (wanted.warning || wanted.faces == Faces::Throat))
         .then(|| progress.stage("shadows", |_| shadows(grid, bodies, result, options)));
     let Some(shadows) = found.resistance.as_ref().map(|r| &r.shadows).or(alone.as_ref()) else { return found };
-    // Drag is that of the cell's own surface: it asks for faces as they are.
+    // ObstacleDrag is that of the cell's own surface: it asks for faces as they are.
     if let (Some(law), Some(obstacles)) = (wanted.drag, &found.resistance) {
         let drag = progress.stage("drag", |_| drag(grid, bodies, (result, obstacles), options, law));
         if drag.capped > 0 {

@@ -6,11 +6,12 @@
 //!
 //! cr_i = CR_i β̄_i² / β_v,
 //!
-//! which is what [`Drag::cr`] holds.
+//! which is what [`ObstacleDrag::cr`] holds.
 
 use super::levels::levels;
-use super::resistance::{Resistance, with_solid_layers};
+use super::resistance::Resistance;
 use super::shadows::{cells, faces_of_cell};
+use super::solid::with_solid_layers;
 use super::{FieldSet, Options, Porosity, porosity};
 use crate::geometry::bodies::{Bodies, Body};
 use crate::geometry::form::Form;
@@ -48,7 +49,7 @@ impl Default for DragCoefficients {
 
 /// Resistance in the cells of a grid, `nx*ny*nz`, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Drag {
+pub struct ObstacleDrag {
     /// Along x, y and z in 1/m, for the velocity in the pores: cr_i of `solve`.
     pub cr: [Vec<f64>; 3],
     /// Sources of turbulence CT_i = 0.035 CR_i of round and 0.08 CR_i of sharp bodies, superficial, in 1/m.
@@ -73,7 +74,7 @@ pub fn drag(
     (result, resistance): (&Porosity, &Resistance),
     options: Options,
     (law, coefficients): (DragLaw, DragCoefficients),
-) -> Drag {
+) -> ObstacleDrag {
     let round: Vec<bool> = bodies.bodies.par_iter().map(|b| is_round(b, &bodies.triangles)).collect();
     let weight = |(body, &round): (&Body, &bool)| match body.drag {
         // Its own resistance stands for all of it.
@@ -90,8 +91,10 @@ pub fn drag(
         });
         sums
     });
-    let mut found =
-        Drag { bodies: [true, false].map(|kind| round.iter().filter(|&&r| r == kind).count()), ..Drag::default() };
+    let mut found = ObstacleDrag {
+        bodies: [true, false].map(|kind| round.iter().filter(|&&r| r == kind).count()),
+        ..ObstacleDrag::default()
+    };
     for axis in 0..3 {
         let rows = (law == DragLaw::Pdr).then(|| Rows::new(grid, axis, &resistance.shadows.tau[axis]));
         found.capped += rows.as_ref().map_or(0, |rows| rows.capped);
@@ -158,7 +161,7 @@ impl<'a> Rows<'a> {
 }
 
 /// Add the resistance that solids are given as a whole, by the share of each cell that they fill.
-fn add_own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Drag) {
+fn add_own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut ObstacleDrag) {
     let mut given: Vec<f64> = bodies.bodies.iter().filter_map(|b| b.drag.cr).collect();
     given.sort_by(f64::total_cmp);
     given.dedup();

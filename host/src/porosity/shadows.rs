@@ -1,6 +1,6 @@
 //! Passages that no face of the grid sees blocked: shadows of the solids in every cell.
 
-use super::resistance::{open_layer, solid_alone, with_solid_layers};
+use super::solid::{open_layer, solid_alone, with_solid_layers};
 use super::{FieldSet, Options, Porosity};
 use crate::geometry::bodies::Bodies;
 use glam::DVec3;

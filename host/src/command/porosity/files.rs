@@ -11,7 +11,7 @@ use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::grid::Edges;
 use crate::picture::png;
 use crate::porosity::Porosity;
-use crate::porosity::drag::Drag;
+use crate::porosity::drag::ObstacleDrag;
 use crate::porosity::resistance::Resistance;
 use std::path::{Path, PathBuf};
 
@@ -142,7 +142,7 @@ fn obstacle_fields<'a>(edges: &Edges, obstacles: &'a Obstacles) -> Vec<(String, 
         let values: [&[f64]; 9] = [x, y, z, s, d_h, l_obs, tau_x, tau_y, tau_z];
         all.extend(OBSTACLES.into_iter().zip(values));
     }
-    if let Some(Drag { cr, ct, .. }) = &obstacles.drag {
+    if let Some(ObstacleDrag { cr, ct, .. }) = &obstacles.drag {
         all.extend(DRAG.into_iter().zip(cr.iter().chain(ct).map(|values| &values[..])));
     }
     all.into_iter().map(|(name, values)| (name.to_owned(), edges.cells(), values)).collect()
