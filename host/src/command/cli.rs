@@ -192,7 +192,7 @@ pub struct PorosityArgs {
     /// Drag coefficient: a number, or round=NUMBER,sharp=NUMBER (default: round=1.2,sharp=2)
     #[arg(long, value_name = "CD", requires = "drag", value_parser = parse_cd)]
     pub cd: Option<DragCoefficients>,
-    /// Zones of the table of congestion (TOML): [[zone]] with name, min, max in metres (default: the whole grid)
+    /// Zones of the table of congestion (TOML tables "zone" with name, min, max in metres; default: the whole grid)
     #[arg(long, value_name = "FILE", conflicts_with = "no_areas")]
     pub zones: Option<PathBuf>,
     /// Number of threads (default: all cores)
