@@ -292,7 +292,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// Indices of a cell along each axis.
-    fn coordinates(&self, mut cell: usize) -> [usize; D] {
+    pub fn coordinates(&self, mut cell: usize) -> [usize; D] {
         self.cells().map(|n| {
             let i = cell % n;
             cell /= n;
@@ -301,8 +301,20 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// Volume of a cell, its obstacles included.
-    fn volume(&self, at: [usize; D]) -> R {
+    pub fn volume(&self, at: [usize; D]) -> R {
         (0..D).fold(R::ONE, |v, d| v * self.widths[d][at[d]])
+    }
+
+    /// Area of the faces of a cell normal to axis `d`, open or not.
+    pub fn area(&self, d: usize, at: [usize; D]) -> R {
+        self.volume(at) / self.widths[d][at[d]]
+    }
+
+    /// Position of the low (`side` 0) or high (1) face of a cell among the faces normal to axis `d`.
+    pub fn face(&self, d: usize, mut at: [usize; D], side: usize) -> usize {
+        let n = self.cells();
+        at[d] += side;
+        (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a])
     }
 
     /// Open volume of a cell.
@@ -313,17 +325,14 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
 
     /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there.
     pub fn side(&self, d: usize, side: usize) -> Vec<(usize, R)> {
-        let (n, last) = (self.cells(), self.widths[d].len().saturating_sub(1));
+        let last = self.widths[d].len().saturating_sub(1);
         let space = self.porosity();
         let cells = (0..self.len()).filter(|&c| self.coordinates(c)[d] == side * last);
         cells
             .map(|cell| {
-                let mut at = self.coordinates(cell);
-                let area = self.volume(at) / self.widths[d][at[d]];
-                at[d] += side;
-                let face = (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a]);
-                let open = space.map_or(R::ONE, |s| s.faces()[d][face]);
-                (cell, open * area)
+                let at = self.coordinates(cell);
+                let open = space.map_or(R::ONE, |s| s.faces()[d][self.face(d, at, side)]);
+                (cell, open * self.area(d, at))
             })
             .collect()
     }

@@ -60,7 +60,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         files::write(args, &edges, (&result, &found), &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {
-            streams::write_json(path, &report.finished(&progress))?;
+            streams::write_json(path, &report.finished(&bodies, &progress))?;
         }
         Ok(())
     })

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::files::{check_target, json};
 use serde::Serialize;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What messages call the standard input.
 pub const INPUT: &str = "standard input";
@@ -38,15 +38,24 @@ pub fn text_of(path: &Path) -> Result<Option<String>> {
     text.map(Some).map_err(|_| Error::file(Path::new(INPUT), "is no text in UTF-8"))
 }
 
+/// There is something at `path` that is no file: what goes there need not be a whole one.
+#[must_use]
+pub fn is_device(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|m| !m.is_file())
+}
+
+/// The suffix of a file in small letters.
+fn suffix(path: &Path) -> Option<String> {
+    path.extension().map(|s| s.to_string_lossy().to_lowercase())
+}
+
 /// `option` writes one format: the suffix must say so, or there be none to say otherwise.
 ///
 /// # Errors
 /// Another suffix; exit code 2.
 pub fn check_suffix(option: &str, path: &Path, wanted: &str) -> Result<()> {
-    let device = std::fs::metadata(path).is_ok_and(|m| !m.is_file());
-    let suffix = path.extension().map(|s| s.to_string_lossy().to_lowercase());
-    match suffix {
-        Some(suffix) if suffix != wanted && !device => {
+    match suffix(path) {
+        Some(suffix) if suffix != wanted && !is_device(path) => {
             Err(Error::usage(format!("{}: {option} writes .{wanted}, not .{suffix}", path.display())))
         }
         _ => Ok(()),
@@ -109,14 +118,12 @@ impl OutputFormat {
     ///
     /// # Errors
     /// A suffix that is not known; exit code 2.
-    pub fn of(path: &PathBuf) -> Result<Self> {
-        let device = is_stream(path) || std::fs::metadata(path).is_ok_and(|m| !m.is_file());
-        let suffix = path.extension().map(|s| s.to_string_lossy().to_lowercase());
-        match suffix.as_deref() {
+    pub fn of(path: &Path) -> Result<Self> {
+        match suffix(path).as_deref() {
             Some("vtr") => Ok(OutputFormat::Fields),
             Some("png") => Ok(OutputFormat::Picture),
             Some("json") => Ok(OutputFormat::Report),
-            _ if device => Ok(OutputFormat::Fields),
+            _ if is_stream(path) || is_device(path) => Ok(OutputFormat::Fields),
             _ => Err(Error::usage(format!("{}: the suffix tells no format; known are {FORMATS}", path.display()))),
         }
     }

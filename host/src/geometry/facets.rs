@@ -1,5 +1,6 @@
 //! Curved solids as triangles, for what closed forms do not give.
 
+use super::bodies::Body;
 use super::form::Form;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -11,6 +12,12 @@ const BALL_SCALE: f64 = 1.000_327_352;
 /// Facets around an axis. A facetted pipe has the lateral surface of the true one; its width is off by
 /// less than (π/96)²/3 = 4·10⁻⁴.
 const AROUND: usize = 96;
+
+/// The facets of a body that is known by its form alone; none if it has triangles of its own.
+#[must_use]
+pub fn of_body(body: &Body) -> Option<Vec<[DVec3; 3]>> {
+    body.form.as_ref().filter(|_| body.triangles.is_empty()).map(triangles)
+}
 
 /// The surface of a form, counter-clockwise seen from outside; none for forms whose triangles are the body itself.
 #[must_use]

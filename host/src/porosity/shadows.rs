@@ -86,7 +86,7 @@ pub fn cells(grid: &Grid<f64>) -> impl Iterator<Item = [usize; 3]> {
 }
 
 fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> HiddenPassages {
-    let open = [&beta.x, &beta.y, &beta.z][axis];
+    let open = beta.faces(axis);
     let mut found = HiddenPassages::default();
     for (at, tau) in cells(grid).zip(tau) {
         let [low, high] = faces_of_cell(grid, axis, at).map(|face| open[face]);

@@ -28,11 +28,8 @@ pub(super) fn with_solid_layers<T>(
     let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
     let moved = snap::into_planes(grid, bodies);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
-    let curved: Vec<Vec<[DVec3; 3]>> = bodies
-        .bodies
-        .par_iter()
-        .map(|b| b.form.as_ref().filter(|_| b.triangles.is_empty()).map_or_else(Vec::new, facets::triangles))
-        .collect();
+    let curved: Vec<Vec<[DVec3; 3]>> =
+        bodies.bodies.par_iter().map(|body| facets::of_body(body).unwrap_or_default()).collect();
     let own_triangles = |n: usize, body: &Body| match &curved[n][..] {
         _ if !solid(body) => &[],
         [] => &triangles[body.triangles.clone()],

@@ -4,7 +4,7 @@ use super::report::Report;
 use crate::command::cli::PorosityArgs;
 use crate::command::obstacles::Obstacles;
 use crate::command::progress::{Progress, print};
-use crate::command::streams::{OutputFormat, check_place, check_suffix, is_stream, make_place};
+use crate::command::streams::{OutputFormat, check_place, check_suffix, is_device, is_stream, make_place};
 use crate::error::{Error, Result};
 use crate::files::npy;
 use crate::files::vtr::{CellField, NamedField, Vtr};
@@ -52,7 +52,7 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     args.report.iter().try_for_each(|path| check_suffix("--report", path, "json"))?;
     for (n, output) in outputs.iter().enumerate() {
         check_place(output)?;
-        let device = std::fs::metadata(output).is_ok_and(|m| !m.is_file());
+        let device = is_device(output);
         let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path()).filter(|p| !is_stream(p));
         if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
             return Err(Error::usage(format!(

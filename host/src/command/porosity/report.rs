@@ -161,7 +161,7 @@ impl Report {
             divided: result.divided,
             leaks: result.leaks.clone(),
             sheets_off_planes: result.sheets_off_planes,
-            solids: solids(bodies),
+            solids: Vec::new(),
             warnings: Vec::new(),
             skipped,
             seconds: BTreeMap::new(),
@@ -173,9 +173,10 @@ impl Report {
         }
     }
 
-    /// With what only the end of the run knows: warnings and the seconds of every stage.
-    pub(super) fn finished(self, progress: &Progress) -> Self {
-        Report { seconds: progress.seconds.clone(), warnings: progress.warnings.clone(), ..self }
+    /// With what only a file asks for, the solids one by one, and what only the end of the run knows: warnings and the seconds of every stage.
+    pub(super) fn finished(self, bodies: &Bodies, progress: &Progress) -> Self {
+        let (seconds, warnings) = (progress.seconds.clone(), progress.warnings.clone());
+        Report { solids: solids(bodies), seconds, warnings, ..self }
     }
 
     /// A few lines for the terminal.

@@ -1,8 +1,9 @@
 //! The solids of a run, one by one: volume and areas of each alone, wherever it is and whatever it overlaps.
 
-use crate::geometry::bodies::{Bodies, Body, SolidSummary};
+use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
 use crate::geometry::facets;
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 /// A solid of a scene file, or the bodies of one name in an STL or OBJ file.
@@ -24,43 +25,43 @@ pub(super) fn solids(bodies: &Bodies) -> Vec<SolidReport> {
     });
     let in_scene = |n: usize| bodies.solids.iter().any(|s| s.bodies.contains(&n));
     let files = bodies.diagnoses.iter().filter(|d| !d.body_range.is_empty() && !in_scene(d.body_range.start));
-    let of_files = files.flat_map(|file| {
-        let own = &bodies.bodies[file.body_range.clone()];
-        let mut names: Vec<&str> = Vec::new();
-        for body in own {
-            if !names.contains(&&body.name[..]) {
-                names.push(&body.name);
-            }
-        }
-        names
-            .into_iter()
-            .map(|name| {
-                let named = || own.iter().filter(|b| b.name == name);
-                let bounds = named().map(|b| b.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
-                let place = |n: Option<usize>| n.map_or(0, |n| n + file.body_range.start);
-                let first = place(own.iter().position(|b| b.name == name));
-                let last = place(own.iter().rposition(|b| b.name == name));
-                let about = SolidSummary {
-                    scene: file.file.clone(),
-                    name: name.to_owned(),
-                    shape: "file",
-                    porosity: 0.0,
-                    copies: 1,
-                    bodies: first..last + 1,
-                    volume: named().map(|b| b.volume).sum(),
-                    bounds: bounds.unwrap_or_default(),
-                };
-                report(bodies, about, named())
-            })
-            .collect::<Vec<_>>()
-    });
+    let of_files = files.flat_map(|file| of_file(bodies, file));
     of_scenes.chain(of_files).collect()
+}
+
+/// The bodies of each name in a file, in the order in which the names come first.
+fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = SolidReport> {
+    let mut groups: Vec<(&str, Vec<usize>)> = Vec::new();
+    let mut known: FxHashMap<&str, usize> = FxHashMap::default();
+    for number in file.body_range.clone() {
+        let name = &bodies.bodies[number].name[..];
+        let group = *known.entry(name).or_insert(groups.len());
+        if group == groups.len() {
+            groups.push((name, Vec::new()));
+        }
+        groups[group].1.push(number);
+    }
+    groups.into_iter().map(|(name, numbers)| {
+        let own = || numbers.iter().map(|&n| &bodies.bodies[n]);
+        let bounds = own().map(|b| b.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+        let about = SolidSummary {
+            scene: file.file.clone(),
+            name: name.to_owned(),
+            shape: "file",
+            porosity: 0.0,
+            copies: 1,
+            bodies: numbers[0]..numbers[numbers.len() - 1] + 1,
+            volume: own().map(|b| b.volume).sum(),
+            bounds: bounds.unwrap_or_default(),
+        };
+        report(bodies, about, own())
+    })
 }
 
 fn report<'a>(bodies: &Bodies, about: SolidSummary, own: impl Iterator<Item = &'a Body>) -> SolidReport {
     let (mut frontal, mut wetted) = (DVec3::ZERO, 0.0);
     for body in own {
-        let curved = body.form.as_ref().filter(|_| body.triangles.is_empty()).map(facets::triangles);
+        let curved = facets::of_body(body);
         let surface = curved.as_deref().unwrap_or(&bodies.triangles[body.triangles.clone()]);
         for [a, b, c] in surface {
             let area = (b - a).cross(c - a) * 0.5;

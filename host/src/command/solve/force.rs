@@ -6,12 +6,11 @@
 //! β_v ρ (a_i + ½ CR_i |u|) u_i V. Walls of the domain do not count.
 
 use crate::flow::Flow;
-use crate::grid::Edges;
 use rayon::prelude::*;
 
 /// Force on all solids along x, y and z; per metre of the axes that do not flow. The same bits for any number of threads.
-pub fn force<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], edges: &Edges, ambient: f64) -> [f64; 3] {
-    let Some(solids) = Solids::of(flow, live, edges) else { return [0.0; 3] };
+pub fn force<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], ambient: f64) -> [f64; 3] {
+    let Some(solids) = Solids::of(flow) else { return [0.0; 3] };
     let n = flow.cells()[0];
     let rows: Vec<[f64; D]> = (0..flow.len() / n)
         .into_par_iter()
@@ -30,8 +29,6 @@ pub fn force<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], edges: &Edge
 
 /// What the gas pushes.
 struct Solids<'a, const D: usize> {
-    widths: [Vec<f64>; D],
-    cells: [usize; D],
     beta_v: Option<&'a [f64]>,
     faces: [Option<&'a [f64]>; D],
     /// Quadratic and linear coefficients; empty where zero.
@@ -40,13 +37,13 @@ struct Solids<'a, const D: usize> {
 
 impl<'a, const D: usize> Solids<'a, D> {
     /// Those of a flow; none if its space is open and nothing drags.
-    fn of(flow: &'a Flow<f64, D>, live: [usize; D], edges: &Edges) -> Option<Self> {
+    fn of(flow: &'a Flow<f64, D>) -> Option<Self> {
         let (mut faces, mut drag) = ([None; D], [[&[][..]; D]; 2]);
         faces.iter_mut().zip(flow.faces()).for_each(|(to, from)| *to = Some(from));
         drag.iter_mut().flatten().zip(flow.drag()).for_each(|(to, from)| *to = from);
-        let (widths, beta_v) = (live.map(|axis| edges.widths(axis)), flow.beta_v());
+        let beta_v = flow.beta_v();
         let nothing = beta_v.is_none() && drag.iter().flatten().all(|c| c.is_empty());
-        (!nothing).then(|| Solids { widths, cells: flow.cells(), beta_v, faces, drag })
+        (!nothing).then_some(Solids { beta_v, faces, drag })
     }
 
     /// Adds the force on what is in a cell and in its faces.
@@ -55,25 +52,14 @@ impl<'a, const D: usize> Solids<'a, D> {
         if open == 0.0 {
             return;
         }
-        let mut rest = cell;
-        let at: [usize; D] = self.cells.map(|n| {
-            let i = rest % n;
-            rest /= n;
-            i
-        });
-        let volume = (0..D).fold(1.0, |v, d| v * self.widths[d][at[d]]);
+        let at = flow.coordinates(cell);
+        let volume = flow.volume(at);
         let w = flow.get(cell);
         let speed = w.velocity.iter().fold(0.0, |s, u| s + u * u).sqrt();
         for d in 0..D {
             if let Some(faces) = self.faces[d] {
-                let face = |side: usize| {
-                    (0..D).rev().fold(0, |i, a| {
-                        let (n, k) = if a == d { (self.cells[a] + 1, at[a] + side) } else { (self.cells[a], at[a]) };
-                        i * n + k
-                    })
-                };
-                let area = volume / self.widths[d][at[d]];
-                sum[d] += (w.pressure - ambient) * (faces[face(0)] - faces[face(1)]) * area;
+                let [low, high] = [0, 1].map(|side| faces[flow.face(d, at, side)]);
+                sum[d] += (w.pressure - ambient) * (low - high) * flow.area(d, at);
             }
             let [quadratic, linear] = [0, 1].map(|n| self.drag[n][d].get(cell).copied().unwrap_or(0.0));
             sum[d] += open * w.density * (linear + 0.5 * quadratic * speed) * w.velocity[d] * volume;

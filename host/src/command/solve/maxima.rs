@@ -70,17 +70,11 @@ impl Maxima {
             last: zeros(),
         };
         for cell in 0..flow.len() {
-            let (over, dynamic) = maxima.now(flow, cell);
+            let (over, dynamic) = pressures(flow, cell, ambient);
             (maxima.overpressure[cell], maxima.last[cell], maxima.dynamic[cell]) = (over, over, dynamic);
             maxima.arrival[cell] = if over >= threshold { flow.time } else { f64::NAN };
         }
         maxima
-    }
-
-    /// Overpressure and dynamic pressure of a cell.
-    fn now<const D: usize>(&self, flow: &Flow<f64, D>, cell: usize) -> (f64, f64) {
-        let w = flow.get(cell);
-        (w.pressure - self.ambient, 0.5 * w.density * w.velocity.iter().fold(0.0, |sum, u| sum + u * u))
     }
 
     /// After a step of `dt`.
@@ -90,10 +84,9 @@ impl Maxima {
         let peaks = overpressure.par_iter_mut().zip(&mut dynamic[..]).zip(&mut impulse[..]);
         let state = running.par_iter_mut().zip(&mut last[..]).zip(&mut arrival[..]);
         peaks.zip(state).enumerate().for_each(|(cell, (((most, dynamic), impulse), ((running, last), arrival)))| {
-            let w = flow.get(cell);
-            let over = w.pressure - ambient;
+            let (over, now) = pressures(flow, cell, ambient);
             *most = most.max(over);
-            *dynamic = dynamic.max(0.5 * w.density * w.velocity.iter().fold(0.0, |sum, u| sum + u * u));
+            *dynamic = dynamic.max(now);
             *running += 0.5 * dt * (*last + over);
             *impulse = impulse.max(*running);
             if arrival.is_nan() && over >= threshold {
@@ -156,6 +149,12 @@ impl Maxima {
             dynamic_pressure: self.dynamic[cell],
         }
     }
+}
+
+/// Overpressure and dynamic pressure of a cell.
+fn pressures<const D: usize>(flow: &Flow<f64, D>, cell: usize, ambient: f64) -> (f64, f64) {
+    let w = flow.get(cell);
+    (w.pressure - ambient, 0.5 * w.density * w.velocity.iter().fold(0.0, |sum, u| sum + u * u))
 }
 
 /// The lowest pressure of an open cell: what a case without another word takes for that of the surroundings.

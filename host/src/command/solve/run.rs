@@ -372,7 +372,7 @@ impl<'a, const D: usize> Run<'a, D> {
             let (floors, change) = (flow.total.floored, flow.total.floor_change);
             let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
             let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
-            let [x, y, z] = force(flow, self.setup.live, &self.setup.edges, self.ambient);
+            let [x, y, z] = force(flow, self.setup.live, self.ambient);
             let line = format!(
                 "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
                 change.density
