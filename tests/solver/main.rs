@@ -8,6 +8,7 @@ mod extremes;
 mod inclined;
 mod invariance;
 mod reference;
+mod repairs;
 mod stress;
 mod throat;
 mod walls;

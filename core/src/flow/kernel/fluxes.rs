@@ -1,5 +1,6 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
+use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::slab::{RowAt, Slab};
@@ -64,6 +65,8 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
         let flux = FluxBlock { values: work.flux, n: m };
         fluxes_at_breaks::<R, D, S>(slab, 0, row.at, broken, [work.left, work.right], flux);
     }
+    let flux = FluxBlock { values: work.flux, n: m };
+    positive_fluxes::<R, D, ENERGY>(slab, 0, row.at, [work.left, work.right], flux);
     let flux = &*work.flux;
     count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
     count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
@@ -156,6 +159,7 @@ fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
         fluxes_at_breaks::<R, D, S>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
     }
+    positive_fluxes::<R, D, ENERGY>(slab, d, at, [left, right], FluxBlock { values: flux, n });
 }
 
 /// Ghost states beside the boundary faces of axis `d`, from the inner face states.

@@ -49,6 +49,8 @@ pub struct SpaceReport {
     pub dust_faces: usize,
     /// Open faces on the sides of the domain that were closed: too little volume behind them for any step.
     pub closed_faces: usize,
+    /// Faces on periodic sides that were lowered to what the opposite side leaves open.
+    pub matched_faces: usize,
 }
 
 /// The axes with more than one cell; x, if there is none.
@@ -90,7 +92,13 @@ pub fn setup<const D: usize>(
         Some(space) => {
             by_law = space.drag;
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
-            let Tidied { dust_cells, dust_faces, closed_faces } = tidied;
+            let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
+            if matched_faces > 0 {
+                progress.warn(format!(
+                    "{}: {matched_faces} faces of periodic sides are more open than the side opposite: both let pass what the less open one does",
+                    file.path.display()
+                ));
+            }
             report = Some(SpaceReport {
                 closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
                 jump_faces: flow.jump_faces(),
@@ -98,6 +106,7 @@ pub fn setup<const D: usize>(
                 dust_cells,
                 dust_faces,
                 closed_faces,
+                matched_faces,
             });
         }
     }
