@@ -9,7 +9,8 @@ use crate::geometry::form::Form;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::repair::copies;
 use crate::geometry::repair::crossing::{self, Found};
-use crate::geometry::repair::edges;
+use crate::geometry::repair::edges::EdgeUses;
+use crate::geometry::repair::junctions;
 pub use crate::geometry::repair::nesting::Doubt;
 use crate::geometry::repair::nesting::{self, Closed, Role};
 use crate::geometry::repair::rims::rims;
@@ -159,7 +160,8 @@ impl Bodies {
             let reason = format!("all {} triangles are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
-        let name_of = |n: u32| mesh.solids.get(solid_of(n)).map_or_else(String::new, |s| s.name.clone());
+        let name_of =
+            |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
         let closed = close(&indexed, &shells, name_of, rounding, &mut d, &mut report);
         let closed = resolve(closed, &scaled, &mut d, &mut report);
         say_copies(&d, &mut report);
@@ -305,9 +307,19 @@ fn clean(
     if d.degenerate > 0 {
         report.warn(format!("{} degenerate triangles (no area) are ignored", d.degenerate));
     }
-    let mut alive = distinct(&mesh);
+    let mut all = distinct(&mesh);
+    let mut alive = all.clone();
     [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
-    close_cracks(&mut mesh, &alive, rounding, d, report);
+    let uses = EdgeUses::new(&mesh, &alive);
+    let uses = close_cracks(&mut mesh, &alive, uses, rounding, d, report);
+    let uses = if alive == all { uses } else { EdgeUses::new(&mesh, &all) };
+    d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
+    d.boundary_edges = d.t_junction_edges;
+    if d.t_junction_edges > 0 {
+        // Only now can it be seen which triangles repeat others, and what is open without them.
+        alive = all;
+        [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
+    }
     let mut shells = shells::shells(&mut mesh, &alive, solid_of);
     drop_copies(&mesh, &mut shells, rounding, d);
     d.shells = shells.len();
@@ -349,21 +361,29 @@ fn distinct(mesh: &Indexed) -> Vec<bool> {
     mesh.triangles.iter().map(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 
-/// If edges lack partners, try whether points that differ by rounding are meant to be one.
-fn close_cracks(mesh: &mut Indexed, alive: &[bool], rounding: f64, d: &mut Diagnosis, report: &mut Reporter) {
-    let before = edges::unmatched_edges(mesh, alive);
+/// If edges lack partners, try whether points that differ by rounding are meant to be one. Returns the uses of the edges then.
+fn close_cracks(
+    mesh: &mut Indexed,
+    alive: &[bool],
+    uses: EdgeUses,
+    rounding: f64,
+    d: &mut Diagnosis,
+    report: &mut Reporter,
+) -> EdgeUses {
+    let before = uses.unmatched();
     if before == 0 {
-        return;
+        return uses;
     }
-    let loose = edges::unmatched_points(mesh, alive);
     let mut merged = mesh.clone();
-    let moved = weld::merge_close(&mut merged, alive, &loose, rounding);
-    if 2 * edges::unmatched_edges(&merged, alive) > before {
-        return;
+    let moved = weld::merge_close(&mut merged, alive, &uses.unmatched_points(mesh.points.len()), rounding);
+    let after = EdgeUses::new(&merged, alive);
+    if 2 * after.unmatched() > before {
+        return uses;
     }
     report.warn(format!("points up to {moved:.1e} apart were merged to close cracks"));
     d.welded_by = moved;
     *mesh = merged;
+    after
 }
 
 /// Make every shell closed: join those that close each other, cap holes.

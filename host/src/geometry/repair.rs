@@ -1,10 +1,11 @@
-//! From triangles as they come to closed shells: welded, oriented, split, freed of copies, capped, resolved where they cross themselves, nested.
+//! From triangles as they come to closed shells: welded, cut at T-junctions, oriented, split, freed of copies, capped, resolved where they cross themselves, nested.
 
 pub mod copies;
 pub mod crossing;
 pub mod edges;
 pub mod face;
 pub mod join;
+pub mod junctions;
 pub mod nesting;
 pub mod regions;
 pub mod rims;

@@ -42,6 +42,24 @@ impl EdgeUses {
         self.0.iter_mut().for_each(|(_, u)| u.up ^= turned(u.triangle));
     }
 
+    /// Sum of the imbalances of all edges: 0 if every edge is run as often one way as the other.
+    #[must_use]
+    pub fn unmatched(&self) -> u64 {
+        self.each().map(|uses| balance(uses).unsigned_abs()).sum()
+    }
+
+    /// Which of so many points lie on edges that are not run as often one way as the other.
+    #[must_use]
+    pub fn unmatched_points(&self, points: usize) -> Vec<bool> {
+        let mut unmatched = vec![false; points];
+        for uses in self.each().filter(|uses| balance(uses) != 0) {
+            for v in [uses[0].0 >> 32, uses[0].0 & 0xffff_ffff] {
+                unmatched[v as usize] = true;
+            }
+        }
+        unmatched
+    }
+
     /// The uses of one edge.
     #[must_use]
     pub fn of(&self, edge: u64) -> &[(u64, Use)] {
@@ -54,22 +72,4 @@ impl EdgeUses {
 /// How many more times an edge is run upwards than downwards.
 pub fn balance(uses: &[(u64, Use)]) -> i64 {
     uses.iter().map(|(_, u)| if u.up { 1 } else { -1 }).sum()
-}
-
-/// Sum of the imbalances of all edges of a mesh: 0 if every edge is run as often one way as the other.
-#[must_use]
-pub fn unmatched_edges(mesh: &Indexed, alive: &[bool]) -> u64 {
-    EdgeUses::new(mesh, alive).each().map(|uses| balance(uses).unsigned_abs()).sum()
-}
-
-/// The points on edges that are not run as often one way as the other.
-#[must_use]
-pub fn unmatched_points(mesh: &Indexed, alive: &[bool]) -> Vec<bool> {
-    let mut unmatched = vec![false; mesh.points.len()];
-    for uses in EdgeUses::new(mesh, alive).each().filter(|uses| balance(uses) != 0) {
-        for v in [uses[0].0 >> 32, uses[0].0 & 0xffff_ffff] {
-            unmatched[v as usize] = true;
-        }
-    }
-    unmatched
 }

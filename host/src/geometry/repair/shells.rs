@@ -55,7 +55,7 @@ pub fn shells(mesh: &mut Indexed, alive: &[bool], solid_of: impl Fn(u32) -> usiz
     }
     edges.turn(|n| turned[n as usize]);
     let many = edges.each().filter(|uses| plain(mesh, uses).is_none());
-    let Joined { lonely, guessed } = join(mesh, many, &mut sets, solid_of);
+    let Joined { lonely, guessed } = join(mesh, many, &mut sets, |n| solid_of(mesh.source(n)));
     let mut position = HashMap::default();
     let mut shells: Vec<Shell> = Vec::new();
     for n in (0..count).filter(|&n| alive[n]) {

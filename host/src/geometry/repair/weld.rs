@@ -10,6 +10,17 @@ pub struct Indexed {
     pub points: Vec<DVec3>,
     /// Corners of each triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// Of the last triangles, the parts of others: whose part each one is.
+    pub sources: Vec<u32>,
+}
+
+impl Indexed {
+    /// The number of a triangle in the file: its own, or that of the one which it is a part of.
+    #[must_use]
+    pub fn source(&self, n: u32) -> u32 {
+        let whole = self.triangles.len() - self.sources.len();
+        (n as usize).checked_sub(whole).and_then(|part| self.sources.get(part)).map_or(n, |&source| source)
+    }
 }
 
 /// The directed edges of a triangle.
@@ -34,7 +45,7 @@ pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
             })
         })
         .collect();
-    Indexed { points, triangles: indexed }
+    Indexed { points, triangles: indexed, sources: Vec::new() }
 }
 
 /// Of an edge, how wide a crack at its end may be. Below a half: then no edge has both its ends merged into one point.

@@ -1,0 +1,161 @@
+//! T-junctions: an edge on one side of which the surface has more corners than on the other.
+//!
+//! Such a surface closes in space, and its triangles have no partners by their edges. So the triangles at the edge are cut at the corners that lie on it;
+//! then the surface closes in its edges as well, and where parts touch, or have two sides, it can be told what belongs together.
+
+use crate::geometry::repair::edges::{EdgeUses, Use, balance, key};
+use crate::geometry::repair::weld::{Indexed, edges_of};
+use glam::DVec3;
+use rustc_hash::FxHashMap as HashMap;
+
+/// Two edges at a corner run straight on if the cosine of their angle is below this.
+const STRAIGHT: f64 = -1.0 + 1e-8;
+
+/// An edge with corners within: the lower end first.
+type Corners = HashMap<u64, Vec<u32>>;
+
+/// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
+pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
+    let odd: Vec<u64> = uses.each().filter(|uses| is_odd(mesh, uses)).map(|uses| uses[0].0).collect();
+    let corners = corners_on(mesh, &odd, &straight(mesh, &odd), rounding);
+    if corners.is_empty() {
+        return 0;
+    }
+    let cut: Vec<(usize, [u32; 3])> = mesh.triangles.iter().copied().enumerate().filter(|&(n, _)| alive[n]).collect();
+    for (n, triangle) in cut {
+        if !edges_of(triangle).iter().any(|&[a, b]| corners.contains_key(&key(a, b))) {
+            continue;
+        }
+        let mut pieces = Vec::new();
+        divide(triangle, edges_of(triangle).map(|edge| within(&corners, edge)), &mut pieces);
+        alive[n] = !pieces.is_empty();
+        for (i, piece) in pieces.into_iter().enumerate() {
+            if i == 0 {
+                mesh.triangles[n] = piece;
+            } else {
+                mesh.sources.push(mesh.source(n as u32));
+                mesh.triangles.push(piece);
+                alive.push(true);
+            }
+        }
+    }
+    let parts = |(&edge, inner): (&u64, &Vec<u32>)| {
+        let ends = [(edge >> 32) as u32, (edge & 0xffff_ffff) as u32];
+        let all: Vec<u32> = std::iter::once(ends[0]).chain(inner.iter().copied()).chain([ends[1]]).collect();
+        all.windows(2).map(|w| key(w[0], w[1])).collect::<Vec<_>>()
+    };
+    let mut involved: Vec<u64> = corners.iter().flat_map(parts).filter(|e| odd.binary_search(e).is_ok()).collect();
+    involved.extend(corners.keys());
+    involved.sort_unstable();
+    involved.dedup();
+    involved.len()
+}
+
+/// An odd number of different triangles at an edge, or more that run it one way than the other: there is one without a partner.
+fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
+    if balance(uses) != 0 {
+        return true;
+    }
+    let corners = |u: &Use| {
+        let mut t = mesh.triangles[u.triangle as usize];
+        t.sort_unstable();
+        t
+    };
+    if let [(_, a), (_, b)] = uses {
+        return corners(a) == corners(b);
+    }
+    let mut all: Vec<[u32; 3]> = uses.iter().map(|(_, u)| corners(u)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all.len() % 2 == 1
+}
+
+/// Corners at which two of these edges run straight on.
+fn straight(mesh: &Indexed, edges: &[u64]) -> Vec<u32> {
+    let ends = edges.iter().flat_map(|&e| {
+        let (a, b) = ((e >> 32) as u32, (e & 0xffff_ffff) as u32);
+        [(a, b), (b, a)]
+    });
+    let mut ends: Vec<(u32, u32)> = ends.collect();
+    ends.sort_unstable();
+    let runs_on = |around: &&[(u32, u32)]| {
+        let from = mesh.points[around[0].0 as usize];
+        let ways: Vec<DVec3> =
+            around.iter().map(|&(_, to)| (mesh.points[to as usize] - from).normalize_or_zero()).collect();
+        (0..ways.len()).any(|i| ways[..i].iter().any(|w| w.dot(ways[i]) < STRAIGHT))
+    };
+    ends.chunk_by(|a, b| a.0 == b.0).filter(runs_on).map(|around| around[0].0).collect()
+}
+
+/// Which of some corners lie within which edges, from their lower end to their higher one.
+fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> Corners {
+    let mut found = Corners::default();
+    // In order along the axis on which they spread most, so that an edge looks only at those beside it.
+    let places = || corners.iter().map(|&v| mesh.points[v as usize]);
+    let spread = places().fold(DVec3::NEG_INFINITY, DVec3::max) - places().fold(DVec3::INFINITY, DVec3::min);
+    let axis = (0..3).max_by(|&a, &b| spread[a].total_cmp(&spread[b])).unwrap_or(0);
+    let mut in_order: Vec<(f64, u32)> = corners.iter().map(|&v| (mesh.points[v as usize][axis], v)).collect();
+    in_order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    for &edge in edges {
+        let [a, b] = [(edge >> 32) as u32, (edge & 0xffff_ffff) as u32];
+        let (p, q) = (mesh.points[a as usize], mesh.points[b as usize]);
+        let (lo, hi) = (p.min(q) - rounding, p.max(q) + rounding);
+        let first = in_order.partition_point(|c| c.0 < lo[axis]);
+        let along = (q - p).normalize_or_zero();
+        let length = p.distance(q);
+        let mut inner: Vec<(f64, u32)> = Vec::new();
+        for &(_, v) in in_order[first..].iter().take_while(|c| c.0 <= hi[axis]) {
+            let m = mesh.points[v as usize];
+            if v == a || v == b || m.cmplt(lo).any() || m.cmpgt(hi).any() {
+                continue;
+            }
+            let t = (m - p).dot(along);
+            let clear = 4.0 * rounding;
+            if t > clear && t < length - clear && (m - p - along * t).length() <= rounding {
+                inner.push((t, v));
+            }
+        }
+        if !inner.is_empty() {
+            inner.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            found.insert(edge, inner.into_iter().map(|(_, v)| v).collect());
+        }
+    }
+    found
+}
+
+/// The corners within a directed edge, in its direction.
+fn within(corners: &Corners, [a, b]: [u32; 2]) -> Vec<u32> {
+    let mut inner = corners.get(&key(a, b)).cloned().unwrap_or_default();
+    if a > b {
+        inner.reverse();
+    }
+    inner
+}
+
+/// Divides a triangle at the corners on its edges, which are those from each of its corners on. A triangle and its reverse are divided alike:
+/// the edge of the lowest numbers first, at the corner next to its lower end.
+fn divide([a, b, c]: [u32; 3], on: [Vec<u32>; 3], pieces: &mut Vec<[u32; 3]>) {
+    let [ab, bc, ca] = on;
+    let edges = [(a, b, !ab.is_empty()), (b, c, !bc.is_empty()), (c, a, !ca.is_empty())];
+    let next = (0..3).filter(|&i| edges[i].2).min_by_key(|&i| key(edges[i].0, edges[i].1));
+    let (p, q, r, pq, qr, rp) = match next {
+        None => {
+            if a != b && b != c && c != a {
+                pieces.push([a, b, c]);
+            }
+            return;
+        }
+        Some(0) => (a, b, c, ab, bc, ca),
+        Some(1) => (b, c, a, bc, ca, ab),
+        Some(_) => (c, a, b, ca, ab, bc),
+    };
+    if p < q {
+        let m = pq[0];
+        divide([p, m, r], [Vec::new(), Vec::new(), rp], pieces);
+        divide([m, q, r], [pq[1..].to_vec(), qr, Vec::new()], pieces);
+    } else {
+        let m = pq[pq.len() - 1];
+        divide([p, m, r], [pq[..pq.len() - 1].to_vec(), Vec::new(), rp], pieces);
+        divide([m, q, r], [Vec::new(), qr, Vec::new()], pieces);
+    }
+}
