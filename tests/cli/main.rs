@@ -12,6 +12,7 @@ mod planes;
 mod porosity;
 mod readme;
 mod reference;
+mod regions;
 mod scene;
 mod solve;
 mod solve_errors;

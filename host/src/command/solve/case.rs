@@ -190,7 +190,7 @@ pub struct InitialKeys {
     pub uniform: Option<StateKeys>,
     /// Directory with `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`.
     pub from: Option<PathBuf>,
-    /// Boxes and balls with states; a cell belongs to a region if its centre does.
+    /// Boxes and balls with states; of a cell, each takes the share that it holds.
     #[serde(default)]
     pub regions: Vec<StateKeys>,
 }

@@ -3,6 +3,7 @@
 use super::arrays;
 use super::case::{AXES, CaseFile, GasKeys, Kind, LimiterName, Model, Pressure, RiemannName, StateKeys};
 use super::inlet::Inlet;
+use super::regions::RegionReport;
 use super::space;
 use super::state::States;
 use crate::command::progress::Progress;
@@ -30,6 +31,8 @@ pub struct Setup<const D: usize> {
     pub treatment: Treatment<f64>,
     /// What the porosity came to, if there is any.
     pub space: Option<SpaceReport>,
+    /// How well the grid resolves each region of the beginning.
+    pub regions: Vec<RegionReport>,
     /// What was left out because nothing needs it.
     pub skipped: Vec<String>,
 }
@@ -51,6 +54,8 @@ pub struct SpaceReport {
     pub closed_faces: usize,
     /// Faces on periodic sides that were lowered to what the opposite side leaves open.
     pub matched_faces: usize,
+    /// The stable step at the beginning over that of open space: what the porosity costs.
+    pub step_share: f64,
 }
 
 /// The axes with more than one cell; x, if there is none.
@@ -76,7 +81,7 @@ pub fn setup<const D: usize>(
     let mut skipped: Vec<String> =
         (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
-    let cells = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
+    let (cells, regions) = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
 
     let widths = live.map(|d| edges.widths(d));
     let (boundaries, inlets) = boundaries(file, &states, edges, &cells)?;
@@ -107,6 +112,7 @@ pub fn setup<const D: usize>(
                 dust_faces,
                 closed_faces,
                 matched_faces,
+                step_share: 1.0,
             });
         }
     }
@@ -127,10 +133,27 @@ pub fn setup<const D: usize>(
         let velocity = if closed { [0.0; D] } else { w.velocity };
         flow.set(cell, &Primitive { velocity, ..*w });
     }
+    if let Some(report) = &mut report {
+        report.step_share = step_share(&mut flow);
+    }
     let (edges, cfl) = (edges.clone(), cfl(file)?);
-    let mut setup = Setup { flow, live, edges, cfl, inlets, treatment, space: report, skipped };
+    let mut setup = Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, skipped };
     setup.inlets.iter_mut().for_each(|inlet| inlet.look_at(&setup.flow));
     Ok(setup)
+}
+
+/// The stable step over that of the same gas in open space; 1 where there is none.
+fn step_share<const D: usize>(flow: &mut Flow<f64, D>) -> f64 {
+    let Ok(rate) = flow.rate() else { return 1.0 };
+    let gas = flow.gas();
+    let open = |cell: usize| {
+        let (w, at) = (flow.get(cell), flow.coordinates(cell));
+        let c = gas.sound_speed(&w);
+        (0..D).map(|d| (w.velocity[d].abs() + c) * flow.area(d, at) / flow.volume(at)).sum::<f64>()
+    };
+    let gaseous = (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0);
+    let share = gaseous.map(open).fold(0.0, f64::max) / rate;
+    if share.is_finite() { share } else { 1.0 }
 }
 
 /// An error of the core as one of the case.
