@@ -148,7 +148,10 @@ fn wrong_cases_say_where() {
 /// The larger examples are too slow for every run of the tests; they must at least be read.
 #[test]
 fn examples_are_read() {
-    for name in ["cube_positions.toml", "shapes.toml", "spheres.toml", "platform.toml"] {
+    let names =
+        ["cube_positions", "shapes", "spheres", "platform", "skid", "solids", "unions", "precision", "flow", "growth"];
+    for name in names.map(|name| format!("{name}.toml")) {
+        let name = &name[..];
         let text = fs::read_to_string(example(name)).expect("a study");
         let case = voidage::command::study::case::parse(&example(name), &text).unwrap_or_else(|e| panic!("{e}"));
         for subject in &case.subjects {

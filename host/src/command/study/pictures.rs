@@ -123,7 +123,7 @@ fn of_flows(title: &str, rows: &[FlowRow]) -> Panels {
             at: [r.seconds.median, r.error],
             x_ends: Some([r.seconds.fastest, r.seconds.slowest]).filter(|[a, b]| a < b),
             y_ends: (r.uncertainty > 0.01 * r.error && r.error > r.uncertainty)
-                .then(|| [r.error - r.uncertainty, r.error + r.uncertainty]),
+                .then_some([r.error - r.uncertainty, r.error + r.uncertainty]),
             ..Mark::default()
         };
         let flows = unique(own.iter().map(|r| r.flow.clone()));
