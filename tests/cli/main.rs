@@ -8,6 +8,7 @@ mod maxima;
 mod outputs;
 mod outside;
 mod packages;
+mod patches;
 mod planes;
 mod porosity;
 mod readme;

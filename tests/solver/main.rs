@@ -7,6 +7,7 @@ mod convergence;
 mod extremes;
 mod inclined;
 mod invariance;
+mod patches;
 mod reference;
 mod repairs;
 mod stress;

@@ -61,7 +61,8 @@ impl Region {
     }
 
     /// Lowest and highest place along an axis.
-    fn extent(&self, axis: usize) -> [f64; 2] {
+    #[must_use]
+    pub fn extent(&self, axis: usize) -> [f64; 2] {
         match self {
             Region::Box(min, max) => [min[axis], max[axis]],
             Region::Ball(center, _) if center[axis].is_nan() => [f64::NEG_INFINITY, f64::INFINITY],

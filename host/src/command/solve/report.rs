@@ -5,6 +5,7 @@ use super::checkpoint::Journal;
 use super::maxima::{Maxima, Peaks};
 use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
+use super::sides::PatchReport;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use serde::Serialize;
@@ -55,6 +56,8 @@ pub struct Report {
     porosity: Option<SpaceReport>,
     /// How well the grid resolves the regions of the beginning.
     regions: Vec<RegionReport>,
+    /// What patches on the sides came to.
+    patches: Vec<PatchReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     maxima: Option<MaximaReport>,
     skipped: Vec<String>,
@@ -152,6 +155,7 @@ impl Report {
             frames: journal.frames.clone(),
             porosity: setup.space,
             regions: setup.regions.clone(),
+            patches: setup.patches.clone(),
             maxima: None,
             skipped: setup.skipped.clone(),
             warnings: progress.warnings.clone(),
