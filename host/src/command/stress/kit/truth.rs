@@ -71,24 +71,34 @@ pub fn differing(a: &FieldSet, b: &FieldSet) -> f64 {
 
 /// Share of a box, flat along any axes, that lies where normal · x < offset.
 ///
-/// R. Scardovelli, S. Zaleski, J. Comput. Phys. 164 (2000) 228: an alternating sum over the corners; its own error is some roundings
-/// over the ratio of the spans along the axes.
+/// Of lengths of one axis it is a ratio; of more, the mean over the axis along which the plane's height changes least of the share in the
+/// others: between kinks a polynomial, which Gauss' rule integrates exactly. So cells of any aspect lose no digits.
 #[must_use]
 pub fn half_space(normal: DVec3, offset: f64, [low, high]: [DVec3; 2]) -> f64 {
     let rest = offset - (normal * low).min(normal * high).element_sum();
-    let spans: Vec<f64> = (normal * (high - low)).abs().to_array().into_iter().filter(|span| *span > 0.0).collect();
-    if rest <= 0.0 {
-        return 0.0;
-    }
-    if rest >= spans.iter().sum() {
-        return 1.0;
-    }
-    let power = spans.len() as i32;
-    let corner = |set: usize| {
-        let chosen = spans.iter().enumerate().filter(|(d, _)| set >> d & 1 == 1).map(|(_, span)| *span);
-        let (count, sum) = chosen.fold((0, 0.0), |(count, sum), span| (count + 1, sum + span));
-        if count % 2 == 0 { (rest - sum).max(0.0).powi(power) } else { -(rest - sum).max(0.0).powi(power) }
-    };
-    let sum: f64 = (0..1usize << power).map(corner).sum();
-    sum / (f64::from((1..=power).product::<i32>()) * spans.iter().product::<f64>())
+    let mut spans: Vec<f64> = (normal * (high - low)).abs().to_array().into_iter().filter(|span| *span > 0.0).collect();
+    spans.sort_by(|a, b| b.total_cmp(a));
+    share_below(&spans, rest)
 }
+
+/// Share of a box of some spans, largest first, where the sum of the coordinates stays below `rest`.
+fn share_below(spans: &[f64], rest: f64) -> f64 {
+    let Some((&span, larger)) = spans.split_last() else { return f64::from(u8::from(rest > 0.0)) };
+    if larger.is_empty() {
+        return (rest / span).clamp(0.0, 1.0);
+    }
+    let corner = |set: usize| larger.iter().enumerate().filter(|(d, _)| set >> d & 1 == 1).map(|(_, s)| s).sum::<f64>();
+    let mut kinks: Vec<f64> = (0..1usize << larger.len()).map(|set| rest - corner(set)).collect();
+    kinks.retain(|t| *t > 0.0 && *t < span);
+    kinks.extend([0.0, span]);
+    kinks.sort_by(f64::total_cmp);
+    let piece = |ends: &[f64]| {
+        let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
+        let at = |x: f64| share_below(larger, rest - (middle + x * half));
+        half * (at(-GAUSS) + at(GAUSS))
+    };
+    kinks.windows(2).map(piece).sum::<f64>() / span
+}
+
+/// Node of Gauss' rule of two points, exact for cubics: 1/√3.
+const GAUSS: f64 = 0.577_350_269_189_625_8;
