@@ -18,7 +18,10 @@ pub const CASES: &[StressCase] = &[
         "flow/slabs",
         "streams of Mach 1e-3 to 1e4 through slabs of porosity 0.5 and 0.8: isentropic duct flow stays, 2000 steps",
         &[
-            at_most(1e-10, "relative change of mass flux and total enthalpy"),
+            at_most(
+                10.0,
+                "relative change of mass flux and total enthalpy, in rounding errors times the Mach number squared, or over it",
+            ),
             at_most(0.0, "floors"),
             at_least(9.0, "streams"),
         ],
@@ -95,10 +98,12 @@ fn slabs(effort: Effort) -> Numbers {
         (0..n).for_each(|i| flow.set(i, &duct_state(mach, volume[i])));
         steps(&mut flow, 0.8, effort.pick(2000, 50_000))?;
         let total = enthalpy(&duct_state(mach, 1.0));
+        // The pressure is the small difference of energies, the velocity small beside the speed of sound.
+        let rounding = f64::EPSILON * (mach * mach).max(1.0 / mach);
         for (i, open) in volume.iter().enumerate() {
             let w = flow.get(i);
-            change = larger(change, (open * w.density * w.velocity[0] / mach - 1.0).abs());
-            change = larger(change, (enthalpy(&w) / total - 1.0).abs());
+            change = larger(change, (open * w.density * w.velocity[0] / mach - 1.0).abs() / rounding);
+            change = larger(change, (enthalpy(&w) / total - 1.0).abs() / rounding);
         }
         (floors, streams) = (floors + flow.total.floored, streams + 1);
     }

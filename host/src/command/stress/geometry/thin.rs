@@ -23,9 +23,12 @@ pub const CASES: &[StressCase] = &[
     ),
     StressCase::new(
         "geometry/needles",
-        "200 needles of 1e-5 of a cell in 8 directions through the grid: section times length, section over cosine",
+        "needles of 1e-5 of a cell through the grid in 8 directions, 72 alone in their cells and 200 that share cells: section times length, \
+         section over cosine",
         &[
-            at_most(1e-14, "error of a cell (a needle takes 1e-10)"),
+            at_most(1e-14, "error of a cell of one needle (which takes 1e-10)"),
+            at_most(1e-9, "error of a cell of several"),
+            at_most(1e-14, "truth outside of its bounds"),
             at_most(1e-14, "error of what needles close in a plane of the grid, in faces"),
         ],
         needles,
@@ -78,32 +81,42 @@ impl Needle {
     }
 }
 
-/// Needles beside each other that all pass the whole grid, and their turn.
-fn bundle(seed: u64) -> (Vec<Needle>, DMat3) {
+/// Needles beside each other, `side` by `side` at a distance, that all pass the whole grid; and their turn.
+fn bundle(seed: u64, side: u32, apart: f64) -> (Vec<Needle>, DMat3) {
     let turn = Random::new(seed).turn();
     let needle = |n: u32| {
-        let (u, v) = (f64::from(n % 5) - 2.0, f64::from(n / 5) - 2.0);
-        let through = DVec3::splat(4.0) + turn * DVec3::new(0.0, 0.713 * u + 0.011, 0.687 * v + 0.007);
-        Needle { through, along: turn.x_axis }
+        let [u, v] = [n % side, n / side].map(|i| apart * (f64::from(i) - 0.5 * f64::from(side - 1)));
+        Needle { through: DVec3::splat(4.0) + turn * DVec3::new(0.0, u + 0.011, v + 0.007), along: turn.x_axis }
     };
-    ((0..25).map(needle).collect(), turn)
+    ((0..side * side).map(needle).collect(), turn)
+}
+
+/// Errors of a bundle: of the worst cell, of what is closed in the middle planes; and how far the truth is outside of the bounds of cells.
+fn judge(needles: &[Needle], turn: DMat3) -> Result<[f64; 3], crate::error::Error> {
+    let half = DVec3::new(12.0, 0.5 * WIDTH, 0.5 * WIDTH);
+    let solids: Vec<_> = needles.iter().map(|n| turned_box(n.through, half, turn)).collect();
+    let found = measure(&edges(), &scene(&solids)?, Options { bounds: true, ..Options::default() })?;
+    // Where it enters a cell, its section is cut askew: an error of the order of its width cubed.
+    let inside = |corners| needles.iter().map(|n| n.length_in(corners)).sum::<f64>() * WIDTH * WIDTH;
+    let truth = open_fractions(&edges(), inside).v;
+    let of_cell = |most, n: usize| larger(most, (found.beta.v[n] - truth[n]).abs());
+    let [lower, upper] = found.bounds.as_ref().map(|bounds| bounds.each_ref().map(|b| &b.v)).unwrap_or([&truth; 2]);
+    let out_of = |most, n: usize| larger(most, larger(lower[n] - truth[n], truth[n] - upper[n]));
+    let cells = 0..truth.len();
+    Ok([cells.clone().fold(0.0, of_cell), error_in_middle_planes(&found.beta, needles), cells.fold(0.0, out_of)])
 }
 
 fn needles(_: Effort) -> Numbers {
-    let (mut error, mut error_in_planes) = (0.0, 0.0);
-    for seed in 0..8 {
-        let (needles, turn) = bundle(100 + seed);
-        let half = DVec3::new(12.0, 0.5 * WIDTH, 0.5 * WIDTH);
-        let solids: Vec<_> = needles.iter().map(|n| turned_box(n.through, half, turn)).collect();
-        let found = measure(&edges(), &scene(&solids)?, Options::default())?;
-        // Where it enters a cell, its section is cut askew: an error of the order of its width cubed.
-        let inside = |corners| needles.iter().map(|n| n.length_in(corners)).sum::<f64>() * WIDTH * WIDTH;
-        let cells = open_fractions(&edges(), inside).v;
-        let worst_cell = found.beta.v.iter().zip(&cells).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
-        error = larger(error, worst_cell);
-        error_in_planes = larger(error_in_planes, error_in_middle_planes(&found.beta, &needles));
+    let (mut one, mut several, mut outside, mut planes) = (0.0, 0.0, 0.0, 0.0);
+    for seed in 100..108 {
+        let (sparse, turn) = bundle(seed, 3, 2.1);
+        let alone = judge(&sparse, turn)?;
+        let together = judge(&bundle(seed, 5, 0.7).0, turn)?;
+        (one, several) = (larger(one, alone[0]), larger(several, together[0]));
+        planes = larger(planes, larger(alone[1], together[1]));
+        outside = larger(outside, larger(alone[2], together[2]));
     }
-    Ok(vec![error, error_in_planes])
+    Ok(vec![one, several, outside, planes])
 }
 
 /// The middle plane across each axis is pierced by every needle whose point there lies within the grid.

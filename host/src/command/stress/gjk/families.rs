@@ -58,20 +58,20 @@ fn points(random: &mut Random) -> Vec<WholePoint> {
     (0..count).map(|_| [0; 3].map(|_| random.whole(-4, 4))).collect()
 }
 
-fn each(points: Vec<WholePoint>, change: impl Fn(WholePoint) -> WholePoint) -> Vec<WholePoint> {
-    points.into_iter().map(change).collect()
+/// Hulls of lattice points changed by a map, the first told by `true`, the second moved: in half of the pairs so that they share a point.
+fn changed(random: &mut Random, power: i32, change: impl Fn(bool, WholePoint) -> WholePoint) -> WholePair {
+    let of_one = |random: &mut Random, first: bool| points(random).into_iter().map(|p| change(first, p)).collect();
+    let (a, mut b): (Vec<WholePoint>, Vec<WholePoint>) = (of_one(random, true), of_one(random, false));
+    let (from, to) = match random.below(2) {
+        0 => (b[random.below(b.len())], a[random.below(a.len())]),
+        _ => (change(true, [0; 3]), change(true, [0; 3].map(|_| random.whole(-6, 6)))),
+    };
+    b.iter_mut().for_each(|p| *p = [0, 1, 2].map(|k| p[k] + to[k] - from[k]));
+    WholePair { a, b, power }
 }
 
 fn lattice(random: &mut Random) -> WholePair {
-    let shift = [0; 3].map(|_| random.whole(-6, 6));
-    let (a, b) = (points(random), points(random));
-    WholePair { a, b: each(b, |p| [p[0] + shift[0], p[1] + shift[1], p[2] + shift[2]]), power: 0 }
-}
-
-/// Both hulls of a lattice pair changed; the first is told by `true`.
-fn changed(random: &mut Random, power: i32, change: impl Fn(bool, WholePoint) -> WholePoint) -> WholePair {
-    let pair = lattice(random);
-    WholePair { a: each(pair.a, |p| change(true, p)), b: each(pair.b, |p| change(false, p)), power }
+    changed(random, 0, |_, p| p)
 }
 
 fn coplanar(random: &mut Random) -> WholePair {
@@ -170,7 +170,7 @@ fn truth_of(pair: &WholePair) -> (Contact, f64) {
 
 fn judge(effort: Effort, seed: u64, make: fn(&mut Random) -> WholePair) -> Numbers {
     let (mut random, mut tally) = (Random::new(seed), Tally::default());
-    for _ in 0..effort.pick(4000, 100_000) {
+    for _ in 0..effort.pick(8000, 100_000) {
         let pair = make(&mut random);
         let (truth, distance) = truth_of(&pair);
         let (a, b) = (floats(&pair.a, pair.power), floats(&pair.b, pair.power));
@@ -181,7 +181,7 @@ fn judge(effort: Effort, seed: u64, make: fn(&mut Random) -> WholePair) -> Numbe
 
 fn powers(effort: Effort) -> Numbers {
     let (mut random, mut tally) = (Random::new(10), Tally::default());
-    for _ in 0..effort.pick(300, 3000) {
+    for _ in 0..effort.pick(600, 6000) {
         let pair = lattice(&mut random);
         let (truth, distance) = truth_of(&pair);
         for power in (-1000..=1000).step_by(25) {
@@ -194,7 +194,7 @@ fn powers(effort: Effort) -> Numbers {
 
 fn ulps(effort: Effort) -> Numbers {
     let (mut random, mut tally) = (Random::new(11), Tally::default());
-    for _ in 0..effort.pick(4000, 100_000) {
+    for _ in 0..effort.pick(8000, 100_000) {
         let axis = random.below(3);
         let place = random.whole(-9, 9) as f64 / 3.0 + 0.1;
         let steps = random.whole(-3, 3);
