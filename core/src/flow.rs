@@ -46,7 +46,7 @@ pub mod state;
 pub mod step;
 pub mod step_report;
 
-pub use boundary::Boundary;
+pub use boundary::{Boundary, Patch};
 pub use drag::Drag;
 pub use error::Error;
 pub use limiter::Limiter;

@@ -11,7 +11,7 @@ use field::Compensated;
 use rayon::prelude::*;
 use slabs::step;
 use voidage_core::flow::{
-    Boundary, Conserved, Drag, Error, Fractions, Gas, Merging, Mesh, Prepared, PreparedView, Primitive, Problem,
+    Boundary, Conserved, Drag, Error, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive, Problem,
     Report, Scheme, cluster_scratch, prepare,
 };
 
@@ -48,6 +48,8 @@ pub struct Flow<R: Scalar, const D: usize> {
     gas: Gas<R>,
     /// Low and high side of each axis; may change between steps.
     pub boundaries: [[Boundary<R, D>; 2]; D],
+    /// Parts of the sides where something else stands; of those that overlap, the last. May change between steps.
+    pub patches: Vec<Patch<R, D>>,
     /// Choices of the scheme.
     pub scheme: Scheme,
     /// Acceleration of gravity.
@@ -86,6 +88,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             widths,
             gas,
             boundaries,
+            patches: Vec::new(),
             scheme: Scheme::default(),
             gravity: [R::ZERO; D],
             space: None,
@@ -237,6 +240,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         let mesh = Mesh::new(self.widths.each_ref().map(|w| w.as_slice()))?;
         let mut problem =
             Problem::new(mesh, self.gas, self.boundaries)?.with_scheme(self.scheme).with_gravity(self.gravity);
+        problem = problem.with_patches(&self.patches)?;
         if let Some(space) = &self.space {
             problem = problem.with_porosity(space.view())?;
         }
@@ -323,11 +327,14 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         self.beta_v().map_or(volume, |open| volume * open[cell])
     }
 
-    /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there.
-    pub fn side(&self, d: usize, side: usize) -> Vec<(usize, R)> {
+    /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there: those of a patch, or those
+    /// of none.
+    pub fn side(&self, d: usize, side: usize, patch: Option<usize>) -> Vec<(usize, R)> {
         let last = self.widths[d].len().saturating_sub(1);
         let space = self.porosity();
-        let cells = (0..self.len()).filter(|&c| self.coordinates(c)[d] == side * last);
+        let of_patch = |at: [usize; D]| self.patches.iter().rposition(|p| p.covers(d, side == 1, at)) == patch;
+        let on_side = |at: [usize; D]| at[d] == side * last && of_patch(at);
+        let cells = (0..self.len()).filter(|&c| on_side(self.coordinates(c)));
         cells
             .map(|cell| {
                 let at = self.coordinates(cell);

@@ -46,6 +46,19 @@ impl Edges {
         [0, 1, 2].map(|axis| self.0[axis].len().saturating_sub(1))
     }
 
+    /// The same space with every cell cut into `parts` along each axis.
+    #[must_use]
+    pub fn refined(&self, parts: usize) -> Edges {
+        let cut = |edges: &Vec<f64>| {
+            let inner = |w: &[f64]| {
+                let (low, high) = (w[0], w[1]);
+                (0..parts).map(move |n| low + (high - low) * (n as f64 / parts as f64)).collect::<Vec<_>>()
+            };
+            edges.windows(2).flat_map(inner).chain(edges.last().copied()).collect()
+        };
+        Edges(self.0.each_ref().map(cut))
+    }
+
     /// Widths of the cells along an axis. Where they differ by no more than edges are rounded, all are one: a flow that is mirrored
     /// stays so.
     #[must_use]

@@ -1,13 +1,15 @@
 //! Pictures of fields, from the pixel upwards.
 //!
-//! In reading order: `accents`, `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`chart`].
+//! In reading order: `accents`, `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`svg`], [`axis`], [`panels`].
 
 mod accents;
+pub mod axis;
 pub mod canvas;
-pub mod chart;
 pub mod colour;
 pub mod figure;
 mod font;
 pub mod heatmap;
+pub mod panels;
 pub mod png;
+pub mod svg;
 pub mod ticks;

@@ -32,7 +32,6 @@ pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
 pub use result::{CellCounts, Gjk, Leak, Porosity};
 use road::Roads;
-use rustc_hash::FxHashMap as HashMap;
 use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
@@ -196,28 +195,17 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
 }
 
 /// The surfaces of all bodies, made of the triangles that `own` gives for a body's number, and which of them are broken: those with a
-/// coordinate that is no number, which some scale or turn has made too large: of these nothing can be said. Of bodies with the same
-/// triangles the first stands for all: a thousand of them would otherwise have to be united where one is.
+/// coordinate that is no number, which some scale or turn has made too large: of these nothing can be said.
 fn surfaces<'a>(
     bodies: &Bodies,
     own: impl Fn(usize, &bodies::Body) -> &'a [[DVec3; 3]],
 ) -> (Vec<Surface<'a, DVec3>>, Vec<usize>) {
     let mut broken = Vec::new();
-    let mut seen: HashMap<[u64; 10], Vec<&[[DVec3; 3]]>> = HashMap::default();
     let surface = |(number, body): (usize, &bodies::Body)| {
         let mut own = own(number, body);
         if !own.iter().flatten().all(|p| p.is_finite()) {
             broken.push(number);
             own = &[];
-        }
-        if let [first, ..] = own {
-            let bits = |n: usize| first[n / 3][n % 3].to_bits();
-            let key = std::array::from_fn(|n| if n < 9 { bits(n) } else { own.len() as u64 });
-            let alike = seen.entry(key).or_default();
-            match alike.contains(&own) {
-                true => own = &[],
-                false => alike.push(own),
-            }
         }
         if body.sheet { Surface::sheet(own) } else { Surface::new(own) }
     };

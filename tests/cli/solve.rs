@@ -333,7 +333,9 @@ max_steps = 3
     npy::write(&at.file("beta/beta_x.npy"), [21, 1, 1], &faces).expect("an array");
     solved(&at, case, "out", &["-q"]);
     let porosity = &json(&at.file("out/report.json"))["porosity"];
-    for (key, count) in [("closed_cells", 2), ("dust_cells", 1), ("dust_faces", 1), ("closed_faces", 0)] {
+    let expected =
+        [("closed_cells", 2), ("dust_cells", 1), ("dust_faces", 1), ("closed_faces", 0), ("matched_faces", 0)];
+    for (key, count) in expected {
         assert_eq!(porosity[key], count, "{key}: {porosity}");
     }
     assert!(porosity["merged_cells"].as_u64().expect("a count") >= 2, "{porosity}");

@@ -148,7 +148,8 @@ fn wrong_cases_say_where() {
 #[test]
 fn examples_are_read() {
     for name in ["cube_positions.toml", "shapes.toml", "spheres.toml", "platform.toml"] {
-        let case = voidage::command::study::case::read(&example(name)).unwrap_or_else(|e| panic!("{e}"));
+        let text = fs::read_to_string(example(name)).expect("a study");
+        let case = voidage::command::study::case::parse(&example(name), &text).unwrap_or_else(|e| panic!("{e}"));
         for subject in &case.subjects {
             let mut quiet = Progress::new(&TalkArgs { quiet: true, verbose: false });
             let bodies = voidage::command::study::measure::bodies(&example(name), subject, &mut quiet);
@@ -156,4 +157,127 @@ fn examples_are_read() {
             assert!(!bodies.bodies.is_empty() && bodies.warnings.is_empty(), "{:?}", bodies.warnings);
         }
     }
+}
+
+const LISTS: &str = r#"
+title = "Lists"
+repeats = 3
+refine = [1, 2]
+[[scene]]
+name = "ball"
+exact = 0.5235987755982988
+[[scene.solid]]
+shape = "sphere"
+center = [0.5, 0.5, 0.5]
+radius = 0.5
+[[grid]]
+origin = [-0.1, -0.1, -0.1]
+spacing = [0.3, 0.3, 0.3]
+cells = [4, 4, 4]
+[[method]]
+name = "exact"
+precision = ["f64", "f32"]
+[[method]]
+name = "gjk"
+method = "gjk"
+leaf = ["solid", "half"]
+depth = [1, 2, 3]
+"#;
+
+/// Lists multiply out; a finer depth errs less; the paper's point is named; single precision errs by its rounding.
+#[test]
+fn lists_multiply_out_and_errors_are_told() {
+    let dir = Scratch::new();
+    let case = dir.file("case.toml");
+    fs::write(&case, LISTS).expect("written");
+    let rows = rows(&case);
+    assert_eq!(rows.len(), 2 * (2 + 2 * 3));
+    let find = |method: &str, cells: &str| {
+        let found = rows.iter().find(|r| r["method"] == method && r["cells"] == cells);
+        found.unwrap_or_else(|| panic!("{method} on {cells}"))
+    };
+    for cells in ["4x4x4", "8x8x8"] {
+        assert!(number(find("exact, f64", cells), "error").abs() < 1e-13);
+        assert_eq!(find("exact, f64", cells)["cells_from"], "auto (itself)");
+        let single = find("exact, f32", cells);
+        let (error, cell) = (number(single, "error").abs(), number(single, "cell_error"));
+        assert!(0.0 < error && error < 1e-5 && 0.0 < cell && cell < 1e-3, "{single:?}");
+        let errors = [1, 2, 3].map(|depth| number(find(&format!("gjk, solid leaf, depth {depth}"), cells), "error"));
+        assert!(errors[0] > errors[1] && errors[1] > errors[2] && errors[2] > 0.02, "{errors:?}");
+        assert_eq!(find("gjk, solid leaf, depth 3", cells)["paper"], "true");
+        assert_eq!(find("gjk, half leaf, depth 3", cells)["paper"], "false");
+    }
+    assert!(rows.iter().any(|r| r["front"] == "true"));
+    for row in &rows {
+        let times = ["fastest", "seconds", "slowest"].map(|c| number(row, c));
+        assert!(times[0] <= times[1] && times[1] <= times[2], "{row:?}");
+        assert!(number(row, "cell_error") >= number(row, "cell_error_mean"), "{row:?}");
+        assert!(number(row, "face_error") >= number(row, "face_error_mean"), "{row:?}");
+        assert_eq!(number(row, "uncertainty"), 0.0);
+    }
+}
+
+/// What is finished is kept; another case, or `--force`, begins anew.
+#[test]
+fn an_interrupted_study_goes_on() {
+    let dir = Scratch::new();
+    let (case, out) = (dir.file("case.toml"), dir.file("out"));
+    fs::write(&case, LISTS).expect("written");
+    let run = |more: &[&str]| {
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"study", &case, &"-o", &out];
+        all.extend(more.iter().map(|m| m as &dyn AsRef<std::ffi::OsStr>));
+        let output = voidage(&all);
+        assert!(output.status.success(), "{}", stderr(&output));
+        (stdout(&output), stderr(&output))
+    };
+    let all = run(&[]).0;
+    assert!(all.contains("[1/16") && all.contains("[16/16]"), "{all}");
+    let whole = fs::read(out.join("study.csv")).expect("a table");
+    // As if it had been stopped while the sixth point was written.
+    let points = fs::read_to_string(out.join("points.jsonl")).expect("points");
+    let lines: Vec<&str> = points.lines().collect();
+    assert_eq!(lines.len(), 17);
+    fs::write(out.join("points.jsonl"), format!("{}\n{}", lines[..6].join("\n"), &lines[6][..40])).expect("written");
+    let rest = run(&[]).0;
+    assert!(rest.contains("5 points are kept from before") && rest.contains("[6/16"), "{rest}");
+    assert!(!rest.contains("[5/16"), "{rest}");
+    let again = run(&[]).0;
+    assert!(again.contains("16 points are kept") && !again.contains("/16"), "{again}");
+    // The first five points are those of the first run, to the last digit of their times.
+    let now = fs::read(out.join("study.csv")).expect("a table");
+    let text = |bytes: &[u8]| {
+        String::from_utf8_lossy(bytes)
+            .lines()
+            .take(6)
+            .map(|l| l.rsplit_once(',').expect("a row").0.to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(text(&whole), text(&now));
+    assert!(run(&["--force"]).0.contains("[1/16"));
+    fs::write(&case, LISTS.replace("repeats = 3", "repeats = 2")).expect("written");
+    let (said, warned) = run(&[]);
+    assert!(said.contains("[1/16") && warned.contains("of another case"), "{said}{warned}");
+    let (said, warned) = run(&["--quick"]);
+    assert!(said.contains("[1/16") && warned.contains("--quick"), "{said}{warned}");
+    assert_eq!(voidage(&[&"study", &case, &"--force"]).status.code(), Some(2));
+}
+
+/// Pictures have all panels, the floor and the legend; as SVG they are text that can be searched.
+#[test]
+fn pictures_say_what_they_show() {
+    let dir = Scratch::new();
+    let (case, out) = (dir.file("case.toml"), dir.file("out"));
+    fs::write(&case, LISTS).expect("written");
+    let output = voidage(&[&"study", &case, &"-q", &"-o", &out]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for name in ["study.svg", "study_cells.svg"] {
+        let svg = fs::read_to_string(out.join(name)).expect("a picture");
+        for words in
+            ["ball", "gjk, solid leaf", "the paper&#39;s leaf", "exact to rounding", "run time, s", "slopes", "≤ 1e−13"]
+        {
+            assert!(svg.contains(&words.replace("&#39;", "'")), "{name} lacks {words}");
+        }
+        assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf"));
+    }
+    assert!(fs::read_to_string(out.join("study.svg")).expect("a picture").contains("Pareto front"));
 }

@@ -242,17 +242,6 @@ fn copies_that_nearly_coincide_have_narrow_bounds() {
     }
 }
 
-/// Bodies with the same triangles are one: their union took minutes, and its bounds stayed wide.
-#[test]
-fn many_copies_of_a_body_are_one() {
-    let one = turned_box(DVec3::splat(0.5), DVec3::new(0.3, 0.2, 0.1), Random::new(2).turn());
-    let axis: Vec<f64> = (0..=5).map(|i| f64::from(i) / 5.0).collect();
-    let edges = Edges([axis.clone(), axis.clone(), axis]);
-    let run =
-        |count| porosity(&edges.grid(None).expect("a grid"), &scene(&vec![one.clone(); count]), Options::default());
-    assert_eq!(run(300).beta, run(1).beta);
-}
-
 /// Where division thins the bodies of a cell it goes on for as long as their number asks for, not for a time that is the same for all.
 #[test]
 fn ten_thousand_pieces_in_one_cell_are_summed() {

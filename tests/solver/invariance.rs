@@ -259,26 +259,30 @@ fn any_number_of_threads_and_a_restart_give_the_same_bits() {
     let run = |threads: usize, stop: bool| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut s = Source::seeded(3);
-            let n = [10, 9, 33];
-            let (volume, faces) = porosity::<f64, 3>(&mut s, n);
-            let mut flow: Flow<f64, 3> =
-                Flow::uniform(n, [0.1; 3], IDEAL, [[Boundary::Wall; 2], [Boundary::Wall; 2], [Boundary::Periodic; 2]]);
-            flow.set_porosity(volume, faces, Treatment::default()).unwrap();
-            for cell in 0..flow.len() {
-                let w = Primitive {
-                    density: s.scale(1e-3, 1.0),
-                    velocity: std::array::from_fn(|_| 6.0 * s.unit() - 3.0),
-                    pressure: s.scale(1e-4, 10.0),
-                };
-                flow.set(cell, &w);
-            }
+            let start = || {
+                let mut s = Source::seeded(3);
+                let n = [10, 9, 33];
+                let (volume, faces) = porosity::<f64, 3>(&mut s, n);
+                let sides = [[Boundary::Wall; 2], [Boundary::Wall; 2], [Boundary::Periodic; 2]];
+                let mut flow: Flow<f64, 3> = Flow::uniform(n, [0.1; 3], IDEAL, sides);
+                flow.set_porosity(volume, faces, Treatment::default()).unwrap();
+                for cell in 0..flow.len() {
+                    let w = Primitive {
+                        density: s.scale(1e-3, 1.0),
+                        velocity: std::array::from_fn(|_| 6.0 * s.unit() - 3.0),
+                        pressure: s.scale(1e-4, 10.0),
+                    };
+                    flow.set(cell, &w);
+                }
+                flow
+            };
+            let mut flow = start();
             for step in 0..16 {
                 if stop && step == 8 {
-                    // What a checkpoint keeps: the state; everything else is made again.
-                    let state = flow.state.clone();
-                    flow.touched();
-                    flow.state = state;
+                    // What a checkpoint keeps: the state and the clock; everything else is made again.
+                    let (state, clock) = (flow.state.clone(), flow.clock().unwrap());
+                    flow = start();
+                    flow.resume(state, clock).unwrap();
                 }
                 flow.step(2e-3).unwrap();
             }

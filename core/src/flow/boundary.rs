@@ -36,6 +36,29 @@ pub enum Boundary<R, const D: usize> {
     },
 }
 
+/// A part of a side of the domain where something else stands than on the rest of it: a vent, an opening, a nozzle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch<R, const D: usize> {
+    /// The axis of the side.
+    pub axis: usize,
+    /// Its high side, else the low one.
+    pub high: bool,
+    /// Indices of the first cell beside the patch along each axis; along its own axis they do not count.
+    pub first: [usize; D],
+    /// One past the last, likewise.
+    pub end: [usize; D],
+    /// What stands there; not [`Boundary::Periodic`].
+    pub boundary: Boundary<R, D>,
+}
+
+impl<R: Real, const D: usize> Patch<R, D> {
+    /// The patch stands beside a cell on a side of an axis.
+    pub fn covers(&self, axis: usize, high: bool, at: [usize; D]) -> bool {
+        let within = |a: usize| a == axis || (self.first[a] <= at[a] && at[a] < self.end[a]);
+        self.axis == axis && self.high == high && (0..D).all(within)
+    }
+}
+
 impl<R: Real, const D: usize> Boundary<R, D> {
     /// The ghost state beside an inner state, both in the frame of axis `d`; `low` is the low side of the axis. Periodic
     /// sides have no ghost of their own: the inner state comes back.

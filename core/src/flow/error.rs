@@ -25,6 +25,11 @@ pub enum Error {
         /// The cell along it.
         cell: usize,
     },
+    /// A patch names no axis of the mesh, stands on a periodic side, is periodic itself, or is one of a line of cells.
+    Patch {
+        /// Its number among those given.
+        number: usize,
+    },
     /// More faces than a `usize` can count, or more cells than clusters of them can name.
     TooManyCells,
     /// The porosity was prepared for another mesh, or for one with other periodic axes.
@@ -47,6 +52,9 @@ impl fmt::Display for Error {
             Error::HalfPeriodic { axis } => write!(f, "axis {axis} is periodic on one side only"),
             Error::Width { axis, cell } => {
                 write!(f, "the width of cell {cell} along axis {axis} is not positive and finite")
+            }
+            Error::Patch { number } => {
+                write!(f, "patch {number} stands on no side of two or three axes that could be a part of it")
             }
             Error::TooManyCells => f.write_str("the mesh has too many cells"),
             Error::OtherMesh => f.write_str("the porosity was prepared for another mesh or other periodic axes"),

@@ -10,8 +10,13 @@ use crate::number::real::Real;
 /// steps.
 const FLOOR_SHARE: f64 = 1e-3;
 
-/// Rounds of the first-order fallback: the marked region grows by one cell each.
-pub const FALLBACKS: usize = 4;
+/// Rounds of the fallback: the marked region grows by one cell each, and what a round did not help gets the next mark.
+pub const FALLBACKS: usize = 6;
+
+/// Mark of a cell whose reconstruction is of first order.
+pub const FIRST_ORDER: u8 = 1;
+/// Mark of a cell whose faces also have the flux that keeps any state physical, without the throat map.
+pub const POSITIVE: u8 = 2;
 
 impl<R: Real, const D: usize> Problem<'_, R, D> {
     /// The cells beside a cell: the axis, whether on its high side, and the flat index of each.
@@ -28,7 +33,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         }
     }
 
-    /// Marks every unphysical cell of a new field and its neighbours for a first-order step; returns how many marks are new.
+    /// Marks every unphysical cell of a new field and its neighbours for a first-order step, and those that had such a mark for fluxes that
+    /// keep any state physical; returns how many marks are new.
     ///
     /// # Errors
     /// A slice does not fit the mesh.
@@ -36,16 +42,25 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(new)?;
         fits(self.mesh.len(), first_order.len())?;
         let mut added = 0;
-        let mut set = |i: usize| {
+        let mut raise = |i: usize, to: u8| {
             let mark = &mut first_order[i];
-            added += usize::from(*mark == 0);
-            *mark = 1;
+            added += usize::from(*mark < to);
+            *mark = to.max(*mark);
+            *mark
         };
-        for cell in 0..self.mesh.len() {
-            if !self.is_physical(&new.at(cell)) {
-                set(cell);
-                self.each_beside(cell, |_, _, beside| set(beside));
-            }
+        // First each troubled cell by itself, so that the order of the cells does not count.
+        let troubled = |cell: &usize| !self.is_physical(&new.at(*cell));
+        for cell in (0..self.mesh.len()).filter(troubled) {
+            if raise(cell, 0) > 0 {
+                raise(cell, POSITIVE)
+            } else {
+                raise(cell, FIRST_ORDER)
+            };
+        }
+        for cell in (0..self.mesh.len()).filter(troubled) {
+            self.each_beside(cell, |_, _, beside| {
+                raise(beside, FIRST_ORDER);
+            });
         }
         Ok(added)
     }

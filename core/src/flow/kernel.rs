@@ -4,12 +4,14 @@
 //! - `rows`: loops over the cells of a row
 //! - `slab`: what a step reads, and where each row stands in the window
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
+//! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
 //! - `sweep`: the rows of a slab in order, in tiles that stay in a core's cache
 //! - `long_line`: a long line of cells in pieces
 
 pub(crate) mod fluxes;
 pub(crate) mod long_line;
+pub(crate) mod positive_fluxes;
 pub(crate) mod reconstruct;
 pub(crate) mod rows;
 pub(crate) mod scratch;

@@ -1,6 +1,6 @@
 //! The problem: mesh, gas, boundaries, porosity, drag and the choices of the scheme; its contracts, and the rate of its signals.
 
-use crate::flow::boundary::Boundary;
+use crate::flow::boundary::{Boundary, Patch};
 use crate::flow::drag::Drag;
 use crate::flow::error::{Error, fits};
 use crate::flow::limiter::Limiter;
@@ -45,6 +45,8 @@ pub struct Problem<'a, R, const D: usize> {
     pub(in crate::flow) gas: Gas<R>,
     /// Low and high side of each axis.
     pub(in crate::flow) boundaries: [[Boundary<R, D>; 2]; D],
+    /// Parts of sides where something else stands; of those that overlap, the last.
+    pub(in crate::flow) patches: &'a [Patch<R, D>],
     pub(in crate::flow) scheme: Scheme,
     /// Open fractions; without them nothing is read.
     pub(in crate::flow) porosity: Option<Porosity<'a, R, D>>,
@@ -70,7 +72,29 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         }
         let scheme = Scheme::default();
         let gravity = [R::ZERO; D];
-        Ok(Problem { mesh, gas, boundaries, scheme, porosity: None, clusters: Clusters(&[]), drag: None, gravity })
+        let (patches, clusters) = (&[][..], Clusters(&[]));
+        Ok(Problem { mesh, gas, boundaries, patches, scheme, porosity: None, clusters, drag: None, gravity })
+    }
+
+    /// The same with patches on the sides; of those that overlap, the last counts.
+    ///
+    /// # Errors
+    /// A patch names no axis, stands on a periodic side, or is periodic itself; the mesh is a line, whose sides have no parts.
+    pub fn with_patches(self, patches: &'a [Patch<R, D>]) -> Result<Self, Error> {
+        let wrong = |p: &Patch<R, D>| {
+            let side = self.boundaries.get(p.axis).map(|sides| sides[usize::from(p.high)]);
+            D < 2 || p.boundary == Boundary::Periodic || side.is_none_or(|side| side == Boundary::Periodic)
+        };
+        match patches.iter().position(wrong) {
+            Some(number) => Err(Error::Patch { number }),
+            None => Ok(Problem { patches, ..self }),
+        }
+    }
+
+    /// What stands on a side of an axis beside a cell.
+    pub(in crate::flow) fn side(&self, d: usize, high: bool, at: [usize; D]) -> &Boundary<R, D> {
+        let patch = self.patches.iter().rev().find(|p| p.covers(d, high, at));
+        patch.map_or(&self.boundaries[d][usize::from(high)], |p| &p.boundary)
     }
 
     /// The same by other choices of the scheme.

@@ -275,9 +275,15 @@ pub struct StudyArgs {
     /// Print a commented case that runs, and do nothing else
     #[arg(long, exclusive = true)]
     pub template: bool,
-    /// Write study.csv, study.md and study.png into this directory (default: print the table)
+    /// Write tables, pictures and a page into this directory (default: print the table); a study that was interrupted goes on there
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// A first look: one run of each, one number of threads, the two smallest grids
+    #[arg(long)]
+    pub quick: bool,
+    /// Measure anew what that directory keeps from before
+    #[arg(long, requires = "output")]
+    pub force: bool,
     /// What goes to the terminal.
     #[command(flatten)]
     pub talk: TalkArgs,

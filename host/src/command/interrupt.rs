@@ -30,8 +30,8 @@ impl Drop for Watch {
 /// A second signal within this time is one with the first: shells and supervisors send two at once.
 const ONE: Duration = Duration::from_secs(2);
 
-/// When the first signal came.
-static FIRST: Mutex<Option<Instant>> = Mutex::new(None);
+/// When the first signal came, and whether the run was watched then.
+static FIRST: Mutex<Option<(Instant, bool)>> = Mutex::new(None);
 
 /// The run has been asked to stop.
 #[must_use]
@@ -39,11 +39,12 @@ pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// For the signal handler: whether the run will stop by itself. A second interrupt, two seconds later, does not wait for that.
+/// For the signal handler: whether the run will stop by itself. A second interrupt, two seconds later, does not wait for that; sooner it is
+/// one with the first, even if the run has stopped stepping by then and is about to say so.
 #[must_use]
 pub fn interrupt() -> bool {
     ASKED.store(true, Ordering::SeqCst);
     let mut first = FIRST.lock().unwrap_or_else(PoisonError::into_inner); // a moment is valid at any moment
-    let since = first.get_or_insert_with(Instant::now).elapsed();
-    since < ONE && WATCHED.load(Ordering::SeqCst)
+    let (begun, watched) = first.get_or_insert_with(|| (Instant::now(), WATCHED.load(Ordering::SeqCst)));
+    *watched && begun.elapsed() < ONE
 }

@@ -1,6 +1,6 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`case`], the file as typed; `arrays`, [`state`], [`space`], [`inlet`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`],
+//! In reading order: [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`],
 //! [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
 
 mod arrays;
@@ -11,9 +11,11 @@ pub mod frames;
 pub mod inlet;
 pub mod maxima;
 pub mod pictures;
+pub mod regions;
 pub mod report;
 pub mod run;
 pub mod setup;
+pub mod sides;
 pub mod space;
 pub mod state;
 pub mod table;

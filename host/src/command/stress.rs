@@ -15,7 +15,7 @@ use crate::command::progress::{Progress, print};
 use crate::command::streams::{check_place, check_suffix, is_stream, write_json};
 use crate::error::{Error, Result};
 use case::{Effort, StressCase};
-use report::Summary;
+use report::StressSummary;
 use std::time::Instant;
 
 /// All cases, family by family.
@@ -42,7 +42,7 @@ pub fn stress(args: &StressArgs) -> Result<()> {
     let outcomes = runner::run(&chosen, Effort { long: args.long }, threads, |outcome| {
         progress.say(report::line(outcome, width));
     })?;
-    let summary = Summary::new(&outcomes, args.long, threads, begun.elapsed().as_secs_f64());
+    let summary = StressSummary::new(&outcomes, args.long, threads, begun.elapsed().as_secs_f64());
     progress.say(summary.sentence());
     args.json.iter().try_for_each(|path| write_json(path, &summary))?;
     match summary.failed_names() {

@@ -1,5 +1,6 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
+use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::slab::{RowAt, Slab};
@@ -36,7 +37,7 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
     let from = (&*work.half, &*work.slope[0], &*work.coefficients.weight[0]);
     states(slab, true, 0, from, Faces { block: work.left, stride: m, offset: 1 });
     states(slab, false, 0, from, Faces { block: work.right, stride: m, offset: 0 });
-    states_at_ends(slab, work);
+    states_at_ends(slab, row, work);
 
     let openings = match &slab.medium {
         None => Openings::None,
@@ -64,6 +65,8 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
         let flux = FluxBlock { values: work.flux, n: m };
         fluxes_at_breaks::<R, D, S>(slab, 0, row.at, broken, [work.left, work.right], flux);
     }
+    let flux = FluxBlock { values: work.flux, n: m };
+    positive_fluxes::<R, D, ENERGY>(slab, 0, row.at, [work.left, work.right], flux);
     let flux = &*work.flux;
     count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
     count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
@@ -81,14 +84,14 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
 }
 
 /// The states beyond both ends of a row: of the other end, or ghosts.
-fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, work: &mut Work<'_, R, D>) {
+fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, work: &mut Work<'_, R, D>) {
     let (n, m, gas) = (slab.size.n, slab.size.m, slab.problem.gas);
     let inner_low = rows::face_state::<R, D>(work.right, m, 0);
     let inner_high = rows::face_state::<R, D>(work.left, m, n);
     let (low, high) = if slab.periodic[0] {
         (inner_high, inner_low)
     } else {
-        let [a, b] = &slab.problem.boundaries[0];
+        let [a, b] = [false, true].map(|high| slab.problem.side(0, high, row.at));
         (a.ghost_face(&inner_low, 0, true, gas), b.ghost_face(&inner_high, 0, false, gas))
     };
     rows::put_state(work.left, m, 0, &low);
@@ -156,13 +159,21 @@ fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
         fluxes_at_breaks::<R, D, S>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
     }
+    positive_fluxes::<R, D, ENERGY>(slab, d, at, [left, right], FluxBlock { values: flux, n });
 }
 
-/// Ghost states beside the boundary faces of axis `d`, from the inner face states.
-fn ghosts<R: Real, const D: usize>(slab: &Slab<'_, R, D>, d: usize, low: bool, inner: &[R], out: &mut [R]) {
+/// Ghost states beside the boundary faces of axis `d` > 0 of the row from `at` on, from the inner face states.
+fn ghosts<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, low): (usize, bool),
+    mut at: [usize; D],
+    inner: &[R],
+    out: &mut [R],
+) {
     let n = slab.size.n;
-    let boundary = &slab.problem.boundaries[d][usize::from(!low)];
     for i in 0..n {
+        at[0] = i;
+        let boundary = slab.problem.side(d, !low, at);
         let w = boundary.ghost_face(&rows::face_state::<R, D>(inner, n, i), d, low, slab.problem.gas);
         rows::put_state(out, n, i, &w);
         out[(D + 2) * n + i] = w.pressure;
@@ -238,10 +249,10 @@ fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
         let from = (&*work.half, &*work.slope[d], &*work.coefficients.weight[d]);
         states(slab, false, d, from, Faces { block: &mut work.right[..f], stride: n, offset: 0 });
         if at[d] == 0 && !slab.periodic[d] {
-            ghosts(slab, d, true, &work.right[..f], below_state);
+            ghosts(slab, (d, true), at, &work.right[..f], below_state);
         }
     } else {
-        ghosts(slab, d, false, below_state, &mut work.right[..f]);
+        ghosts(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
     fluxes_of_faces::<R, D, S, ENERGY>(slab, d, at, below_state, &work.right[..f], &mut work.flux[..f]);
     let last = mesh.cells()[d];

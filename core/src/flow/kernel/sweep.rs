@@ -180,7 +180,7 @@ fn load_row<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, j: isize, 
     rows::primitives(slab.problem.gas, slab.old, slab.problem.mesh.index(at), block, s.padded);
     let state = |block: &[R], i: usize| rows::face_state::<R, D>(block, s.padded, i);
     let gas = slab.problem.gas;
-    let [low, high] = &slab.problem.boundaries[0];
+    let [low, high] = [false, true].map(|high| slab.problem.side(0, high, at));
     let (a, b) = if slab.periodic[0] {
         (state(block, s.n), state(block, 1))
     } else {
@@ -191,16 +191,18 @@ fn load_row<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, j: isize, 
     for (d, k) in [(D - 1, l), (1, j)] {
         let across = d > 0 && (d == D - 1 || D == 3);
         if across && !slab.periodic[d] && (k < 0 || k >= slab.problem.mesh.cells()[d] as isize) {
-            mirror(slab, block, d, k < 0);
+            mirror(slab, block, d, k < 0, at);
         }
     }
 }
 
-/// Turns a row of inner states into the ghosts beyond a boundary of axis `d`.
-fn mirror<R: Real, const D: usize>(slab: &Slab<'_, R, D>, block: &mut [R], d: usize, low: bool) {
+/// Turns a row of inner states, of the cells from `at` on, into the ghosts beyond a boundary of axis `d`.
+fn mirror<R: Real, const D: usize>(slab: &Slab<'_, R, D>, block: &mut [R], d: usize, low: bool, at: [usize; D]) {
     let padded = slab.size.padded;
-    let boundary = &slab.problem.boundaries[d][usize::from(!low)];
     for i in 0..padded {
+        let mut beside = at;
+        beside[0] = i.saturating_sub(1).min(padded - 3);
+        let boundary = slab.problem.side(d, !low, beside);
         let w = rows::face_state::<R, D>(block, padded, i);
         rows::put_state(block, padded, i, &boundary.ghost_cell(&w, d, low, slab.problem.gas));
     }

@@ -126,17 +126,21 @@ pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
 ) {
     let n = slab.size.n;
     let cells = slab.problem.mesh.cells()[d];
-    let walls = slab.problem.boundaries[d].map(|b| b == Boundary::Wall);
     let out = &mut out[(1 + d) * n..][..n];
     let beside = |side: usize| if side == 0 { 0 } else { cells - 1 };
     for side in [0, 1] {
-        let range = match (d, walls[side]) {
-            (_, false) => 0..0,
-            (0, _) => beside(side)..beside(side) + 1,
+        let range = match d {
+            0 => beside(side)..beside(side) + 1,
             _ if row.at[d] == beside(side) => 0..n,
             _ => 0..0,
         };
         for i in range {
+            let mut at = row.at;
+            at[0] = i;
+            let walls = [false, true].map(|high| *slab.problem.side(d, high, at) == Boundary::Wall);
+            if !walls[side] {
+                continue;
+            }
             let (a, b) = axis.scale(i);
             let away = if side == 0 { b * (above[i] - here[i]) } else { a * (here[i] - below[i]) };
             let alone = cells == 1 && walls == [true; 2];

@@ -98,6 +98,19 @@ impl<'a, R: Real, const D: usize> Mesh<'a, R, D> {
         [low, low.wrapping_add(self.face_stride(d))]
     }
 
+    /// The cells below and above the low face of `at` along `d`, where `at[d]` may be one past the end.
+    pub(in crate::flow) fn beside(&self, d: usize, at: [usize; D], periodic: bool) -> [Option<[usize; D]>; 2] {
+        let n = self.cells()[d];
+        let cell = |k: usize| {
+            let mut c = at;
+            c[d] = k;
+            c
+        };
+        let around = |k: usize| periodic.then(|| cell(k));
+        let (i, above) = (at[d], at[d] < n);
+        [if i > 0 { Some(cell(i - 1)) } else { around(n - 1) }, if above { Some(cell(i)) } else { around(0) }]
+    }
+
     /// Volume of a cell, its obstacles included; length or area in fewer dimensions; 0 outside the mesh.
     pub fn volume(&self, at: [usize; D]) -> R {
         let mut v = R::ONE;
@@ -132,16 +145,8 @@ pub(in crate::flow) struct Medium<'a, R, const D: usize> {
 }
 
 impl<R: Real, const D: usize> Medium<'_, R, D> {
-    /// The cells below and above the low face of `at` along `d`, where `at[d]` may be one past the end.
+    /// [`Mesh::beside`].
     pub fn beside(&self, d: usize, at: [usize; D], periodic: bool) -> [Option<[usize; D]>; 2] {
-        let n = self.mesh.cells()[d];
-        let cell = |k: usize| {
-            let mut c = at;
-            c[d] = k;
-            c
-        };
-        let around = |k: usize| periodic.then(|| cell(k));
-        let (i, above) = (at[d], at[d] < n);
-        [if i > 0 { Some(cell(i - 1)) } else { around(n - 1) }, if above { Some(cell(i)) } else { around(0) }]
+        self.mesh.beside(d, at, periodic)
     }
 }

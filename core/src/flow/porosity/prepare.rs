@@ -32,6 +32,8 @@ pub struct Tidied {
     pub dust_faces: usize,
     /// Open faces on the sides of the domain that were closed: too little volume behind them for any step.
     pub closed_faces: usize,
+    /// Faces on the sides of periodic axes that were lowered to what the same face on the opposite side leaves open.
+    pub matched_faces: usize,
 }
 
 /// Open fractions as measured, and room for the flags of the cells. Vectors, or slices that can be written.
@@ -104,6 +106,7 @@ where
         dust_cells: without_dust(volume.as_mut()),
         dust_faces: faces.iter_mut().map(|f| without_dust(f.as_mut())).sum(),
         closed_faces: 0,
+        matched_faces: (0..D).filter(|&d| periodic[d]).map(|d| match_sides(mesh, d, faces[d].as_mut())).sum(),
     };
     let cells = mesh.cells();
     let mut space = Prepared { volume, faces, flags, list: None, used: 0, cells, periodic, tidied };
@@ -269,6 +272,26 @@ impl<'a, R: Real, const D: usize> PreparedView<'a, R, D> {
         }
         total
     }
+}
+
+/// The two sides of a periodic axis are one plane: what leaves by one must enter by the other, so both let pass what the less open one
+/// does. Returns how many faces were lowered.
+fn match_sides<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>, d: usize, faces: &mut [R]) -> usize {
+    let across = mesh.cells()[d].saturating_mul(mesh.face_stride(d));
+    let mut lowered = 0;
+    for cell in (0..mesh.len()).filter(|&cell| mesh.coordinates(cell)[d] == 0) {
+        let low = mesh.face(d, mesh.coordinates(cell));
+        let high = low.saturating_add(across);
+        if let (Some(&a), Some(&b)) = (faces.get(low), faces.get(high)) {
+            lowered += usize::from(a != b);
+            for face in [low, high] {
+                if let Some(open) = faces.get_mut(face) {
+                    *open = R::smaller(a, b);
+                }
+            }
+        }
+    }
+    lowered
 }
 
 /// Sets what is within a few rounding errors of 0, or below, or NaN, to 0; returns how many were not 0 before.

@@ -40,7 +40,7 @@ pub struct Case {
     pub initial: InitialKeys,
     /// The sides of the axes that have more than one cell.
     #[serde(default)]
-    pub boundary: Sides,
+    pub boundary: SideKeys,
     /// Resistance of obstacles smaller than a cell.
     #[serde(default)]
     pub drag: DragKeys,
@@ -150,7 +150,7 @@ pub struct GasKeys {
     pub gas_constant: Option<f64>,
 }
 
-/// A state, or a side of the domain, or a region: each uses some of the keys.
+/// A state, or a side of the domain, a patch on one, or a region: each uses some of the keys.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateKeys {
@@ -180,6 +180,64 @@ pub struct StateKeys {
     pub center: Option<Vec<f64>>,
     /// Its radius.
     pub radius: Option<f64>,
+    /// Of a patch: the side that it is a part of.
+    pub side: Option<SideName>,
+}
+
+/// A side of the domain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SideName {
+    /// Low side of x.
+    XMin,
+    /// High side of x.
+    XMax,
+    /// Low side of y.
+    YMin,
+    /// High side of y.
+    YMax,
+    /// Low side of z.
+    ZMin,
+    /// High side of z.
+    ZMax,
+}
+
+impl SideName {
+    /// The axis, and 0 for its low or 1 for its high side.
+    #[must_use]
+    pub fn place(self) -> (usize, usize) {
+        let n = self as usize;
+        (n / 2, n % 2)
+    }
+
+    /// As a case writes it.
+    #[must_use]
+    pub fn word(self) -> String {
+        let (axis, side) = self.place();
+        format!("{}_{}", AXES[axis], ["min", "max"][side])
+    }
+}
+
+impl StateKeys {
+    /// Names of the keys that are given, the type aside.
+    #[must_use]
+    pub fn given(&self) -> Vec<&'static str> {
+        let all = [
+            ("rho", self.rho.is_some()),
+            ("T", self.temperature.is_some()),
+            ("u", self.u.is_some()),
+            ("v", self.v.is_some()),
+            ("w", self.w.is_some()),
+            ("p", self.p.is_some()),
+            ("relax", self.relax.is_some()),
+            ("min", self.min.is_some()),
+            ("max", self.max.is_some()),
+            ("center", self.center.is_some()),
+            ("radius", self.radius.is_some()),
+            ("side", self.side.is_some()),
+        ];
+        all.into_iter().filter_map(|(name, given)| given.then_some(name)).collect()
+    }
 }
 
 /// `[initial]`: `uniform` or `from`, then `regions` over it, later ones over earlier ones.
@@ -190,7 +248,7 @@ pub struct InitialKeys {
     pub uniform: Option<StateKeys>,
     /// Directory with `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`.
     pub from: Option<PathBuf>,
-    /// Boxes and balls with states; a cell belongs to a region if its centre does.
+    /// Boxes and balls with states; of a cell, each takes the share that it holds.
     #[serde(default)]
     pub regions: Vec<StateKeys>,
 }
@@ -231,7 +289,7 @@ impl Kind {
 /// `[boundary]`.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Sides {
+pub struct SideKeys {
     /// Low side of x.
     pub x_min: Option<StateKeys>,
     /// High side of x.
@@ -244,13 +302,16 @@ pub struct Sides {
     pub z_min: Option<StateKeys>,
     /// High side of z.
     pub z_max: Option<StateKeys>,
+    /// Parts of sides where something else stands; of those that overlap, the last.
+    #[serde(default)]
+    pub patch: Vec<StateKeys>,
 }
 
-impl Sides {
+impl SideKeys {
     /// Low and high side of each axis.
     #[must_use]
     pub fn by_axis(&self) -> [[Option<&StateKeys>; 2]; 3] {
-        let Sides { x_min, x_max, y_min, y_max, z_min, z_max } = self;
+        let SideKeys { x_min, x_max, y_min, y_max, z_min, z_max, .. } = self;
         [[x_min, x_max], [y_min, y_max], [z_min, z_max]].map(|sides| sides.map(Option::as_ref))
     }
 }

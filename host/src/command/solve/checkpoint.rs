@@ -100,7 +100,11 @@ impl Fingerprint {
         };
         let of_numbers = |numbers: &[f64]| of_arrays(&mut std::iter::once(numbers));
         let inlets = setup.inlets.iter().flat_map(|i| [i.at.0 as f64, i.at.1 as f64, i.relax]);
-        let sides: Vec<f64> = flow.boundaries.iter().flatten().flat_map(side_numbers).chain(inlets).collect();
+        let mut sides: Vec<f64> = flow.boundaries.iter().flatten().flat_map(side_numbers).chain(inlets).collect();
+        for patch in &flow.patches {
+            let place = [patch.axis, usize::from(patch.high)].into_iter().chain(patch.first).chain(patch.end);
+            sides.extend(place.map(|n| n as f64).chain(side_numbers(&patch.boundary)));
+        }
         let treatment = [setup.treatment.jump, f64::from(u8::from(setup.treatment.merge))];
         let scheme = [&scheme_numbers(&flow.scheme)[..], &[setup.cfl, flow.careful_steps as f64]].concat();
         let parts = [

@@ -16,6 +16,8 @@ use voidage_core::flow::{Boundary, Gas, Primitive};
 pub struct Inlet<const D: usize> {
     /// Axis among those that flow, and 0 for its low or 1 for its high side.
     pub at: (usize, usize),
+    /// The patch on that side, if it is not the rest of it.
+    pub patch: Option<usize>,
     /// Time in which the pressure follows.
     pub relax: f64,
     /// +1 if the gas enters along the axis, −1 if against it.
@@ -57,14 +59,22 @@ impl<const D: usize> Inlet<D> {
             "needs a positive time",
         )?;
         let relax = keys.relax.unwrap_or(crossing);
-        let inlet = Inlet { at, relax, sign, per_pressure, shares: Vec::new() };
+        let inlet = Inlet { at, patch: None, relax, sign, per_pressure, shares: Vec::new() };
         inlet.follow(states.gas, &mut state);
         Ok((inlet, state))
     }
 
+    /// What stands at its place.
+    fn place<'f>(&self, flow: &'f mut Flow<f64, D>) -> &'f mut Boundary<f64, D> {
+        match self.patch {
+            Some(n) => &mut flow.patches[n].boundary,
+            None => &mut flow.boundaries[self.at.0][self.at.1],
+        }
+    }
+
     /// Learns the open areas of its side.
     pub fn look_at(&mut self, flow: &Flow<f64, D>) {
-        self.shares = flow.side(self.at.0, self.at.1);
+        self.shares = flow.side(self.at.0, self.at.1, self.patch);
         let whole: f64 = self.shares.iter().map(|(_, area)| area).sum();
         self.shares.retain(|(_, area)| *area > 0.0);
         self.shares.iter_mut().for_each(|(_, area)| *area /= whole);
@@ -72,22 +82,22 @@ impl<const D: usize> Inlet<D> {
 
     /// Lets the pressure follow the flow for one step.
     pub fn relax(&self, flow: &mut Flow<f64, D>, dt: f64) {
-        let (d, side) = self.at;
-        let Boundary::Inlet(state) = flow.boundaries[d][side] else { return };
+        let d = self.at.0;
+        let Boundary::Inlet(state) = *self.place(flow) else { return };
         let mean: f64 = self.shares.iter().map(|&(cell, share)| share * flow.get(cell).velocity[d]).sum();
         let gas = flow.gas();
         let share = (dt / self.relax).min(1.0);
-        let mut next = flow.boundaries[d][side].relaxed(d, self.sign * mean, gas.sound_speed(&state), share);
+        let mut next = self.place(flow).relaxed(d, self.sign * mean, gas.sound_speed(&state), share);
         if let Boundary::Inlet(w) = &mut next {
             self.follow(gas, w);
         }
-        flow.boundaries[d][side] = next;
+        *self.place(flow) = next;
     }
 
     /// The present pressure outside.
     #[must_use]
     pub fn pressure(&self, flow: &Flow<f64, D>) -> f64 {
-        match flow.boundaries[self.at.0][self.at.1] {
+        match self.patch.map_or(flow.boundaries[self.at.0][self.at.1], |n| flow.patches[n].boundary) {
             Boundary::Inlet(w) => w.pressure,
             _ => 0.0,
         }
@@ -96,7 +106,7 @@ impl<const D: usize> Inlet<D> {
     /// Sets the pressure outside, of a flow that goes on.
     pub fn set_pressure(&self, flow: &mut Flow<f64, D>, pressure: f64) {
         let gas = flow.gas();
-        if let Boundary::Inlet(w) = &mut flow.boundaries[self.at.0][self.at.1] {
+        if let Boundary::Inlet(w) = self.place(flow) {
             w.pressure = pressure;
             self.follow(gas, w);
         }

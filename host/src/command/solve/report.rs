@@ -3,7 +3,9 @@
 use super::case::{AXES, CaseFile, GasKeys};
 use super::checkpoint::Journal;
 use super::maxima::{Maxima, Peaks};
+use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
+use super::sides::PatchReport;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use serde::Serialize;
@@ -52,6 +54,10 @@ pub struct Report {
     /// Times of the frames.
     frames: Vec<f64>,
     porosity: Option<SpaceReport>,
+    /// How well the grid resolves the regions of the beginning.
+    regions: Vec<RegionReport>,
+    /// What patches on the sides came to.
+    patches: Vec<PatchReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     maxima: Option<MaximaReport>,
     skipped: Vec<String>,
@@ -148,6 +154,8 @@ impl Report {
             repeated_steps: flow.repeated,
             frames: journal.frames.clone(),
             porosity: setup.space,
+            regions: setup.regions.clone(),
+            patches: setup.patches.clone(),
             maxima: None,
             skipped: setup.skipped.clone(),
             warnings: progress.warnings.clone(),
@@ -172,9 +180,14 @@ impl Report {
         ));
         if let Some(p) = &self.porosity {
             progress.say(format!(
-                "porosity      {} cells closed, {} merged, {} faces with a jump",
-                p.closed_cells, p.merged_cells, p.jump_faces
+                "porosity      {} cells closed, {} merged, {} faces with a jump; first step {:.2} of that in open space",
+                p.closed_cells, p.merged_cells, p.jump_faces, p.step_share
             ));
+        }
+        for (n, region) in self.regions.iter().enumerate() {
+            if let Some(cells) = region.cells_per_radius {
+                progress.say(format!("region {:<7}{cells:.1} cells from its middle to its side", n + 1));
+            }
         }
         progress.say(format!("steps         {} to t = {} s", self.steps, self.time));
         let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {e:.1e}"));

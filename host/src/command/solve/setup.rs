@@ -1,8 +1,10 @@
 //! From a case to a flow that is ready to step: every value checked, nothing made that the case does not need.
 
 use super::arrays;
-use super::case::{AXES, CaseFile, GasKeys, Kind, LimiterName, Model, Pressure, RiemannName, StateKeys};
+use super::case::{AXES, CaseFile, GasKeys, LimiterName, Model, Pressure, RiemannName};
 use super::inlet::Inlet;
+use super::regions::RegionReport;
+use super::sides::{self, PatchReport, Sides};
 use super::space;
 use super::state::States;
 use crate::command::progress::Progress;
@@ -11,7 +13,7 @@ use crate::flow::{Flow, Tidied, Treatment};
 use crate::grid::Edges;
 use serde::Serialize;
 use std::path::Path;
-use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
+use voidage_core::flow::{Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
 
 /// A flow with what the run needs to know about it.
 #[derive(Debug)]
@@ -30,6 +32,10 @@ pub struct Setup<const D: usize> {
     pub treatment: Treatment<f64>,
     /// What the porosity came to, if there is any.
     pub space: Option<SpaceReport>,
+    /// How well the grid resolves each region of the beginning.
+    pub regions: Vec<RegionReport>,
+    /// What patches on the sides came to.
+    pub patches: Vec<PatchReport>,
     /// What was left out because nothing needs it.
     pub skipped: Vec<String>,
 }
@@ -49,6 +55,10 @@ pub struct SpaceReport {
     pub dust_faces: usize,
     /// Open faces on the sides of the domain that were closed: too little volume behind them for any step.
     pub closed_faces: usize,
+    /// Faces on periodic sides that were lowered to what the opposite side leaves open.
+    pub matched_faces: usize,
+    /// The stable step at the beginning over that of open space: what the porosity costs.
+    pub step_share: f64,
 }
 
 /// The axes with more than one cell; x, if there is none.
@@ -74,11 +84,12 @@ pub fn setup<const D: usize>(
     let mut skipped: Vec<String> =
         (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
-    let cells = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
+    let (cells, regions) = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
 
     let widths = live.map(|d| edges.widths(d));
-    let (boundaries, inlets) = boundaries(file, &states, edges, &cells)?;
+    let Sides { boundaries, patches, mut inlets } = sides::sides(file, &states, edges, &cells)?;
     let mut flow = Flow::new(widths, gas, boundaries);
+    flow.patches = patches;
     (flow.scheme, flow.careful_steps) = scheme(file)?;
     flow.gravity = gravity(file, live)?;
 
@@ -90,7 +101,13 @@ pub fn setup<const D: usize>(
         Some(space) => {
             by_law = space.drag;
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
-            let Tidied { dust_cells, dust_faces, closed_faces } = tidied;
+            let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
+            if matched_faces > 0 {
+                progress.warn(format!(
+                    "{}: {matched_faces} faces of periodic sides are more open than the side opposite: both let pass what the less open one does",
+                    file.path.display()
+                ));
+            }
             report = Some(SpaceReport {
                 closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
                 jump_faces: flow.jump_faces(),
@@ -98,6 +115,8 @@ pub fn setup<const D: usize>(
                 dust_cells,
                 dust_faces,
                 closed_faces,
+                matched_faces,
+                step_share: 1.0,
             });
         }
     }
@@ -118,10 +137,27 @@ pub fn setup<const D: usize>(
         let velocity = if closed { [0.0; D] } else { w.velocity };
         flow.set(cell, &Primitive { velocity, ..*w });
     }
+    if let Some(report) = &mut report {
+        report.step_share = step_share(&mut flow);
+    }
     let (edges, cfl) = (edges.clone(), cfl(file)?);
-    let mut setup = Setup { flow, live, edges, cfl, inlets, treatment, space: report, skipped };
-    setup.inlets.iter_mut().for_each(|inlet| inlet.look_at(&setup.flow));
-    Ok(setup)
+    inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
+    let patches = sides::report(file, &flow, &edges, live, progress);
+    Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, skipped })
+}
+
+/// The stable step over that of the same gas in open space; 1 where there is none.
+fn step_share<const D: usize>(flow: &mut Flow<f64, D>) -> f64 {
+    let Ok(rate) = flow.rate() else { return 1.0 };
+    let gas = flow.gas();
+    let open = |cell: usize| {
+        let (w, at) = (flow.get(cell), flow.coordinates(cell));
+        let c = gas.sound_speed(&w);
+        (0..D).map(|d| (w.velocity[d].abs() + c) * flow.area(d, at) / flow.volume(at)).sum::<f64>()
+    };
+    let gaseous = (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0);
+    let share = gaseous.map(open).fold(0.0, f64::max) / rate;
+    if share.is_finite() { share } else { 1.0 }
 }
 
 /// An error of the core as one of the case.
@@ -248,117 +284,4 @@ fn drag<const D: usize>(
 
 fn nothing_in(dir: &Path) -> Error {
     Error::file(dir, "there is none of cr_x.npy, cr_y.npy, cr_z.npy, linear_x.npy, linear_y.npy, linear_z.npy")
-}
-
-type Boundaries<const D: usize> = [[Boundary<f64, D>; 2]; D];
-
-/// The sides of the live axes, and the inlets among them.
-fn boundaries<const D: usize>(
-    file: &CaseFile,
-    states: &States<'_, D>,
-    edges: &Edges,
-    cells: &[Primitive<f64, D>],
-) -> Result<(Boundaries<D>, Vec<Inlet<D>>)> {
-    let given = file.case.boundary.by_axis();
-    let mut sides = [[Boundary::Wall; 2]; D];
-    let mut inlets = Vec::new();
-    for axis in 0..3 {
-        for side in 0..2 {
-            let key = format!("boundary.{}_{}", AXES[axis], ["min", "max"][side]);
-            let Some(d) = states.live.iter().position(|&a| a == axis) else {
-                no_flow_through(file, &key, given[axis][side])?;
-                continue;
-            };
-            let keys = given[axis][side].ok_or_else(|| file.wrong(&key, "is missing"))?;
-            let kind = keys.kind.ok_or_else(|| file.wrong(&key, "needs a type"))?;
-            only_its_keys(file, &key, keys, kind)?;
-            sides[d][side] = match kind {
-                Kind::Wall => Boundary::Wall,
-                Kind::ZeroGradient => Boundary::ZeroGradient,
-                Kind::Periodic => Boundary::Periodic,
-                Kind::FarField => Boundary::FarField(states.state(&key, keys, None)?),
-                Kind::Outlet => {
-                    let positive = |p: f64| p > 0.0 && p.is_finite();
-                    file.demand(&format!("{key}.p"), keys.p, positive, "needs a positive number")?;
-                    let pressure = keys.p.ok_or_else(|| file.wrong(&key, "an outlet needs p"))?;
-                    Boundary::Outlet { pressure }
-                }
-                Kind::Inlet => {
-                    let first = first_pressure(states, edges, cells, d, side);
-                    let (inlet, state) = Inlet::new(states, &key, keys, (d, side), first, edges)?;
-                    inlets.push(inlet);
-                    Boundary::Inlet(state)
-                }
-            };
-        }
-        let periodic = [0, 1].map(|s| given[axis][s].and_then(|k| k.kind) == Some(Kind::Periodic));
-        if periodic[0] != periodic[1] {
-            let key = format!("boundary.{}_{}", AXES[axis], ["min", "max"][usize::from(periodic[1])]);
-            return Err(file.wrong(&key, "an axis is periodic on both sides or on none"));
-        }
-    }
-    Ok((sides, inlets))
-}
-
-/// Mean pressure of the cells along a side at the beginning: what an inlet starts from unless told.
-fn first_pressure<const D: usize>(
-    states: &States<'_, D>,
-    edges: &Edges,
-    cells: &[Primitive<f64, D>],
-    d: usize,
-    side: usize,
-) -> f64 {
-    let shape = edges.cells();
-    let axis = states.live[d];
-    let at = side * (shape[axis] - 1);
-    let of_side = cells.iter().enumerate().filter(|(c, _)| arrays::index(*c, shape)[axis] == at);
-    let (sum, count) = of_side.fold((0.0, 0.0), |(s, n), (_, w)| (s + w.pressure, n + 1.0));
-    sum / count
-}
-
-/// An axis of one cell is no part of the flow, so nothing may come through its sides.
-fn no_flow_through(file: &CaseFile, key: &str, keys: Option<&StateKeys>) -> Result<()> {
-    match keys.and_then(|k| k.kind) {
-        Some(Kind::Inlet | Kind::FarField | Kind::Outlet) => {
-            Err(file.wrong(key, "the axis has one cell: only wall, zero-gradient or periodic make sense there"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Keys that a type of boundary has no use for are errors.
-fn only_its_keys(file: &CaseFile, key: &str, keys: &StateKeys, kind: Kind) -> Result<()> {
-    let of = |key: &str| match kind {
-        Kind::Inlet => ["rho", "T", "u", "v", "w", "p", "relax"].contains(&key),
-        Kind::FarField => ["rho", "T", "u", "v", "w", "p"].contains(&key),
-        Kind::Outlet => key == "p",
-        Kind::Wall | Kind::ZeroGradient | Kind::Periodic => false,
-    };
-    match keys.given().into_iter().find(|k| !of(k)) {
-        Some(other) => {
-            Err(file.wrong(&format!("{key}.{other}"), format!("is not a key of this type ({})", kind.word())))
-        }
-        None => Ok(()),
-    }
-}
-
-impl StateKeys {
-    /// Names of the keys that are given, the type aside.
-    #[must_use]
-    pub fn given(&self) -> Vec<&'static str> {
-        let all = [
-            ("rho", self.rho.is_some()),
-            ("T", self.temperature.is_some()),
-            ("u", self.u.is_some()),
-            ("v", self.v.is_some()),
-            ("w", self.w.is_some()),
-            ("p", self.p.is_some()),
-            ("relax", self.relax.is_some()),
-            ("min", self.min.is_some()),
-            ("max", self.max.is_some()),
-            ("center", self.center.is_some()),
-            ("radius", self.radius.is_some()),
-        ];
-        all.into_iter().filter_map(|(name, given)| given.then_some(name)).collect()
-    }
 }

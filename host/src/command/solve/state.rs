@@ -2,11 +2,12 @@
 
 use super::arrays;
 use super::case::{AXES, CaseFile, StateKeys, VELOCITIES};
+use super::regions::{Region, RegionReport};
 use crate::command::stages;
 use crate::error::Result;
 use crate::grid::Edges;
 use std::path::Path;
-use voidage_core::flow::{Gas, Primitive};
+use voidage_core::flow::{Conserved, Gas, Primitive};
 
 /// What is needed to read a state.
 #[derive(Debug, Clone, Copy)]
@@ -84,41 +85,35 @@ impl<const D: usize> States<'_, D> {
         Ok(std::array::from_fn(|d| given[self.live[d]].unwrap_or(base.map_or(0.0, |b| b[d]))))
     }
 
-    /// All cells at the beginning, x fastest; `warn` is told of regions without a cell.
+    /// All cells at the beginning, x fastest, and how well the grid resolves each region; `warn` is told of regions that it does not.
     ///
     /// # Errors
     /// As [`States::state`]; an array that cannot be read or holds no states; cells without a state.
-    pub fn initial(&self, edges: &Edges, warn: &mut dyn FnMut(String)) -> Result<Vec<Primitive<f64, D>>> {
+    pub fn initial(
+        &self,
+        edges: &Edges,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<(Vec<Primitive<f64, D>>, Vec<RegionReport>)> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
         stages::room_for(count.saturating_mul(BYTES_A_CELL))?;
+        let whole = |state| Some(Filled { state, share: 1.0 });
         let mut cells = match (&keys.uniform, &keys.from) {
             (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
             (Some(state), None) => {
                 self.no_other_keys("initial.uniform", state, &[])?;
-                vec![Some(self.state("initial.uniform", state, None)?); count]
+                vec![whole(self.state("initial.uniform", state, None)?); count]
             }
-            (None, Some(dir)) => self.read(&self.file.resolve(dir), edges)?.into_iter().map(Some).collect(),
+            (None, Some(dir)) => self.read(&self.file.resolve(dir), edges)?.into_iter().map(whole).collect(),
             (None, None) => vec![None; count],
         };
-        for (n, region) in keys.regions.iter().enumerate() {
-            let key = format!("initial.regions[{n}]");
-            let (shape, mut empty) = (self.shape(&key, region)?, true);
-            for (cell, state) in cells.iter_mut().enumerate() {
-                if shape.holds(centre(edges, cell)) {
-                    empty = false;
-                    *state = Some(self.state(&key, region, *state)?);
-                }
-            }
-            if empty {
-                let place =
-                    if shape.is_outside(edges) { "lies outside the grid" } else { "holds the centre of no cell" };
-                warn(format!("{}: {key} {place}: it has no effect", self.file.path.display()));
-            }
-        }
-        match cells.iter().position(Option::is_none) {
-            None => Ok(cells.into_iter().flatten().collect()),
+        let regions: Result<Vec<_>> = (0..keys.regions.len()).map(|n| self.fill(n, edges, &mut cells, warn)).collect();
+        // Regions that fill half of a cell or more speak for all of it.
+        let missing = |c: &Option<Filled<D>>| c.is_none_or(|c| c.share < 0.5 - 1e-9);
+        match cells.iter().position(missing) {
+            None => Ok((cells.into_iter().flatten().map(|c| c.state).collect(), regions?)),
             Some(cell) => {
+                regions?;
                 let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
                 Err(self
                     .file
@@ -127,33 +122,40 @@ impl<const D: usize> States<'_, D> {
         }
     }
 
+    /// Gives the cells of the `n`-th region its state, each as far as the region holds it.
+    fn fill(
+        &self,
+        n: usize,
+        edges: &Edges,
+        cells: &mut [Option<Filled<D>>],
+        warn: &mut dyn FnMut(String),
+    ) -> Result<RegionReport> {
+        let (key, keys) = (format!("initial.regions[{n}]"), &self.file.case.initial.regions[n]);
+        let own: &[&str] = if keys.center.is_some() { &["center", "radius"] } else { &["min", "max"] };
+        self.no_other_keys(&key, keys, own)?;
+        let region = Region::new(self.file, &key, keys)?;
+        let shares = region.shares(edges)?;
+        for &(cell, share) in &shares {
+            let state = self.state(&key, keys, cells[cell].map(|c| c.state))?;
+            cells[cell] = Some(Filled { state, share }.over(cells[cell], self.gas));
+        }
+        let report = region.report(edges, &self.live, &shares);
+        let trouble = match report.cells_per_radius {
+            _ if region.is_outside(edges) => "lies outside the grid: it has no effect",
+            _ if shares.is_empty() => "holds nothing of any cell: it has no effect",
+            Some(cells) if cells < 0.5 => {
+                "is smaller than a cell: its mass and energy are spread over the cells that hold it"
+            }
+            _ => return Ok(report),
+        };
+        warn(format!("{}: {key} {trouble}", self.file.path.display()));
+        Ok(report)
+    }
+
     fn no_other_keys(&self, key: &str, keys: &StateKeys, more: &[&str]) -> Result<()> {
         let known = |k: &&str| ["rho", "T", "u", "v", "w", "p"].contains(k) || more.contains(k);
         let other = if keys.kind.is_some() { Some("type") } else { keys.given().into_iter().find(|k| !known(k)) };
         other.map_or(Ok(()), |other| Err(self.file.wrong(&format!("{key}.{other}"), "is not a key of this table")))
-    }
-
-    fn shape(&self, key: &str, keys: &StateKeys) -> Result<Shape> {
-        let point = |name: &str, p: &Option<Vec<f64>>, missing: f64| match p {
-            None => Ok([missing; 3]),
-            Some(p) if (1..=3).contains(&p.len()) && p.iter().all(|x| !x.is_nan()) => {
-                Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing)))
-            }
-            Some(_) => Err(self.file.wrong(&format!("{key}.{name}"), "needs one to three numbers")),
-        };
-        match (&keys.center, keys.radius) {
-            (None, None) => {
-                self.no_other_keys(key, keys, &["min", "max"])?;
-                let min = point("min", &keys.min, f64::NEG_INFINITY)?;
-                Ok(Shape::Box(min, point("max", &keys.max, f64::INFINITY)?))
-            }
-            (Some(_), Some(radius)) if radius > 0.0 => {
-                self.no_other_keys(key, keys, &["center", "radius"])?;
-                // A ball in the plane of a flow, or an interval: axes that are left out do not count.
-                Ok(Shape::Ball(point("center", &keys.center, f64::NAN)?, radius))
-            }
-            _ => Err(self.file.wrong(key, "a ball needs center and a positive radius")),
-        }
     }
 
     /// `rho.npy`, `u.npy`, … of a directory. Velocities along axes of one cell may be missing, else must be 0; a
@@ -184,31 +186,27 @@ impl<const D: usize> States<'_, D> {
     }
 }
 
-/// A region of space.
-enum Shape {
-    Box([f64; 3], [f64; 3]),
-    /// Axes whose centre is NaN do not count.
-    Ball([f64; 3], f64),
+/// A state, and the share of its cell that is known to be filled.
+#[derive(Debug, Clone, Copy)]
+struct Filled<const D: usize> {
+    state: Primitive<f64, D>,
+    share: f64,
 }
 
-impl Shape {
-    /// Wholly beyond the grid.
-    fn is_outside(&self, edges: &Edges) -> bool {
-        let [lo, hi] = edges.bounds().map(|p| p.to_array());
-        (0..3).any(|a| match self {
-            Shape::Box(min, max) => max[a] < lo[a] || min[a] > hi[a],
-            Shape::Ball(center, radius) => center[a] + radius < lo[a] || center[a] - radius > hi[a],
-        })
-    }
-
-    fn holds(&self, x: [f64; 3]) -> bool {
-        match self {
-            Shape::Box(min, max) => (0..3).all(|a| min[a] <= x[a] && x[a] <= max[a]),
-            Shape::Ball(center, radius) => {
-                let away = |a: usize| if center[a].is_nan() { 0.0 } else { x[a] - center[a] };
-                (0..3).map(|a| away(a) * away(a)).sum::<f64>() <= radius * radius
-            }
-        }
+impl<const D: usize> Filled<D> {
+    /// The cell once this state has taken its share of what it held before: mass, momentum and energy of both.
+    fn over(self, before: Option<Self>, gas: Gas<f64>) -> Self {
+        let Some(before) = before.filter(|_| self.share < 1.0) else { return self };
+        let kept = before.share.min(1.0 - self.share);
+        let share = kept + self.share;
+        let (a, b) = (gas.conserved(&before.state), gas.conserved(&self.state));
+        let mean = |a: f64, b: f64| (kept * a + self.share * b) / share;
+        let state = gas.primitive(&Conserved {
+            density: mean(a.density, b.density),
+            momentum: std::array::from_fn(|c| mean(a.momentum[c], b.momentum[c])),
+            energy: mean(a.energy, b.energy),
+        });
+        Filled { state, share }
     }
 }
 

@@ -56,7 +56,7 @@ pub fn line(outcome: &StressOutcome, width: usize) -> String {
 
 /// All outcomes, as the file of `--json` has them.
 #[derive(Debug, Serialize)]
-pub struct Summary {
+pub struct StressSummary {
     version: &'static str,
     long: bool,
     threads: usize,
@@ -85,19 +85,19 @@ struct CriterionSummary {
     passed: bool,
 }
 
-impl Summary {
+impl StressSummary {
     /// Of a run.
     #[must_use]
     pub fn new(outcomes: &[StressOutcome], long: bool, threads: usize, seconds: f64) -> Self {
         let cases: Vec<CaseSummary> = outcomes.iter().map(summary).collect();
         let passed = cases.iter().filter(|case| case.passed).count();
-        Summary { version: VERSION, long, threads, passed, failed: cases.len() - passed, cases, seconds }
+        StressSummary { version: VERSION, long, threads, passed, failed: cases.len() - passed, cases, seconds }
     }
 
     /// The last line.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let Summary { passed, failed, seconds, cases, .. } = self;
+        let StressSummary { passed, failed, seconds, cases, .. } = self;
         format!("{} cases, {passed} passed, {failed} failed, {seconds:.0} s", cases.len())
     }
 

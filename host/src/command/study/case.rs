@@ -5,6 +5,7 @@
 //! repeats = 5                       # default 3
 //! threads = [1, 2]                  # default [1]
 //! areas = false                     # default true
+//! refine = [1, 2, 4]                # each cell of each grid into so many along each axis; default [1]
 //!
 //! [[scene]]
 //! name = "ball"
@@ -27,18 +28,18 @@
 //! method = "gjk"                    # method, leaf, tol, depth: as on the command line
 //! leaf = "plane"
 //! tol = 1e-4
-//! depth = 6
+//! depth = [4, 6]                    # lists multiply out
 //! ```
 
+use super::recipe::{Recipe, recipes};
+use super::values::{few, some};
 use crate::error::{Error, Result};
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
 use crate::grid::Edges;
 use crate::keys::Source;
-use crate::porosity::{Leaf, Method, Options};
-use clap::ValueEnum;
+use crate::porosity::Method;
 use std::path::{Path, PathBuf};
-use toml::de::DeValue;
 
 /// A study.
 #[derive(Debug, Clone)]
@@ -57,6 +58,47 @@ pub struct StudyCase {
     pub grids: Vec<Edges>,
     /// How.
     pub recipes: Vec<Recipe>,
+    /// Shortened by [`StudyCase::quick`].
+    pub is_quick: bool,
+}
+
+/// Grids that a quick study has.
+const QUICK_GRIDS: usize = 2;
+
+impl StudyCase {
+    /// The same for a first look: one run of each, one number of threads, the two smallest grids.
+    #[must_use]
+    pub fn quick(mut self) -> Self {
+        let count = |grid: &Edges| grid.cells().iter().map(|&n| n as f64).product::<f64>();
+        self.repeats = 1;
+        self.threads.truncate(1);
+        self.grids.sort_by(|a, b| count(a).total_cmp(&count(b)));
+        self.grids.truncate(QUICK_GRIDS);
+        self.is_quick = true;
+        self
+    }
+
+    /// The files that it names.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.subjects.iter().flat_map(|s| &s.files)
+    }
+
+    /// How many points it has, and what they cost by [`cost`].
+    #[must_use]
+    pub fn plan(&self) -> (usize, f64) {
+        let pairs = self.grids.iter().flat_map(|grid| self.recipes.iter().map(move |recipe| (grid, recipe)));
+        let costs: f64 = pairs.map(|(grid, recipe)| cost(grid, recipe, self.repeats)).sum();
+        let often = self.subjects.len() * self.threads.len();
+        (often * self.grids.len() * self.recipes.len(), often as f64 * costs)
+    }
+}
+
+/// What a point costs, roughly: cells, and those that subdivision makes of the cells at surfaces.
+#[must_use]
+pub fn cost(edges: &Edges, recipe: &Recipe, repeats: usize) -> f64 {
+    let cells: f64 = edges.cells().iter().map(|&n| n as f64).product();
+    let parts = if recipe.options.method == Method::Gjk { 4_f64.powi(recipe.options.depth as i32) } else { 1.0 };
+    (cells + 6.0 * cells.powf(2.0 / 3.0) * parts) * repeats as f64
 }
 
 /// A scene of a study.
@@ -83,33 +125,21 @@ pub struct ProbeCell {
     pub beta_v: f64,
 }
 
-/// A way to compute the porosity.
-#[derive(Debug, Clone)]
-pub struct Recipe {
-    /// Its name in tables.
-    pub name: String,
-    /// What it computes and how far.
-    pub options: Options,
-}
-
 /// No case file is larger, in bytes.
 const LARGEST_FILE: u64 = 1 << 26;
 
-/// Most times a run is repeated, and most threads it gets.
-const MOST: usize = 1024;
+/// The text of a case file.
+///
+/// # Errors
+/// As [`table::read_text`].
+pub fn text(path: &Path) -> Result<String> {
+    table::read_text(path, LARGEST_FILE)
+}
 
-/// Read a case file; the scenes it names are not opened.
+/// Read the text of a case file, which `path` names in messages; the scenes it names are not opened.
 ///
 /// # Errors
 /// As [`scene::read`].
-pub fn read(path: &Path) -> Result<StudyCase> {
-    parse(path, &table::read_text(path, LARGEST_FILE)?)
-}
-
-/// Read the text of a case file; `path` names it in messages.
-///
-/// # Errors
-/// As [`read`].
 pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let source = Source::new(path, text);
     let table = source.toml()?;
@@ -119,10 +149,15 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let repeats = keys.get("repeats", few)?.unwrap_or(3);
     let threads = keys.get("threads", table::list(few))?.unwrap_or_else(|| vec![1]);
     let areas = keys.get("areas", table::truth)?.unwrap_or(true);
+    let refine = keys.get("refine", some(few))?.unwrap_or_else(|| vec![1]);
     let tables = (keys.tables("scene")?, keys.tables("method")?);
     let subjects = tables.0.into_iter().map(|k| subject(k, path)).collect::<Result<Vec<_>>>()?;
-    let recipes = tables.1.into_iter().map(|k| recipe(k, areas)).collect::<Result<Vec<_>>>()?;
+    let recipes = tables.1.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
     let grids = keys.grids("grid")?;
+    let grids: Vec<Edges> = grids.iter().flat_map(|g| refine.iter().map(|&n| g.refined(n))).collect();
+    for grid in &grids {
+        grid.grid(None).map_err(|e| keys.wrong("refine", e))?;
+    }
     keys.finish()?;
     for (what, missing) in [
         ("scene", subjects.is_empty()),
@@ -144,7 +179,7 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
             ));
         }
     }
-    Ok(StudyCase { title, repeats, threads, areas, subjects, grids, recipes })
+    Ok(StudyCase { title, repeats, threads, areas, subjects, grids, recipes, is_quick: false })
 }
 
 fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
@@ -169,36 +204,4 @@ fn probe(keys: &mut StrictTable) -> Result<ProbeCell> {
     };
     keys.finish()?;
     Ok(probe)
-}
-
-fn recipe(mut keys: StrictTable, areas: bool) -> Result<Recipe> {
-    let name = keys.named()?;
-    let method = keys.get("method", choice::<Method>)?.unwrap_or_default();
-    let leaf = keys.get("leaf", choice::<Leaf>)?.unwrap_or_default();
-    let tol = keys.get("tol", table::fraction)?.unwrap_or(Options::default().tol);
-    let depth = keys.get("depth", depth)?.unwrap_or(leaf.depth());
-    keys.finish()?;
-    Ok(Recipe { name, options: Options { tol, depth, bounds: false, areas, method, leaf } })
-}
-
-/// A number of repeats or threads.
-fn few(value: &DeValue) -> std::result::Result<usize, String> {
-    let n = table::count(value)?;
-    if n <= MOST { Ok(n) } else { Err(format!("must be at most {MOST}, not {n}")) }
-}
-
-/// As on the command line.
-fn depth(value: &DeValue) -> std::result::Result<u32, String> {
-    let n = table::index(value)?;
-    u32::try_from(n).ok().filter(|n| *n <= 10).ok_or_else(|| format!("must be at most 10, not {n}"))
-}
-
-/// One of the words of the command line.
-fn choice<T: ValueEnum>(value: &DeValue) -> std::result::Result<T, String> {
-    let word = table::text(value)?;
-    T::from_str(&word, false).map_err(|_| {
-        let all: Vec<String> =
-            T::value_variants().iter().filter_map(|v| Some(v.to_possible_value()?.get_name().to_owned())).collect();
-        format!("\"{word}\" is not known: {}", all.join(", "))
-    })
 }

@@ -1,6 +1,13 @@
-//! The runs of a study, each with its time and its distance from the reference.
+//! The porosity of a study: every scene on every grid by every method, each with its time and its distance from the reference.
 
-use super::case::{ProbeCell, Recipe, StudyCase, Subject};
+use super::case::{ProbeCell, StudyCase, Subject, cost};
+use super::points;
+use super::recipe::{Precision, Recipe};
+use super::row::{Errors, Row, Truth, mark_fronts};
+use super::session::Session;
+use super::single;
+use super::spread::{Spread, timed};
+use super::values::word;
 use crate::command::cli::SceneArgs;
 use crate::command::progress::Progress;
 use crate::command::stages;
@@ -8,76 +15,86 @@ use crate::error::{Error, Result};
 use crate::geometry::bodies::Bodies;
 use crate::geometry::scene::{Scene, load};
 use crate::grid::Edges;
-use crate::porosity::{self, FieldSet, Leaf, Method, Options, Porosity};
+use crate::porosity::{self, Leaf, Method, Options, Porosity};
 use std::path::Path;
-use std::time::Instant;
 
-/// One line of the table.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// The scene.
-    pub scene: String,
-    /// Its bodies.
-    pub bodies: usize,
-    /// The grid's cells.
-    pub cells: [usize; 3],
-    /// The method.
-    pub method: String,
-    /// Number of threads.
-    pub threads: usize,
-    /// Median time of the computation alone.
-    pub seconds: f64,
-    /// Shortest time.
-    pub fastest: f64,
-    /// Solid volume found, in m³.
-    pub volume: f64,
-    /// What it should be, if that is known.
-    pub exact: Option<f64>,
-    /// Relative error of the solid volume.
-    pub error: Option<f64>,
-    /// Largest error of a cell, if there is a reference.
-    pub cell_error: Option<f64>,
-    /// Largest error of a face.
-    pub face_error: Option<f64>,
-    /// Largest distance of certified bounds.
-    pub gap: f64,
-    /// Porosity found and expected in a cell.
-    pub probe: Option<[f64; 2]>,
+/// What other points are compared with.
+struct Reference {
+    found: Porosity,
+    /// Its method.
+    road: &'static str,
+    /// How far apart its bounds are at most, and those of its volume as a share of it.
+    gap: f64,
+    uncertainty: f64,
+}
+
+/// A scene on a grid.
+struct Site<'a> {
+    case: &'a StudyCase,
+    subject: &'a Subject,
+    bodies: &'a Bodies,
+    edges: &'a Edges,
+    reference: &'a Reference,
 }
 
 /// The reference by the surface: unions as exactly as they are found.
-const REFERENCE: Options =
-    Options { tol: 0.0, depth: 6, bounds: false, areas: true, method: Method::Surface, leaf: Leaf::Plane };
+const SURFACE: Options =
+    Options { tol: 0.0, depth: 6, bounds: true, areas: true, method: Method::Surface, leaf: Leaf::Plane };
 
-/// Run all; `row_done` is called after each.
+/// The reference where solids have formulas and no surface: closed forms, and where two of them meet a subdivision that is finer than
+/// those it is compared with.
+const FORMULA: Options =
+    Options { tol: 1e-6, depth: 7, bounds: true, areas: true, method: Method::Auto, leaf: Leaf::Plane };
+
+/// Run all.
 ///
 /// # Errors
 /// A scene that cannot be read, or that a method cannot measure.
-pub fn all(
-    path: &Path,
-    case: &StudyCase,
-    progress: &mut Progress,
-    row_done: impl Fn(&Progress, &Row),
-) -> Result<Vec<Row>> {
+pub fn all(path: &Path, case: &StudyCase, session: &mut Session) -> Result<Vec<Row>> {
+    // Before anything is measured all scenes must be there.
+    let all: Vec<Bodies> =
+        case.subjects.iter().map(|subject| bodies(path, subject, session.progress)).collect::<Result<_>>()?;
     let mut rows = Vec::new();
-    for subject in &case.subjects {
-        let bodies = bodies(path, subject, progress)?;
-        for grid in &case.grids {
-            let reference = reference(&bodies, grid, case.areas)?;
-            for recipe in &case.recipes {
-                if let (Method::Surface, Err(why)) = (recipe.options.method, stages::need_surfaces(&bodies)) {
-                    progress.warn(format!("method \"{}\" is left out: {why}", recipe.name));
-                    continue;
-                }
-                for &threads in &case.threads {
-                    let run = run(case, subject, &bodies, grid, recipe, threads, reference.as_ref())?;
-                    row_done(progress, &run);
-                    rows.push(run);
-                }
-            }
+    for (subject, bodies) in case.subjects.iter().zip(&all) {
+        for edges in &case.grids {
+            on_grid(case, subject, bodies, edges, session, &mut rows)?;
         }
     }
+    mark_fronts(&mut rows);
     Ok(rows)
+}
+
+/// All points of a scene on a grid.
+fn on_grid(
+    case: &StudyCase,
+    subject: &Subject,
+    bodies: &Bodies,
+    edges: &Edges,
+    session: &mut Session,
+    rows: &mut Vec<Row>,
+) -> Result<()> {
+    let mut reference = None;
+    for recipe in &case.recipes {
+        let cost = cost(edges, recipe, case.repeats);
+        if let Err(why) = possible(bodies, recipe) {
+            session.progress.warn(format!("method \"{}\" is left out: {why}", recipe.name));
+            session.leave_out(case.threads.len(), cost * case.threads.len() as f64);
+            continue;
+        }
+        for &threads in &case.threads {
+            let [nx, ny, nz] = edges.cells();
+            let key = format!("{} | {nx}x{ny}x{nz} | {} | {threads}", subject.name, recipe.name);
+            let measure = |_: &mut Progress| {
+                if reference.is_none() {
+                    reference = Some(self::reference(bodies, edges, case.areas)?);
+                }
+                let reference = reference.as_ref().ok_or_else(|| Error::new("no reference"))?;
+                Site { case, subject, bodies, edges, reference }.run(recipe, threads)
+            };
+            rows.push(session.point(&key, cost, measure, points::line)?);
+        }
+    }
+    Ok(())
 }
 
 /// The bodies of a scene of the case file at `path`.
@@ -94,60 +111,116 @@ pub fn bodies(path: &Path, subject: &Subject, progress: &mut Progress) -> Result
     Ok(bodies)
 }
 
-fn reference(bodies: &Bodies, edges: &Edges, areas: bool) -> Result<Option<Porosity>> {
-    if stages::need_surfaces(bodies).is_err() {
-        return Ok(None);
+/// A recipe can measure these bodies.
+fn possible(bodies: &Bodies, recipe: &Recipe) -> Result<()> {
+    if recipe.options.method == Method::Surface {
+        stages::need_surfaces(bodies)?;
     }
-    let grid = edges.grid(None)?;
-    Ok(Some(porosity::porosity(&grid, bodies, Options { areas, ..REFERENCE })))
+    if recipe.precision == Precision::F32 { single::possible(bodies) } else { Ok(()) }
 }
 
-fn run(
-    case: &StudyCase,
-    subject: &Subject,
-    bodies: &Bodies,
-    edges: &Edges,
-    recipe: &Recipe,
-    threads: usize,
-    reference: Option<&Porosity>,
-) -> Result<Row> {
-    let grid = edges.grid(None)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
-    let (mut seconds, mut result) = (Vec::new(), Porosity::default());
-    for _ in 0..case.repeats {
-        let begin = Instant::now();
-        result = pool.install(|| porosity::porosity(&grid, bodies, recipe.options));
-        seconds.push(begin.elapsed().as_secs_f64());
-    }
-    seconds.sort_by(f64::total_cmp);
-    let exact = subject.exact.or_else(|| reference.map(|r| r.solid_volume));
-    let beta = |probe: ProbeCell| {
-        let ([nx, ny, _], [i, j, k]) = (edges.cells(), probe.cell);
-        [result.beta.v[(k * ny + j) * nx + i], probe.beta_v]
+fn reference(bodies: &Bodies, edges: &Edges, areas: bool) -> Result<Reference> {
+    let (options, road) = match stages::need_surfaces(bodies) {
+        Ok(()) => (SURFACE, "surface"),
+        Err(_) => (FORMULA, "auto"),
     };
-    Ok(Row {
-        scene: subject.name.clone(),
-        bodies: bodies.bodies.len(),
-        cells: edges.cells(),
-        method: recipe.name.clone(),
-        threads,
-        seconds: seconds[seconds.len() / 2],
-        fastest: seconds[0],
-        volume: result.solid_volume,
-        exact,
-        error: exact.filter(|&e| e > 0.0).map(|e| result.solid_volume / e - 1.0),
-        cell_error: reference.map(|r| largest(&r.beta.v, &result.beta.v)),
-        face_error: reference.filter(|_| case.areas).map(|r| faces(&r.beta, &result.beta)),
-        gap: result.max_gap,
-        probe: subject.probe.map(beta),
-    })
+    let grid = edges.grid(None)?;
+    let mut found = porosity::porosity(&grid, bodies, Options { areas, ..options });
+    // Solid of the lower bounds less that of the upper ones, halved: the value lies in the middle.
+    let [nx, ny, _] = edges.cells();
+    let widths = [0, 1, 2].map(|axis| edges.widths(axis));
+    let volume = |cell: usize| {
+        let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        (0..3).map(|axis| widths[axis].get(at[axis]).copied().unwrap_or(0.0)).product::<f64>()
+    };
+    let unsure = found.bounds.take().map_or(0.0, |[lower, upper]| {
+        let gaps = lower.v.iter().zip(upper.v.iter()).enumerate().filter(|(_, (l, u))| u > l);
+        gaps.map(|(cell, (l, u))| 0.5 * (u - l) * volume(cell)).sum()
+    });
+    let uncertainty = if found.solid_volume > 0.0 { unsure / found.solid_volume } else { 0.0 };
+    let gap = found.max_gap;
+    Ok(Reference { found, road, gap, uncertainty })
 }
 
-fn largest(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |worst, (a, b)| (a - b).abs().max(worst))
-}
+impl Site<'_> {
+    fn run(&self, recipe: &Recipe, threads: usize) -> Result<Row> {
+        let Site { case, subject, bodies, edges, .. } = *self;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
+        let Options { method, leaf, depth, tol, .. } = recipe.options;
+        let row = Row {
+            scene: subject.name.clone(),
+            bodies: bodies.bodies.len(),
+            triangles: bodies.triangles.len(),
+            cells: edges.cells(),
+            method: recipe.name.clone(),
+            family: recipe.family.clone(),
+            road: word(method),
+            leaf: word(leaf),
+            depth,
+            tol,
+            precision: recipe.precision.name().to_owned(),
+            paper: recipe.is_the_papers(),
+            threads,
+            repeats: case.repeats,
+            seconds: Spread::default(),
+            volume: 0.0,
+            exact: self.truth(),
+            error: None,
+            cell: None,
+            face: None,
+            cells_from: None,
+            gap: 0.0,
+            probe: None,
+            front: false,
+        };
+        let grid = edges.grid(None)?;
+        let found = match recipe.precision {
+            Precision::F64 => {
+                let (found, seconds) =
+                    timed(case.repeats, || Ok(pool.install(|| porosity::porosity(&grid, bodies, recipe.options))))?;
+                let porosity::FieldSet { v, x, y, z } = &found.beta;
+                self.judge(Row { seconds, volume: found.solid_volume, gap: found.max_gap, ..row }, [v, x, y, z])
+            }
+            Precision::F32 => {
+                let run = || single::fields(bodies, edges, recipe.options, case.repeats);
+                let (found, seconds) = pool.install(run)?;
+                let fields = found.beta.map(|f| f.into_iter().map(f64::from).collect::<Vec<f64>>());
+                let [v, x, y, z] = &fields;
+                self.judge(Row { seconds, volume: found.volume, gap: found.gap, ..row }, [v, x, y, z])
+            }
+        };
+        Ok(found)
+    }
 
-fn faces(a: &FieldSet, b: &FieldSet) -> f64 {
-    largest(&a.x, &b.x).max(largest(&a.y, &b.y)).max(largest(&a.z, &b.z))
+    /// The volume as it should be: as the case gives it, or that of the reference.
+    fn truth(&self) -> Truth {
+        let Reference { found, road, uncertainty, .. } = self.reference;
+        match self.subject.exact {
+            Some(volume) => Truth { volume: Some(volume), from: "given".to_owned(), uncertainty: 0.0 },
+            None => Truth { volume: Some(found.solid_volume), from: (*road).to_owned(), uncertainty: *uncertainty },
+        }
+    }
+
+    /// A row with its errors: of the volume, of cells, x, y and z faces.
+    fn judge(&self, row: Row, [v, x, y, z]: [&[f64]; 4]) -> Row {
+        let Reference { found, road, gap, .. } = self.reference;
+        let own = row.road == *road || *road == "surface" && row.road == "auto";
+        let same = own && row.precision == Precision::F64.name() && row.leaf == word(Leaf::Plane);
+        let mark = if same { " (itself)" } else { "" };
+        let beta = |probe: ProbeCell| {
+            let ([nx, ny, _], [i, j, k]) = (row.cells, probe.cell);
+            [v.get((k * ny + j) * nx + i).copied().unwrap_or(f64::NAN), probe.beta_v]
+        };
+        let faces = [(x, &found.beta.x), (y, &found.beta.y), (z, &found.beta.z)];
+        let faces = faces.map(|(is, should)| Errors::of(is.iter().zip(should.iter())));
+        Row {
+            error: row.exact.volume.filter(|&e| e > 0.0).map(|e| row.volume / e - 1.0),
+            cell: Some(Errors::of(v.iter().zip(found.beta.v.iter()))),
+            face: self.case.areas.then(|| faces[0].worst(faces[1]).worst(faces[2])),
+            cells_from: Some((format!("{road}{mark}"), *gap)),
+            probe: self.subject.probe.map(beta),
+            ..row
+        }
+    }
 }

@@ -1,0 +1,166 @@
+//! Regions of a case, boxes and balls, and the share of each cell that they take: what a region holds does not depend on the grid.
+
+use super::case::{CaseFile, StateKeys};
+use crate::error::Result;
+use crate::grid::Edges;
+use glam::DVec3;
+use serde::Serialize;
+use std::path::Path;
+use voidage_core::grid::Grid;
+use voidage_core::grid::cell_range::RangeKind;
+use voidage_core::quadric::QuadricSolid;
+
+/// A region of space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Region {
+    /// Lowest and highest corner, in m; may be infinite.
+    Box([f64; 3], [f64; 3]),
+    /// Centre and radius, in m. Axes whose centre is NaN do not count: a cylinder, or a layer.
+    Ball([f64; 3], f64),
+}
+
+/// How well the grid resolves a region.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RegionReport {
+    /// Radius, or half the smallest extent of a box, in the widest cells that it meets; none if it is not bounded.
+    pub cells_per_radius: Option<f64>,
+    /// Volume of the region within the grid, in m³.
+    pub volume: f64,
+}
+
+/// A share this close to none or all is rounding.
+const ROUNDING: f64 = 1e-12;
+
+impl Region {
+    /// The region of a table at `key`.
+    ///
+    /// # Errors
+    /// Its keys are those of neither a box nor a ball.
+    pub fn new(file: &CaseFile, key: &str, keys: &StateKeys) -> Result<Self> {
+        let point = |name: &str, p: &Option<Vec<f64>>, missing: f64| match p {
+            None => Ok([missing; 3]),
+            Some(p) if (1..=3).contains(&p.len()) && p.iter().all(|x| !x.is_nan()) => {
+                Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing)))
+            }
+            Some(_) => Err(file.wrong(&format!("{key}.{name}"), "needs one to three numbers")),
+        };
+        match (&keys.center, keys.radius) {
+            (None, None) => {
+                let min = point("min", &keys.min, f64::NEG_INFINITY)?;
+                Ok(Region::Box(min, point("max", &keys.max, f64::INFINITY)?))
+            }
+            (Some(center), Some(radius)) if radius > 0.0 && radius < f64::INFINITY => {
+                if center.iter().any(|x| x.is_infinite()) {
+                    return Err(file.wrong(&format!("{key}.center"), "needs finite numbers"));
+                }
+                // A ball in the plane of a flow, or an interval: axes that are left out do not count.
+                Ok(Region::Ball(point("center", &keys.center, f64::NAN)?, radius))
+            }
+            _ => Err(file.wrong(key, "a ball needs center and a positive radius")),
+        }
+    }
+
+    /// Lowest and highest place along an axis.
+    #[must_use]
+    pub fn extent(&self, axis: usize) -> [f64; 2] {
+        match self {
+            Region::Box(min, max) => [min[axis], max[axis]],
+            Region::Ball(center, _) if center[axis].is_nan() => [f64::NEG_INFINITY, f64::INFINITY],
+            Region::Ball(center, radius) => [center[axis] - radius, center[axis] + radius],
+        }
+    }
+
+    /// Wholly beyond the grid.
+    #[must_use]
+    pub fn is_outside(&self, edges: &Edges) -> bool {
+        let [lo, hi] = edges.bounds().map(|p| p.to_array());
+        (0..3).any(|a| self.extent(a)[1] < lo[a] || self.extent(a)[0] > hi[a])
+    }
+
+    /// The cells that hold some of the region, and the share of each one's volume that it takes, x fastest.
+    ///
+    /// # Errors
+    /// The grid has too many cells.
+    pub fn shares(&self, edges: &Edges) -> Result<Vec<(usize, f64)>> {
+        let all = match self.solid(edges) {
+            Some(solid) => round(&solid.0, &solid.1)?,
+            None => self.box_shares(edges),
+        };
+        let all = all.into_iter().filter(|(_, share)| *share > ROUNDING);
+        Ok(all.map(|(cell, share)| (cell, if share > 1.0 - ROUNDING { 1.0 } else { share })).collect())
+    }
+
+    /// A ball, or a cylinder that reaches beyond the grid, with the grid seen from its centre. None for what has plane sides alone.
+    fn solid(&self, edges: &Edges) -> Option<(QuadricSolid, Edges)> {
+        let Region::Ball(center, radius) = self else { return None };
+        let round: Vec<usize> = (0..3).filter(|&a| !center[a].is_nan()).collect();
+        let origin = center.map(|x| if x.is_nan() { 0.0 } else { x });
+        let seen = Edges([0, 1, 2].map(|a| edges.0[a].iter().map(|x| x - origin[a]).collect()));
+        let solid = match round[..] {
+            [_, _, _] => QuadricSolid::ball(DVec3::ZERO, *radius)?,
+            [a, b] => {
+                let along = 3 - a - b;
+                let [lo, hi] = seen.bounds().map(|p| p.to_array()[along]);
+                let end = |x: f64| DVec3::from_array([0, 1, 2].map(|axis| if axis == along { x } else { 0.0 }));
+                QuadricSolid::cylinder(end(lo - (hi - lo)), end(hi + (hi - lo)), *radius)?
+            }
+            _ => return None,
+        };
+        Some((solid, seen))
+    }
+
+    /// Shares of what has plane sides along the axes.
+    fn box_shares(&self, edges: &Edges) -> Vec<(usize, f64)> {
+        let along = [0, 1, 2].map(|a| {
+            let [from, to] = self.extent(a);
+            let share = move |e: &[f64]| ((to.min(e[1]) - from.max(e[0])) / (e[1] - e[0])).clamp(0.0, 1.0);
+            edges.0[a].windows(2).map(share).collect::<Vec<f64>>()
+        });
+        let [nx, ny, nz] = edges.cells();
+        let held = |a: usize, n: usize| (0..n).map(move |i| (a, i));
+        let mut all = Vec::new();
+        for (_, k) in held(2, nz).filter(|&(a, i)| along[a][i] > 0.0) {
+            for (_, j) in held(1, ny).filter(|&(a, i)| along[a][i] > 0.0) {
+                for (_, i) in held(0, nx).filter(|&(a, i)| along[a][i] > 0.0) {
+                    all.push(((k * ny + j) * nx + i, along[0][i] * along[1][j] * along[2][k]));
+                }
+            }
+        }
+        all
+    }
+
+    /// How well a grid, of which the axes `live` flow, resolves the region that takes these `shares` of its cells.
+    #[must_use]
+    pub fn report(&self, edges: &Edges, live: &[usize], shares: &[(usize, f64)]) -> RegionReport {
+        let mut per_radius = f64::INFINITY;
+        for &a in live {
+            let [from, to] = self.extent(a);
+            let met = edges.0[a].windows(2).filter(|e| e[1] > from && e[0] < to);
+            let widest = met.map(|e| e[1] - e[0]).fold(0.0, f64::max);
+            per_radius = per_radius.min(0.5 * (to - from) / widest);
+        }
+        let [nx, ny, _] = edges.cells();
+        let width = |a: usize, i: usize| edges.0[a][i + 1] - edges.0[a][i];
+        let volume = |cell: usize| width(0, cell % nx) * width(1, cell / nx % ny) * width(2, cell / (nx * ny));
+        RegionReport {
+            cells_per_radius: per_radius.is_finite().then_some(per_radius),
+            volume: shares.iter().map(|&(cell, share)| share * volume(cell)).sum(),
+        }
+    }
+}
+
+/// Shares of a round solid.
+fn round(solid: &QuadricSolid, edges: &Edges) -> Result<Vec<(usize, f64)>> {
+    let grid: Grid<f64> = edges.grid(None::<&Path>)?;
+    let [nx, ny, nz] = grid.cells();
+    let mut all = Vec::new();
+    for k in 0..nz {
+        let mut visit = |kind: RangeKind, at: usize, share: f64| {
+            if kind == RangeKind::Cells {
+                all.push((k * nx * ny + at, share));
+            }
+        };
+        let _ = solid.layer(&grid, k, false, &mut visit);
+    }
+    Ok(all)
+}

@@ -1,0 +1,219 @@
+//! The sides of the domain, and patches on them: from the keys of a case to what stands there.
+
+use super::arrays;
+use super::case::{AXES, CaseFile, Kind, SideName, StateKeys};
+use super::inlet::Inlet;
+use super::regions::Region;
+use super::state::States;
+use crate::command::progress::Progress;
+use crate::error::Result;
+use crate::flow::Flow;
+use crate::grid::Edges;
+use serde::Serialize;
+use voidage_core::flow::{Boundary, Patch, Primitive};
+
+/// What stands at the sides of the axes that flow.
+#[derive(Debug)]
+pub struct Sides<const D: usize> {
+    /// Low and high side of each axis.
+    pub boundaries: [[Boundary<f64, D>; 2]; D],
+    /// Parts of them where something else stands.
+    pub patches: Vec<Patch<f64, D>>,
+    /// The inlets among both.
+    pub inlets: Vec<Inlet<D>>,
+}
+
+/// What a patch came to.
+#[derive(Debug, Clone, Serialize)]
+pub struct PatchReport {
+    /// Its side, as in the case.
+    pub side: String,
+    /// What stands there, as in the case.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Faces of cells that it covers.
+    pub faces: usize,
+    /// Their open area, in m².
+    pub area: f64,
+}
+
+/// One side or patch of a case: its table, and where it stands.
+struct Place<'a> {
+    key: String,
+    keys: &'a StateKeys,
+    /// Axis among those that flow, and 0 for its low or 1 for its high side.
+    at: (usize, usize),
+    patch: Option<usize>,
+}
+
+/// The sides of the live axes, and the inlets among them; `cells` are the states at the beginning.
+///
+/// # Errors
+/// A side is missing, or its keys are not those of its type; a patch stands on no side that could have one.
+pub fn sides<const D: usize>(
+    file: &CaseFile,
+    states: &States<'_, D>,
+    edges: &Edges,
+    cells: &[Primitive<f64, D>],
+) -> Result<Sides<D>> {
+    let given = file.case.boundary.by_axis();
+    let mut sides = Sides { boundaries: [[Boundary::Wall; 2]; D], patches: Vec::new(), inlets: Vec::new() };
+    for axis in 0..3 {
+        for side in 0..2 {
+            let key = format!("boundary.{}_{}", AXES[axis], ["min", "max"][side]);
+            let Some(d) = states.live.iter().position(|&a| a == axis) else {
+                no_flow_through(file, &key, given[axis][side])?;
+                continue;
+            };
+            let keys = given[axis][side].ok_or_else(|| file.wrong(&key, "is missing"))?;
+            let place = Place { key, keys, at: (d, side), patch: None };
+            sides.boundaries[d][side] = boundary(states, edges, cells, &place, &mut sides.inlets)?;
+        }
+        let periodic = [0, 1].map(|s| given[axis][s].and_then(|k| k.kind) == Some(Kind::Periodic));
+        if periodic[0] != periodic[1] {
+            let key = format!("boundary.{}_{}", AXES[axis], ["min", "max"][usize::from(periodic[1])]);
+            return Err(file.wrong(&key, "an axis is periodic on both sides or on none"));
+        }
+    }
+    for (n, keys) in file.case.boundary.patch.iter().enumerate() {
+        let place = patch_place(states, n, keys)?;
+        let (d, side) = place.at;
+        if sides.boundaries[d][side] == Boundary::Periodic {
+            return Err(file.wrong(&format!("{}.side", place.key), "is periodic: it has no parts"));
+        }
+        let boundary = boundary(states, edges, cells, &place, &mut sides.inlets)?;
+        let (first, end) = covered(&Region::new(file, &place.key, keys)?, edges, states.live);
+        sides.patches.push(Patch { axis: d, high: side == 1, first, end, boundary });
+    }
+    Ok(sides)
+}
+
+/// Where the `n`-th patch stands.
+fn patch_place<'a, const D: usize>(states: &States<'_, D>, n: usize, keys: &'a StateKeys) -> Result<Place<'a>> {
+    let key = format!("boundary.patch[{n}]");
+    let wrong = |name: &str, reason: String| Err(states.file.wrong(&format!("{key}{name}"), reason));
+    let Some(side) = keys.side else {
+        return wrong("", "needs a side: x_min, x_max, y_min, y_max, z_min or z_max".into());
+    };
+    let (axis, high) = side.place();
+    match states.live.iter().position(|&a| a == axis) {
+        _ if D < 2 => wrong("", "a flow along one axis has no parts of sides".into()),
+        None => wrong(".side", format!("the axis {} has one cell: nothing flows through its sides", AXES[axis])),
+        Some(_) if keys.kind == Some(Kind::Periodic) => wrong(".type", "a part of a side cannot be periodic".into()),
+        Some(d) => Ok(Place { key, keys, at: (d, high), patch: Some(n) }),
+    }
+}
+
+/// The cells whose middles a box holds along each live axis: the first, and one past the last.
+fn covered<const D: usize>(region: &Region, edges: &Edges, live: [usize; D]) -> ([usize; D], [usize; D]) {
+    let middles = |a: usize| edges.0[a].windows(2).map(|e| f64::midpoint(e[0], e[1]));
+    let below = |a: usize, x: f64| middles(a).take_while(|m| *m < x).count();
+    let up_to = |a: usize, x: f64| middles(a).take_while(|m| *m <= x).count();
+    // A box that the axes of one cell lie outside of covers nothing.
+    let apart = (0..3).any(|a| !live.contains(&a) && below(a, region.extent(a)[0]) >= up_to(a, region.extent(a)[1]));
+    let end = |a: usize| if apart { 0 } else { up_to(a, region.extent(a)[1]) };
+    (live.map(|a| below(a, region.extent(a)[0])), live.map(end))
+}
+
+/// What stands at a place.
+fn boundary<const D: usize>(
+    states: &States<'_, D>,
+    edges: &Edges,
+    cells: &[Primitive<f64, D>],
+    place: &Place<'_>,
+    inlets: &mut Vec<Inlet<D>>,
+) -> Result<Boundary<f64, D>> {
+    let (file, Place { key, keys, at: (d, side), patch }) = (states.file, place);
+    let kind = keys.kind.ok_or_else(|| file.wrong(key, "needs a type"))?;
+    only_its_keys(file, place, kind)?;
+    Ok(match kind {
+        Kind::Wall => Boundary::Wall,
+        Kind::ZeroGradient => Boundary::ZeroGradient,
+        Kind::Periodic => Boundary::Periodic,
+        Kind::FarField => Boundary::FarField(states.state(key, keys, None)?),
+        Kind::Outlet => {
+            let positive = |p: f64| p > 0.0 && p.is_finite();
+            file.demand(&format!("{key}.p"), keys.p, positive, "needs a positive number")?;
+            Boundary::Outlet { pressure: keys.p.ok_or_else(|| file.wrong(key, "an outlet needs p"))? }
+        }
+        Kind::Inlet => {
+            let first = first_pressure(states, edges, cells, *d, *side);
+            let (mut inlet, state) = Inlet::new(states, key, keys, (*d, *side), first, edges)?;
+            inlet.patch = *patch;
+            inlets.push(inlet);
+            Boundary::Inlet(state)
+        }
+    })
+}
+
+/// Mean pressure of the cells along a side at the beginning: what an inlet starts from unless told.
+fn first_pressure<const D: usize>(
+    states: &States<'_, D>,
+    edges: &Edges,
+    cells: &[Primitive<f64, D>],
+    d: usize,
+    side: usize,
+) -> f64 {
+    let shape = edges.cells();
+    let axis = states.live[d];
+    let at = side * (shape[axis] - 1);
+    let of_side = cells.iter().enumerate().filter(|(c, _)| arrays::index(*c, shape)[axis] == at);
+    let (sum, count) = of_side.fold((0.0, 0.0), |(s, n), (_, w)| (s + w.pressure, n + 1.0));
+    sum / count
+}
+
+/// An axis of one cell is no part of the flow, so nothing may come through its sides.
+fn no_flow_through(file: &CaseFile, key: &str, keys: Option<&StateKeys>) -> Result<()> {
+    match keys.and_then(|k| k.kind) {
+        Some(Kind::Inlet | Kind::FarField | Kind::Outlet) => {
+            Err(file.wrong(key, "the axis has one cell: only wall, zero-gradient or periodic make sense there"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Keys that a type of boundary has no use for are errors.
+fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
+    let of_kind: &[&str] = match kind {
+        Kind::Inlet => &["rho", "T", "u", "v", "w", "p", "relax"],
+        Kind::FarField => &["rho", "T", "u", "v", "w", "p"],
+        Kind::Outlet => &["p"],
+        Kind::Wall | Kind::ZeroGradient | Kind::Periodic => &[],
+    };
+    let of_patch: &[&str] = if place.patch.is_some() { &["side", "min", "max"] } else { &[] };
+    match place.keys.given().into_iter().find(|k| !of_kind.contains(k) && !of_patch.contains(k)) {
+        Some(other) => {
+            let reason = format!("is not a key of this type ({})", kind.word());
+            Err(file.wrong(&format!("{}.{other}", place.key), reason))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What the patches of a flow came to; those that cover nothing are told.
+pub fn report<const D: usize>(
+    file: &CaseFile,
+    flow: &Flow<f64, D>,
+    edges: &Edges,
+    live: [usize; D],
+    progress: &mut Progress,
+) -> Vec<PatchReport> {
+    let across: f64 = (0..3).filter(|a| !live.contains(a)).map(|a| edges.widths(a).iter().sum::<f64>()).product();
+    let mut all = Vec::new();
+    for (n, (patch, keys)) in flow.patches.iter().zip(&file.case.boundary.patch).enumerate() {
+        let faces = flow.side(patch.axis, usize::from(patch.high), Some(n));
+        if faces.is_empty() {
+            progress.warn(format!(
+                "{}: boundary.patch[{n}] covers the middle of no face of its side that is not another patch's: it has no effect",
+                file.path.display()
+            ));
+        }
+        all.push(PatchReport {
+            side: keys.side.map_or_else(String::new, SideName::word),
+            kind: keys.kind.map_or("", Kind::word),
+            faces: faces.len(),
+            area: across * faces.iter().map(|(_, area)| area).sum::<f64>(),
+        });
+    }
+    all
+}

@@ -1,0 +1,174 @@
+//! A study on its way: which points are kept from before, what is done, how long the rest will take.
+
+use crate::command::progress::Progress;
+use crate::command::version::BUILD;
+use crate::error::{Error, Result};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The file of points that are done, in the directory of results.
+pub const POINTS: &str = "points.jsonl";
+
+/// A study on its way.
+#[derive(Debug)]
+pub struct Session<'a> {
+    /// What the user sees.
+    pub progress: &'a mut Progress,
+    kept: BTreeMap<String, Value>,
+    /// Where points are kept, and the first line of that file; opened with the first point.
+    path: Option<PathBuf>,
+    head: Head,
+    file: Option<File>,
+    /// Points, and their cost in units that only ratios matter of.
+    planned: (usize, f64),
+    /// Points done or left out, whether kept or measured, and their cost.
+    done: (usize, f64),
+    /// Cost and seconds of what was measured by this run.
+    measured: (f64, f64),
+}
+
+/// The first line of the file.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Head {
+    /// Of the case, the files that it names, and the program.
+    study: String,
+}
+
+/// Another line.
+#[derive(Debug, Serialize, Deserialize)]
+struct Line {
+    key: String,
+    value: Value,
+}
+
+/// What a study is made of: its text, the files it names, whether it is quick, and this program. A study that differs in any of it
+/// is another one.
+#[must_use]
+pub fn fingerprint<'a>(text: &str, files: impl Iterator<Item = &'a PathBuf>, quick: bool) -> String {
+    let mut hash = crc32fast::Hasher::new();
+    hash.update(text.as_bytes());
+    for file in files {
+        // What cannot be read will be said when it is needed.
+        hash.update(&std::fs::read(file).unwrap_or_default());
+    }
+    let program = serde_json::to_string(&BUILD).unwrap_or_default();
+    hash.update(program.as_bytes());
+    format!("{:08x}-{}{}", hash.finalize(), text.len(), if quick { "-quick" } else { "" })
+}
+
+impl<'a> Session<'a> {
+    /// Begins, or goes on with what a directory keeps of the same study. `planned` counts points and their cost.
+    pub fn new(
+        progress: &'a mut Progress,
+        dir: Option<&Path>,
+        study: String,
+        planned: (usize, f64),
+        force: bool,
+    ) -> Self {
+        let path = dir.map(|dir| dir.join(POINTS));
+        let (kept, file, head) = (BTreeMap::new(), None, Head { study });
+        let mut session = Session { progress, kept, path, head, file, planned, done: (0, 0.0), measured: (0.0, 0.0) };
+        if let Some(path) = session.path.clone().filter(|_| !force)
+            && let Ok(text) = std::fs::read_to_string(&path)
+        {
+            session.take(&text, &path);
+        }
+        session
+    }
+
+    /// The file of points, begun anew with what is kept.
+    fn begin(&self, path: &Path) -> Result<File> {
+        let dir = path.parent().unwrap_or(Path::new(""));
+        std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
+        let mut lines = vec![serde_json::to_string(&self.head).unwrap_or_default()];
+        for (key, value) in &self.kept {
+            let line = Line { key: key.clone(), value: value.clone() };
+            lines.push(serde_json::to_string(&line).unwrap_or_default());
+        }
+        crate::files::atomically(path, |out| writeln!(out, "{}", lines.join("\n")))?;
+        File::options().append(true).open(path).map_err(|e| Error::io(path, "write", &e))
+    }
+
+    /// Keeps a point.
+    fn keep<T: Serialize>(&mut self, key: &str, point: &T) -> Result<()> {
+        let Some(path) = self.path.clone() else { return Ok(()) };
+        let mut file = self.file.take().map_or_else(|| self.begin(&path), Ok)?;
+        let value = serde_json::to_value(point).map_err(|e| Error::new(format!("a point: {e}")))?;
+        let line = serde_json::to_string(&Line { key: key.to_owned(), value }).unwrap_or_default();
+        let kept = file.write_all(format!("{line}\n").as_bytes()).and_then(|()| file.flush());
+        self.file = Some(file);
+        kept.map_err(|e| Error::io(&path, "write", &e))
+    }
+
+    /// Keeps the points of a file, if they are of the same study. A line that was cut off counts for nothing.
+    fn take(&mut self, text: &str, path: &Path) {
+        let mut lines = text.lines();
+        let same = lines.next().and_then(|l| serde_json::from_str::<Head>(l).ok()).is_some_and(|h| h == self.head);
+        if !same {
+            let other =
+                "holds points of another case, another build of the program, or of --quick: all is measured anew";
+            self.progress.warn(format!("{}: {other}", path.display()));
+            return;
+        }
+        let points = lines.filter_map(|l| serde_json::from_str::<Line>(l).ok());
+        self.kept = points.map(|line| (line.key, line.value)).collect();
+        if !self.kept.is_empty() {
+            let count = self.kept.len();
+            let words = if count == 1 { "point is" } else { "points are" };
+            self.progress.say(format!("{count} {words} kept from before (--force measures all anew)"));
+        }
+    }
+
+    /// A point: that of a run before, or else it is measured and kept. `cost` is in the units of the plan; `told` makes a line of it.
+    ///
+    /// # Errors
+    /// Those of `measure`; it cannot be kept.
+    pub fn point<T: Serialize + DeserializeOwned>(
+        &mut self,
+        key: &str,
+        cost: f64,
+        measure: impl FnOnce(&mut Progress) -> Result<T>,
+        told: impl FnOnce(&T) -> String,
+    ) -> Result<T> {
+        if let Some(point) = self.before(key) {
+            self.done = (self.done.0 + 1, self.done.1 + cost);
+            return Ok(point);
+        }
+        let begin = Instant::now();
+        let point = measure(self.progress)?;
+        self.measured = (self.measured.0 + cost, self.measured.1 + begin.elapsed().as_secs_f64());
+        self.done = (self.done.0 + 1, self.done.1 + cost);
+        self.keep(key, &point)?;
+        self.progress.say(format!("[{}/{}{}] {}", self.done.0, self.planned.0, self.left(), told(&point)));
+        Ok(point)
+    }
+
+    /// A point of a run before.
+    #[must_use]
+    pub fn before<T: DeserializeOwned>(&self, key: &str) -> Option<T> {
+        serde_json::from_value(self.kept.get(key)?.clone()).ok()
+    }
+
+    /// Some points cannot be measured.
+    pub fn leave_out(&mut self, points: usize, cost: f64) {
+        self.done = (self.done.0 + points, self.done.1 + cost);
+    }
+
+    /// How long what is left will take, if it costs as much as what was measured.
+    fn left(&self) -> String {
+        let (cost, seconds) = self.measured;
+        let rest = (self.planned.1 - self.done.1).max(0.0) * seconds / cost;
+        match rest.round() {
+            _ if !(rest > 0.5) => String::new(),
+            s if s < 90.0 => format!(", about {s} s left"),
+            s if s < 5400.0 => format!(", about {} min left", (s / 60.0).round()),
+            s => format!(", about {:.1} h left", s / 3600.0),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Patches of a case: where they stand, what they let pass, and what is said of those that cannot be.
+
+use crate::kit::{Scratch, array, json, solve, solved, stderr};
+use std::fs;
+
+/// A chamber of 2 × 1 × 1 m with some patches.
+fn chamber(patches: &str, initial: &str, more: &str) -> String {
+    let grid = "x = { points = [0, 2], cells = [20] }\ny = { points = [0, 1], cells = [10] }\nz = { points = [0, 1], cells = [10] }";
+    let sides: String = ["x", "y", "z"].map(|a| format!("{a}_min = \"wall\"\n{a}_max = \"wall\"\n")).concat();
+    format!(
+        "[grid]\n{grid}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = {{ {initial} }}\n[boundary]\n{sides}{patches}\n{more}"
+    )
+}
+
+#[test]
+fn a_vent_lets_pressure_out() {
+    let at = Scratch::new();
+    let vent =
+        "[[boundary.patch]]\nside = \"x_max\"\nmin = [0, 0.2, 0.3]\nmax = [9, 0.6, 0.5]\ntype = \"outlet\"\np = 1e5\n";
+    let case = chamber(vent, "rho = 1.2, p = 1.5e5", "[time]\nend = 0.004\n");
+    solved(&at, &case, "out", &["-q"]);
+    let report = json(&at.file("out/report.json"));
+    assert_eq!(report["patches"][0]["side"], "x_max");
+    assert_eq!(report["patches"][0]["type"], "outlet");
+    assert_eq!(report["patches"][0]["faces"], 8);
+    let number = |v: &serde_json::Value| v.as_f64().expect("a number");
+    assert!((number(&report["patches"][0]["area"]) - 0.08).abs() < 1e-12);
+    assert!(number(&report["mass_drift"]).abs() < 1e-13 && number(&report["energy_drift"]).abs() < 1e-13);
+    assert!(number(&report["mass"]) < 0.995 * 2.4, "{}", report["mass"]);
+    // Gas runs towards the vent and nowhere else through that side.
+    let [u, p] = ["u", "p"].map(|f| array(&at.file(&format!("out/final/{f}.npy"))));
+    let cell = |i: usize, j: usize, k: usize| (k * 10 + j) * 20 + i;
+    assert!(u[cell(19, 3, 4)] > 50.0 && u[cell(19, 9, 9)] < 5.0, "{} {}", u[cell(19, 3, 4)], u[cell(19, 9, 9)]);
+    assert!(p[cell(19, 3, 4)] < 1.4e5 && p[cell(19, 3, 4)] < p[cell(17, 3, 4)], "{}", p[cell(19, 3, 4)]);
+    // The same vent on another side: the same mass, to rounding; the resumed run gives the same bits.
+    fs::remove_dir_all(at.file("out")).expect("removed");
+    solved(&at, &case.replace("end = 0.004", "end = 0.004\nmax_steps = 7"), "out", &["-q"]);
+    solved(&at, &case, "out", &["-q", "--resume"]);
+    assert_eq!(json(&at.file("out/report.json"))["mass"], report["mass"]);
+    let other = solve(&at, &case.replace("0.6, 0.5", "0.7, 0.5"), "out", &["-q", "--resume"]);
+    assert!(stderr(&other).contains("its boundary differs"), "{}", stderr(&other));
+}
+
+/// Gas is blown through a nozzle in one wall and leaves through an opening in the opposite one: in the end as much as the nozzle gives.
+#[test]
+fn a_nozzle_blows_what_it_should() {
+    let at = Scratch::new();
+    let patches = "[[boundary.patch]]\nside = \"x_min\"\nmin = [-9, 0.3, 0.3]\nmax = [9, 0.7, 0.7]\ntype = \"inlet\"\nrho = 1.2\nu = 20\n\
+                   [[boundary.patch]]\nside = \"x_max\"\nmax = [9, 0.5, 1]\ntype = \"outlet\"\np = 1e5\n";
+    solved(&at, &chamber(patches, "rho = 1.2, p = 1e5", "[time]\nend = 0.15\n"), "out", &["-q"]);
+    let [rho, u] = ["rho", "u"].map(|f| array(&at.file(&format!("out/final/{f}.npy"))));
+    let nozzle: Vec<usize> = (3..7).flat_map(|k| (3..7).map(move |j| (k * 10 + j) * 20)).collect();
+    let mean = nozzle.iter().map(|&c| u[c]).sum::<f64>() / 16.0;
+    assert!((mean / 20.0 - 1.0).abs() < 0.05, "{mean} m/s");
+    let wall = (0..10).map(|j| u[j * 20].abs()).fold(0.0, f64::max);
+    assert!(wall < 10.0, "{wall} m/s beside the wall");
+    assert!(rho.iter().all(|r| (r / 1.2 - 1.0).abs() < 0.1));
+}
+
+#[test]
+fn patches_that_cannot_be_are_told() {
+    let says = |patch: &str, words: &str| {
+        let at = Scratch::new();
+        let patch = format!("[[boundary.patch]]\n{patch}\n");
+        let output = solve(&at, &chamber(&patch, "rho = 1.2, p = 1e5", "[time]\nmax_steps = 1\n"), "out", &[]);
+        assert!(stderr(&output).contains(words), "{patch}: {}", stderr(&output));
+        output.status.code()
+    };
+    assert_eq!(says("type = \"wall\"", "boundary.patch[0]: needs a side: x_min, x_max"), Some(1));
+    assert_eq!(says("side = \"x_mid\"\ntype = \"wall\"", "x_mid"), Some(1));
+    assert_eq!(says("side = \"x_min\"", "boundary.patch[0]: needs a type"), Some(1));
+    assert_eq!(says("side = \"x_min\"\ntype = \"outlet\"", "an outlet needs p"), Some(1));
+    assert_eq!(says("side = \"x_min\"\ntype = \"wall\"\nradius = 1", "is not a key of this type (wall)"), Some(1));
+    assert_eq!(says("side = \"x_min\"\ntype = \"periodic\"", "a part of a side cannot be periodic"), Some(1));
+    let nothing = "side = \"x_min\"\ntype = \"zero-gradient\"\nmin = [0, 3, 0]";
+    assert_eq!(says(nothing, "boundary.patch[0] covers the middle of no face"), Some(0));
+}
