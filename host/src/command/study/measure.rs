@@ -46,16 +46,21 @@ const SURFACE: Options =
 const FORMULA: Options =
     Options { tol: 1e-6, depth: 7, bounds: true, areas: true, method: Method::Auto, leaf: Leaf::Plane };
 
-/// Run all.
+/// The bodies of all scenes of the case file at `path`.
 ///
 /// # Errors
-/// A scene that cannot be read, or that a method cannot measure.
-pub fn all(path: &Path, case: &StudyCase, session: &mut Session) -> Result<Vec<Row>> {
-    // Before anything is measured all scenes must be there.
-    let all: Vec<Bodies> =
-        case.subjects.iter().map(|subject| bodies(path, subject, session.progress)).collect::<Result<_>>()?;
+/// A scene that cannot be read.
+pub fn scenes(path: &Path, case: &StudyCase, progress: &mut Progress) -> Result<Vec<Bodies>> {
+    case.subjects.iter().map(|subject| bodies(path, subject, progress)).collect()
+}
+
+/// Run all; the bodies are those of [`scenes`].
+///
+/// # Errors
+/// A scene that a method cannot measure.
+pub fn all(case: &StudyCase, scenes: &[Bodies], session: &mut Session) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
-    for (subject, bodies) in case.subjects.iter().zip(&all) {
+    for (subject, bodies) in case.subjects.iter().zip(scenes) {
         for edges in &case.grids {
             on_grid(case, subject, bodies, edges, session, &mut rows)?;
         }
