@@ -27,7 +27,7 @@ use crate::command::streams::{INPUT, text_of};
 use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::{atomically, json};
-use found::Found;
+use found::StudyFindings;
 use session::Session;
 use std::path::Path;
 
@@ -58,7 +58,7 @@ pub fn study(args: &StudyArgs) -> Result<()> {
 }
 
 /// Writes the files of a directory.
-fn write(found: &Found, dir: &Path, progress: &mut Progress) -> Result<()> {
+fn write(found: &StudyFindings, dir: &Path, progress: &mut Progress) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
     let put = |name: &str, text: &str| atomically(&dir.join(name), |out| out.write_all(text.as_bytes()));
     let tables = [

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 /// All that a study found, and how.
 #[derive(Debug, Clone, Default)]
-pub struct Found {
+pub struct StudyFindings {
     /// Head of the reports.
     pub title: String,
     /// What readers should know.
@@ -58,7 +58,7 @@ pub struct StudyReport<'a> {
     warnings: &'a [String],
 }
 
-impl Found {
+impl StudyFindings {
     /// For programs.
     #[must_use]
     pub fn report<'a>(&'a self, warnings: &'a [String]) -> StudyReport<'a> {
@@ -97,12 +97,12 @@ pub fn plan(case: &StudyCase) -> (usize, f64) {
 ///
 /// # Errors
 /// A scene that a method cannot measure; a flow that is refused.
-pub fn measure(case: &StudyCase, scenes: &[Bodies], command: String, session: &mut Session) -> Result<Found> {
+pub fn measure(case: &StudyCase, scenes: &[Bodies], command: String, session: &mut Session) -> Result<StudyFindings> {
     let of = |subject: &super::case::Subject| {
         let name = subject.name.clone();
         subject.published.iter().map(move |p| (name.clone(), p.clone())).collect::<Vec<_>>()
     };
-    Ok(Found {
+    Ok(StudyFindings {
         title: case.title.clone(),
         note: case.note.clone(),
         command,

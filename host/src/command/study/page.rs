@@ -2,7 +2,7 @@
 
 use super::case::Published;
 use super::flows::runs::{self, FlowOrder};
-use super::found::Found;
+use super::found::StudyFindings;
 use super::row::{ROUNDING, Row};
 use super::table::{Cell, Listing, Reading, readable};
 use super::values::unique;
@@ -148,7 +148,7 @@ pub fn published(all: &[(String, Published)], rows: &[Row]) -> Listing {
 
 /// The parts of a report in their order: a heading, what to say, a table.
 #[must_use]
-pub fn parts(found: &Found) -> Vec<(&'static str, Vec<String>, Listing)> {
+pub fn parts(found: &StudyFindings) -> Vec<(&'static str, Vec<String>, Listing)> {
     let mut parts: Vec<(&'static str, Vec<String>, Listing)> = Vec::new();
     if !found.rows.is_empty() {
         let mut words = vec![
@@ -189,7 +189,7 @@ pub fn parts(found: &Found) -> Vec<(&'static str, Vec<String>, Listing)> {
 }
 
 /// What follows from the orders.
-fn flow_sentences(found: &Found, orders: &[FlowOrder]) -> Vec<String> {
+fn flow_sentences(found: &StudyFindings, orders: &[FlowOrder]) -> Vec<String> {
     let rounding = unique(found.flows.iter().map(|f| f.flow.clone()));
     let exact =
         |name: &&String| found.flows.iter().filter(|f| f.flow == **name).all(|f| f.error <= runs::FLOW_ROUNDING);
@@ -209,7 +209,7 @@ fn flow_sentences(found: &Found, orders: &[FlowOrder]) -> Vec<String> {
 
 /// The page.
 #[must_use]
-pub fn html(found: &Found, pictures: &[(String, Panels)]) -> String {
+pub fn html(found: &StudyFindings, pictures: &[(String, Panels)]) -> String {
     let title = if found.title.is_empty() { "A study" } else { &found.title };
     let mut text = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>\n<style>{STYLE}</style></head><body>\n<h1>{0}</h1>\n",
@@ -240,7 +240,7 @@ pub fn html(found: &Found, pictures: &[(String, Panels)]) -> String {
 
 /// The same in Markdown; pictures by the names of their files, beside it.
 #[must_use]
-pub fn markdown(found: &Found, pictures: &[(String, Panels)]) -> String {
+pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String {
     let mut text = if found.title.is_empty() { String::new() } else { format!("# {}\n\n", found.title) };
     for line in about(found) {
         let _ = writeln!(text, "{line}\n");
@@ -261,7 +261,7 @@ pub fn markdown(found: &Found, pictures: &[(String, Panels)]) -> String {
 }
 
 /// How it was measured.
-fn about(found: &Found) -> Vec<String> {
+fn about(found: &StudyFindings) -> Vec<String> {
     let quick = if found.quick { " A quick look: one run of each, the smallest grids." } else { "" };
     let mut lines = vec![format!(
         "Made by `{}`, {}, on {} processors; medians of {} runs, the fastest and the slowest beside them.{quick}",

@@ -1,7 +1,7 @@
 //! The pictures of a study: a panel a scene, errors against run time.
 
 use super::flows::runs::{FLOW_ROUNDING, FlowRow, orders};
-use super::found::Found;
+use super::found::StudyFindings;
 use super::row::{ROUNDING, Row};
 use super::scaling;
 use super::spread::slope;
@@ -14,7 +14,7 @@ type Error = fn(&Row) -> Option<f64>;
 
 /// The pictures of a study by the names of their files.
 #[must_use]
-pub fn pictures(found: &Found) -> Vec<(String, Panels)> {
+pub fn pictures(found: &StudyFindings) -> Vec<(String, Panels)> {
     let mut all = Vec::new();
     if !found.rows.is_empty() {
         all.extend(of_points(&found.title, &found.rows));
