@@ -1,6 +1,6 @@
 //! The command `voidage`: what the user typed, and what is done about it.
 //!
-//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`].
+//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`], [`stress`].
 
 pub mod cli;
 pub mod inspect;
@@ -11,6 +11,7 @@ pub mod progress;
 pub mod solve;
 pub mod stages;
 pub mod streams;
+pub mod stress;
 pub mod study;
 pub mod template;
 pub mod version;

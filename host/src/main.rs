@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 use voidage::command::cli::{Cli, Command};
 use voidage::command::progress::{all_said, print, visible};
-use voidage::command::{inspect, interrupt, porosity, solve, study};
+use voidage::command::{inspect, interrupt, porosity, solve, stress, study};
 use voidage::error::{Error, Result};
 
 fn main() -> ExitCode {
@@ -49,6 +49,7 @@ fn execute(command: Command) -> Result<()> {
         Command::Porosity(args) => porosity::porosity(&args),
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Study(args) => study::study(&args),
+        Command::Stress(args) => stress::stress(&args),
         Command::Solve(args) => solve::run::solve(&args),
         Command::Completions { shell } => {
             let mut script = Vec::new();

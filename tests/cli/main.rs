@@ -19,4 +19,5 @@ mod solve;
 mod solve_errors;
 mod solve_resume;
 mod streams;
+mod stress;
 mod study;

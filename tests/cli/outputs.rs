@@ -109,4 +109,11 @@ fn tables_of_studies() {
     let output = voidage(&[&"study", &at.file("study.toml"), &"-o", &at.file("out"), &"-q"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(columns(&at.file("out/study.csv")), documented("study"));
+    let more = "repeats = 1\nleft_out = true\n[[flow]]\nproblem = \"sod\"\ncells = 10\n[[scaling]]\nalong = \"bodies\"\ncounts = 1\n";
+    fs::write(at.file("more.toml"), more).expect("written");
+    let output = voidage(&[&"study", &at.file("more.toml"), &"-o", &at.file("more"), &"-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for table in ["study_flows", "study_scaling", "study_left_out"] {
+        assert_eq!(columns(&at.file("more").join(format!("{table}.csv"))), documented(table));
+    }
 }

@@ -133,7 +133,13 @@ fn keys_of_studies() {
     let probe = format!("{scene}probe = {{ cell = [0, 0, 0], beta_v = 1, zzz = 1 }}");
     assert_eq!(names(&tables["study.scene.probe"]), known("study", &probe));
     assert_eq!(names(&tables["study.method"]), known("study", &format!("{method}zzz = 1")));
-    assert_eq!(tables.len(), 4);
+    let published = format!("{scene}published = [{{ by = \"a\", cells = [1, 1, 1], seconds = 1, zzz = 1 }}]");
+    assert_eq!(names(&tables["study.scene.published"]), known("study", &published));
+    let flow = "[[flow]]\nproblem = \"sod\"\ncells = 10\nzzz = 1";
+    assert_eq!(names(&tables["study.flow"]), known("study", flow));
+    let scaling = "[[scaling]]\nalong = \"cells\"\ncounts = 10\nzzz = 1";
+    assert_eq!(names(&tables["study.scaling"]), known("study", scaling));
+    assert_eq!(tables.len(), 7);
     assert_shown(&page);
 }
 

@@ -25,7 +25,8 @@ fn rows(case: &Path) -> Vec<Row> {
     let mut lines = text.lines().map(cells);
     let head = lines.next().expect("names of columns");
     let rows: Vec<Row> = lines.map(|line| head.iter().cloned().zip(line).collect()).collect();
-    assert_eq!(markdown.lines().filter(|l| l.starts_with("| ")).count(), rows.len() + 2, "{markdown}");
+    let (_, points) = markdown.split_once("## All points").expect("a table of all points");
+    assert_eq!(points.lines().filter(|l| l.starts_with("| ")).count(), rows.len() + 2, "{markdown}");
     rows
 }
 
@@ -147,7 +148,10 @@ fn wrong_cases_say_where() {
 /// The larger examples are too slow for every run of the tests; they must at least be read.
 #[test]
 fn examples_are_read() {
-    for name in ["cube_positions.toml", "shapes.toml", "spheres.toml", "platform.toml"] {
+    let names =
+        ["cube_positions", "shapes", "spheres", "platform", "skid", "solids", "unions", "precision", "flow", "growth"];
+    for name in names.map(|name| format!("{name}.toml")) {
+        let name = &name[..];
         let text = fs::read_to_string(example(name)).expect("a study");
         let case = voidage::command::study::case::parse(&example(name), &text).unwrap_or_else(|e| panic!("{e}"));
         for subject in &case.subjects {
@@ -280,4 +284,115 @@ fn pictures_say_what_they_show() {
         assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf"));
     }
     assert!(fs::read_to_string(out.join("study.svg")).expect("a picture").contains("Pareto front"));
+}
+
+const FLOWS: &str = r#"
+title = "Flows & more"
+note = "What <readers> should know."
+repeats = 1
+left_out = true
+[[flow]]
+name = "tube"
+problem = "sod"
+cells = [50, 100, 200]
+order = [1, 2]
+[[flow]]
+problem = "slab"
+cells = 20
+[[flow]]
+problem = "inclined-wall"
+cells = [16, 24]
+precision = ["f64", "f32"]
+[[flow]]
+problem = "nozzle"
+cells = [20, 40]
+[[flow]]
+problem = "vortex"
+cells = [16, 32]
+[[scaling]]
+name = "balls"
+along = "overlaps"
+counts = [2, 8, 27]
+"#;
+
+fn table(path: &Path) -> Vec<Row> {
+    let text = fs::read_to_string(path).expect("a table");
+    let mut lines = text.lines().map(cells);
+    let head = lines.next().expect("names of columns");
+    lines.map(|line| head.iter().cloned().zip(line).collect()).collect()
+}
+
+/// Flows have the orders that theory says, what is exact stays so, and all of it stands in one page.
+#[test]
+fn flows_and_growing_scenes() {
+    let dir = Scratch::new();
+    let (case, out) = (dir.file("case.toml"), dir.file("out"));
+    fs::write(&case, FLOWS).expect("written");
+    let output = voidage(&[&"study", &case, &"-q", &"-o", &out]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", stderr(&output));
+    let report = crate::kit::json(&out.join("study.json"));
+    let order = |flow: &str| {
+        let all = report["orders"].as_array().expect("orders");
+        all.iter().find(|o| o["flow"] == flow).unwrap_or_else(|| panic!("{flow}"))["order"].as_f64().expect("a number")
+    };
+    // A contact converges with 1/2 at first order, shocks with 1.
+    assert!((0.5..0.8).contains(&order("tube, order 1")), "{}", order("tube, order 1"));
+    assert!((0.8..1.15).contains(&order("tube, order 2")), "{}", order("tube, order 2"));
+    assert!(order("nozzle") > 1.8, "{}", order("nozzle"));
+    assert!(order("vortex") > 1.0, "{}", order("vortex"));
+    let flows = table(&out.join("study_flows.csv"));
+    assert_eq!(flows.len(), 6 + 1 + 4 + 2 + 2);
+    for row in &flows {
+        let (error, single) = (number(row, "error"), row["precision"] == "f32");
+        match &row["problem"][..] {
+            "slab" | "inclined-wall" if !single => assert!(error < 1e-9, "{row:?}"),
+            "inclined-wall" => assert!(error > 1e-9 && error < 2e-3, "{row:?}"),
+            _ => assert!(error > 0.0 && error < 0.1, "{row:?}"),
+        }
+    }
+    let grown = table(&out.join("study_scaling.csv"));
+    let pairs: Vec<&str> = grown.iter().map(|r| &r["count"][..]).collect();
+    assert_eq!(pairs, ["1", "12", "54"]);
+    assert_eq!(grown.iter().map(|r| &r["bodies"][..]).collect::<Vec<_>>(), ["2", "8", "27"]);
+    assert_eq!(table(&out.join("study_left_out.csv")).len(), 4);
+    let page = fs::read_to_string(out.join("study.html")).expect("a page");
+    assert!(page.starts_with("<!doctype html>") && page.ends_with("</body></html>\n"));
+    for words in [
+        "Flows &amp; more",
+        "What &lt;readers&gt; should know.",
+        "Orders of convergence",
+        "Left out",
+        "<svg ",
+        "Exact to rounding on every grid",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    // It needs no other file.
+    for word in ["<script", "<link", "src=", "href=", "url("] {
+        assert!(!page.contains(word), "{word}");
+    }
+    assert!(out.join("study_flows.png").exists() && out.join("study_scaling.svg").exists());
+}
+
+#[test]
+fn wrong_flows_say_where() {
+    let dir = Scratch::new();
+    let case = dir.file("case.toml");
+    let changed = [
+        ("problem = \"slab\"", "problem = \"slap\"", "sod, shu-osher, vortex, slab, nozzle, inclined-wall"),
+        ("cells = 20", "cells = 3", "must be from 4 to 100000, not 3"),
+        ("order = [1, 2]", "order = [1, 3]", "order [1] must be 1 or 2, not 3"),
+        ("along = \"overlaps\"", "along = \"sides\"", "cells, triangles, bodies, overlaps, threads"),
+        ("counts = [2, 8, 27]", "counts = []", "counts is an empty list"),
+        ("counts = [2, 8, 27]", "counts = [200000]", "must be at most 100000"),
+        ("[[scaling]]", "[[grid]]\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\n[[scaling]]", "at least one scene"),
+    ];
+    for (from, to, words) in changed {
+        let text = FLOWS.replacen(from, to, 1);
+        assert_ne!(text, FLOWS);
+        fs::write(&case, text).expect("written");
+        let output = voidage(&[&"study", &case]);
+        assert_eq!(output.status.code(), Some(1), "{to}");
+        assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
+    }
 }

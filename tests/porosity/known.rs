@@ -1,6 +1,8 @@
 //! Solids whose porosity is known.
 
 use glam::DVec3;
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::Mesh;
 use voidage::grid::Edges;
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_tests::solids::{Triangle, cuboid, scene, sixteen_spheres, sphere, volume};
@@ -138,4 +140,17 @@ fn bounds_hold_the_value() {
         assert!(l <= b && b <= u && u - l <= p.max_gap + 1e-15);
     }
     assert!(p.cells.ambiguous > 0 && p.max_gap < 1e-12);
+}
+
+/// A coordinate that is no number was passed over where another of its corner is one.
+#[test]
+fn corners_that_are_no_numbers_are_refused() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+        for n in 0..108 {
+            let mut triangles = cube(DVec3::ZERO);
+            triangles[n / 9][n / 3 % 3][n % 3] = bad;
+            let refused = Bodies::default().add(&Mesh::from(triangles), 1.0).expect_err("no geometry");
+            assert!(refused.to_string().contains(&format!("triangle {}", n / 9)), "{bad} as number {n}: {refused}");
+        }
+    }
 }

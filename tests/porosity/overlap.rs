@@ -241,3 +241,21 @@ fn copies_that_nearly_coincide_have_narrow_bounds() {
         assert_close(&all.beta, &one.beta, all.max_gap + 20.0 * miss, &format!("seed {seed}"));
     }
 }
+
+/// Where division thins the bodies of a cell it goes on for as long as their number asks for, not for a time that is the same for all.
+#[test]
+fn ten_thousand_pieces_in_one_cell_are_summed() {
+    const SIDE: usize = 22;
+    let mut random = Random::new(9);
+    let slot = 1.0 / SIDE as f64;
+    let mut piece = |n: usize| {
+        let at = DVec3::new((n % SIDE) as f64, (n / SIDE % SIDE) as f64, (n / SIDE / SIDE) as f64);
+        let half = random.point(DVec3::splat(0.05), DVec3::splat(0.28)) * slot;
+        turned_box((at + 0.5) * slot, half, random.turn())
+    };
+    let pieces: Vec<Vec<Triangle>> = (0..SIDE.pow(3)).map(&mut piece).collect();
+    let edges = Edges([vec![0.0, 1.0], vec![0.0, 1.0], vec![0.0, 1.0]]);
+    let found = porosity(&edges.grid(None).expect("a grid"), &scene(&pieces), Options::default());
+    let truth = 1.0 - pieces.iter().map(|piece| voidage_tests::solids::volume(piece)).sum::<f64>();
+    assert!((found.beta.v[0] - truth).abs() < 1e-12 && found.max_gap < 1e-9, "{} {truth}", found.beta.v[0]);
+}

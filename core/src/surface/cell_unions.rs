@@ -54,9 +54,11 @@ pub(super) struct Shared<'s, V: Vector, O> {
     pub effort: Effort,
 }
 
-/// So many triangles may be sorted for the parts of one cell. Where so much surface meets in one place that halving does not thin it, a cell
-/// would take longer with each level of division; beyond this it keeps the bounds that it has.
+/// So many triangles may be sorted for the parts of one cell, or so many times those of its first part, if these are more. Where so much
+/// surface meets in one place that halving does not thin it, a cell would take longer with each level of division; beyond this it keeps the
+/// bounds that it has. Where it does, six levels sort each triangle some thirty times, which is some sixty times those of a part.
 const MOST_EFFORT: usize = 1 << 20;
+const MOST_TIMES: usize = 64;
 
 /// What the division of a cell has cost.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,6 +67,8 @@ pub(super) struct Effort {
     level: u32,
     /// Triangles sorted for parts of this cell.
     triangles: usize,
+    /// So many may be.
+    most: usize,
 }
 
 /// Finds the bounds of a small grid of at most 2 × 2 × 2 cells from the triangles of some layers of a site; none if depth or memory
@@ -338,12 +342,15 @@ pub(super) fn with_effort<V: Vector, O, T>(
 ) -> Option<T> {
     // The layer of a whole grid holds more than one of its cells: what is sorted for that is not counted.
     if shared.effort.level == 0 {
-        shared.effort.triangles = 0;
+        shared.effort = Effort { most: MOST_EFFORT, ..Effort::default() };
     } else {
         let here: usize = layers.map(|k| site.bins.count(k).numbers).sum();
         shared.effort.triangles = shared.effort.triangles.saturating_add(here);
+        if shared.effort.level == 1 {
+            shared.effort.most = shared.effort.most.max(here.saturating_mul(MOST_TIMES));
+        }
     }
-    if shared.effort.triangles > MOST_EFFORT {
+    if shared.effort.triangles > shared.effort.most {
         return None;
     }
     shared.effort.level += 1;

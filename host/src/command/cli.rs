@@ -28,6 +28,8 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Error against run time, for scenes, grids and methods of a case file
     Study(StudyArgs),
+    /// Run the program against hard cases whose truth is known: a line a case, exit code 1 if one fails
+    Stress(StressArgs),
     /// Flow a gas through a porous space, as a case file says
     Solve(SolveArgs),
     /// Print a completion script for a shell
@@ -282,6 +284,29 @@ pub struct StudyArgs {
     /// Measure anew what that directory keeps from before
     #[arg(long, requires = "output")]
     pub force: bool,
+    /// What goes to the terminal.
+    #[command(flatten)]
+    pub talk: TalkArgs,
+}
+
+/// Arguments of `voidage stress`.
+#[derive(Debug, Args)]
+pub struct StressArgs {
+    /// Only the cases of this name, or whose name begins so: flow, geometry/needles; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub only: Vec<String>,
+    /// Also what takes long: more pairs, steps and bodies, and the cases that need many
+    #[arg(long)]
+    pub long: bool,
+    /// Print the table of cases, and run none
+    #[arg(long, conflicts_with_all = ["long", "json", "threads"])]
+    pub list: bool,
+    /// Write the outcomes as JSON; - is the standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Number of cases at a time, each on one thread (default: all cores)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
     /// What goes to the terminal.
     #[command(flatten)]
     pub talk: TalkArgs,

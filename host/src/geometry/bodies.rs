@@ -142,7 +142,9 @@ impl Bodies {
     /// If nothing in it has an area, or a coordinate is beyond all measure.
     pub fn add(&mut self, mesh: &Mesh, scale: f64) -> Result<()> {
         let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
-        if let Some(n) = scaled.iter().position(|t| t.iter().any(|p| !(p.abs().max_element() <= LARGEST))) {
+        // Each coordinate by itself: the largest of several passes over NaN.
+        let measurable = |p: &DVec3| p.abs().cmple(DVec3::splat(LARGEST)).all();
+        if let Some(n) = scaled.iter().position(|t| !t.iter().all(measurable)) {
             let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(scaled[n][0]));
             return Err(Error { place: Some(format!("triangle {n} (counted from 0)")), ..mesh.error(reason) });
         }

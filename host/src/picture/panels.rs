@@ -27,6 +27,8 @@ pub struct Panels {
     pub bar: String,
     /// Before the slopes of a panel.
     pub slopes: String,
+    /// Each panel has a horizontal axis of its own.
+    pub own_x: bool,
 }
 
 /// A part of a picture.
@@ -34,6 +36,8 @@ pub struct Panels {
 pub struct Panel {
     /// Over it.
     pub title: String,
+    /// Name and unit of its horizontal axis, if it is not that of all.
+    pub x: Option<String>,
     /// Its lines.
     pub lines: Vec<Line>,
     /// What is fitted to its points: the series, and the text.
@@ -62,6 +66,14 @@ pub struct Mark {
     pub square: bool,
     /// With a ring around it.
     pub ring: bool,
+}
+
+impl Panel {
+    /// All places along x.
+    fn across(&self) -> impl Iterator<Item = f64> {
+        let marks = self.lines.iter().flat_map(|l| &l.marks);
+        marks.flat_map(|m| [m.at[0]].into_iter().chain(m.x_ends.into_iter().flatten()))
+    }
 }
 
 /// Colours that also differ in lightness; used in turn.
@@ -95,7 +107,9 @@ fn colour(series: usize) -> Colour {
 
 /// Where things stand.
 struct Layout {
-    axes: [LogAxis; 2],
+    /// Horizontal axes of the panels.
+    across: Vec<LogAxis>,
+    upward: LogAxis,
     /// Width and height within the axes.
     inner: [f64; 2],
     /// Width and height of a panel with its margins.
@@ -148,25 +162,24 @@ impl Panels {
         } else {
             [290.0, 220.0]
         };
-        let ends = |axis: usize| {
-            self.marks().flat_map(move |m| {
-                let bar = if axis == 0 { m.x_ends } else { m.y_ends };
-                [m.at[axis]].into_iter().chain(bar.into_iter().flatten())
-            })
-        };
-        let above = ends(1).filter(|y| !self.on_floor(*y));
-        let x = LogAxis::around(ends(0), if columns == 3 { 7 } else { 9 })?;
+        let most = if columns == 3 { 7 } else { 9 };
+        let shared = LogAxis::around(self.panels.iter().flat_map(Panel::across), most)?;
+        let own =
+            |p: &Panel| LogAxis::around(p.across(), most).filter(|_| self.own_x).unwrap_or_else(|| shared.clone());
+        let across = self.panels.iter().map(own).collect();
+        let ends = self.marks().flat_map(|m| [m.at[1]].into_iter().chain(m.y_ends.into_iter().flatten()));
         let level = self.floor.as_ref().map(|f| f.0);
-        let y = LogAxis::around(above, 8).or_else(|| LogAxis::around(level.into_iter(), 8))?;
+        let upward = LogAxis::around(ends.filter(|y| !self.on_floor(*y)), 8);
+        let upward = upward.or_else(|| LogAxis::around(level.into_iter(), 8))?;
         let floor = if self.marks().any(|m| self.on_floor(m.at[1])) { FLOOR } else { 0.0 };
         let widest = self.panels.iter().map(|p| self.slope_rows(p, inner[0]).len()).max().unwrap_or(0);
         let [left, top, right, below] = MARGIN;
         let outer = [inner[0] + left + right, inner[1] + top + below + ROW * widest as f64];
         let width = outer[0] * columns as f64;
-        let top = HEAD + outer[1] * count.div_ceil(columns) as f64 + 4.0;
+        let top = HEAD + outer[1] * count.div_ceil(columns) as f64 + 12.0;
         let (legend, below, right) = self.legend_places([24.0, top], width);
         let size = [right.max(width), below + 16.0].map(|v| v.ceil() as usize);
-        Some(Layout { axes: [x, y], inner, outer, columns, slopes: widest, floor, legend, size })
+        Some(Layout { across, upward, inner, outer, columns, slopes: widest, floor, legend, size })
     }
 
     /// Entries of the legend: what stands before each, and its text.
@@ -230,8 +243,9 @@ impl Panels {
                 (n % layout.columns) as f64 * layout.outer[0] + MARGIN[0],
                 HEAD + (n / layout.columns) as f64 * layout.outer[1] + MARGIN[1] + ROW * layout.slopes as f64,
             ];
-            self.draw_axes(layout, panel, corner, sheet);
-            panel.lines.iter().for_each(|line| self.draw_line(layout, line, corner, sheet));
+            let Some(axis) = layout.across.get(n) else { continue };
+            self.draw_axes(layout, (panel, axis), corner, sheet);
+            panel.lines.iter().for_each(|line| self.draw_line(layout, (line, axis), corner, sheet));
         }
         for ((symbol, text), &at) in self.legend().into_iter().zip(&layout.legend) {
             symbol.draw(at, sheet);
@@ -240,7 +254,7 @@ impl Panels {
     }
 
     /// Frame, numbers, names and slopes of a panel whose axes begin at `corner`.
-    fn draw_axes(&self, layout: &Layout, panel: &Panel, corner: [f64; 2], sheet: &mut dyn Sheet) {
+    fn draw_axes(&self, layout: &Layout, (panel, across): (&Panel, &LogAxis), corner: [f64; 2], sheet: &mut dyn Sheet) {
         let ([x, y], [width, height]) = (corner, layout.inner);
         let ground = y + height - layout.floor;
         if layout.floor > 0.0 {
@@ -248,13 +262,13 @@ impl Panels {
             let level = self.floor.as_ref().map_or_else(String::new, |f| format!("≤ {:.0e}", f.0).replace('-', "−"));
             sheet.write([x - 6.0, ground + 0.5 * layout.floor], &level, Style { along: 1.0, ..SMALL });
         }
-        for (value, text) in &layout.axes[0].ticks {
-            let at = x + layout.axes[0].share(*value) * width;
+        for (value, text) in &across.ticks {
+            let at = x + across.share(*value) * width;
             sheet.line([at, y], [at, y + height], 1.0, GRID);
             sheet.write([at, y + height + 7.0], text, Style { along: 0.5, up: 1.0, ..SMALL });
         }
-        for (value, text) in &layout.axes[1].ticks {
-            let at = ground - layout.axes[1].share(*value) * (height - layout.floor);
+        for (value, text) in &layout.upward.ticks {
+            let at = ground - layout.upward.share(*value) * (height - layout.floor);
             sheet.line([x, at], [x + width, at], 1.0, GRID);
             // The lowest number gives way to that of the floor.
             if layout.floor == 0.0 || ground - at > 12.0 {
@@ -267,7 +281,11 @@ impl Panels {
             let place = |p: [f64; 2]| [x + p[0] * width, y + p[1] * height];
             sheet.line(place(from), place(to), 1.0, INK);
         }
-        sheet.write([x + 0.5 * width, y + height + 32.0], &self.x, Style { along: 0.5, ..PLAIN });
+        sheet.write(
+            [x + 0.5 * width, y + height + 32.0],
+            panel.x.as_ref().unwrap_or(&self.x),
+            Style { along: 0.5, ..PLAIN },
+        );
         sheet.write([x - 68.0, y + 0.5 * height], &self.y, Style { along: 0.5, turned: true, ..PLAIN });
         let rows = self.slope_rows(panel, width);
         let mut line = y - 12.0 - ROW * (rows.len().saturating_sub(1)) as f64;
@@ -288,13 +306,13 @@ impl Panels {
         }
     }
 
-    fn draw_line(&self, layout: &Layout, line: &Line, corner: [f64; 2], sheet: &mut dyn Sheet) {
+    fn draw_line(&self, layout: &Layout, (line, across): (&Line, &LogAxis), corner: [f64; 2], sheet: &mut dyn Sheet) {
         let ([left, top], [width, height]) = (corner, layout.inner);
-        let along = |x: f64| left + layout.axes[0].share(x).clamp(0.0, 1.0) * width;
+        let along = |x: f64| left + across.share(x).clamp(0.0, 1.0) * width;
         let ground = top + height - layout.floor;
         let up = |y: f64| match self.on_floor(y) {
             true => ground + 0.5 * layout.floor,
-            false => ground - layout.axes[1].share(y).clamp(0.0, 1.0) * (height - layout.floor),
+            false => ground - layout.upward.share(y).clamp(0.0, 1.0) * (height - layout.floor),
         };
         let place = |m: &Mark| [along(m.at[0]), up(m.at[1])];
         let drawn = |m: &&Mark| {

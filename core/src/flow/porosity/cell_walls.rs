@@ -121,18 +121,25 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 fn is_corner<R: Real, const D: usize>(openings: [(R, R); D], open: R) -> bool {
     let least = rounding::<R>();
     let (mut components, mut product) = (0, R::ONE);
+    // By how much the product changes with its factors.
+    let mut slope = R::ZERO;
     let (mut solid_corner, mut open_corner) = (true, true);
     for (low, high) in openings {
         let change = (high - low).abs();
         if change > least {
             components += 1;
+            slope = slope * change + product;
             product *= change;
             let part = change < R::ONE - least;
             solid_corner &= part & (R::larger(low, high) >= R::ONE - least);
             open_corner &= part & (R::smaller(low, high) <= least);
         }
     }
-    let is_box = |volume: R| (if components == 3 { volume * volume } else { volume } - product).abs() <= least;
+    // As far as rounding of the fractions tells: slivers have small products, whatever their shape.
+    let is_box = |volume: R| match components {
+        3 => (volume * volume - product).abs() <= least * (R::TWO * volume + slope),
+        _ => (volume - product).abs() <= least * (R::ONE + slope),
+    };
     (solid_corner && is_box(R::ONE - open)) || (open_corner && is_box(open))
 }
 

@@ -31,7 +31,9 @@
 //! depth = [4, 6]                    # lists multiply out
 //! ```
 
+use super::flows::keys::{FlowRecipe, flow_recipes};
 use super::recipe::{Recipe, recipes};
+use super::scaling::{ScalingRecipe, scaling_recipe};
 use super::values::{few, some};
 use crate::error::{Error, Result};
 use crate::geometry::scene::table::{self, StrictTable};
@@ -58,22 +60,40 @@ pub struct StudyCase {
     pub grids: Vec<Edges>,
     /// How.
     pub recipes: Vec<Recipe>,
+    /// Flows.
+    pub flows: Vec<FlowRecipe>,
+    /// Scenes that grow.
+    pub scalings: Vec<ScalingRecipe>,
+    /// Measure what is left out.
+    pub left_out: bool,
+    /// What readers should know.
+    pub note: Option<String>,
     /// Shortened by [`StudyCase::quick`].
     pub is_quick: bool,
 }
 
-/// Grids that a quick study has.
-const QUICK_GRIDS: usize = 2;
+/// Grids that a quick study has, and steps of what grows.
+const QUICK: usize = 2;
 
 impl StudyCase {
-    /// The same for a first look: one run of each, one number of threads, the two smallest grids.
+    /// The same for a first look: one run of each, one number of threads, the two smallest grids and steps.
     #[must_use]
     pub fn quick(mut self) -> Self {
         let count = |grid: &Edges| grid.cells().iter().map(|&n| n as f64).product::<f64>();
         self.repeats = 1;
         self.threads.truncate(1);
         self.grids.sort_by(|a, b| count(a).total_cmp(&count(b)));
-        self.grids.truncate(QUICK_GRIDS);
+        self.grids.truncate(QUICK);
+        for scaling in &mut self.scalings {
+            scaling.counts.sort_unstable();
+            scaling.counts.truncate(QUICK);
+        }
+        let flows = std::mem::take(&mut self.flows);
+        let coarse = |flow: &FlowRecipe| {
+            let finer = flows.iter().filter(|f| f.name == flow.name && f.choice.cells < flow.choice.cells);
+            finer.count() < QUICK
+        };
+        self.flows = flows.iter().filter(|flow| coarse(flow)).cloned().collect();
         self.is_quick = true;
         self
     }
@@ -83,7 +103,7 @@ impl StudyCase {
         self.subjects.iter().flat_map(|s| &s.files)
     }
 
-    /// How many points it has, and what they cost by [`cost`].
+    /// How many points of porosity it has, and what they cost by [`cost`].
     #[must_use]
     pub fn plan(&self) -> (usize, f64) {
         let pairs = self.grids.iter().flat_map(|grid| self.recipes.iter().map(move |recipe| (grid, recipe)));
@@ -114,6 +134,19 @@ pub struct Subject {
     pub exact: Option<f64>,
     /// A cell to look at.
     pub probe: Option<ProbeCell>,
+    /// Times of others.
+    pub published: Vec<Published>,
+}
+
+/// A time that others have published for a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Published {
+    /// Who, and what by.
+    pub by: String,
+    /// On so many cells.
+    pub cells: [usize; 3],
+    /// In seconds, on their machine.
+    pub seconds: f64,
 }
 
 /// A cell whose porosity is known.
@@ -150,7 +183,11 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let threads = keys.get("threads", table::list(few))?.unwrap_or_else(|| vec![1]);
     let areas = keys.get("areas", table::truth)?.unwrap_or(true);
     let refine = keys.get("refine", some(few))?.unwrap_or_else(|| vec![1]);
+    let left_out = keys.get("left_out", table::truth)?.unwrap_or(false);
+    let note = keys.get("note", table::text)?;
     let tables = (keys.tables("scene")?, keys.tables("method")?);
+    let flows = keys.tables("flow")?.into_iter().map(flow_recipes).collect::<Result<Vec<_>>>()?.concat();
+    let scalings = keys.tables("scaling")?.into_iter().map(scaling_recipe).collect::<Result<Vec<_>>>()?;
     let subjects = tables.0.into_iter().map(|k| subject(k, path)).collect::<Result<Vec<_>>>()?;
     let recipes = tables.1.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
     let grids = keys.grids("grid")?;
@@ -159,13 +196,15 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
         grid.grid(None).map_err(|e| keys.wrong("refine", e))?;
     }
     keys.finish()?;
+    let others = !(flows.is_empty() && scalings.is_empty());
+    let bare = subjects.is_empty() && grids.is_empty() && recipes.is_empty();
     for (what, missing) in [
         ("scene", subjects.is_empty()),
         ("grid", grids.is_empty()),
         ("method", recipes.is_empty()),
         ("threads", threads.is_empty()),
     ] {
-        if missing {
+        if missing && !(bare && others && what != "threads") {
             return Err(Error::file(path, format!("a study needs at least one {what}")));
         }
     }
@@ -179,7 +218,21 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
             ));
         }
     }
-    Ok(StudyCase { title, repeats, threads, areas, subjects, grids, recipes, is_quick: false })
+    let is_quick = false;
+    Ok(StudyCase {
+        title,
+        repeats,
+        threads,
+        areas,
+        subjects,
+        grids,
+        recipes,
+        flows,
+        scalings,
+        left_out,
+        note,
+        is_quick,
+    })
 }
 
 fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
@@ -190,11 +243,22 @@ fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
     let solids = scene::solids(&mut keys)?;
     let exact = keys.get("exact", table::number)?;
     let probe = keys.table("probe")?.map(|mut k| probe(&mut k)).transpose()?;
+    let published = keys.tables("published")?.into_iter().map(published).collect::<Result<_>>()?;
     keys.finish()?;
     if files.is_empty() && solids.is_empty() {
         return Err(keys.fail("needs files or [[scene.solid]]"));
     }
-    Ok(Subject { name, files, solids, exact, probe })
+    Ok(Subject { name, files, solids, exact, probe, published })
+}
+
+fn published(mut keys: StrictTable) -> Result<Published> {
+    let published = Published {
+        by: keys.need("by", table::text)?,
+        cells: keys.need("cells", table::three(table::count))?,
+        seconds: keys.need("seconds", table::positive)?,
+    };
+    keys.finish()?;
+    Ok(published)
 }
 
 fn probe(keys: &mut StrictTable) -> Result<ProbeCell> {

@@ -23,8 +23,9 @@ struct Reference {
     found: Porosity,
     /// Its method.
     road: &'static str,
-    /// How far apart its bounds are at most, and those of its volume as a share of it.
+    /// How far apart the bounds of its cells are at most.
     gap: f64,
+    /// How far its volume may be off, as a share of it.
     uncertainty: f64,
 }
 
@@ -46,16 +47,21 @@ const SURFACE: Options =
 const FORMULA: Options =
     Options { tol: 1e-6, depth: 7, bounds: true, areas: true, method: Method::Auto, leaf: Leaf::Plane };
 
-/// Run all.
+/// The bodies of all scenes of the case file at `path`.
 ///
 /// # Errors
-/// A scene that cannot be read, or that a method cannot measure.
-pub fn all(path: &Path, case: &StudyCase, session: &mut Session) -> Result<Vec<Row>> {
-    // Before anything is measured all scenes must be there.
-    let all: Vec<Bodies> =
-        case.subjects.iter().map(|subject| bodies(path, subject, session.progress)).collect::<Result<_>>()?;
+/// A scene that cannot be read.
+pub fn scenes(path: &Path, case: &StudyCase, progress: &mut Progress) -> Result<Vec<Bodies>> {
+    case.subjects.iter().map(|subject| bodies(path, subject, progress)).collect()
+}
+
+/// Run all; the bodies are those of [`scenes`].
+///
+/// # Errors
+/// A scene that a method cannot measure.
+pub fn all(case: &StudyCase, scenes: &[Bodies], session: &mut Session) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
-    for (subject, bodies) in case.subjects.iter().zip(&all) {
+    for (subject, bodies) in case.subjects.iter().zip(scenes) {
         for edges in &case.grids {
             on_grid(case, subject, bodies, edges, session, &mut rows)?;
         }
@@ -133,12 +139,15 @@ fn reference(bodies: &Bodies, edges: &Edges, areas: bool) -> Result<Reference> {
         let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
         (0..3).map(|axis| widths[axis].get(at[axis]).copied().unwrap_or(0.0)).product::<f64>()
     };
-    let unsure = found.bounds.take().map_or(0.0, |[lower, upper]| {
-        let gaps = lower.v.iter().zip(upper.v.iter()).enumerate().filter(|(_, (l, u))| u > l);
-        gaps.map(|(cell, (l, u))| 0.5 * (u - l) * volume(cell)).sum()
-    });
+    let (mut unsure, mut gap) = (0.0, 0.0_f64);
+    if let Some([lower, upper]) = found.bounds.take() {
+        for (cell, (low, high)) in lower.v.iter().zip(upper.v.iter()).enumerate().filter(|(_, (low, high))| high > low)
+        {
+            unsure += 0.5 * (high - low) * volume(cell);
+            gap = gap.max(high - low);
+        }
+    }
     let uncertainty = if found.solid_volume > 0.0 { unsure / found.solid_volume } else { 0.0 };
-    let gap = found.max_gap;
     Ok(Reference { found, road, gap, uncertainty })
 }
 
@@ -207,7 +216,8 @@ impl Site<'_> {
         let Reference { found, road, gap, .. } = self.reference;
         let own = row.road == *road || *road == "surface" && row.road == "auto";
         let same = own && row.precision == Precision::F64.name() && row.leaf == word(Leaf::Plane);
-        let mark = if same { " (itself)" } else { "" };
+        let cell = Errors::of(v.iter().zip(found.beta.v.iter()));
+        let mark = if same && cell.largest == 0.0 { " (itself)" } else { "" };
         let beta = |probe: ProbeCell| {
             let ([nx, ny, _], [i, j, k]) = (row.cells, probe.cell);
             [v.get((k * ny + j) * nx + i).copied().unwrap_or(f64::NAN), probe.beta_v]
@@ -216,7 +226,7 @@ impl Site<'_> {
         let faces = faces.map(|(is, should)| Errors::of(is.iter().zip(should.iter())));
         Row {
             error: row.exact.volume.filter(|&e| e > 0.0).map(|e| row.volume / e - 1.0),
-            cell: Some(Errors::of(v.iter().zip(found.beta.v.iter()))),
+            cell: Some(cell),
             face: self.case.areas.then(|| faces[0].worst(faces[1]).worst(faces[2])),
             cells_from: Some((format!("{road}{mark}"), *gap)),
             probe: self.subject.probe.map(beta),

@@ -1,24 +1,47 @@
 //! The pictures of a study: a panel a scene, errors against run time.
 
+use super::flows::runs::{FLOW_ROUNDING, FlowRow, orders};
+use super::found::StudyFindings;
 use super::row::{ROUNDING, Row};
+use super::scaling;
 use super::spread::slope;
+use super::values::unique;
 use crate::picture::panels::{Line, Mark, Panel, Panels};
 use std::collections::BTreeMap;
 
 /// An error of a row that a picture shows.
 type Error = fn(&Row) -> Option<f64>;
 
-/// The pictures of some points: the end of each file's name, and the picture.
+/// The pictures of a study by the names of their files.
 #[must_use]
-pub fn pictures(title: &str, rows: &[Row]) -> Vec<(&'static str, Panels)> {
-    let over = |what: &str| if title.is_empty() { what.to_owned() } else { format!("{title}: {what}") };
+pub fn pictures(found: &StudyFindings) -> Vec<(String, Panels)> {
+    let mut all = Vec::new();
+    if !found.rows.is_empty() {
+        all.extend(of_points(&found.title, &found.rows));
+    }
+    if !found.flows.is_empty() {
+        all.push(("study_flows".to_owned(), of_flows(&found.title, &found.flows)));
+    }
+    if !found.scalings.is_empty() {
+        all.push(("study_scaling".to_owned(), scaling::picture(&found.title, &found.scalings)));
+    }
+    all
+}
+
+/// What a picture shows, after the title of the study.
+fn over(title: &str, what: &str) -> String {
+    if title.is_empty() { what.to_owned() } else { format!("{title}: {what}") }
+}
+
+fn of_points(title: &str, rows: &[Row]) -> Vec<(String, Panels)> {
+    let over = |what: &str| over(title, what);
     let volume: Error = |row| row.error.map(f64::abs);
     let cell: Error = |row| row.cell.map(|e| e.largest);
     let of_volume = errors(rows, volume, true);
     let of_cells = errors(rows, cell, false);
     vec![
         (
-            "",
+            "study".to_owned(),
             Panels {
                 title: over("error of the solid volume against run time"),
                 y: "relative error of the solid volume".into(),
@@ -26,7 +49,7 @@ pub fn pictures(title: &str, rows: &[Row]) -> Vec<(&'static str, Panels)> {
             },
         ),
         (
-            "_cells",
+            "study_cells".to_owned(),
             Panels {
                 title: over("largest error of a cell against run time"),
                 y: "largest error of beta_v in a cell".into(),
@@ -82,15 +105,55 @@ fn panel(scene: &str, rows: &[&Row], series: &[String], error: Error, fronts: bo
         }
     }
     let lines = lines.into_iter().map(|((series, _), marks)| Line { series, marks }).collect();
-    Panel { title: scene.to_owned(), lines, slopes }
+    Panel { title: scene.to_owned(), lines, slopes, x: None }
 }
 
-/// Values in the order of their first appearance, each once.
-pub(super) fn unique<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
-    values.fold(Vec::new(), |mut all, value| {
-        if !all.contains(&value) {
-            all.push(value);
+/// A panel for each problem: error against run time, a line for each scheme from grid to grid.
+fn of_flows(title: &str, rows: &[FlowRow]) -> Panels {
+    let scheme = |r: &FlowRow| {
+        let slopes = if r.order == 1 { "first order".to_owned() } else { r.limiter.clone() };
+        let threads = if r.threads > 1 { format!(", {} threads", r.threads) } else { String::new() };
+        format!("{}, {slopes}, {}{threads}", r.riemann, r.precision)
+    };
+    let (series, fitted) = (unique(rows.iter().map(scheme)), orders(rows));
+    let number = |r: &FlowRow| series.iter().position(|s| *s == scheme(r)).unwrap_or(0);
+    let panel = |problem: &String| {
+        let own: Vec<&FlowRow> = rows.iter().filter(|r| r.problem == *problem).collect();
+        let mark = |r: &&FlowRow| Mark {
+            at: [r.seconds.median, r.error],
+            x_ends: Some([r.seconds.fastest, r.seconds.slowest]).filter(|[a, b]| a < b),
+            y_ends: (r.uncertainty > 0.01 * r.error && r.error > r.uncertainty)
+                .then_some([r.error - r.uncertainty, r.error + r.uncertainty]),
+            ..Mark::default()
+        };
+        let flows = unique(own.iter().map(|r| r.flow.clone()));
+        let line = |flow: &String| {
+            let runs: Vec<&FlowRow> = own.iter().copied().filter(|r| r.flow == *flow).collect();
+            Line { series: runs.first().map_or(0, |r| number(r)), marks: runs.iter().map(mark).collect() }
+        };
+        let slopes = flows.iter().filter_map(|flow| {
+            let order = fitted.iter().find(|o| o.flow == *flow)?;
+            let first = own.iter().find(|r| r.flow == *flow)?;
+            Some((number(first), scaling::with_error(order.order, None)))
+        });
+        let quantity = own.first().map_or("", |r| r.quantity.as_str());
+        Panel {
+            title: format!("{problem}: {quantity}"),
+            x: None,
+            lines: flows.iter().map(line).collect(),
+            slopes: slopes.collect(),
         }
-        all
-    })
+    };
+    let problems = unique(rows.iter().map(|r| r.problem.clone()));
+    Panels {
+        title: over(title, "errors of flows against run time, from grid to grid"),
+        x: "run time, s".into(),
+        y: "error, see over each panel".into(),
+        panels: problems.iter().map(panel).collect(),
+        series,
+        floor: Some((FLOW_ROUNDING, format!("exact to rounding: at most {FLOW_ROUNDING:e}").replace('-', "−"))),
+        bar: "fastest to slowest run; uncertainty of the reference".into(),
+        slopes: "order in N".into(),
+        ..Panels::default()
+    }
 }

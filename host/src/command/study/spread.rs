@@ -21,7 +21,8 @@ impl Spread {
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         let at = |n: usize| values.get(n).copied().unwrap_or_default();
-        Spread { median: at(values.len() / 2), fastest: at(0), slowest: at(values.len().saturating_sub(1)) }
+        let (below, above) = (at(values.len().saturating_sub(1) / 2), at(values.len() / 2));
+        Spread { median: 0.5 * (below + above), fastest: at(0), slowest: at(values.len().saturating_sub(1)) }
     }
 }
 

@@ -28,6 +28,8 @@ pub enum Reading {
     Volume,
     /// A share, in per cent with its sign.
     Percent,
+    /// A share, in whole per cent.
+    Share,
     /// Six decimals.
     Fraction,
     /// Two decimals.
@@ -79,6 +81,7 @@ pub fn readable(x: f64, reading: Reading) -> String {
         Reading::Volume => format!("{x:.*}", digits(10) as usize),
         Reading::Percent if x.abs() < 1e-7 && x != 0.0 => format!("{:+.0e} %", 100.0 * x),
         Reading::Percent => format!("{:+.4} %", 100.0 * x),
+        Reading::Share => format!("{:.0} %", 100.0 * x),
         Reading::Fraction => format!("{x:.6}"),
         Reading::Order => format!("{x:.2}"),
     }

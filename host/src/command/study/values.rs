@@ -78,3 +78,13 @@ pub fn varied(name: &str, parts: &[(usize, String)]) -> String {
     let varied = parts.iter().filter(|(count, _)| *count > 1).map(|(_, word)| word.as_str());
     std::iter::once(name).chain(varied).collect::<Vec<_>>().join(", ")
 }
+
+/// Values in the order of their first appearance, each once.
+pub fn unique<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    values.fold(Vec::new(), |mut all, value| {
+        if !all.contains(&value) {
+            all.push(value);
+        }
+        all
+    })
+}

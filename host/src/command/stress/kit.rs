@@ -1,0 +1,11 @@
+//! What the cases share: random numbers, solids, truths by closed forms and by counting, and the doors of the program.
+//!
+//! Nothing but [`doors`] asks the program for a result.
+
+pub mod books;
+pub mod boxes;
+pub mod doors;
+pub mod random;
+pub mod riemann;
+pub mod solids;
+pub mod truth;

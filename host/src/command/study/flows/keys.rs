@@ -1,0 +1,138 @@
+//! The flows of a study: the lists of a table `[[flow]]` multiply out.
+
+use super::problems::{FlowChoice, FlowProblem};
+use crate::command::study::recipe::Precision;
+use crate::command::study::values::{choice, few, many, product, some, varied, word};
+use crate::error::Result;
+use crate::geometry::scene::table::{self, StrictTable};
+use clap::ValueEnum;
+use toml::de::DeValue;
+use voidage_core::flow::{Limiter, PressureForm, Riemann, Scheme};
+
+/// Riemann solver, by the words of a case of `voidage solve`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Flux {
+    Hllc,
+    Hlle,
+    Rusanov,
+}
+
+/// Limiter, by the words of a case of `voidage solve`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SlopeRule {
+    Steep,
+    Mc,
+    VanLeer,
+    Minmod,
+    None,
+}
+
+/// A problem and how it is computed.
+#[derive(Debug, Clone)]
+pub struct FlowRecipe {
+    /// Its name in tables: that of its table, and what varies within it but the cells.
+    pub name: String,
+    /// What flows.
+    pub problem: FlowProblem,
+    /// Scheme and cells.
+    pub choice: FlowChoice,
+    /// Words for Riemann solver and limiter.
+    pub words: [String; 2],
+    /// 1 or 2.
+    pub order: usize,
+    /// In which numbers.
+    pub precision: Precision,
+    /// On so many threads.
+    pub threads: usize,
+}
+
+impl FlowRecipe {
+    /// What it costs, roughly, in the units of the porosity's cells: steps grow with the cells along an axis.
+    #[must_use]
+    pub fn cost(&self, repeats: usize) -> f64 {
+        let steps = match self.problem {
+            FlowProblem::Slab => 250.0,
+            FlowProblem::Nozzle => 120.0,
+            FlowProblem::InclinedWall => 4.0,
+            FlowProblem::Sod => 0.6,
+            FlowProblem::Vortex => 6.0,
+            FlowProblem::ShuOsher => 1.2,
+        };
+        (self.choice.cells as f64).powi(1 + self.problem.axes()) * steps * repeats as f64
+    }
+}
+
+/// The recipes of a table, in the order of its lists.
+///
+/// # Errors
+/// A value that is none.
+pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
+    let problems = keys.need("problem", some(choice::<FlowProblem>))?;
+    let given = keys.has("name");
+    let name = keys.named()?;
+    let name = if given || problems.len() > 1 { name } else { problems.first().map_or(name, |p| word(*p)) };
+    let cells = keys.need("cells", some(cells))?;
+    let fluxes = keys.get("riemann", some(choice::<Flux>))?.unwrap_or_else(|| vec![Flux::Hllc]);
+    let limiters = keys.get("limiter", some(choice::<SlopeRule>))?.unwrap_or_else(|| vec![SlopeRule::Steep]);
+    let orders = keys.get("order", some(order))?.unwrap_or_else(|| vec![2]);
+    let precisions = keys.get("precision", some(choice::<Precision>))?.unwrap_or_else(|| vec![Precision::F64]);
+    let threads = keys.get("threads", some(few))?.unwrap_or_else(|| vec![1]);
+    keys.finish()?;
+    let mut all: Vec<FlowRecipe> = Vec::new();
+    for (&problem, &order, &precision) in product(&problems, &orders, &precisions) {
+        for (&flux, &limiter, &count) in product(&fluxes, &limiters, &threads) {
+            for &cells in &cells {
+                let parts = [
+                    (problems.len(), word(problem)),
+                    (fluxes.len(), word(flux)),
+                    (if order == 2 { limiters.len() } else { 1 }, word(limiter)),
+                    (orders.len(), format!("order {order}")),
+                    (precisions.len(), precision.name().to_owned()),
+                    (threads.len(), format!("{count} threads")),
+                ];
+                let name = varied(&name, &parts);
+                if all.iter().any(|r| r.name == name && r.choice.cells == cells) {
+                    continue;
+                }
+                let choice = FlowChoice { scheme: scheme(flux, limiter, order), cells };
+                let slopes = if order == 2 { word(limiter) } else { "no slopes".to_owned() };
+                let words = [word(flux), slopes];
+                all.push(FlowRecipe { name, problem, choice, words, order, precision, threads: count });
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn scheme(flux: Flux, limiter: SlopeRule, order: usize) -> Scheme {
+    let limiter = match limiter {
+        _ if order == 1 => Limiter::FirstOrder,
+        SlopeRule::Steep => Limiter::Steep,
+        SlopeRule::Mc => Limiter::MonotonizedCentral,
+        SlopeRule::VanLeer => Limiter::VanLeer,
+        SlopeRule::Minmod => Limiter::Minmod,
+        SlopeRule::None => Limiter::Unlimited,
+    };
+    let riemann = match flux {
+        Flux::Hllc => Riemann::Hllc,
+        Flux::Hlle => Riemann::Hlle,
+        Flux::Rusanov => Riemann::Rusanov,
+    };
+    Scheme { riemann, limiter, pressure: PressureForm::Geometric }
+}
+
+/// Cells along an axis: enough for slopes, few enough for memory.
+fn cells(value: &DeValue) -> std::result::Result<usize, String> {
+    match many(value)? {
+        n @ 4..=100_000 => Ok(n),
+        n => Err(format!("must be from 4 to 100000, not {n}")),
+    }
+}
+
+/// 1 or 2.
+fn order(value: &DeValue) -> std::result::Result<usize, String> {
+    match table::count(value)? {
+        n @ 1..=2 => Ok(n),
+        n => Err(format!("must be 1 or 2, not {n}")),
+    }
+}
