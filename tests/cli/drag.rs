@@ -61,10 +61,12 @@ fn frontal_area_without_force_is_told() {
 
 /// Two tanks with a thin wall between them.
 fn tanks(wall: f64, faces: &str) -> String {
+    // The wall closes the plane nearest to its middle, and there the tanks meet.
+    let plane = (2.0 * (wall + 0.025)).round() / 2.0;
     format!(
         "[grid]\nx = {{ points = [0, 4], cells = [8] }}\ny = {{ points = [0, 3], cells = [3] }}\nz = {{ points = [0, 3], cells = [3] }}\n\
          [porosity]\nscene = \"wall.toml\"\n{faces}\n[drag]\nlaw = \"none\"\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n\
-         [initial]\nuniform = {{ rho = 1.2, p = 1e5 }}\nregions = [{{ min = [0, 0, 0], max = [{wall}, 3, 3], rho = 2.4, p = 2e5 }}]\n\
+         [initial]\nuniform = {{ rho = 1.2, p = 1e5 }}\nregions = [{{ min = [0, 0, 0], max = [{plane}, 3, 3], rho = 2.4, p = 2e5 }}]\n\
          [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\nz_min = \"wall\"\nz_max = \"wall\"\n\
          [time]\nend = 0.1\n[output]\nformats = [\"npy\"]\n"
     )

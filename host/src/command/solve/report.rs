@@ -55,8 +55,10 @@ pub struct Report {
     frames: Vec<f64>,
     porosity: Option<SpaceReport>,
     /// How well the grid resolves the regions of the beginning.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     regions: Vec<RegionReport>,
     /// What patches on the sides came to.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     patches: Vec<PatchReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     maxima: Option<MaximaReport>,
