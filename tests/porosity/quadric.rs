@@ -2,11 +2,13 @@
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
+use std::f64::consts::PI;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::grid::Grid;
+use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::quadric::QuadricSolid;
 use voidage_tests::quadric::{Family, errors, never_panics, parts_sum_to_the_whole, shares};
 use voidage_tests::random::Random;
@@ -239,4 +241,67 @@ fn the_number_of_threads_changes_no_bit() {
         pool.install(|| run(&lists(12), &forms, Options { tol: 1e-3, ..Options::default() }))
     };
     assert!(with(1) == with(3));
+}
+
+/// Solids about the origin, with their volumes.
+fn about_the_origin(rng: &mut Random, kind: usize) -> (QuadricSolid, f64) {
+    let mut number = |lo: f64, hi: f64| lo + (hi - lo) * rng.unit();
+    let dir = DVec3::new(number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)) * 0.2;
+    let (radius, length) = (number(0.05, 0.2), dir.length());
+    let ball = 4.0 / 3.0 * PI * radius.powi(3);
+    let disc = PI * radius * radius;
+    let (solid, volume) = match kind {
+        0 => (QuadricSolid::ball(DVec3::ZERO, radius), ball),
+        1 => (QuadricSolid::capsule(DVec3::ZERO, dir, radius), ball + disc * length),
+        2 => (QuadricSolid::cylinder(DVec3::ZERO, dir, radius), disc * length),
+        3 => (QuadricSolid::cone(dir, DVec3::ZERO, radius), disc * length / 3.0),
+        _ => {
+            let a = dir.normalize();
+            let (b, c) = a.any_orthonormal_pair();
+            let [s, t] = [number(0.05, 0.2), number(0.05, 0.2)];
+            (QuadricSolid::ellipsoid(DVec3::ZERO, [a * radius, b * s, c * t]), 4.0 / 3.0 * PI * radius * s * t)
+        }
+    };
+    (solid.expect("sizes that serve"), volume)
+}
+
+/// Shares of all cells of a grid.
+fn shares_of_cells(solid: &QuadricSolid, edges: [&[f64]; 3]) -> Vec<f64> {
+    let grid = Grid::new(edges[0], edges[1], edges[2]).expect("a grid");
+    let [nx, ny, nz] = grid.cells();
+    let mut all = vec![0.0; nx * ny * nz];
+    for k in 0..nz {
+        let mut visit = |kind: RangeKind, at: usize, share: f64| {
+            if kind == RangeKind::Cells {
+                all[k * nx * ny + at] += share;
+            }
+        };
+        assert!(solid.layer(&grid, k, false, &mut visit) < 1e-9, "a share beyond 0 to 1");
+    }
+    all
+}
+
+/// Planes through the centre of a ball, an ellipsoid, the end of a capsule or a cylinder, the apex of a cone, and planes as close to it as
+/// rounding brings them or a little farther: the volume is right, and no cell's share leaps.
+#[test]
+fn planes_through_and_beside_a_centre() {
+    let mut rng = Random::new(5);
+    for round in 0..4000 {
+        let (solid, volume) = about_the_origin(&mut rng, round % 5);
+        let width = 0.1 + 0.3 * rng.unit();
+        let even: Vec<f64> = (-5..=5).map(|i| f64::from(i) * width).collect();
+        let through = shares_of_cells(&solid, [&even, &even, &even]);
+        let total: f64 = through.iter().sum::<f64>() * width.powi(3);
+        assert!((total / volume - 1.0).abs() < 1e-11, "{round}: {total}, not {volume}");
+        let off = 10f64.powf(-9.0 - 9.0 * rng.unit());
+        let beside = [0, 1, 2].map(|_| {
+            let mut edges = even.clone();
+            edges[5] = off * [0.0, 1.0, -1.0, 0.3, -0.7][rng.below(5)];
+            edges
+        });
+        let found = shares_of_cells(&solid, beside.each_ref().map(|e| &e[..]));
+        for (cell, (a, b)) in through.iter().zip(&found).enumerate() {
+            assert!((a - b).abs() < 1e-11 + 4.0 * off / width, "{round}: cell {cell} {a} through, {b} {off:e} beside");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Where a grid plane meets a flat end.
 
 use super::arc::P2;
+use super::wall::hypotenuse;
 
 /// Where a plane of the grid meets the plane of an end: a linear function, not negative inside, and the chord that the disc has there.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,12 @@ impl EndLine {
         let value = self.constant + (self.slope[0] * (p[0] - self.shift[0]) + self.slope[1] * (p[1] - self.shift[1]));
         // Not a number is outside.
         if value.is_nan() { -1.0 } else { value }
+    }
+
+    /// How far the line passes from the part's origin, positive if that is inside.
+    pub fn aside(&self) -> f64 {
+        let across = hypotenuse(self.slope[0], self.slope[1]);
+        if across > 0.0 { self.at([0.0; 2]) / across } else { 0.0 }
     }
 
     /// The complement.

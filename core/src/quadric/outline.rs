@@ -49,7 +49,7 @@ impl Rectangle {
         let mut sides = Vec::new();
         for (n, corner) in corners.iter().enumerate() {
             let to = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
-            let _ = sides.push(Piece { from: corner.at, to, joined: true });
+            let _ = sides.push(Piece { from: corner.at, to, joined: true, side: corner.side });
         }
         sides
     }
@@ -66,12 +66,28 @@ pub(super) fn cut(corners: &Corners, line: &EndLine, side: u8) -> Corners {
             let _ = kept.push(*corner);
         }
         if inside != (there >= 0.0) {
-            let part = here / (here - there);
-            let at = [0, 1].map(|k| corner.at[k] + part * (next.at[k] - corner.at[k]));
+            let at = crossing(corner.at, next.at, line, here / (here - there));
             let _ = kept.push(Corner { at, side: if inside { side } else { corner.side } });
         }
     }
     if kept.len() < 3 { Corners::new() } else { kept }
+}
+
+/// Where a side meets a line, `part` of the way along it. On a side along an axis the line itself tells: beside a ball's centre, where line and
+/// side may meet far closer to it than the side's ends lie, all digits of that distance count.
+fn crossing(from: P2, to: P2, line: &EndLine, part: f64) -> P2 {
+    let mut at = [0, 1].map(|k| from[k] + part * (to[k] - from[k]));
+    for (across, along) in [(0, 1), (1, 0)] {
+        if from[across] == to[across] {
+            let aside = line.constant + line.slope[across] * (from[across] - line.shift[across]);
+            let place = line.shift[along] - aside / line.slope[along];
+            let (lo, hi) = (from[along].min(to[along]), from[along].max(to[along]));
+            if lo <= place && place <= hi {
+                at[along] = place;
+            }
+        }
+    }
+    at
 }
 
 /// A straight piece of an outline; without `joined`, an arc leads to it from the piece before.
@@ -80,6 +96,8 @@ pub(super) struct Piece {
     pub from: P2,
     pub to: P2,
     pub joined: bool,
+    /// As that of a [`Corner`].
+    pub side: u8,
 }
 
 /// An arc may go more than half around an ellipse: that is so small that half of it fits the polygon.
@@ -164,19 +182,19 @@ impl Section {
 
     /// The straight pieces of a polygon inside the conic, of each side what `inside` tells; or the whole conic.
     pub fn pieces(&self, corners: &Corners, inside: impl Fn(&Corner, P2) -> Option<Side>) -> Region {
-        let mut sides: Vec<Option<Side>, MAX_CORNERS> = Vec::new();
+        let mut sides: Vec<(u8, Option<Side>), MAX_CORNERS> = Vec::new();
         for (n, corner) in corners.iter().enumerate() {
             let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
-            let _ = sides.push(inside(corner, next));
+            let _ = sides.push((corner.side, inside(corner, next)));
         }
         let mut pieces = Vec::new();
-        let mut before = sides.last().copied().flatten();
-        for side in sides {
-            if let Some(side) = side {
-                let joined = side.from_corner && before.is_some_and(|b| b.to_corner);
-                let _ = pieces.push(Piece { from: side.from, to: side.to, joined });
+        let mut before = sides.last().and_then(|s| s.1);
+        for (side, found) in sides {
+            if let Some(found) = found {
+                let joined = found.from_corner && before.is_some_and(|b| b.to_corner);
+                let _ = pieces.push(Piece { from: found.from, to: found.to, joined, side });
             }
-            before = side;
+            before = found;
         }
         if pieces.is_empty() { self.ellipse_within(corners) } else { Region::Pieces(pieces, self.half_fits(corners)) }
     }

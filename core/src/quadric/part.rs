@@ -10,7 +10,8 @@ use super::outline::{Rectangle, Region, Section};
 use super::shadow::PlaneOverApex;
 use super::solid_angle::PlaneOfUnitBall;
 use super::twofold::{Twofold, difference, difference_of_squares};
-use super::wall::{Curved, Span, Wall, others};
+use super::wall::{Curved, Span, Wall, hypotenuse, others};
+use crate::number::real::Real;
 use core::f64::consts::PI;
 
 /// A convex part of a solid.
@@ -131,21 +132,29 @@ impl Part {
             Wall::Ball { radius } => {
                 let scale = 1.0 / radius;
                 let square = difference_of_squares(*radius, plane.h) * scale * scale;
-                let mut normal = [0.0; 3];
-                normal[n] = 1.0;
-                let far = (du + dv) * scale < FAR;
+                let normal = self.normal_of_ball(n);
                 let to_unit = |p, height| place(p, height).map(|x| x * scale);
-                let plane_of_ball = PlaneOfUnitBall { map: to_unit, at: h, normal, height: h * scale, square, far };
+                let far = is_far((du + dv) * scale, to_unit(rectangle.middle(), h));
+                let ends = plane.lines.map(|line| line.map_or(0.0, |line| line.aside() * scale));
+                let (height, foot, area) = (h * scale, [0.0; 2], scale * scale);
+                let plane_of_ball =
+                    PlaneOfUnitBall { map: to_unit, at: h, normal, height, square, far, foot, area, ends };
                 plane_of_ball.solid_angle(&plane.section, region, rectangle) * radius * radius * radius
             }
             Wall::Ellipsoid(map) => {
                 let reach = map.reach[n];
                 let square = difference_of_squares(reach, plane.h) / (reach * reach);
-                let normal = map.map(map.outermost[n]).map(|x| x * reach);
+                let normal = self.normal_of_ball(n);
                 let [columns_u, columns_v] = [u, v].map(|m| map.form[m][m]);
-                let far = columns_u * du * du + columns_v * dv * dv < FAR * FAR;
                 let to_unit = |p, height| map.map(place(p, height));
-                let plane_of_ball = PlaneOfUnitBall { map: to_unit, at: h, normal, height: h / reach, square, far };
+                let size = Real::sqrt(columns_u * du * du + columns_v * dv * dv);
+                let (far, ends) = (is_far(size, to_unit(rectangle.middle(), h)), [0.0; 2]);
+                let (height, outermost) = (h / reach, map.outermost[n]);
+                let foot = [outermost[u] * h, outermost[v] * h];
+                // The section through the centre becomes a unit circle.
+                let area = reach / map.scale;
+                let plane_of_ball =
+                    PlaneOfUnitBall { map: to_unit, at: h, normal, height, square, far, foot, area, ends };
                 plane_of_ball.solid_angle(&plane.section, region, rectangle) * map.scale
             }
             Wall::Cylinder { .. } | Wall::Cone { .. } => 0.0,
@@ -230,20 +239,49 @@ impl Part {
                 return 0.0;
             }
             if low == 0.0 || high == 0.0 {
-                let mut normal = [0.0; 3];
-                normal[n] = if low == 0.0 { 1.0 } else { -1.0 };
-                let _ = normals.push(normal);
+                let _ = normals.push(self.normal_of_ball(n).map(|x| if low == 0.0 { x } else { -x }));
             }
         }
         match self.ends[0] {
             Some(end) => angle_of_half_space(&normals, end.inward),
-            None => 4.0 * PI / (1 << normals.len()) as f64,
+            None => angle_of_cone(&normals),
+        }
+    }
+
+    /// Normal to the planes across axis `n`, where the ball is the unit ball.
+    fn normal_of_ball(&self, n: usize) -> [f64; 3] {
+        match &self.curved.wall {
+            Wall::Ellipsoid(map) => map.map(map.outermost[n]).map(|x| x * map.reach[n]),
+            _ => {
+                let mut normal = [0.0; 3];
+                normal[n] = 1.0;
+                normal
+            }
         }
     }
 }
 
-/// Below this size, seen from the centre, a face is taken as far away from it.
+/// Solid angle of what lies before up to three planes through the centre, by their normals.
+fn angle_of_cone(normals: &[[f64; 3]]) -> f64 {
+    let dihedral = |a: &[f64; 3], b: &[f64; 3]| {
+        let product = |u: usize, v: usize| a[u] * b[v] - a[v] * b[u];
+        let sine = hypotenuse(hypotenuse(product(1, 2), product(2, 0)), product(0, 1));
+        PI - libm::atan2(sine, a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+    };
+    match normals {
+        [] => 4.0 * PI,
+        [_] => 2.0 * PI,
+        [a, b] => 2.0 * dihedral(a, b),
+        [a, b, c, ..] => dihedral(a, b) + dihedral(b, c) + dihedral(c, a) - PI,
+    }
+}
+
+/// Below this size, in radii, a face farther from the centre than that is taken as far away from it.
 const FAR: f64 = 0.25;
+
+fn is_far(size: f64, middle: [f64; 3]) -> bool {
+    size < FAR && middle.iter().map(|x| x * x).sum::<f64>() > size * size
+}
 
 /// What may have been lost by rounding in the place of an end.
 const MARGIN: f64 = 1e-12;

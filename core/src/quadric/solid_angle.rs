@@ -6,7 +6,7 @@
 //!
 //! Reference for triangles: A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983).
 
-use super::arc::{P2, sub};
+use super::arc::{P2, cross, sub};
 use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
 use crate::number::real::Real;
 use core::f64::consts::PI;
@@ -23,8 +23,14 @@ pub(super) struct PlaneOfUnitBall<M> {
     pub height: f64,
     /// Square of the section's radius: 1 − h².
     pub square: f64,
-    /// The section is small and far from the foot of the centre.
+    /// The section is small and farther from the centre than that.
     pub far: bool,
+    /// The foot of the centre in the plane's own coordinates. Only these tell how far the sides of a face pass from it if that is little.
+    pub foot: P2,
+    /// What `map` makes of areas in the plane.
+    pub area: f64,
+    /// How far the lines of the ends pass from the foot of the centre, positive if that is inside.
+    pub ends: [f64; 2],
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -37,11 +43,6 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 fn length(a: [f64; 3]) -> f64 {
     Real::sqrt(dot(a, a))
-}
-
-/// The determinant of three vectors.
-fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
-    a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
 /// A point in the plane, and where it is mapped. Differences are mapped as such, so that they keep their digits.
@@ -90,34 +91,56 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
                     corner = Some(next);
                 }
             } else {
-                rest += self.triangle_at_foot(from, to);
+                let aside = usize::from(piece.side).checked_sub(4).and_then(|end| self.ends.get(end));
+                rest += self.triangle_at_foot(from, to, aside.copied());
             }
             before = to;
         }
         rest + 2.0 * libm::atan2(fan[1], fan[0])
     }
 
+    /// Twice the area of a triangle from a point of the plane, by its other corners.
+    fn twice(&self, from: P2, p: Mapped, q: Mapped) -> f64 {
+        self.area * cross(sub(p.plane, from), sub(q.plane, p.plane))
+    }
+
     /// Twice the area of the triangle of the plane's foot and two of its points, and the product of their distances times the cosine.
     fn about_foot(&self, p: Mapped, q: Mapped) -> (f64, f64) {
         let foot = self.normal.map(|x| x * self.height);
-        let (a, b) = (minus(p.unit, foot), minus(q.unit, foot));
-        (triple(self.normal, a, self.difference(q, p)), dot(a, b))
+        (self.twice(self.foot, p, q), dot(minus(p.unit, foot), minus(q.unit, foot)))
     }
 
     /// Real and imaginary part of a number whose argument is half the solid angle of a triangle.
     fn triangle(&self, a: Mapped, b: Mapped, c: Mapped) -> [f64; 2] {
-        let volume = triple(a.unit, self.difference(b, a), self.difference(c, a));
+        let volume = self.height.abs() * self.twice(a.plane, b, c);
         let (a, b, c) = (a.unit, b.unit, c.unit);
         let (la, lb, lc) = (length(a), length(b), length(c));
         let real = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-        [real, if self.height < 0.0 { -volume } else { volume }]
+        [real, volume]
     }
 
-    /// Signed solid angle of the triangle of the plane's foot and two of its points.
-    fn triangle_at_foot(&self, p: Mapped, q: Mapped) -> f64 {
+    /// Signed solid angle of the triangle of the plane's foot and two of its points, whose line passes `aside` of the foot, if that is known
+    /// better than from the points.
+    fn triangle_at_foot(&self, p: Mapped, q: Mapped, aside: Option<f64>) -> f64 {
+        let h = self.height.abs();
         let (area, _) = self.about_foot(p, q);
+        let along = self.difference(q, p);
+        let size = length(along);
+        let aside = aside.unwrap_or(if size > 0.0 { area / size } else { 0.0 });
+        let foot = self.normal.map(|x| x * self.height);
+        let [s, t] = [p, q].map(|point| if size > 0.0 { dot(minus(point.unit, foot), along) / size } else { 0.0 });
+        if s < 0.0 && t > 0.0 {
+            // The foot of the foot lies between: each side of it by itself, or the digits of what lies close to the foot would be lost.
+            let m = aside.abs();
+            let half = |s: f64| {
+                let square = m * m + s * s;
+                let reach = Real::sqrt(square + h * h);
+                libm::atan2(s * m * (square / (reach + h)), m * m * reach + h * s * s)
+            };
+            return (half(t) - half(s)).copysign(aside);
+        }
         let (a, b) = (length(p.unit), length(q.unit));
-        2.0 * libm::atan2(area, a * b + dot(p.unit, q.unit) + self.height.abs() * (a + b))
+        2.0 * libm::atan2(aside * size, a * b + dot(p.unit, q.unit) + h * (a + b))
     }
 
     /// Solid angle of the sector of an arc about the foot.
@@ -137,7 +160,7 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
     fn lens(&self, p: Mapped, q: Mapped, major: bool) -> f64 {
         let (area, cosine) = self.about_foot(p, q);
         if major || !(cosine > 0.0) {
-            return self.sector(p, q, major) - self.triangle_at_foot(p, q);
+            return self.sector(p, q, major) - self.triangle_at_foot(p, q, None);
         }
         let (tau, h) = (area / (self.square + cosine), self.height.abs());
         let (t, h_square) = (tau * tau, h * h);
