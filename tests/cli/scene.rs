@@ -131,6 +131,14 @@ const WRONG: [(&str, &[&str]); 43] = [
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]@", &["above min"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = -0.5@",
+        &["top_radius", "must not be below 0"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = 0.5@",
+        &["cylinder takes from, to, radius; not top_radius"],
+    ),
     ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = []@", &["at least 4 points, not 0"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0.3,0.2,0]]@",
