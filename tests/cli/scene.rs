@@ -89,7 +89,7 @@ fn warnings_name_the_solid() {
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
-const WRONG: [(&str, &[&str]); 43] = [
+const WRONG: [(&str, &[&str]); 45] = [
     (
         "[[solid]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"z\", angel = 3 }@",
         &["column 24: solid 1: rotate: key angel is not known here; did you mean angle?"],
