@@ -56,7 +56,7 @@ impl PlaneOfCone<'_> {
     }
 
     /// Flux of (p − apex) / 3 through an area.
-    pub fn from_apex(&self, area: f64) -> f64 {
+    pub fn of_apex(&self, area: f64) -> f64 {
         self.through() / self.slope * area / 3.0
     }
 

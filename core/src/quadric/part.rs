@@ -197,7 +197,7 @@ impl Part {
                     let shift = self.curved.axis[n] * (middle[n] - h);
                     plane_of.moved(face.flux, face.area, &plane_of.reference(&rectangle), &reference, shift)
                 } else {
-                    plane_of.from_apex(face.area)
+                    plane_of.of_apex(face.area)
                 };
                 volume += sign * flux;
             }
