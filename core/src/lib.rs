@@ -1,23 +1,25 @@
 //! Volume and area porosity of real geometry on structured grids.
 //!
 //! The crate is `no_std`, allocates nothing, holds no `unsafe` code and works in `f32` and `f64` from one text.
-//! Eight rooms; one uses only those above it:
+//! Nine rooms; one uses only those above it:
 //!
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
 //! 3. [`grid`]: cells, faces, index order; solid fractions of a layer, as bounds that bodies share
 //! 4. [`quadric`]: fractions of cylinder, cone, ball, capsule, ellipsoid by closed forms
-//! 5. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
+//! 5. [`torus`]: fractions of tori and pipe bends by quadrature
+//! 6. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
 //!    in [`surface`]
-//! 6. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
-//! 7. [`solids`]: solids by formula beside bodies of triangles, where they share cells by subdivision
-//! 8. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//! 7. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
+//! 8. [`solids`]: solids by formula beside bodies of triangles, where they share cells by subdivision
+//! 9. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
 //!
 //! | to … | use |
 //! |---|---|
 //! | tell whether two convex bodies meet, how far apart they are | [`convex::meets`], [`convex::distance`] |
 //! | measure triangulated bodies, overlaps counted once | [`surface::layer::Layers`] |
 //! | measure cylinders, cones, balls, capsules, ellipsoids by closed forms | [`quadric::QuadricSolid`] |
+//! | measure tori and pipe bends | [`torus::TorusSolid`] |
 //! | bound the fractions of any convex body | [`subdivide`] |
 //! | make open fractions ready for a flow, step it | [`flow::prepare`], [`flow::Problem`] |
 //! | put `f32` or `f64` into one text | [`number`] |
@@ -122,3 +124,4 @@ pub mod quadric;
 pub mod solids;
 pub mod subdivide;
 pub mod surface;
+pub mod torus;

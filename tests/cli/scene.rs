@@ -89,7 +89,7 @@ fn warnings_name_the_solid() {
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
-const WRONG: [(&str, &[&str]); 45] = [
+const WRONG: [(&str, &[&str]); 53] = [
     (
         "[[solid]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"z\", angel = 3 }@",
         &["column 24: solid 1: rotate: key angel is not known here; did you mean angle?"],
@@ -138,6 +138,38 @@ const WRONG: [(&str, &[&str]); 45] = [
     (
         "[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = 0.5@",
         &["cylinder takes from, to, radius; not top_radius"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 1.5@",
+        &["tube", "must not be above radius (1)", "its own axis"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = [0, 0, 0]@\nradius = 1\ntube = 0.5",
+        &["axis", "has no direction"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"w\"@\nradius = 1\ntube = 0.5",
+        &["three numbers or x, y, z, not \"w\""],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 0.5\nangle = 90@",
+        &["angle", "needs start"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 0.5\nstart = \"x\"@",
+        &["start", "needs angle"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 0.5\nstart = \"x\"\nangle = 361@",
+        &["angle", "above 360"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 0.5\nstart = [0, 0, 2]@\nangle = 90",
+        &["start", "away from the axis"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 0@",
+        &["tube", "must be positive"],
     ),
     ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = []@", &["at least 4 points, not 0"]),
     (
@@ -266,4 +298,60 @@ fn two_grids_are_one_too_many() {
     let output = voidage(&[&"porosity", &one, &two]);
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("two.toml: a second scene with a [grid]"), "{}", stderr(&output));
+}
+
+/// A ring and an elbow that is turned, repeated and porous have Pappus' volume; `--method gjk` takes no torus.
+#[test]
+fn tori_are_measured_and_refused_by_gjk() {
+    const RINGS: &str = "
+[[solid]]
+name = \"ring\"
+shape = \"torus\"
+center = [1, 1, 1]
+axis = [0.2, 0.1, 1]
+radius = 0.6
+tube = 0.2
+
+[[solid]]
+name = \"elbows\"
+shape = \"torus\"
+center = [2.5, 1, 0.5]
+axis = \"y\"
+radius = 0.3
+tube = 0.1
+start = \"x\"
+angle = 90
+porosity = 0.25
+rotate = { axis = [1, 1, 1], angle = 40 }
+array = { count = [2, 1, 2], step = [1, 0, 1] }
+
+[[solid]]
+name = \"reducer\"
+shape = \"cone\"
+from = [0.5, 0.3, 1.8]
+to = [1.5, 0.4, 1.7]
+radius = 0.15
+top_radius = 0.05
+
+[grid]
+origin = [0, 0, 0]
+spacing = [0.25, 0.25, 0.25]
+cells = [16, 8, 8]
+";
+    let dir = Scratch::new();
+    let scene = dir.file("rings.toml");
+    fs::write(&scene, RINGS).expect("written");
+    let found = report(&dir, &[&scene]);
+    let pi = std::f64::consts::PI;
+    let reducer = pi / 3.0 * (0.0225 + 0.0075 + 0.0025) * 1.02_f64.sqrt();
+    let volume = 2.0 * pi * pi * 0.6 * 0.04 + 0.75 * 4.0 * pi * 0.01 * 0.3 * pi / 2.0 + reducer;
+    let solid = found["solid_volume"].as_f64().expect("a number");
+    assert!((solid - volume).abs() < 1e-9, "{solid}, not {volume}");
+    assert!(found["max_gap"].as_f64().expect("a number") < 1e-8, "{}", found["max_gap"]);
+    let with = report(&dir, &[&scene, &"--resistance"]);
+    assert!(with["solid_volume"] == found["solid_volume"]);
+    let output = voidage(&[&"porosity", &scene, &"--method", &"gjk"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("solid \"ring\": a torus is not convex") && said.contains("--method auto"), "{said}");
 }

@@ -102,7 +102,7 @@ fn measure_scene(text: &str) -> Option<Error> {
 }
 
 /// Shapes and the keys that they need; each takes three numbers but those in [`SINGLE`].
-const SHAPES: [(&str, &[&str]); 7] = [
+const SHAPES: [(&str, &[&str]); 9] = [
     ("sphere", &["center", "radius"]),
     ("ellipsoid", &["center", "semi_axes"]),
     ("box", &["min", "max"]),
@@ -110,10 +110,12 @@ const SHAPES: [(&str, &[&str]); 7] = [
     ("capsule", &["from", "to", "radius"]),
     ("cone", &["from", "to", "radius"]),
     ("cone", &["from", "to", "radius", "top_radius"]),
+    ("torus", &["center", "axis", "radius", "tube"]),
+    ("torus", &["center", "axis", "radius", "tube", "start", "angle"]),
 ];
 
 /// Keys with one number.
-const SINGLE: [&str; 3] = ["radius", "top_radius", "porosity"];
+const SINGLE: [&str; 5] = ["radius", "top_radius", "tube", "angle", "porosity"];
 
 /// A scene of solids with numbers of any size is measured or refused; with one key misspelled, missing or of the wrong kind it is refused
 /// by an error that names the key and the line.

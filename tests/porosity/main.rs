@@ -15,4 +15,5 @@ mod quadric;
 mod scenes;
 mod shadows;
 mod subdivide;
+mod torus;
 mod truth;

@@ -8,7 +8,7 @@ mod zones;
 use super::cli::PorosityArgs;
 use super::obstacles::{Wanted, obstacles};
 use super::progress::{Progress, print};
-use super::stages::{load, measure, need_surfaces, threads};
+use super::stages::{load, measure, need_convex, need_surfaces, threads};
 use super::streams::{self, INPUT, is_stream, text_of};
 use super::template;
 use crate::error::Result;
@@ -35,6 +35,9 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let (bodies, own_grid) = load(&args.scene, &mut progress)?;
         if args.method == Method::Surface {
             need_surfaces(&bodies)?;
+        }
+        if args.method == Method::Gjk {
+            need_convex(&bodies)?;
         }
         let mut remarks = Vec::new();
         let edges = match &args.grid {

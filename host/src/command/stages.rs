@@ -4,7 +4,8 @@ use crate::command::cli::SceneArgs;
 use crate::command::progress::Progress;
 use crate::command::streams::{INPUT, is_stream, read_input};
 use crate::error::{Error, Result};
-use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body, SolidSummary};
+use crate::geometry::form::Form;
 use crate::geometry::read;
 use crate::geometry::scene;
 use crate::geometry::unit::Unit;
@@ -124,6 +125,22 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
         ));
     }
     Ok(result)
+}
+
+/// Subdivision by GJK takes convex solids; a torus is none.
+///
+/// # Errors
+/// The first solid that is none, by its name.
+pub fn need_convex(bodies: &Bodies) -> Result<()> {
+    let bent =
+        |s: &SolidSummary| bodies.bodies[s.bodies.clone()].iter().any(|b| matches!(b.form, Some(Form::Torus(_))));
+    match bodies.solids.iter().find(|s| bent(s)) {
+        None => Ok(()),
+        Some(solid) => Err(Error::new(format!(
+            "{}: solid \"{}\": a {} is not convex, as --method gjk needs solids to be: use --method auto",
+            solid.scene, solid.name, solid.shape
+        ))),
+    }
 }
 
 /// Ask for the memory of the fields before work begins: a failure half way could not be reported.

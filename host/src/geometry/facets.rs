@@ -4,6 +4,7 @@ use super::bodies::Body;
 use super::form::Form;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use voidage_core::torus::TorusShape;
 
 /// Facets from pole to pole of a ball, and what makes its surface that of the true one.
 const BALL_STEPS: usize = AROUND / 2;
@@ -46,8 +47,43 @@ pub fn triangles(form: &Form) -> Vec<[DVec3; 3]> {
             profile.insert(AROUND / 2 + 1, (s.radius, length));
             revolve(axis, &profile, |p| s.from + p)
         }
+        Form::Torus(s) => bend(s),
         Form::Box(_) | Form::Hull(_) => Vec::new(),
     }
+}
+
+/// A torus or a part of one.
+fn bend(shape: &TorusShape<DVec3>) -> Vec<[DVec3; 3]> {
+    let axis = (shape.axis / shape.axis.abs().max_element()).normalize();
+    let start = shape.start / shape.start.abs().max_element();
+    let start = (start - axis * axis.dot(start)).normalize();
+    let whole = shape.angle >= 360.0;
+    let along = ((shape.angle / 360.0 * AROUND as f64).ceil() as usize).max(1);
+    let place = |i: usize, j: usize| {
+        let i = if whole { i % along } else { i };
+        let (turn, around) =
+            (shape.angle.to_radians() * i as f64 / along as f64, TAU * (j % AROUND) as f64 / AROUND as f64);
+        let out = start * turn.cos() + axis.cross(start) * turn.sin();
+        // The way around the ring is that of the true one only in the middle of its tube.
+        let tube = shape.tube * widened();
+        shape.center + out * (shape.radius + tube * around.cos()) + axis * (tube * around.sin())
+    };
+    let mut triangles = Vec::new();
+    for (i, j) in (0..along).flat_map(|i| (0..AROUND).map(move |j| (i, j))) {
+        let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+        triangles.extend([[a, c, b], [a, d, c]]);
+    }
+    if !whole {
+        for j in 1..AROUND - 1 {
+            triangles.push([place(0, 0), place(0, j), place(0, j + 1)]);
+            triangles.push([place(along, 0), place(along, j + 1), place(along, j)]);
+        }
+    }
+    let volume: f64 = triangles.iter().map(|[a, b, c]| (*a - shape.center).dot((*b - *a).cross(*c - *a))).sum();
+    if volume < 0.0 {
+        triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    triangles
 }
 
 /// Half a circle of radius 1 about the origin, from the lower pole: distance from the axis, and height.

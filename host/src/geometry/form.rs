@@ -1,12 +1,13 @@
-//! Convex bodies known by formula, in their place: what the recursion by GJK works on.
+//! Bodies known by formula, in their place: all convex but tori.
 
 use glam::DVec3;
 use std::sync::Arc;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::convex::support::{Support, Transformed};
 use voidage_core::number::aabb::Aabb;
+use voidage_core::torus::{TorusShape, TorusSolid};
 
-/// A convex body in its place, in metres.
+/// A body in its place, in metres.
 #[derive(Debug, Clone)]
 pub enum Form {
     /// A ball.
@@ -21,6 +22,8 @@ pub enum Form {
     Capsule(Capsule<DVec3>),
     /// A cone with a flat base, whole or truncated.
     Cone(Cone<DVec3>),
+    /// A torus or a part of one, a pipe bend: not convex.
+    Torus(TorusShape<DVec3>),
     /// The convex hull of its corners; boxes that are turned, too.
     Hull(Arc<[DVec3]>),
 }
@@ -36,6 +39,12 @@ impl Form {
             Form::Cylinder(s) => around(s),
             Form::Capsule(s) => around(s),
             Form::Cone(s) => around(s),
+            Form::Torus(s) => {
+                let room = DVec3::splat((s.radius + s.tube) * (1.0 + SUPPORT_ROUNDING));
+                TorusSolid::new(s).map_or([s.center - room, s.center + room], |solid| {
+                    [0, 1].map(|end| DVec3::from_array([0, 1, 2].map(|axis| solid.extent(axis)[end])))
+                })
+            }
             Form::Hull(corners) => around(&Hull::new(corners)),
         }
     }

@@ -109,7 +109,7 @@ impl Known {
     }
 }
 
-/// A body without triangles; none if it should have some.
+/// A convex body without triangles; none if it is not convex, or should have some.
 #[must_use]
 pub fn round(form: &Form) -> Option<Convex<'static>> {
     Some(match form {
@@ -118,7 +118,7 @@ pub fn round(form: &Form) -> Option<Convex<'static>> {
         Form::Cylinder(s) => Convex::Cylinder(*s),
         Form::Capsule(s) => Convex::Capsule(*s),
         Form::Cone(s) => Convex::Cone(*s),
-        Form::Box(_) | Form::Hull(_) => return None,
+        Form::Torus(_) | Form::Box(_) | Form::Hull(_) => return None,
     })
 }
 

@@ -7,6 +7,7 @@ use super::convex::{Convex, Known, faceted, is_closed, round};
 use super::formulas::{self, FormulaMemory, FormulaSolid};
 use super::{Leaf, Method, Options};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
+use crate::geometry::form::Form;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops;
@@ -49,17 +50,20 @@ impl Roads {
         };
         let mut convex: Vec<Option<Known>> = bodies.bodies.par_iter().map(known).collect();
         let mut formulas = Vec::new();
-        if options.method == Method::Auto {
-            for (body, known) in convex.iter_mut().enumerate() {
-                let Some(Known::Round(shape)) = known else { continue };
-                let form = FormulaSolid::new(body, Subdividable::bounds(shape), *shape);
-                if let Some(form) = form {
-                    formulas.push(form);
-                    *known = None;
+        for (body, known) in convex.iter_mut().enumerate() {
+            match (known.as_ref(), &bodies.bodies[body].form) {
+                // Whatever the method: no other measures it.
+                (_, Some(Form::Torus(shape))) => formulas.extend(FormulaSolid::torus(body, shape)),
+                (Some(Known::Round(shape)), _) if options.method == Method::Auto => {
+                    if let Some(form) = FormulaSolid::new(body, Subdividable::bounds(shape), *shape) {
+                        formulas.push(form);
+                        *known = None;
+                    }
                 }
+                _ => {}
             }
-            formulas::find_partners(&mut formulas);
         }
+        formulas::find_partners(&mut formulas);
         Roads { convex, formulas }
     }
 
@@ -256,11 +260,11 @@ impl RoadWithLists<'_, '_> {
                 tally = tally + subdivide(grid, kind, range, bodies, self.road.rule, &mut memory, fill).expect(FITS);
                 found
             };
-            let doubtful = formulas::add(&solids, grid, part, &mut memory, layer, union);
+            let doubtful = formulas::add(&solids, grid, part, &mut memory, layer, self.road.rule, union);
             if doubtful.is_empty() {
                 break;
             }
-            subdivided.extend(doubtful.iter().map(|&n| solids[n].convex));
+            subdivided.extend(doubtful.iter().filter_map(|&n| solids[n].convex()));
             let mut n = 0;
             solids.retain(|_| {
                 n += 1;
@@ -335,7 +339,11 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
     fn reach(&mut self, cell: Aabb<DVec3>) -> bool {
         let room = cell.size() * ROOM;
         let cell = Aabb { min: cell.min - room, max: cell.max + room };
-        let formulas = self.road.formulas.iter().filter(|f| f.bounds.touches(cell)).map(|f| f.convex);
+        let mut formulas = self.road.formulas.iter().filter(|f| f.bounds.touches(cell));
+        if formulas.clone().any(|f| f.torus_may_reach(cell)) {
+            return true;
+        }
+        let formulas = formulas.by_ref().filter_map(|f| f.convex());
         let near = self.road.bodies.iter().filter(|(bounds, _)| bounds.touches(cell));
         let bodies: Vec<_> = near.map(|(_, body)| *body).chain(formulas).collect();
         let rule = SubdivisionRule { leaf: subdivide::LeafRule::Half, depth: 0, tol: 1.0 };

@@ -122,6 +122,9 @@ fn possible(bodies: &Bodies, recipe: &Recipe) -> Result<()> {
     if recipe.options.method == Method::Surface {
         stages::need_surfaces(bodies)?;
     }
+    if recipe.options.method == Method::Gjk {
+        stages::need_convex(bodies)?;
+    }
     if recipe.precision == Precision::F32 { single::possible(bodies) } else { Ok(()) }
 }
 

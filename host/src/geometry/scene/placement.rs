@@ -91,7 +91,7 @@ fn rotation(keys: &mut StrictTable) -> Result<DMat3> {
 }
 
 /// Three numbers, or the name of a coordinate axis.
-fn axis(value: &DeValue) -> std::result::Result<DVec3, String> {
+pub(super) fn axis(value: &DeValue) -> std::result::Result<DVec3, String> {
     match value.as_str() {
         Some("x") => Ok(DVec3::X),
         Some("y") => Ok(DVec3::Y),

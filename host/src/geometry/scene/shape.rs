@@ -1,7 +1,7 @@
 //! The shapes of solids: their keys, checks, volumes, and their forms in place.
 
 use super::hull;
-use super::placement::Motion;
+use super::placement::{Motion, axis};
 use super::table::{self, StrictTable};
 use crate::error::Result;
 use crate::geometry::form::Form;
@@ -14,6 +14,7 @@ use std::sync::Arc;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
 use voidage_core::convex::support::Transformed;
 use voidage_core::number::aabb::Aabb;
+use voidage_core::torus::{TorusShape, TorusSolid};
 
 /// A shape as the scene describes it, before it is placed. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +53,8 @@ pub enum Shape {
         /// A cone's at `to`, 0 of an apex; of the others the same.
         top_radius: f64,
     },
+    /// `center`, `axis`, `radius`, `tube`; of pipe bends `start`, `angle`
+    Torus(TorusShape<DVec3>),
     /// `points`
     Hull(hull::HullSolid),
     /// `path`, `unit`, `scale`
@@ -75,13 +78,14 @@ pub enum Round {
 }
 
 /// The shapes, each with the keys it must have and those it may have.
-pub const SHAPES: [(&str, &[&str], &[&str]); 8] = [
+pub const SHAPES: [(&str, &[&str], &[&str]); 9] = [
     ("sphere", &["center", "radius"], &[]),
     ("ellipsoid", &["center", "semi_axes"], &[]),
     ("box", &["min", "max"], &[]),
     ("cylinder", &["from", "to", "radius"], &[]),
     ("capsule", &["from", "to", "radius"], &[]),
     ("cone", &["from", "to", "radius"], &["top_radius"]),
+    ("torus", &["center", "axis", "radius", "tube"], &["start", "angle"]),
     ("hull", &["points"], &[]),
     ("file", &["path"], &["unit", "scale"]),
 ];
@@ -155,6 +159,7 @@ impl Shape {
             "cylinder" => round(Round::Cylinder, keys),
             "capsule" => round(Round::Capsule, keys),
             "cone" => round(Round::Cone, keys),
+            "torus" => torus(keys),
             "hull" => {
                 let points = keys.need("points", table::list(table::point))?;
                 hull::HullSolid::new(&points).map(Shape::Hull).map_err(|reason| keys.wrong("points", reason))
@@ -173,6 +178,7 @@ impl Shape {
             Shape::Round { kind: Round::Cylinder, .. } => "cylinder",
             Shape::Round { kind: Round::Capsule, .. } => "capsule",
             Shape::Round { kind: Round::Cone, .. } => "cone",
+            Shape::Torus(_) => "torus",
             Shape::Hull(_) => "hull",
             Shape::File { .. } => "file",
         }
@@ -182,7 +188,9 @@ impl Shape {
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         match self {
-            Shape::Sphere { center, .. } | Shape::Ellipsoid { center, .. } => *center,
+            Shape::Sphere { center, .. }
+            | Shape::Ellipsoid { center, .. }
+            | Shape::Torus(TorusShape { center, .. }) => *center,
             Shape::Box { min, max } => middle(*min, *max),
             Shape::Round { from, to, .. } => middle(*from, *to),
             Shape::Hull(hull) => {
@@ -205,6 +213,8 @@ impl Shape {
                 let straight = PI / 3.0 * squares * (to - from).length();
                 straight + if *kind == Round::Capsule { 4.0 / 3.0 * PI * radius.powi(3) } else { 0.0 }
             }
+            // Pappus: the disc's area times the way of its centre.
+            Shape::Torus(TorusShape { radius, tube, angle, .. }) => PI * tube * tube * angle.to_radians() * radius,
             Shape::Hull(hull) => hull.volume(),
             Shape::File { .. } => 0.0,
         }
@@ -229,6 +239,11 @@ impl Shape {
                 Round::Capsule => Form::Capsule(Capsule { from: at(from), to: at(to), radius: *radius }),
                 Round::Cone => Form::Cone(Cone::truncated(at(from), at(to), *radius, *top_radius)),
             },
+            Shape::Torus(torus) => {
+                let turn = |v: DVec3| if motion.turn.is_some() { motion.matrix() * v } else { v };
+                let (axis, start) = (turn(torus.axis), turn(torus.start));
+                Form::Torus(TorusShape { center: at(&torus.center), axis, start, ..*torus })
+            }
             Shape::Hull(hull) => Form::Hull(hull.corners.iter().map(at).collect::<Arc<[_]>>()),
             Shape::File { .. } => return None,
         })
@@ -243,6 +258,41 @@ impl Shape {
             _ => Vec::new(),
         }
     }
+}
+
+/// A ring, or a bend of a pipe.
+fn torus(keys: &mut StrictTable) -> Result<Shape> {
+    let center = keys.need("center", table::point)?;
+    let axis = keys.need("axis", axis)?;
+    let (radius, tube) = (keys.need("radius", table::positive)?, keys.need("tube", table::positive)?);
+    let start = keys.get("start", self::axis)?;
+    let angle = keys.get("angle", table::positive)?;
+    if tube > radius {
+        return Err(keys.wrong(
+            "tube",
+            format!("({tube}) must not be above radius ({radius}): the ring would run through its own axis"),
+        ));
+    }
+    if angle.is_some_and(|angle| angle > 360.0) {
+        return Err(keys.wrong("angle", "must not be above 360 degrees"));
+    }
+    if !(axis.abs().max_element() > 0.0) {
+        return Err(keys.wrong("axis", "has no direction"));
+    }
+    if angle.is_some() != start.is_some() {
+        let (given, other) = if angle.is_some() { ("angle", "start") } else { ("start", "angle") };
+        return Err(keys.wrong(given, format!("needs {other}: a bend begins at start and goes on for angle degrees")));
+    }
+    let start = start.unwrap_or_else(|| axis.any_orthonormal_vector());
+    let shape = TorusShape { center, axis, start, radius, tube, angle: angle.unwrap_or(360.0) };
+    if TorusSolid::new(&shape).is_none() {
+        let key = if angle.is_some() { "start" } else { "axis" };
+        return Err(keys.wrong(
+            key,
+            "and the other keys leave no ring: start must point away from the axis, lengths lie between 1e-30 and 1e30",
+        ));
+    }
+    Ok(Shape::Torus(shape))
 }
 
 fn middle(a: DVec3, b: DVec3) -> DVec3 {

@@ -1,0 +1,429 @@
+//! What a torus has of a rectangle in a grid plane: area, and the flux of a field that is tangent to it.
+//!
+//! The field ρ ψ e_φ, ψ the azimuth from a reference, has divergence 1 and no component across the torus or any surface of revolution. Through a
+//! plane with normal n it carries ψ p·(n × a). Over a line of the plane that is integrated in closed form, piece by piece; over the lines by
+//! Gauss and Kronrod's fifteen points between all places where something changes: where the sides of the rectangle pierce the solid,
+//! where lines touch it, where flat ends meet it. Square roots at both ends of such a panel are removed by v = m − w cos t. A panel is
+//! halved until both rules agree.
+//!
+//! In planes across the axis the section is a ring between two circles, and exact.
+
+use super::disc::{self, Polygon};
+use super::ring::{P2, P3, Ring, ahead, cross2, dot2, length2};
+use super::touching::{Events, Lines, azimuths, chord};
+use crate::number::real::Real;
+use core::f64::consts::PI;
+use heapless::Vec;
+
+/// The two axes after one, so that all three turn to the right.
+#[inline(always)]
+pub(super) const fn others(axis: usize) -> [usize; 2] {
+    [[1, 2], [2, 0], [0, 1]][axis]
+}
+
+/// A rectangle in a plane across axis `n`, from the centre, in the order of [`others`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rectangle {
+    pub n: usize,
+    pub h: f64,
+    pub u: P2,
+    pub v: P2,
+}
+
+impl Rectangle {
+    pub fn place(&self, u: f64, v: f64) -> P3 {
+        let mut p = [0.0; 3];
+        let [iu, iv] = others(self.n);
+        (p[self.n], p[iu], p[iv]) = (self.h, u, v);
+        p
+    }
+
+    pub fn middle(&self) -> P3 {
+        self.place((self.u[0] + self.u[1]) * 0.5, (self.v[0] + self.v[1]) * 0.5)
+    }
+
+    fn sizes(&self) -> P2 {
+        [self.u[1] - self.u[0], self.v[1] - self.v[0]]
+    }
+
+    fn corners(&self) -> [P3; 4] {
+        let ([u0, u1], [v0, v1]) = (self.u, self.v);
+        [self.place(u0, v0), self.place(u1, v0), self.place(u1, v1), self.place(u0, v1)]
+    }
+}
+
+/// What a solid has of a rectangle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Section {
+    pub area: f64,
+    /// ∫ p·(n × a) dA: by how much the flux grows with the angle from the reference.
+    pub moment: f64,
+    pub flux: f64,
+    /// Of the area, as a share of the rectangle; of the flux, as one of the rectangle times its mean size.
+    pub error: f64,
+    pub whole: bool,
+}
+
+/// From where the azimuth counts: a direction in the ring's plane. With `cut` the azimuth leaps at its opposite.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reference {
+    pub toward: P2,
+    pub cut: bool,
+}
+
+/// Panels of one rectangle that wait.
+const WAITING: usize = 48;
+
+/// A panel is halved so often at most.
+const MOST_HALVINGS: u8 = 36;
+
+/// Of thousands of faces of random tori none was off by a tenth of this more than both rules differed.
+const MEASURED: f64 = 1e-10;
+
+/// What both rules may differ by, as a share. The coarser one is that far off, the finer one hardly ever.
+const ERROR: f64 = 1e-12;
+
+/// Nodes and weights of Kronrod's rule, and of Gauss' in every other node; the last is the middle.
+const NODES: [[f64; 3]; 8] = [
+    [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
+    [0.949_107_912_342_758_5, 0.063_092_092_629_978_56, 0.129_484_966_168_869_7],
+    [0.864_864_423_359_769_1, 0.104_790_010_322_250_18, 0.0],
+    [0.741_531_185_599_394_4, 0.140_653_259_715_525_92, 0.279_705_391_489_276_64],
+    [0.586_087_235_467_691_1, 0.169_004_726_639_267_9, 0.0],
+    [0.405_845_151_377_397_2, 0.190_350_578_064_785_4, 0.381_830_050_505_118_93],
+    [0.207_784_955_007_898_47, 0.204_432_940_075_298_9, 0.0],
+    [0.0, 0.209_482_141_084_727_82, 0.417_959_183_673_469_4],
+];
+
+/// Length of the runs of a line, their moment and their flux.
+type Sums = [f64; 3];
+
+fn plus(a: Sums, b: Sums, factor: f64) -> Sums {
+    [0, 1, 2].map(|n: usize| a[n] + b[n] * factor)
+}
+
+impl Ring {
+    /// What the solid has of a rectangle; the azimuth of the flux counts from the rectangle's middle, or from a reference.
+    pub fn section(&self, face: &Rectangle, reference: Option<Reference>) -> Section {
+        let [du, dv] = face.sizes();
+        let half = length2([du, dv]) * 0.5;
+        let outside = self.outside(face.middle());
+        if outside > half * (1.0 + 1e-9) {
+            return Section::default();
+        }
+        let (held, missed) = self.beside_ends(face.corners().into_iter());
+        if is_along(&self.frame[2], face.n) {
+            return self.ring_between_circles(face);
+        }
+        let flush = self.ends.is_some() && self.lies_in_end(face);
+        if missed && !flush {
+            return Section::default();
+        }
+        let middle = self.local(face.middle());
+        let reference = reference.unwrap_or(Reference { toward: [middle[0], middle[1]], cut: false });
+        let lines = LinesOfFace { ring: self, face, reference, axis: self.axis_across(face.n) };
+        let whole = held && outside < -half * (1.0 + 1e-9);
+        let mut section = lines.integral(&if whole && !reference.cut { Events::new() } else { lines.events() });
+        if whole {
+            section.area = du * dv;
+        }
+        Section { whole, ..section }
+    }
+
+    /// Components of the axis along u and v.
+    fn axis_across(&self, n: usize) -> P2 {
+        others(n).map(|m| self.frame[2][m])
+    }
+
+    /// The plane of a rectangle is that of an end, and the solid lies on one side.
+    fn lies_in_end(&self, face: &Rectangle) -> bool {
+        face.h == 0.0 && self.ends.is_some_and(|ends| ends.inward.iter().any(|inward| is_along(inward, face.n)))
+    }
+
+    /// In a plane across the axis.
+    fn ring_between_circles(&self, face: &Rectangle) -> Section {
+        let square = (self.tube - face.h) * (self.tube + face.h);
+        if !(square > 0.0) {
+            return Section::default();
+        }
+        let half = Real::sqrt(square);
+        let mut rectangle = Polygon::new();
+        for corner in face.corners() {
+            let [u, v] = others(face.n);
+            let _ = rectangle.push([corner[u], corner[v]]);
+        }
+        let ring = |polygon: &Polygon| {
+            disc::moments(self.radius + half, polygon).0 - disc::moments(self.radius - half, polygon).0
+        };
+        let area = match &self.ends {
+            None => ring(&rectangle),
+            Some(ends) => {
+                let [u, v] = others(face.n);
+                let sign = if ends.wide { -1.0 } else { 1.0 };
+                let mut polygon = rectangle.clone();
+                for inward in &ends.inward {
+                    polygon = disc::cut(&polygon, 0.0, [inward[u] * sign, inward[v] * sign]);
+                }
+                if ends.wide { ring(&rectangle) - ring(&polygon) } else { ring(&polygon) }
+            }
+        };
+        let [du, dv] = face.sizes();
+        let whole = area >= du * dv * (1.0 - 64.0 * f64::EPSILON);
+        Section { area: area.max(0.0), error: ROUNDING * (1.0 + self.radius / du.min(dv)), whole, ..Section::default() }
+    }
+
+    /// ∫ ρ dA over what a cell has of the disc of an end, or of a cut through a whole torus, towards a direction.
+    pub fn moment_of_disc(&self, toward: P2, sides: &[P2; 3]) -> f64 {
+        let [e, f, a] = self.frame;
+        let r = self.tube;
+        let mut polygon = Polygon::new();
+        for corner in [[-r, -r], [r, -r], [r, r], [-r, r]] {
+            let _ = polygon.push(corner);
+        }
+        for (n, [lo, hi]) in sides.iter().enumerate() {
+            let (out, up) = (toward[0] * e[n] + toward[1] * f[n], a[n]);
+            let center = self.radius * out;
+            polygon = disc::cut(&polygon, center - lo, [out, up]);
+            polygon = disc::cut(&polygon, hi - center, [-out, -up]);
+        }
+        let (area, first) = disc::moments(r, &polygon);
+        self.radius * area + first[0]
+    }
+}
+
+/// A vector has no component but one.
+fn is_along(v: &P3, n: usize) -> bool {
+    others(n).into_iter().all(|m| v[m] == 0.0)
+}
+
+/// What rounding takes of a closed form, as a share.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The lines along u of a rectangle.
+struct LinesOfFace<'a> {
+    ring: &'a Ring,
+    face: &'a Rectangle,
+    reference: Reference,
+    axis: P2,
+}
+
+impl LinesOfFace<'_> {
+    /// Where along v the runs of the lines change their kind.
+    fn events(&self) -> Events {
+        let Rectangle { n, h, u: [u0, u1], v: [v0, v1] } = *self.face;
+        let (ring, [iu, iv]) = (self.ring, others(n));
+        let mut found = Events::new();
+        for u in [u0, u1] {
+            let line = ring.line(iv, self.face.place(u, 0.0));
+            for run in ring.runs(&line, v0, v1) {
+                let _ = found.push(run[0]);
+                let _ = found.push(run[1]);
+            }
+        }
+        let middle = ring.local(self.face.middle());
+        let half = length2(self.face.sizes()) * 0.5;
+        let lines = Lines { n: ring.axis(n), u: ring.axis(iu), v: ring.axis(iv), h };
+        lines.touched(ring, azimuths([middle[0], middle[1]], half), &mut found);
+        if let Some(ends) = &ring.ends {
+            ends.toward.iter().for_each(|toward| self.events_of_disc(*toward, &mut found));
+        } else if self.reference.cut {
+            self.events_of_disc(self.reference.toward.map(|x| -x), &mut found);
+        }
+        found.retain(|v| *v > v0 && *v < v1);
+        found.sort_unstable_by(f64::total_cmp);
+        found
+    }
+
+    /// Where the disc of an end meets the plane: the ends of the chord, and where it crosses the rectangle's sides.
+    fn events_of_disc(&self, toward: P2, found: &mut Events) {
+        let Rectangle { n, h, u, .. } = *self.face;
+        let (ring, [iu, iv]) = (self.ring, others(n));
+        let along = |m: usize| {
+            let axis = ring.axis(m);
+            [dot2([axis[0], axis[1]], toward), axis[2]]
+        };
+        let (normal, to_u, to_v) = (along(n), along(iu), along(iv));
+        let place = |form: P2, p: P2| form[0] * (ring.radius + p[0]) + form[1] * p[1];
+        let Some([from, to]) = chord(normal, h - ring.radius * normal[0], ring.tube) else { return };
+        let [a, b] = [from, to].map(|p| [place(to_u, p), place(to_v, p)]);
+        let _ = found.push(a[1]);
+        let _ = found.push(b[1]);
+        for side in u {
+            let part = (side - a[0]) / (b[0] - a[0]);
+            if part > 0.0 && part < 1.0 {
+                let _ = found.push(a[1] + part * (b[1] - a[1]));
+            }
+        }
+    }
+
+    /// Over the panels between events.
+    fn integral(&self, events: &[f64]) -> Section {
+        let [v0, v1] = self.face.v;
+        let [du, dv] = self.face.sizes();
+        let (mut total, mut error) = ([0.0; 3], 0.0);
+        let mut before = v0;
+        for &next in events.iter().chain([&v1]) {
+            // Slivers that rounding makes of one event have no area.
+            if next - before > 4.0 * f64::EPSILON * (v1 - v0) {
+                let mut from = before;
+                for to in self.overlooked(before, next).into_iter().chain([next]) {
+                    let (sums, worst) = self.panel(from, to);
+                    total = plus(total, sums, 1.0);
+                    error += worst;
+                    from = to;
+                }
+                before = next;
+            }
+        }
+        let reach = 1.0 + length2([v0.abs().max(v1.abs()), self.face.h]) / du.min(dv);
+        let error = error / (du * dv) + ROUNDING * reach + MEASURED;
+        Section { area: total[0], moment: total[1], flux: total[2], error, whole: false }
+    }
+
+    /// What changes so near the ends of a panel that no node of the rules sees it: found by halving.
+    fn overlooked(&self, from: f64, to: f64) -> Vec<f64, 2> {
+        let width = to - from;
+        let mut found = Vec::new();
+        for (end, sign) in [(from, 1.0), (to, -1.0)] {
+            let (mut near, mut far) = (end + sign * width * 1e-13, end + sign * width * 2e-5);
+            let kind = self.kind(far);
+            if self.kind(near) == kind {
+                continue;
+            }
+            for _ in 0..40 {
+                let middle = (near + far) * 0.5;
+                if self.kind(middle) == kind { far = middle } else { near = middle }
+            }
+            let _ = found.push(far);
+        }
+        found
+    }
+
+    /// How many runs a line has, and which of them begin or end at the rectangle's sides.
+    fn kind(&self, v: f64) -> (usize, u32) {
+        let Rectangle { n, u: [u0, u1], .. } = *self.face;
+        let line = self.ring.line(others(n)[0], self.face.place(0.0, v));
+        let runs = self.ring.runs(&line, u0, u1);
+        let ends = runs.iter().map(|[a, b]| u32::from(*a == u0) + 2 * u32::from(*b == u1));
+        (runs.len(), ends.fold(0, |all, end| all * 4 + end))
+    }
+
+    /// Over one panel, and by how much both rules differ.
+    fn panel(&self, from: f64, to: f64) -> (Sums, f64) {
+        let half = (to - from) * 0.5;
+        let at = |t: f64| {
+            // Near the ends, from the ends: v = m − w cos t.
+            let (sine, versine) = (libm::sin(t), libm::sin(t * 0.5));
+            let v = if t < PI * 0.5 {
+                from + 2.0 * half * versine * versine
+            } else {
+                let other = libm::cos(t * 0.5);
+                to - 2.0 * half * other * other
+            };
+            self.over_line(v).map(|x| x * sine * half)
+        };
+        let [du, dv] = self.face.sizes();
+        let size = (du + dv) * 0.5;
+        let scale = |d: Sums| (d[0].abs() + d[2].abs() / size) / (du * dv);
+        let mut waiting: Vec<(f64, f64, u8), WAITING> = Vec::new();
+        let _ = waiting.push((0.0, PI, 0));
+        let (mut total, mut worst) = ([0.0; 3], 0.0);
+        while let Some((lo, hi, depth)) = waiting.pop() {
+            let (m, w) = ((lo + hi) * 0.5, (hi - lo) * 0.5);
+            let (mut fine, mut coarse) = ([0.0; 3], [0.0; 3]);
+            for [x, weight, rough] in NODES {
+                let values = if x == 0.0 { at(m) } else { plus(at(m - w * x), at(m + w * x), 1.0) };
+                fine = plus(fine, values, weight * w);
+                coarse = plus(coarse, values, rough * w);
+            }
+            let apart = scale(plus(fine, coarse, -1.0));
+            let enough = !(apart > ERROR) || depth >= MOST_HALVINGS || waiting.len() + 2 > WAITING;
+            if enough {
+                total = plus(total, fine, 1.0);
+                worst += apart * (du * dv);
+            } else {
+                let _ = waiting.push((lo, m, depth + 1));
+                let _ = waiting.push((m, hi, depth + 1));
+            }
+        }
+        (total, worst)
+    }
+
+    /// Over the runs of the line at a coordinate.
+    fn over_line(&self, v: f64) -> Sums {
+        let Rectangle { n, u: [u0, u1], .. } = *self.face;
+        let line = self.ring.line(others(n)[0], self.face.place(0.0, v));
+        let (constant, slope) = (self.axis[0] * v, -self.axis[1]);
+        let mut sums = [0.0; 3];
+        let (alpha, beta) = ([line.at[0], line.at[1]], [line.along[0], line.along[1]]);
+        for [from, to] in self.ring.runs(&line, u0, u1) {
+            for [from, to] in self.pieces(alpha, beta, from, to).into_iter().flatten() {
+                let (m, w) = ((from + to) * 0.5, (to - from) * 0.5);
+                sums[0] += 2.0 * w;
+                sums[1] += 2.0 * w * (constant + slope * m);
+                sums[2] += self.flux(alpha, beta, [constant, slope], [m, w]);
+            }
+        }
+        sums
+    }
+
+    /// A run, in two if the azimuth leaps in it.
+    fn pieces(&self, alpha: P2, beta: P2, from: f64, to: f64) -> [Option<[f64; 2]>; 2] {
+        if self.reference.cut {
+            let toward = self.reference.toward;
+            let at = -cross2(alpha, toward) / cross2(beta, toward);
+            let behind = dot2(alpha, toward) + at * dot2(beta, toward) < 0.0;
+            if behind && at > from && at < to {
+                return [Some([from, at]), Some([at, to])];
+            }
+        }
+        [Some([from, to]), None]
+    }
+
+    /// ∫ ψ (constant + slope u) du over m ± w, in pieces that are short beside their distance from the axis.
+    fn flux(&self, alpha: P2, beta: P2, [constant, slope]: P2, [m, w]: P2) -> f64 {
+        if self.axis == [0.0, 0.0] {
+            return 0.0;
+        }
+        let near = |t: f64| length2([alpha[0] + t * beta[0], alpha[1] + t * beta[1]]);
+        let size = length2(beta) * w;
+        let closest = (-dot2(alpha, beta) / dot2(beta, beta)).clamp(m - w, m + w);
+        let least = if size > 0.0 { near(closest) } else { 1.0 };
+        let count = libm::ceil((size / (least * 0.25)).min(64.0)).max(1.0);
+        let short = w / count;
+        let mut sum = 0.0;
+        let mut n = 0.0;
+        while n < count {
+            let place = m - w + (2.0 * n + 1.0) * short;
+            sum += self.short(alpha, beta, [constant + slope * place, slope * short], place, short);
+            n += 1.0;
+        }
+        sum
+    }
+
+    /// The same over a short piece, ψ by the series of the logarithm about its middle.
+    fn short(&self, alpha: P2, beta: P2, [constant, slope]: P2, m: f64, w: f64) -> f64 {
+        let q = [alpha[0] + m * beta[0], alpha[1] + m * beta[1]];
+        let square = dot2(q, q);
+        let psi = ahead(q, self.reference.toward);
+        let mut sum = 2.0 * psi * constant;
+        if square > 0.0 {
+            // z = β w / q
+            let z = [dot2(beta, q) * w / square, cross2(q, beta) * w / square];
+            let mut power = z;
+            let mut k = 1.0;
+            while k < 40.0 {
+                let term = power[1] / k;
+                sum += term * slope * 2.0 / (k + 2.0);
+                power = [-(power[0] * z[0] - power[1] * z[1]), -(power[0] * z[1] + power[1] * z[0])];
+                sum += power[1] / (k + 1.0) * constant * 2.0 / (k + 2.0);
+                power = [-(power[0] * z[0] - power[1] * z[1]), -(power[0] * z[1] + power[1] * z[0])];
+                k += 2.0;
+                if power[0].abs() + power[1].abs() < 1e-17 {
+                    break;
+                }
+            }
+        }
+        sum * w
+    }
+}

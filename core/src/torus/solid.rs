@@ -1,0 +1,460 @@
+//! The door of this room: a torus or a pipe bend, and what it tells of a layer.
+
+use super::ring::{Ends, P2, P3, Ring, ahead, dot, length2};
+use super::section::{Rectangle, Reference, Section, others};
+use crate::grid::Grid;
+use crate::grid::cell_range::RangeKind;
+use crate::number::real::{Real, Vector};
+use core::f64::consts::PI;
+use core::ops::Range;
+
+/// A torus, or a part of a turn of one between flat ends. Not convex.
+#[derive(Clone, Copy, Debug)]
+pub struct TorusSolid {
+    ring: Ring,
+}
+
+/// What a torus is made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorusShape<V: Vector> {
+    /// Centre of the ring.
+    pub center: V,
+    /// Along the axis of the ring, of any length.
+    pub axis: V,
+    /// From the axis to where a part of a turn begins; what it has along the axis does not count.
+    pub start: V,
+    /// Radius of the circle in the middle of the tube.
+    pub radius: V::Scalar,
+    /// Radius of the tube, not above that of the ring.
+    pub tube: V::Scalar,
+    /// Degrees from the start, counter-clockwise seen from the tip of the axis; 360 for a whole torus.
+    pub angle: f64,
+}
+
+/// Lengths beyond these are refused.
+const SIZES: Range<f64> = 1e-30..1e30;
+
+/// What rounding takes of a volume, as a share of a cell and for each of its sizes to the axis.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Room for rounding, as a share of coordinates and sizes.
+const ROOM: f64 = 1e-12;
+
+fn unit(v: P3) -> Option<P3> {
+    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    if !SIZES.contains(&largest) {
+        return None;
+    }
+    let v = v.map(|x| x / largest);
+    let length = Real::sqrt(dot(v, v));
+    Some(v.map(|x| x / length).map(|x| if x.abs() < 1e-120 { 0.0 } else { x }))
+}
+
+/// Cosine and sine of degrees, quarter turns exactly.
+fn turned(degrees: f64) -> P2 {
+    let quarters = degrees / 90.0;
+    if quarters == 1.0 {
+        [0.0, 1.0]
+    } else if quarters == 2.0 {
+        [-1.0, 0.0]
+    } else if quarters == 3.0 {
+        [0.0, -1.0]
+    } else {
+        let angle = degrees * (PI / 180.0);
+        [libm::cos(angle), libm::sin(angle)]
+    }
+}
+
+/// A cell's extent along each axis, from the centre.
+type Sides = [P2; 3];
+
+fn corners(sides: &Sides) -> impl Iterator<Item = P3> + Clone {
+    let [x, y, z] = *sides;
+    (0..8_usize).map(move |n| [x[n & 1], y[(n >> 1) & 1], z[(n >> 2) & 1]])
+}
+
+/// What a solid has of a face, and from where its azimuth counts.
+#[derive(Clone, Copy)]
+struct Face {
+    section: Section,
+    toward: P2,
+}
+
+impl TorusSolid {
+    /// None if a length leaves 10⁻³⁰ to 10³⁰, a direction is missing, the tube is wider than the ring, or the angle is not above 0 and up to 360.
+    #[must_use]
+    pub fn new<V: Vector>(shape: &TorusShape<V>) -> Option<Self> {
+        let number = |v: V| v.to_array().map(Real::to_f64);
+        let (center, axis, start) = (number(shape.center), unit(number(shape.axis))?, unit(number(shape.start))?);
+        let (radius, tube) = (shape.radius.to_f64(), shape.tube.to_f64());
+        let sizes = SIZES.contains(&radius) && SIZES.contains(&tube) && tube <= radius;
+        if !sizes || !center.iter().all(|x| x.abs() < SIZES.end) || !(shape.angle > 0.0 && shape.angle <= 360.0) {
+            return None;
+        }
+        let along = dot(start, axis);
+        let across = [0, 1, 2].map(|n: usize| start[n] - along * axis[n]);
+        if !(dot(across, across) > 1e-12) {
+            return None;
+        }
+        let across = unit(across)?;
+        let beside = [0, 1, 2].map(|n| {
+            let [u, v] = others(n);
+            axis[u] * across[v] - axis[v] * across[u]
+        });
+        let frame = [across, beside, axis];
+        let ends = (shape.angle < 360.0).then(|| {
+            let [c, s] = turned(shape.angle);
+            let global = |p: P2| [0, 1, 2].map(|n: usize| p[0] * across[n] + p[1] * beside[n]);
+            let inward = [global([0.0, 1.0]), global([s, -c])];
+            let toward = [[1.0, 0.0], [c, s]];
+            Ends { inward, toward, wide: shape.angle > 180.0, middle: turned(shape.angle * 0.5) }
+        });
+        Some(TorusSolid { ring: Ring { center, frame, radius, tube, ends } })
+    }
+
+    /// Its share of one cell, or of the face normal to an axis, and what that may be off by: of a box from `lo` to `hi`, which for a face is flat.
+    #[must_use]
+    pub fn share(&self, kind: RangeKind, lo: P3, hi: P3) -> (f64, f64) {
+        let ring = &self.ring;
+        let sides = [0, 1, 2].map(|n| [lo[n] - ring.center[n], hi[n] - ring.center[n]]);
+        if let RangeKind::Faces(axis) = kind {
+            let axis = axis.min(2);
+            let rectangle = ring.rectangle(axis, 0, &sides);
+            let section = ring.section(&rectangle, None);
+            let area = (rectangle.u[1] - rectangle.u[0]) * (rectangle.v[1] - rectangle.v[0]);
+            return (fraction(&section, area), section.error);
+        }
+        match ring.cell(&sides, None) {
+            Cell::Open => (0.0, 0.0),
+            Cell::Closed => (1.0, 0.0),
+            Cell::Cut { share, error, .. } => {
+                let beyond = (share - 1.0).max(-share).max(0.0);
+                if share.is_nan() { (0.0, 1.0) } else { (share.clamp(0.0, 1.0), error + beyond) }
+            }
+        }
+    }
+
+    /// May the solid reach a box? False is certain.
+    #[must_use]
+    pub fn may_reach(&self, lo: P3, hi: P3) -> bool {
+        let sides = [0, 1, 2].map(|n| [lo[n] - self.ring.center[n], hi[n] - self.ring.center[n]]);
+        let size = sides.map(|[lo, hi]| hi - lo);
+        let half = Real::sqrt(dot(size, size)) * 0.5;
+        let (_, missed) = self.ring.beside_ends(corners(&sides));
+        self.ring.outside(sides.map(|[lo, hi]| (lo + hi) * 0.5)) <= half * (1.0 + 1e-9) && !missed
+    }
+
+    /// Centres and inward normals of its flat ends, and the radius of both.
+    pub fn ends(&self) -> impl Iterator<Item = (P3, P3, f64)> {
+        let ring = self.ring;
+        let [e, f, _] = ring.frame;
+        let end = move |n: usize, ends: &Ends| {
+            let [x, y] = ends.toward[n];
+            let center = [0, 1, 2].map(|k: usize| ring.center[k] + ring.radius * (x * e[k] + y * f[k]));
+            (center, ends.inward[n], ring.tube)
+        };
+        ring.ends.into_iter().flat_map(move |ends| [end(0, &ends), end(1, &ends)])
+    }
+
+    /// Equal parts of it along the ring.
+    pub fn pieces(&self, count: u32) -> impl Iterator<Item = TorusSolid> {
+        let ring = self.ring;
+        let turn = ring.ends.map_or(2.0 * PI, |ends| {
+            let angle = ahead(ends.toward[1], ends.toward[0]);
+            if ends.wide && angle < 0.0 || angle <= 0.0 { angle + 2.0 * PI } else { angle }
+        });
+        let parts = f64::from(count.max(1));
+        (0..count.max(1)).map(move |n| {
+            let at = |part: u32| -> P2 {
+                match (part, ring.ends) {
+                    (0, _) => [1.0, 0.0],
+                    (part, Some(ends)) if part == count.max(1) => ends.toward[1],
+                    _ => [libm::cos(turn * f64::from(part) / parts), libm::sin(turn * f64::from(part) / parts)],
+                }
+            };
+            let (from, to) = (at(n), at(n + 1));
+            let middle = turn * (f64::from(n) + 0.5) / parts;
+            let [e, f, _] = ring.frame;
+            let global = |p: P2| [0, 1, 2].map(|k: usize| p[0] * e[k] + p[1] * f[k]);
+            let inward = [global([-from[1], from[0]]), global([to[1], -to[0]])];
+            let middle = [libm::cos(middle), libm::sin(middle)];
+            let ends = Ends { inward, toward: [from, to], wide: turn / parts > PI, middle };
+            TorusSolid { ring: Ring { ends: Some(ends), ..ring } }
+        })
+    }
+
+    /// A point inside, in the middle of the tube.
+    #[must_use]
+    pub fn middle(&self) -> P3 {
+        let ring = &self.ring;
+        let [x, y] = ring.ends.map_or([1.0, 0.0], |ends| ends.middle);
+        let [e, f, _] = ring.frame;
+        [0, 1, 2].map(|n| ring.center[n] + ring.radius * (x * e[n] + y * f[n]))
+    }
+
+    /// Radii of ring and tube together.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.ring.radius + self.ring.tube
+    }
+
+    /// Its outermost point along a direction.
+    #[must_use]
+    pub fn outermost(&self, direction: P3) -> P3 {
+        let p = self.ring.outermost(direction);
+        [0, 1, 2].map(|n| self.ring.center[n] + p[n])
+    }
+
+    /// Lowest and highest coordinate along an axis, with room for rounding.
+    #[must_use]
+    pub fn extent(&self, axis: usize) -> P2 {
+        let toward = |sign: f64| {
+            let mut direction = [0.0; 3];
+            if let Some(along) = direction.get_mut(axis) {
+                *along = sign;
+            }
+            self.outermost(direction).get(axis).copied().unwrap_or(f64::NAN)
+        };
+        let [lo, hi] = [toward(-1.0), toward(1.0)];
+        let room = (lo.abs().max(hi.abs()) + self.ring.radius + self.ring.tube) * ROOM;
+        [lo - room, hi + room]
+    }
+
+    /// Tells the shares in layer `k` as [`crate::quadric::QuadricSolid::layer`] does, each with what it may be off by. Returns by how much the worst
+    /// left 0 to 1 beyond that.
+    pub fn layer<R: Real>(
+        &self,
+        grid: &Grid<R>,
+        k: usize,
+        areas: bool,
+        visit: &mut impl FnMut(RangeKind, usize, f64, f64),
+    ) -> f64 {
+        let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
+        let Some(&[z0, z1]) = zs.get(k..).and_then(|e| e.first_chunk()) else { return 0.0 };
+        let z = [z0, z1].map(|z| z.to_f64());
+        let [lowest, highest] = self.extent(2);
+        if lowest > z[1] || highest < z[0] {
+            return 0.0;
+        }
+        let z = z.map(|z| z - self.ring.center[2]);
+        let [nx, ny, _] = grid.cells();
+        let rows = reached(ys, self.extent(1));
+        let cells = reached(xs, self.extent(0));
+        let mut told = Teller { ring: &self.ring, cells: [nx, ny], areas, worst: 0.0, visit };
+        for j in rows.clone() {
+            let Some(y) = side(ys, j, self.ring.center[1]) else { break };
+            let mut before = None;
+            for i in cells.clone() {
+                let Some(x) = side(xs, i, self.ring.center[0]) else { break };
+                told.cell([i, j], &[x, y, z], &mut before, [i + 1 == cells.end, j + 1 == rows.end]);
+            }
+        }
+        told.worst
+    }
+
+    /// Tells the shares in the z faces of plane `plane`, likewise.
+    pub fn plane<R: Real>(&self, grid: &Grid<R>, plane: usize, visit: &mut impl FnMut(RangeKind, usize, f64, f64)) {
+        let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
+        let Some(z) = zs.get(plane).map(|z| z.to_f64()) else { return };
+        let [lowest, highest] = self.extent(2);
+        if lowest > z || highest < z {
+            return;
+        }
+        let h = z - self.ring.center[2];
+        for j in reached(ys, self.extent(1)) {
+            let Some(v) = side(ys, j, self.ring.center[1]) else { break };
+            for i in reached(xs, self.extent(0)) {
+                let Some(u) = side(xs, i, self.ring.center[0]) else { break };
+                let section = self.ring.section(&Rectangle { n: 2, h, u, v }, None);
+                let share = fraction(&section, (u[1] - u[0]) * (v[1] - v[0]));
+                if share > 0.0 {
+                    visit(RangeKind::Faces(2), j * grid.cells()[0] + i, share, section.error);
+                }
+            }
+        }
+    }
+}
+
+/// The cells along an axis that an extent reaches or touches.
+fn reached<R: Real>(edges: &[R], [lo, hi]: P2) -> Range<usize> {
+    let first = edges.partition_point(|e| e.to_f64() < lo).saturating_sub(1);
+    first..edges.partition_point(|e| e.to_f64() <= hi).min(edges.len().saturating_sub(1))
+}
+
+fn side<R: Real>(edges: &[R], at: usize, center: f64) -> Option<P2> {
+    let [lo, hi] = [edges.get(at)?, edges.get(at + 1)?].map(|e| e.to_f64() - center);
+    Some([lo, hi])
+}
+
+fn fraction(section: &Section, area: f64) -> f64 {
+    if section.whole { 1.0 } else { (section.area / area).clamp(0.0, 1.0) }
+}
+
+struct Teller<'v, F> {
+    ring: &'v Ring,
+    cells: [usize; 2],
+    areas: bool,
+    worst: f64,
+    visit: &'v mut F,
+}
+
+impl<F: FnMut(RangeKind, usize, f64, f64)> Teller<'_, F> {
+    fn tell(&mut self, kind: RangeKind, at: usize, share: f64, error: f64) {
+        if share > 0.0 {
+            (self.visit)(kind, at, share, error);
+        }
+    }
+
+    /// A cell and its low faces, and high ones where none follows. `before` is the face that it shares with the cell before.
+    fn cell(&mut self, [i, j]: [usize; 2], sides: &Sides, before: &mut Option<Face>, last: [bool; 2]) {
+        let [nx, _] = self.cells;
+        let c = j * nx + i;
+        let size = sides.map(|[lo, hi]| hi - lo);
+        let places = [[c + j, c + j + 1], [c, c + nx], [c, c]];
+        let areas = self.areas;
+        let shown = |axis: usize, high: usize| areas && (high == 0 || (axis == 0 && last[0]) || (axis == 1 && last[1]));
+        match self.ring.cell(sides, before.take()) {
+            Cell::Open => {}
+            Cell::Closed => {
+                self.tell(RangeKind::Cells, c, 1.0, 0.0);
+                for axis in 0..3 {
+                    for high in (0..2).filter(|&high| shown(axis, high)) {
+                        self.tell(RangeKind::Faces(axis), places[axis][high], 1.0, 0.0);
+                    }
+                }
+            }
+            Cell::Cut { share, error, faces } => {
+                *before = Some(faces[0][1]);
+                let beyond = (share - 1.0).max(-share) - error;
+                self.worst = if share.is_nan() { f64::INFINITY } else { self.worst.max(beyond) };
+                self.tell(RangeKind::Cells, c, share.min(1.0), error);
+                for axis in 0..3 {
+                    let [u, v] = others(axis);
+                    for high in (0..2).filter(|&high| shown(axis, high)) {
+                        let section = faces[axis][high].section;
+                        let share = fraction(&section, size[u] * size[v]);
+                        self.tell(RangeKind::Faces(axis), places[axis][high], share, section.error);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What a solid has of a cell.
+#[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
+enum Cell {
+    Open,
+    Closed,
+    /// The share of the volume and what it may be off by; the faces, low and high.
+    Cut {
+        share: f64,
+        error: f64,
+        faces: [[Face; 2]; 3],
+    },
+}
+
+impl Ring {
+    /// A cell; the low face across x may be known.
+    fn cell(&self, sides: &Sides, low: Option<Face>) -> Cell {
+        let size = sides.map(|[lo, hi]| hi - lo);
+        let half = Real::sqrt(dot(size, size)) * 0.5;
+        let outside = self.outside(sides.map(|[lo, hi]| (lo + hi) * 0.5));
+        if outside > half * (1.0 + 1e-9) {
+            return Cell::Open;
+        }
+        let (held, missed) = self.beside_ends(corners(sides));
+        if held && outside < -half * (1.0 + 1e-9) {
+            return Cell::Closed;
+        }
+        let face = |n: usize, high: usize| self.face(n, high, sides);
+        let first = low.unwrap_or_else(|| face(0, 0));
+        let faces = [[first, face(0, 1)], [face(1, 0), face(1, 1)], [face(2, 0), face(2, 1)]];
+        let (mut share, mut error) = (0.0, 0.0);
+        if !missed {
+            (share, error) = self.volume(sides, &faces);
+            share /= size[0] * size[1] * size[2];
+        }
+        Cell::Cut { share, error, faces }
+    }
+
+    /// A side of a cell.
+    fn face(&self, n: usize, high: usize, sides: &Sides) -> Face {
+        let rectangle = self.rectangle(n, high, sides);
+        let [x, y, _] = self.local(rectangle.middle());
+        Face { section: self.section(&rectangle, None), toward: [x, y] }
+    }
+
+    fn rectangle(&self, n: usize, high: usize, sides: &Sides) -> Rectangle {
+        let [u, v] = others(n).map(|m| sides[m]);
+        Rectangle { n, h: sides[n][high & 1], u, v }
+    }
+
+    /// Volume in a cell from the fluxes through its sides and the ends in it, and what its share may be off by.
+    fn volume(&self, sides: &Sides, faces: &[[Face; 2]; 3]) -> (f64, f64) {
+        let width = |n: usize| sides[n][1] - sides[n][0];
+        let around_axis = self.axis_meets(sides);
+        let reference = if around_axis {
+            // The cut of a whole torus lies opposite the cell's middle, so that no side of the cell lies in it.
+            let [x, y, _] = self.local(sides.map(|[lo, hi]| (lo + hi) * 0.5));
+            let off = length2([x, y]) > 1e-3 * (width(0) + width(1) + width(2));
+            let toward = self.ends.as_ref().map_or(if off { [x, y] } else { [0.6, 0.8] }, |ends| ends.middle);
+            let toward = toward.map(|c| c / length2(toward));
+            Reference { toward, cut: self.ends.is_none() }
+        } else {
+            let [x, y, _] = self.local(sides.map(|[lo, hi]| (lo + hi) * 0.5));
+            Reference { toward: [x, y], cut: false }
+        };
+        let (mut volume, mut error) = (0.0, 0.0);
+        let mean = (width(0) + width(1) + width(2)) / 3.0;
+        for n in 0..3 {
+            for (high, sign) in [(0, -1.0), (1, 1.0)] {
+                let mut section = faces[n][high].section;
+                if section.area == 0.0 {
+                    continue;
+                }
+                if around_axis {
+                    section = self.section(&self.rectangle(n, high, sides), Some(reference));
+                } else {
+                    section.flux += ahead(faces[n][high].toward, reference.toward) * section.moment;
+                }
+                volume += sign * section.flux;
+                error += section.error * mean / width(n);
+            }
+        }
+        if reference.cut {
+            volume += 2.0 * PI * self.moment_of_disc(reference.toward.map(|x| -x), sides);
+        }
+        if let Some(ends) = &self.ends {
+            for (n, sign) in [(0, -1.0), (1, 1.0)] {
+                let heights = corners(sides).map(|p| dot(ends.inward[n], p));
+                // A cell before the end: if its side lies in the end's plane, the section there has been counted.
+                if heights.fold(f64::INFINITY, f64::min) < 0.0 {
+                    let toward = ends.toward[n];
+                    volume += sign * ahead(toward, reference.toward) * self.moment_of_disc(toward, sides);
+                }
+            }
+        }
+        let least = width(0).min(width(1)).min(width(2));
+        (volume, error + ROUNDING * (1.0 + (self.radius + self.tube) / least))
+    }
+
+    /// Does the axis meet a cell, or nearly?
+    fn axis_meets(&self, sides: &Sides) -> bool {
+        let axis = self.frame[2];
+        let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (&[lo, hi], along) in sides.iter().zip(axis) {
+            let room = (hi - lo) * 1e-3;
+            let (lo, hi) = (lo - room, hi + room);
+            if along == 0.0 {
+                if lo > 0.0 || hi < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (s, t) = (lo / along, hi / along);
+            (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
+        }
+        first <= last
+    }
+}
