@@ -108,7 +108,7 @@ const WRONG: [(&str, &[&str]); 53] = [
     ("[[solid]]@\nshape = \"box\"", &["solid 1", "box takes min, max; min, max are missing"]),
     ("[[solid]]\nname = 7@", &["name takes a text"]),
     ("[[solid]]@\nname = \"a\"", &["solid \"a\"", "shape is missing"]),
-    ("[[solid]]\nname = \"a\"\nshape = \"torus\"@", &["torus", "known: sphere"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"donut\"@", &["donut", "known: sphere"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = -1@",
         &["solid \"a\"", "radius must be positive", "-1"],
