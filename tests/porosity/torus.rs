@@ -176,7 +176,7 @@ fn cells_agree_with_quadrature_about_the_axis() {
             let lo = DVec3::new(edges[i], edges[j], edges[k]);
             let hi = DVec3::new(edges[i + 1], edges[j + 1], edges[k + 1]);
             // Midpoints: circles that touch the sides of the box leave kinks, of which three rules tell.
-            let truths = [200, 317, 400].map(|steps| volume_about_axis(&shape, lo, hi, steps) / size);
+            let truths = [300, 475, 600].map(|steps| volume_about_axis(&shape, lo, hi, steps) / size);
             let [least, most] =
                 [truths.iter().copied().fold(1.0, f64::min), truths.iter().copied().fold(0.0, f64::max)];
             let room = 1e-6 + 2.0 * (most - least);
