@@ -89,7 +89,7 @@ fn warnings_name_the_solid() {
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
-const WRONG: [(&str, &[&str]); 43] = [
+const WRONG: [(&str, &[&str]); 45] = [
     (
         "[[solid]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"z\", angel = 3 }@",
         &["column 24: solid 1: rotate: key angel is not known here; did you mean angle?"],
@@ -131,6 +131,14 @@ const WRONG: [(&str, &[&str]); 43] = [
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]@", &["above min"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = -0.5@",
+        &["top_radius", "must not be below 0"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = 0.5@",
+        &["cylinder takes from, to, radius; not top_radius"],
+    ),
     ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = []@", &["at least 4 points, not 0"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0.3,0.2,0]]@",
