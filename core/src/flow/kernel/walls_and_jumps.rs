@@ -201,7 +201,7 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
     fn beside(&self, i: usize) -> [Option<[usize; D]>; 2] {
         let mut face = self.at;
         face[0] = i;
-        self.medium.beside(self.d, face, self.slab.periodic[self.d])
+        self.medium.mesh.beside(self.d, face, self.slab.periodic[self.d])
     }
 
     /// How far the gas passes a face as a contraction.
