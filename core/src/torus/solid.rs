@@ -88,7 +88,8 @@ impl TorusSolid {
         let (center, axis, start) = (number(shape.center), unit(number(shape.axis))?, unit(number(shape.start))?);
         let (radius, tube) = (shape.radius.to_f64(), shape.tube.to_f64());
         let sizes = SIZES.contains(&radius) && SIZES.contains(&tube) && tube <= radius;
-        if !sizes || !center.iter().all(|x| x.abs() < SIZES.end) || !(shape.angle > 0.0 && shape.angle <= 360.0) {
+        let placed = center.iter().all(|x| x.abs() < SIZES.end);
+        if !(sizes && placed && shape.angle > 0.0 && shape.angle <= 360.0) {
             return None;
         }
         let along = dot(start, axis);
