@@ -204,9 +204,9 @@ fn sections_through_and_across_the_axis_are_discs_and_rings() {
         }
     }
     assert!(discs.iter().all(|a| (a - 2.0 * PI * tube * tube).abs() < 1e-12), "{discs:?}");
-    for (plane, z) in [(1, -0.3), (2, 0.0), (3, 0.15)] {
+    for (plane, z) in [(1, -0.3_f64), (2, 0.0), (3, 0.15)] {
         let ring: f64 = found[3][64 * plane..64 * (plane + 1)].iter().map(|s| s[0] * 0.25).sum();
-        let half = (tube * tube - z * z as f64).sqrt();
+        let half = (tube * tube - z * z).sqrt();
         assert!((ring - 4.0 * PI * radius * half).abs() < 1e-12, "plane {plane}: {ring}");
     }
 }
