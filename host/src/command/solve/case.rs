@@ -406,6 +406,8 @@ pub enum LimiterName {
 pub enum RiemannName {
     /// HLLC.
     Hllc,
+    /// HLLC, softened where the gas is slow.
+    HllcLowMach,
     /// HLLE.
     Hlle,
     /// Rusanov.

@@ -209,6 +209,7 @@ fn scheme(file: &CaseFile) -> Result<(Scheme, usize)> {
     };
     let riemann = match keys.riemann.unwrap_or(RiemannName::Hllc) {
         RiemannName::Hllc => Riemann::Hllc,
+        RiemannName::HllcLowMach => Riemann::HllcLowMach,
         RiemannName::Hlle => Riemann::Hlle,
         RiemannName::Rusanov => Riemann::Rusanov,
     };
