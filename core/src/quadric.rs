@@ -26,17 +26,17 @@
 //!
 //! 1. `twofold`: differences that keep their rounding errors; `arc`: the lens between an arc of a conic and its chord
 //! 2. `wall`: curved surfaces: lines through them, conics in planes
-//! 3. `end_line`, `outline`: what a solid has of a rectangle; `ends`: flat ends; `solid_angle`: of sections of a ball; `shadow`: of a cone
+//! 3. `end_line`, `outline`: what a solid has of a rectangle; `ends`: flat ends; `solid_angle`: of sections of a ball; `cone`: fluxes through those of a cone
 //! 4. `part`: one curved surface between flat ends, its fluxes and its volume in a cell; `window`: the cells it may reach
 //! 5. `spread`: the shares of a part in a layer
 //! 6. `solid`: the door; `shapes`: the shapes that GJK knows, as such solids
 
 mod arc;
+mod cone;
 mod end_line;
 mod ends;
 mod outline;
 mod part;
-mod shadow;
 mod shapes;
 mod solid;
 mod solid_angle;

@@ -1,6 +1,6 @@
 //! The command `voidage`: what the user typed, and what is done about it.
 //!
-//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`]; [`porosity`], [`inspect`], [`solve`], [`study`], [`stress`].
+//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`]; [`riemann`] and [`triangulated`], which the last two share; [`porosity`], [`inspect`], [`solve`], [`study`], [`stress`].
 
 pub mod cli;
 pub mod inspect;
@@ -8,10 +8,12 @@ pub mod interrupt;
 pub mod obstacles;
 pub mod porosity;
 pub mod progress;
+pub mod riemann;
 pub mod solve;
 pub mod stages;
 pub mod streams;
 pub mod stress;
 pub mod study;
 pub mod template;
+pub mod triangulated;
 pub mod version;

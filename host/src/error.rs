@@ -48,6 +48,21 @@ impl Error {
     }
 }
 
+/// Characters of a line that a message shows at most.
+const SHOWN: usize = 100;
+
+/// A line of a file by its number, and a mark under `width` of its characters from the one after `column` others on.
+#[must_use]
+pub fn excerpt(number: usize, line: &str, column: usize, width: usize) -> String {
+    let line: Vec<char> = line.trim_end().replace('\t', " ").chars().collect();
+    let column = column.min(line.len());
+    let first = column.saturating_sub(SHOWN / 2);
+    let shown: String = line[first..].iter().take(SHOWN).collect();
+    let room = (shown.chars().count() + first).saturating_sub(column);
+    let (mark, number) = ("^".repeat(width.min(room).max(1)), number.to_string());
+    format!("{number:>4} | {shown}\n{:>4} | {}{mark}", "", " ".repeat(column - first))
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(path) = &self.path {

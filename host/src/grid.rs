@@ -24,6 +24,22 @@ pub enum GridSpec {
 pub struct Edges(pub [Vec<f64>; 3]);
 
 impl Edges {
+    /// Equal cells, `cells` of them along each axis, from one corner of a box to the other.
+    #[must_use]
+    pub fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Self {
+        let axis = |a: usize| {
+            let (lo, hi, n) = (lo[a], hi[a], cells[a]);
+            (0..=n).map(|i| if i == n { hi } else { lo + (hi - lo) * (i as f64 / n as f64) }).collect()
+        };
+        Edges([axis(0), axis(1), axis(2)])
+    }
+
+    /// The same for a cube along the axes, from `lo` to `hi` on each.
+    #[must_use]
+    pub fn cube(lo: f64, hi: f64, cells: usize) -> Self {
+        Edges::uniform(DVec3::splat(lo), DVec3::splat(hi), [cells; 3])
+    }
+
     /// The edges as a grid.
     ///
     /// # Errors
@@ -123,7 +139,7 @@ pub fn edges(source: &GridSpec, scene: Option<[DVec3; 2]>, warnings: &mut Vec<St
                 None => (hi - lo) / (count - 2.0).max(DVec3::ONE),
             };
             few_enough(count).map_err(|reason| Error::usage(format!("grid: {reason}")))?;
-            uniform(lo - margin, hi + margin, *cells)
+            Edges::uniform(lo - margin, hi + margin, *cells)
         }
         GridSpec::Spacing(d, bounds) => {
             let margin = if bounds.is_some() { 0.0 } else { *d };
@@ -140,7 +156,7 @@ pub fn edges(source: &GridSpec, scene: Option<[DVec3; 2]>, warnings: &mut Vec<St
                     end.x, end.y, end.z
                 ));
             }
-            uniform(lo, end, cells)
+            Edges::uniform(lo, end, cells)
         }
     };
     Ok(edges)
@@ -161,12 +177,4 @@ fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
     // A flat scene still needs a box with a volume.
     let thin = DVec3::select((hi - lo).cmpgt(DVec3::ZERO), DVec3::ZERO, DVec3::splat(size * 0.5));
     Ok([lo - thin, hi + thin])
-}
-
-fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Edges {
-    let axis = |a: usize| {
-        let (lo, hi, n) = (lo[a], hi[a], cells[a]);
-        (0..=n).map(|i| if i == n { hi } else { lo + (hi - lo) * (i as f64 / n as f64) }).collect()
-    };
-    Edges([axis(0), axis(1), axis(2)])
 }

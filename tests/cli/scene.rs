@@ -89,7 +89,7 @@ fn warnings_name_the_solid() {
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
-const WRONG: [(&str, &[&str]); 43] = [
+const WRONG: [(&str, &[&str]); 45] = [
     (
         "[[solid]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"z\", angel = 3 }@",
         &["column 24: solid 1: rotate: key angel is not known here; did you mean angle?"],
@@ -131,6 +131,14 @@ const WRONG: [(&str, &[&str]); 43] = [
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]@", &["above min"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cone\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = -0.5@",
+        &["top_radius", "must not be below 0"],
+    ),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 2]\nradius = 1\ntop_radius = 0.5@",
+        &["cylinder takes from, to, radius; not top_radius"],
+    ),
     ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = []@", &["at least 4 points, not 0"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = [[0,0,0],[1,0,0],[0,1,0],[1,1,0],[0.3,0.2,0]]@",
@@ -138,10 +146,10 @@ const WRONG: [(&str, &[&str]); 43] = [
     ),
     ("[[solid]]\nname = \"a\"\nshape = \"hull\"\npoints = [[0,0,0],[0,0,0],[0,0,0],[0,0,0]]@", &["plane"]),
     (
-        "[[solid]]@\nname = \"a\"\nshape = \"file\"\npath = \"absent.stl\"",
+        "[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \"absent.stl\"@",
         &["solid \"a\"", "absent.stl", "cannot open"],
     ),
-    ("[[solid]]@\nname = \"a\"\nshape = \"file\"\npath = \".\"", &["directory"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \".\"@", &["directory"]),
     ("[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \"scene.toml\"@", &["scenes do not hold scenes"]),
     (
         "[[solid]]\nname = \"a\"\nshape = \"file\"\npath = \"cube.stl\"\nunit = \"furlong\"@",
@@ -201,12 +209,25 @@ fn what_is_wrong_is_said_with_its_place() {
         assert!(
             !text.contains('@')
                 || text.contains("name = \"a\nshape")
-                || said.contains(&format!("line {line}, column "))
-                || said.contains(&format!("line {line}: solid ")) && text.contains("file"),
+                || said.contains(&format!("line {line}, column ")),
             "line {line}: {text}\n{said}"
         );
         words.iter().for_each(|w| assert!(said.contains(w), "{w}: {text}\n{said}"));
     }
+}
+
+/// A fault in a file that a scene names is shown there, with the place in both.
+#[test]
+fn a_fault_in_a_named_file_is_shown() {
+    let dir = Scratch::new();
+    fs::write(dir.file("bad.stl"), "solid x\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 zero\n")
+        .expect("written");
+    let scene = dir.file("scene.toml");
+    fs::write(&scene, "[[solid]]\nshape = \"file\"\npath = \"bad.stl\"\n").expect("written");
+    let said = stderr(&voidage(&[&"inspect", &scene]));
+    assert!(said.contains("scene.toml: line 3, column 8: solid \"solid 1\": "), "{said}");
+    assert!(said.contains("bad.stl: line 4, column 15: `zero` is not a number"), "{said}");
+    assert!(said.ends_with("   4 |    vertex 0 0 zero\n     |               ^^^^\n"), "{said}");
 }
 
 /// Each copy of a large file costs memory: too many are refused before they are made.
@@ -221,7 +242,7 @@ fn copies_that_fill_memory_are_refused() {
     let output = voidage(&[&"inspect", &scene]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
-    assert!(said.contains("line 2: solid \"yard\": 10000 copies of 78736 triangles"), "{said}");
+    assert!(said.contains("line 5, column 8: solid \"yard\": 10000 copies of 78736 triangles"), "{said}");
 }
 
 /// Whatever bytes a scene file holds, the program ends with 0 or 1 and says why.

@@ -102,6 +102,10 @@ fn the_suffix_tells_the_format() {
         (&["--slice", "x=0"], "--slice cuts a picture: give --png"),
         (&["--slice", "x=9", "--png", "a.png"], "--slice x=9: the grid reaches from"),
         (&["--slice", "q=9", "--png", "a.png"], "the axis is x, y or z"),
+        (&["--show", "a_w", "--png", "a.png"], "did you mean a_x? (known: beta_v, a_x, "),
+        (&["--show", "s", "--resistance"], "--show s: give --png"),
+        (&["--show", "s", "--png", "a.png"], "--show s: give --resistance"),
+        (&["--show", "cr_x", "--png", "a.png", "--resistance"], "--show cr_x: give --drag"),
     ] {
         let output = run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

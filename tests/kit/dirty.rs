@@ -102,17 +102,18 @@ fn measure_scene(text: &str) -> Option<Error> {
 }
 
 /// Shapes and the keys that they need; each takes three numbers but those in [`SINGLE`].
-const SHAPES: [(&str, &[&str]); 6] = [
+const SHAPES: [(&str, &[&str]); 7] = [
     ("sphere", &["center", "radius"]),
     ("ellipsoid", &["center", "semi_axes"]),
     ("box", &["min", "max"]),
     ("cylinder", &["from", "to", "radius"]),
     ("capsule", &["from", "to", "radius"]),
     ("cone", &["from", "to", "radius"]),
+    ("cone", &["from", "to", "radius", "top_radius"]),
 ];
 
 /// Keys with one number.
-const SINGLE: [&str; 2] = ["radius", "porosity"];
+const SINGLE: [&str; 3] = ["radius", "top_radius", "porosity"];
 
 /// A scene of solids with numbers of any size is measured or refused; with one key misspelled, missing or of the wrong kind it is refused
 /// by an error that names the key and the line.

@@ -15,6 +15,8 @@ pub enum Exact {
     Capsule(DVec3, DVec3, f64),
     /// Centre of the base, apex, radius of the base.
     Cone(DVec3, DVec3, f64),
+    /// Centres of the ends, radii of the ends.
+    Frustum(DVec3, DVec3, [f64; 2]),
 }
 
 /// Where `a t² + 2 b t + c <= 0`, for `a > 0`.
@@ -51,6 +53,7 @@ impl Exact {
                 parts.into_iter().flatten().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
             }
             Exact::Cone(base, apex, radius) => cone(p, e, base, apex, radius),
+            Exact::Frustum(from, to, radii) => frustum(p, e, from, to, radii),
         };
         found.map(|t| t.map(|t| own + t))
     }
@@ -81,6 +84,12 @@ impl Exact {
                 let (at, off, length) = along(apex, base, 0.0);
                 (off - at * radius / length).max(at - length)
             }
+            Exact::Frustum(from, to, [one, other]) => {
+                let (at, _, length) = along(from, to, 0.0);
+                let (unit, [q, lost]) = ((to - from).normalize(), apart(p, from));
+                let radius = (one + (other - one) * (at / length)).max(0.0);
+                beyond([unit.cross(q), unit.cross(lost)], radius).max(-at).max(at - length)
+            }
         }
     }
 
@@ -90,6 +99,7 @@ impl Exact {
             Exact::Ball(_, r) => r,
             Exact::Ellipsoid(_, axes) => axes.map(DVec3::length).into_iter().fold(0.0, f64::max),
             Exact::Cylinder(a, b, r) | Exact::Capsule(a, b, r) | Exact::Cone(a, b, r) => r.max(a.distance(b)),
+            Exact::Frustum(a, b, [r, s]) => r.max(s).max(a.distance(b)),
         };
         (0.05 * size).max(1.0)
     }
@@ -248,6 +258,42 @@ fn cone(p: DVec3, e: DVec3, base: DVec3, apex: DVec3, radius: f64) -> Option<[f6
     cuts.sort_by(f64::total_cmp);
     let runs = cuts.windows(2).filter(|w| w[0] < w[1] && inside((w[0] + w[1]) * 0.5));
     runs.map(|w| [w[0], w[1]]).reduce(|x, y| [x[0].min(y[0]), x[1].max(y[1])])
+}
+
+/// Where |b + t a| <= r + t s, b and r as they are left by roundings `lost` and `rest`: the discriminant is |a r − b s|² − |a × b|².
+fn within_growing(a: DVec3, [b, lost]: [DVec3; 2], [r, rest]: [f64; 2], s: f64, slab: [f64; 2]) -> Option<[f64; 2]> {
+    let (reach, area) = (a * r - b * s, a.cross(b));
+    let (long, wide) = (reach.length(), area.length());
+    let slip = |v: DVec3, by: DVec3, length: f64| if length > 0.0 { v.dot(by) / length } else { 0.0 };
+    let less = (long - wide) + slip(reach, a * rest - lost * s, long) - slip(area, a.cross(lost), wide);
+    let square = less * (long + wide);
+    let (a2, a1) = (a.dot(a) - s * s, a.dot(b) - s * r);
+    let a0 = (b.length() - r) * (b.length() + r);
+    let mut cuts = slab.to_vec();
+    if square > 0.0 && a2 != 0.0 {
+        let sum = -(a1 + square.sqrt().copysign(a1));
+        cuts.extend([sum / a2, if a2 > 0.5 * a.dot(a) { (-a1 - a1 - sum) / a2 } else { a0 / sum }]);
+    } else if a2 == 0.0 && a1 != 0.0 {
+        cuts.push(-a0 / (2.0 * a1));
+    } else if a2 > 0.0 {
+        return None;
+    }
+    let inside = |x: f64| r + x * s >= 0.0 && (b + a * x).length() <= (r + x * s) * (1.0 + 1e-13);
+    cuts.retain(|x| *x >= slab[0] && *x <= slab[1]);
+    cuts.sort_by(f64::total_cmp);
+    let runs = cuts.windows(2).filter(|w| w[0] < w[1] && inside((w[0] + w[1]) * 0.5));
+    runs.map(|w| [w[0], w[1]]).reduce(|x, y| [x[0].min(y[0]), x[1].max(y[1])])
+}
+
+fn frustum(p: DVec3, e: DVec3, from: DVec3, to: DVec3, [one, other]: [f64; 2]) -> Option<[f64; 2]> {
+    let (axis, [q, lost]) = (to - from, apart(p, from));
+    let slab = between(q, e, axis)?;
+    let (unit, slope) = (axis.normalize(), (other - one) / axis.length());
+    let grown = unit.dot(q) * slope;
+    let radius = one + grown;
+    let part = radius - one;
+    let rest = (one - (radius - part)) + (grown - part);
+    within_growing(unit.cross(e), [unit.cross(q), unit.cross(lost)], [radius, rest], unit.dot(e) * slope, slab)
 }
 
 /// Inner nodes and weights of Gauss and Lobatto, ten points; the ends have the weight 1/45. A kink between an end and the next node shows at

@@ -85,6 +85,29 @@ fn place(random: &mut Random, family: Family) -> DVec3 {
 
 /// A solid of a family, and the same for quadrature.
 pub fn solid(random: &mut Random, family: Family) -> (QuadricSolid, Exact) {
+    solid_of(random, family, Kind::Any)
+}
+
+/// Which kinds of solids are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Ball, ellipsoid, cylinder, capsule, cone.
+    Any,
+    /// Truncated cones.
+    Frustum,
+}
+
+/// How many times as wide a truncated cone is at its other end: nearly equal, nearly a whole cone, anything.
+fn taper(random: &mut Random) -> f64 {
+    match random.below(4) {
+        0 => 1.0 + 10_f64.powf(random.between(-16.0, -0.5)) * if random.below(2) == 0 { 1.0 } else { -1.0 },
+        1 => 10_f64.powf(random.between(-12.0, -1.0)),
+        _ => random.between(0.05, 1.9),
+    }
+}
+
+/// A solid of a family and kind.
+pub fn solid_of(random: &mut Random, family: Family, kinds: Kind) -> (QuadricSolid, Exact) {
     let size = match family {
         Family::Tiny => 1e-6,
         Family::Inside => 0.03,
@@ -94,8 +117,9 @@ pub fn solid(random: &mut Random, family: Family) -> (QuadricSolid, Exact) {
     let axis = direction(random, family);
     let mut center = place(random, family);
     let mut radius = size * random.between(0.3, 1.0);
-    let kind = random.below(5);
+    let kind = if kinds == Kind::Any { random.below(5) } else { 5 };
     let mut length = size * random.between(0.5, 3.0);
+    let taper = if kind == 5 { taper(random) } else { 0.0 };
     match family {
         Family::Tangent => {
             // Beside a plane by one radius, rounded.
@@ -118,6 +142,10 @@ pub fn solid(random: &mut Random, family: Family) -> (QuadricSolid, Exact) {
                 // The half axis that has no random factor points along x.
                 1 => DVec3::X * radius,
                 4 => axis.normalize().any_orthonormal_vector() * (radius * (0.5 - along)) - axis * (length * along),
+                5 => {
+                    let there = radius * (1.0 + (taper - 1.0) * (along + 0.5));
+                    axis.normalize().any_orthonormal_vector() * there - axis.normalize() * (length * along)
+                }
                 _ => axis.normalize().any_orthonormal_vector() * radius,
             };
         }
@@ -145,7 +173,11 @@ pub fn solid(random: &mut Random, family: Family) -> (QuadricSolid, Exact) {
         }
         2 => (QuadricSolid::cylinder(from, to, radius).expect(whole), Exact::Cylinder(from, to, radius)),
         3 => (QuadricSolid::capsule(from, to, radius).expect(whole), Exact::Capsule(from, to, radius)),
-        _ => (QuadricSolid::cone(from, to, radius).expect(whole), Exact::Cone(from, to, radius)),
+        4 => (QuadricSolid::cone(from, to, radius).expect(whole), Exact::Cone(from, to, radius)),
+        _ => {
+            let radii = [radius, radius * taper];
+            (QuadricSolid::truncated_cone(from, to, radii).expect(whole), Exact::Frustum(from, to, radii))
+        }
     }
 }
 
@@ -187,13 +219,14 @@ pub fn volume(exact: &Exact) -> f64 {
         Exact::Cylinder(a, b, r) => PI * r * r * a.distance(b),
         Exact::Capsule(a, b, r) => PI * r * r * (a.distance(b) + 4.0 / 3.0 * r),
         Exact::Cone(a, b, r) => PI * r * r * a.distance(b) / 3.0,
+        Exact::Frustum(a, b, [r, s]) => PI * (r * r + r * s + s * s) * a.distance(b) / 3.0,
     }
 }
 
 /// The worst differences from quadrature: of some cells that are cut, and of faces, as fractions of a cell or face; and where they are.
 #[must_use]
-pub fn errors(random: &mut Random, family: Family, samples: usize) -> (f64, f64, String) {
-    let (solid, exact) = solid(random, family);
+pub fn errors(random: &mut Random, family: Family, kinds: Kind, samples: usize) -> (f64, f64, String) {
+    let (solid, exact) = solid_of(random, family, kinds);
     let edges = edges();
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
     let found = shares(&solid, &grid);
@@ -252,6 +285,7 @@ fn closed_area(exact: &Exact, n: usize, at: f64, u: [f64; 2], v: [f64; 2]) -> f6
         Exact::Cylinder(a, b, _) => vec![(a, b), (b, a)],
         Exact::Capsule(..) | Exact::Ball(..) | Exact::Ellipsoid(..) => vec![],
         Exact::Cone(base, apex, _) => vec![(base, apex)],
+        Exact::Frustum(a, b, _) => vec![(a, b), (b, a)],
     };
     let flush =
         ends.iter().find(|(end, other)| end[n] == at && (other - end).abs() == DVec3::AXES[n] * (other[n] - at).abs());
@@ -272,6 +306,7 @@ pub fn bounds(exact: &Exact) -> [DVec3; 2] {
             [c - reach, c + reach]
         }
         Exact::Cylinder(a, b, r) | Exact::Capsule(a, b, r) | Exact::Cone(a, b, r) => [a.min(b) - r, a.max(b) + r],
+        Exact::Frustum(a, b, [r, s]) => [a.min(b) - r.max(s), a.max(b) + r.max(s)],
     }
 }
 
@@ -305,7 +340,8 @@ pub fn never_panics<V: Vector>(seed: u64) -> bool {
         let (n, first, size) = (1 + random.below(5), random.between(-1.0, 1.0), 10_f64.powf(random.between(-3.0, 3.0)));
         (0..=n).map(|i| V::Scalar::from_f64(first + size * i as f64 / n as f64)).collect::<Vec<_>>()
     });
-    let solid = match random.below(5) {
+    let solid = match random.below(6) {
+        5 => QuadricSolid::truncated_cone(a, b, [radius, V::Scalar::from_f64(number(random))]),
         0 => QuadricSolid::ball(a, radius),
         1 => QuadricSolid::cylinder(a, b, radius),
         2 => QuadricSolid::capsule(a, b, radius),
@@ -339,7 +375,8 @@ pub fn never_panics<V: Vector>(seed: u64) -> bool {
 pub fn parts_sum_to_the_whole(seed: u64) {
     let random = &mut Random::new(seed);
     let family = FAMILIES[random.below(FAMILIES.len())];
-    let (solid, exact) = solid(random, family);
+    let kinds = if seed.is_multiple_of(5) { Kind::Frustum } else { Kind::Any };
+    let (solid, exact) = solid_of(random, family, kinds);
     let edges = edges();
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
     let found = shares(&solid, &grid);

@@ -10,7 +10,7 @@ use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::quadric::QuadricSolid;
-use voidage_tests::quadric::{Family, errors, never_panics, parts_sum_to_the_whole, shares};
+use voidage_tests::quadric::{FAMILIES, Family, Kind, errors, never_panics, parts_sum_to_the_whole, shares};
 use voidage_tests::random::Random;
 use voidage_tests::solids::formulas;
 
@@ -20,7 +20,11 @@ fn allowed(family: Family) -> f64 {
 }
 
 fn agrees(family: Family, seed: u64) -> Result<(), TestCaseError> {
-    let (cell, face, place) = errors(&mut Random::new(seed), family, 1);
+    agrees_of(family, Kind::Any, seed)
+}
+
+fn agrees_of(family: Family, kinds: Kind, seed: u64) -> Result<(), TestCaseError> {
+    let (cell, face, place) = errors(&mut Random::new(seed), family, kinds, 1);
     prop_assert!(cell <= allowed(family) && face <= allowed(family), "cells {cell:e}, faces {face:e}: {place}");
     Ok(())
 }
@@ -47,6 +51,14 @@ families!(
     inside_one_cell: Inside,
     cutting_the_domain: Cutting
 );
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, max_shrink_iters: 4, ..ProptestConfig::default() })]
+    #[test]
+    fn truncated_cones(seed in any::<u64>(), family in 0..FAMILIES.len() - 1) {
+        agrees_of(FAMILIES[family], Kind::Frustum, seed)?;
+    }
+}
+
 // Its quadrature takes up to a minute.
 families!(1, huge: Huge);
 

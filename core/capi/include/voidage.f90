@@ -39,6 +39,7 @@ module voidage
   integer(c_int32_t), parameter :: vdg_kind_cone = 8
   integer(c_int32_t), parameter :: vdg_kind_ellipsoid = 9
   integer(c_int32_t), parameter :: vdg_kind_oriented_box = 10
+  integer(c_int32_t), parameter :: vdg_kind_truncated_cone = 11
   integer(c_int32_t), parameter :: vdg_contact_apart = 0
   integer(c_int32_t), parameter :: vdg_contact_overlapping = 1
   integer(c_int32_t), parameter :: vdg_contact_undecided = 2

@@ -91,6 +91,8 @@ enum {
   VDG_KIND_ELLIPSOID = 9,
   /* p[0..3] the centre, p[3..6], p[6..9], p[9..12] from the centre to the middle of three faces. */
   VDG_KIND_ORIENTED_BOX = 10,
+  /* p[0..3] the centre of the base, p[3..6] that of the top, p[6] the radius of the base, p[7] that of the top. */
+  VDG_KIND_TRUNCATED_CONE = 11,
 };
 
 /* How two bodies lie. */
@@ -306,7 +308,7 @@ typedef struct {
   double round;
 } vdg_body;
 
-/* Bodies of triangles, and solids known by formula: sphere, capsule, cylinder, cone, ellipsoid, not rounded. */
+/* Bodies of triangles, and solids known by formula: sphere, capsule, cylinder, cone whole or truncated, ellipsoid, not rounded. */
 typedef struct {
   /* The triangles; null: there are none. */
   const vdg_surface *surface;

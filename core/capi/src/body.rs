@@ -28,6 +28,7 @@ fn used(kind: i32) -> Answer<(Kind, usize)> {
         (Kind::Cone, 7),
         (Kind::Ellipsoid, 12),
         (Kind::OrientedBox, 12),
+        (Kind::TruncatedCone, 8),
     ];
     let known = usize::try_from(kind).ok().and_then(|kind| kinds.get(kind).copied());
     known.ok_or(Status::Kind.of(c"body.kind"))
@@ -85,6 +86,7 @@ unsafe fn any_body<'a, R: Real>(body: &Body<R>) -> Answer<AnyBody<'a, R::Vector>
         Kind::Capsule => Capsule { from: a(0), to: a(3), radius: p[6] }.into(),
         Kind::Cylinder => Cylinder::new(a(0), a(3), p[6]).into(),
         Kind::Cone => Cone::new(a(0), a(3), p[6]).into(),
+        Kind::TruncatedCone => Cone::truncated(a(0), a(3), p[6], p[7]).into(),
         Kind::OrientedBox => OrientedBox { center: a(0), half_axes: [a(3), a(6), a(9)] }.into(),
         Kind::Ellipsoid => {
             let turned = ellipsoid(a(0), [a(3), a(6), a(9)])?;
@@ -115,6 +117,7 @@ pub fn solid<R: Real>(body: &Body<R>) -> Answer<RoundSolid<R::Vector>> {
         Kind::Capsule => RoundShape::Capsule(Capsule { from: a(0), to: a(3), radius: p[6] }),
         Kind::Cylinder => RoundShape::Cylinder(Cylinder::new(a(0), a(3), p[6])),
         Kind::Cone => RoundShape::Cone(Cone::new(a(0), a(3), p[6])),
+        Kind::TruncatedCone => RoundShape::Cone(Cone::truncated(a(0), a(3), p[6], p[7])),
         Kind::Ellipsoid => RoundShape::Ellipsoid(ellipsoid(a(0), [a(3), a(6), a(9)])?),
         _ => return Err(Status::Kind.of(c"solids.kind")),
     };

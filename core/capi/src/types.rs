@@ -139,6 +139,8 @@ pub enum Kind {
     Ellipsoid = 9,
     /// `p[0..3]` the centre, `p[3..6]`, `p[6..9]`, `p[9..12]` from the centre to the middle of three faces.
     OrientedBox = 10,
+    /// `p[0..3]` the centre of the base, `p[3..6]` that of the top, `p[6]` the radius of the base, `p[7]` that of the top.
+    TruncatedCone = 11,
 }
 
 /// A convex body.
@@ -157,7 +159,7 @@ pub struct Body<R> {
     pub round: R,
 }
 
-/// Bodies of triangles, and solids known by formula: sphere, capsule, cylinder, cone, ellipsoid, not rounded.
+/// Bodies of triangles, and solids known by formula: sphere, capsule, cylinder, cone whole or truncated, ellipsoid, not rounded.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<R> {

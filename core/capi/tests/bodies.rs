@@ -31,6 +31,7 @@ fn kinds<R: Api>(points: &[R]) -> Vec<Body<R>> {
         body(6, &[0.5, 0.0, -1.0, 0.5, 0.0, 1.0, 0.5]),
         body(7, &[0.5, 0.0, -1.0, 0.5, 0.0, 1.0, 0.5]),
         body(8, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5]),
+        body(11, &[0.5, 0.0, -1.0, 0.5, 0.0, 1.0, 0.5, 0.25]),
         body(9, &[0.5, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.125]),
         body(10, &[0.5, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.125]),
     ]
@@ -72,7 +73,7 @@ fn what_is_no_body_is_named() {
         assert_eq!((contact, fault.index), (-1, 1));
         (status, named(&fault))
     };
-    assert_eq!(refused(body(11, &[])), (Status::Kind, "body.kind"));
+    assert_eq!(refused(body(12, &[])), (Status::Kind, "body.kind"));
     assert_eq!(refused(body(-1, &[])), (Status::Kind, "body.kind"));
     assert_eq!(refused(body(5, &[0.0, f64::NAN, 0.0, 1.0])), (Status::Value, "body.p"));
     assert_eq!(refused(body(5, &[0.0, 0.0, 0.0, -1.0])), (Status::Body, "body"));

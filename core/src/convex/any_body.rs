@@ -31,7 +31,7 @@ pub enum AnyShape<'a, V: Vector> {
     Ellipsoid(Ellipsoid<V>),
     /// A cylinder with flat ends.
     Cylinder(Cylinder<V>),
-    /// A cone with a flat base.
+    /// A cone with a flat base, whole or truncated.
     Cone(Cone<V>),
     /// The hull of points in the caller's memory.
     Hull(Hull<'a, V>),
@@ -102,7 +102,8 @@ impl<'a, V: Vector> AnyShape<'a, V> {
         let zero = V::Scalar::ZERO;
         let least = match self {
             AnyShape::Sphere(Sphere { radius, .. }) | AnyShape::Capsule(Capsule { radius, .. }) => *radius,
-            AnyShape::Cylinder(Cylinder(frame)) | AnyShape::Cone(Cone(frame)) => frame.radius,
+            AnyShape::Cylinder(Cylinder(frame)) => frame.radius,
+            AnyShape::Cone(cone) => cone.base_radius().min(cone.top_radius()),
             AnyShape::Ellipsoid(Ellipsoid { semi_axes, .. }) => semi_axes.x().min(semi_axes.y()).min(semi_axes.z()),
             _ => zero,
         };

@@ -343,32 +343,35 @@ impl<V: Vector> Chords for Capsule<V> {
 
 impl<V: Vector> Chords for Cone<V> {
     fn facet_count(&self) -> usize {
-        1
+        if self.top_radius() > V::Scalar::ZERO { 2 } else { 1 }
     }
     #[inline(always)]
-    fn facet(&self, _: usize) -> FacetPlane<V> {
-        self.0.ends[0]
+    fn facet(&self, index: usize) -> FacetPlane<V> {
+        self.frame.ends[index & 1]
     }
     #[inline(always)]
     fn chord(&self, origin: V, direction: V, grow: V::Scalar, _: &[u32]) -> Option<Chord<V>> {
-        let AxisFrame { base, top, across: [u1, u2], radius, .. } = self.0;
+        let AxisFrame { base, top, across: [u1, u2], radius, .. } = self.frame;
         let (at, p) = beside(origin, direction, (base + top) * V::Scalar::HALF);
         let axis = u1.cross(u2);
-        let slope = radius / (top - base).length();
+        let slope = (radius - self.top_radius()) / (top - base).length();
         let out = grow * (V::Scalar::ONE + slope * slope).sqrt();
-        let (q, dq) = ((top - p).dot(axis) * slope + out, -(direction.dot(axis) * slope));
-        let w = self.0.lateral(p - base);
-        let mut t = moved(within_cone(w, self.0.lateral(direction), q, dq)?, at);
-        self.0.ends[0].clip(origin, direction, grow, &mut t).then_some(t)
+        let (q, dq) = ((top - p).dot(axis) * slope + self.top_radius() + out, -(direction.dot(axis) * slope));
+        let w = self.frame.lateral(p - base);
+        let mut t = moved(within_cone(w, self.frame.lateral(direction), q, dq)?, at);
+        let ends = self.frame.ends.iter().take(self.facet_count());
+        let mut ends = ends.map(|end| end.clip(origin, direction, grow, &mut t));
+        ends.all(|left| left).then_some(t)
     }
     #[inline(always)]
     fn signed_distance(&self, point: V) -> [V::Scalar; 2] {
-        let AxisFrame { ends: [base, top], radius, height, .. } = self.0;
+        let AxisFrame { ends: [base, top], radius, height, .. } = self.frame;
         let below = base.normal.dot(point) - base.offset;
         // Of the side, in the plane through the axis and the point.
-        let (left, out) = (top.offset - top.normal.dot(point), length(self.0.lateral(point - self.0.base)));
-        let beside = (out * height - left * radius) / length(V::new(height, radius, V::Scalar::ZERO));
-        let low = below.max(beside);
+        let (left, out) = (top.offset - top.normal.dot(point), length(self.frame.lateral(point - self.frame.base)));
+        let less = radius - self.top_radius();
+        let beside = ((out - self.top_radius()) * height - left * less) / length(V::new(height, less, V::Scalar::ZERO));
+        let low = below.max(beside).max(if self.facet_count() > 1 { -left } else { below });
         [low, if low < V::Scalar::ZERO { low } else { V::Scalar::INFINITY }]
     }
 }

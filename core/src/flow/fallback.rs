@@ -42,25 +42,18 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(new)?;
         fits(self.mesh.len(), first_order.len())?;
         let mut added = 0;
-        let mut raise = |i: usize, to: u8| {
-            let mark = &mut first_order[i];
-            added += usize::from(*mark < to);
-            *mark = to.max(*mark);
-            *mark
+        let mut raise = |first_order: &mut [u8], i: usize, to: u8| {
+            added += usize::from(first_order[i] < to);
+            first_order[i] = to.max(first_order[i]);
         };
         // First each troubled cell by itself, so that the order of the cells does not count.
         let troubled = |cell: &usize| !self.is_physical(&new.at(*cell));
         for cell in (0..self.mesh.len()).filter(troubled) {
-            if raise(cell, 0) > 0 {
-                raise(cell, POSITIVE)
-            } else {
-                raise(cell, FIRST_ORDER)
-            };
+            let marked = first_order[cell] > 0;
+            raise(first_order, cell, if marked { POSITIVE } else { FIRST_ORDER });
         }
         for cell in (0..self.mesh.len()).filter(troubled) {
-            self.each_beside(cell, |_, _, beside| {
-                raise(beside, FIRST_ORDER);
-            });
+            self.each_beside(cell, |_, _, beside| raise(first_order, beside, FIRST_ORDER));
         }
         Ok(added)
     }

@@ -40,36 +40,70 @@ pub(super) struct Moments {
     pub first: P2,
 }
 
-/// Lens of the arc from `p` to `q`, at most half an ellipse, counter-clockwise about the inside; moments about `p`. `s` is the conic's
-/// quadratic part and `gradients` half its gradients in `p` and `q`, outward, all to one scale.
-#[inline]
-pub(super) fn lens(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Moments {
-    let d = sub(q, p);
-    let sd = times(s, d);
-    let t = [-gradients[0][1], gradients[0][0]];
-    let (kappa, tau) = (dot(d, sd), dot(t, times(s, t)));
+/// An arc as a rational quadratic curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bow {
+    /// From its first to its last point.
+    pub chord: P2,
+    /// Along the tangent in the first point, to the same scale as the gradients.
+    pub tangent: P2,
+    /// Three halves of the area if the arc were one of a parabola with this size.
+    pub size: f64,
+    /// `ratio · tangent / 2 w` leads from the first point to where the tangents meet.
+    pub ratio: f64,
+    pub w: f64,
+}
+
+/// What lies between an arc and its chord.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Lens {
+    Nothing,
+    /// All but the triangle to a corner, given from the first point, is nothing.
+    Triangle(P2),
+    Bow(Bow),
+}
+
+/// The arc from `p` to `q`, at most half an ellipse, counter-clockwise about the inside. `s` is the conic's quadratic part and `gradients` half its
+/// gradients in `p` and `q`, outward, all to one scale.
+#[inline(always)]
+pub(super) fn lens_of(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Lens {
+    let chord = sub(q, p);
+    let sd = times(s, chord);
+    let tangent = [-gradients[0][1], gradients[0][0]];
+    let (kappa, tau) = (dot(chord, sd), dot(tangent, times(s, tangent)));
     let middle = [gradients[0][0] + gradients[1][0], gradients[0][1] + gradients[1][1]];
     let turn = (cross(middle, sd) * 0.5).abs();
     if !(kappa > 0.0) {
-        return Moments::default();
+        return Lens::Nothing;
     }
     if turn * turn >= kappa * tau * SHARP {
         // Two lines: what is left is the triangle of the points and the lines' crossing.
-        let area = kappa * kappa / (8.0 * turn);
-        let along = |n: usize| d[n] / 3.0 + t[n] * kappa / (6.0 * turn);
-        return if area < f64::INFINITY {
-            Moments { area, first: [along(0) * area, along(1) * area] }
-        } else {
-            Moments::default()
-        };
+        let along = kappa / (2.0 * turn);
+        let finite = kappa * along < f64::INFINITY;
+        return if finite { Lens::Triangle(tangent.map(|t| t * along)) } else { Lens::Nothing };
     }
     let ratio = Real::sqrt(kappa / tau);
-    let w = turn * ratio / kappa;
-    let bend = bend(w);
-    let area = kappa * ratio * bend * 0.125;
-    let g = centroid(w, bend);
-    let along = |n: usize| d[n] * 0.5 + g * 0.5 * (ratio * t[n] - w * d[n]);
-    Moments { area, first: [along(0) * area, along(1) * area] }
+    Lens::Bow(Bow { chord, tangent, size: kappa * ratio * 0.125, ratio, w: turn * ratio / kappa })
+}
+
+/// Area of the lens of an arc, and its first moments about the arc's first point; arguments as those of [`lens_of`].
+#[inline]
+pub(super) fn lens(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Moments {
+    match lens_of(p, q, s, gradients) {
+        Lens::Nothing => Moments::default(),
+        Lens::Triangle(corner) => {
+            let d = sub(q, p);
+            let area = (cross(d, corner) * 0.5).abs();
+            Moments { area, first: [0, 1].map(|n: usize| (d[n] + corner[n]) / 3.0 * area) }
+        }
+        Lens::Bow(Bow { chord: d, tangent: t, size, ratio, w }) => {
+            let bend = bend(w);
+            let area = size * bend;
+            let g = centroid(w, bend);
+            let along = |n: usize| d[n] * 0.5 + g * 0.5 * (ratio * t[n] - w * d[n]);
+            Moments { area, first: [along(0) * area, along(1) * area] }
+        }
+    }
 }
 
 /// Beyond this w² a hyperbola is two lines.
@@ -106,6 +140,33 @@ pub(super) fn bend(w: f64) -> f64 {
         let root = Real::sqrt(-y);
         (w * root - libm::acosh(w)) / (-y * root)
     }
+}
+
+/// The derivative of [`bend`].
+fn slope(w: f64) -> f64 {
+    let y = (1.0 - w) * (1.0 + w);
+    if y.abs() < FLAT {
+        let (mut sum, mut n) = (0.0, SERIES.len());
+        for term in SERIES.iter().skip(1).rev() {
+            n -= 1;
+            sum = sum * y + term * n as f64;
+        }
+        return -2.0 * w * sum;
+    }
+    (3.0 * w * bend(w) - 2.0) / y
+}
+
+/// `(bend(w + d) − bend(w)) / d`, for `w` not negative, and its value at `w + d`.
+#[inline]
+pub(super) fn bends(w: f64, d: f64) -> [f64; 2] {
+    let there = bend(w + d);
+    if d.abs() > 0.02 {
+        return [(there - bend(w)) / d, there];
+    }
+    // Gauss, four points.
+    let mean = |near: f64, far: f64, weight: f64| weight * (slope(w + d * near) + slope(w + d * far));
+    let outer = mean(0.069_431_844_202_973_71, 0.930_568_155_797_026_3, 0.173_927_422_568_726_93);
+    [outer + mean(0.330_009_478_207_571_87, 0.669_990_521_792_428_1, 0.326_072_577_431_273_07), there]
 }
 
 /// How far the centroid lies from the chord's middle towards the corner of the tangents.

@@ -130,7 +130,7 @@ pub(super) struct Section {
 impl Section {
     /// Half the gradient in a point.
     #[inline(always)]
-    fn gradient(&self, p: P2) -> P2 {
+    pub fn gradient(&self, p: P2) -> P2 {
         let g = times(self.quadratic, p);
         [g[0] + self.linear[0], g[1] + self.linear[1]]
     }

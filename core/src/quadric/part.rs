@@ -1,13 +1,14 @@
 //! One curved surface between flat ends: its sections with grid planes and its share of a cell.
 //!
 //! The volume in a cell is the flux through the cell's faces and the part's flat ends of a field of divergence 1 that is tangent to the
-//! curved surface: of a cylinder (ξ − ξₘ) a / a_ξ with ξ the coordinate along which the axis `a` is longest and ξₘ the cell's middle; of a cone
-//! (p − apex) / 3; of balls and ellipsoids see [`super::solid_angle`].
+//! curved surface: of a cylinder (ξ − ξₘ) a / a_ξ with ξ the coordinate along which the axis `a` is longest and ξₘ the cell's middle; of cones
+//! see [`super::cone`], of balls and ellipsoids [`super::solid_angle`].
 
+use super::arc::Moments;
+use super::cone::{PlaneOfCone, Reference, along_axis};
 use super::end_line::EndLine;
 use super::ends::End;
 use super::outline::{Rectangle, Region, Section};
-use super::shadow::PlaneOverApex;
 use super::solid_angle::PlaneOfUnitBall;
 use super::twofold::{Twofold, difference, difference_of_squares};
 use super::wall::{Curved, Span, Wall, hypotenuse, others};
@@ -38,9 +39,8 @@ pub(super) struct Plane {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FaceFlux {
     pub area: f64,
+    /// Of a cone, of the field that vanishes at the height of the face's middle.
     pub flux: f64,
-    /// Of a cone: flux of p/(3 ζ³), ζ the height from the apex; see [`super::shadow`].
-    pub shadow: f64,
     pub whole: bool,
 }
 
@@ -64,8 +64,8 @@ impl Part {
     #[inline]
     pub fn plane(&self, n: usize, coordinate: f64) -> Plane {
         let h = difference(coordinate, self.origin[n]);
-        let (quadratic, linear) = self.curved.conic(n);
-        let section = Section { quadratic, linear: linear.map(|l| l * h.value), ellipse: self.curved.ellipse(n, h) };
+        let (quadratic, linear) = self.curved.conic(n, h.value);
+        let section = Section { quadratic, linear, ellipse: self.curved.ellipse(n, h) };
         let lines = self.ends.map(|end| end.map(|end| end.line(n, coordinate)));
         Plane { n, h, section, lines }
     }
@@ -98,7 +98,10 @@ impl Part {
                 let along = usize::from(others(n)[0] != self.xi);
                 moments.first[along] * (self.curved.axis[n] / self.curved.axis[self.xi])
             }
-            Wall::Cone { .. } => moments.area * h / 3.0,
+            Wall::Cone { radius, slope } => {
+                let plane_of = PlaneOfCone { curved: &self.curved, radius: *radius, slope: *slope, n, h };
+                plane_of.flux(&plane.section, &region, &rectangle)
+            }
             // In a plane through the centre the field has no normal component.
             Wall::Ball { .. } | Wall::Ellipsoid(_) if h == 0.0 => 0.0,
             Wall::Ball { .. } | Wall::Ellipsoid(_) => {
@@ -106,14 +109,7 @@ impl Part {
                 (moments.area * h - angle.copysign(h)) / 3.0
             }
         };
-        let shadow = match &self.curved.wall {
-            Wall::Cone { slope } => {
-                let over = PlaneOverApex { curved: &self.curved, slope: *slope, n, h };
-                over.shadow(&plane.section, &region, &rectangle).copysign(h) / 3.0
-            }
-            _ => 0.0,
-        };
-        FaceFlux { area: moments.area, flux, shadow, whole: matches!(region, Region::Whole) }
+        FaceFlux { area: moments.area, flux, whole: matches!(region, Region::Whole) }
     }
 
     /// Solid angle of a region seen from the centre, where the ball is the unit ball, times the volume's scale.
@@ -171,54 +167,70 @@ impl Part {
                 let along = width(self.xi) * 0.5 * (faces[self.xi][0].area + faces[self.xi][1].area);
                 along + fluxes + self.flux_through_ends(sides)
             }
-            Wall::Cone { .. } => {
-                let reference = self.height_of_middle(sides);
-                let cube = reference * reference * reference;
-                let shadow = |n: usize| faces[n][1].shadow - faces[n][0].shadow;
-                let shadows = if reference > 0.0 { cube * (shadow(0) + shadow(1) + shadow(2)) } else { 0.0 };
-                fluxes - shadows + self.flux_through_ends(sides)
-            }
+            Wall::Cone { radius, slope } => self.volume_of_cone(*radius, *slope, sides, faces),
             Wall::Ball { radius } => fluxes + radius * radius * radius * self.angle_at_center(sides) / 3.0,
             Wall::Ellipsoid(map) => fluxes + map.scale * self.angle_at_center(sides) / 3.0,
         }
     }
 
-    /// How high the middle of a cell lies over a cone's apex; 0 near the apex, where p/3 is small itself.
-    fn height_of_middle(&self, sides: &Sides) -> f64 {
+    /// The same of a cone; near its apex the field is (p − apex) / 3.
+    fn volume_of_cone(&self, radius: f64, slope: f64, sides: &Sides, faces: &[[FaceFlux; 2]; 3]) -> f64 {
         let (mut height, mut size) = (0.0, 0.0);
+        let middle = sides.map(|[low, high]| (low.h.value + high.h.value) * 0.5);
         for (n, [low, high]) in sides.iter().enumerate() {
-            height += (low.h.value + high.h.value) * 0.5 * self.curved.axis[n];
+            height += middle[n] * self.curved.axis[n];
             size += high.h.value - low.h.value;
         }
-        if height > size * 4.0 { height } else { 0.0 }
+        let reference = Reference { height, radius: radius + slope * height };
+        let far = reference.is_far(slope, size, 4.0);
+        let mut volume = 0.0;
+        for n in 0..3 {
+            let [u, v] = others(n);
+            let rectangle = Rectangle { u: sides[u].map(|p| p.h.value), v: sides[v].map(|p| p.h.value) };
+            for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                let (face, h) = (&faces[n][side], sides[n][side].h.value);
+                if face.area == 0.0 {
+                    continue;
+                }
+                let plane_of = PlaneOfCone { curved: &self.curved, radius, slope, n, h };
+                let flux = if far {
+                    let shift = self.curved.axis[n] * (middle[n] - h);
+                    plane_of.moved(face.flux, face.area, &plane_of.reference(&rectangle), &reference, shift)
+                } else {
+                    plane_of.of_apex(face.area)
+                };
+                volume += sign * flux;
+            }
+        }
+        let ends = self.flux_through_ends_of_cone(-radius / slope, far.then_some((middle, reference)), sides);
+        volume + ends
     }
 
-    /// Flux of the field through what a cell has of the flat ends.
-    fn flux_through_ends(&self, sides: &Sides) -> f64 {
+    /// What a cell has of the flat ends, each seen along `xi` over the cell's rectangle.
+    fn discs<'a>(&'a self, sides: &'a Sides) -> impl Iterator<Item = (&'a End, Rectangle, Moments)> {
         let [u, v] = others(self.xi);
-        let mut flux = 0.0;
-        for (number, end) in self.ends.iter().enumerate() {
-            let Some(end) = end else { continue };
+        let rectangle = Rectangle { u: sides[u].map(|p| p.h.value), v: sides[v].map(|p| p.h.value) };
+        self.ends.iter().enumerate().filter_map(move |(number, end)| {
+            let end = end.as_ref()?;
             let reach = |n: usize| end.radius * self.curved.across[n] * (1.0 + MARGIN) + end.shift[n].abs() * MARGIN;
             let near = |n: usize| {
                 sides[n][0].h.value <= end.shift[n] + reach(n) && sides[n][1].h.value >= end.shift[n] - reach(n)
             };
-            let [Some(low), Some(high)] = sides[self.xi].map(|side| side.lines[number]) else { continue };
+            let [Some(low), Some(high)] = sides[self.xi].map(|side| side.lines[number]) else { return None };
             if !(near(0) && near(1) && near(2)) {
-                continue;
+                return None;
             }
-            let rectangle = Rectangle { u: sides[u].map(|p| p.h.value), v: sides[v].map(|p| p.h.value) };
             let disc = end.projected(self.xi, &rectangle, [&low, &high]);
-            if disc.area == 0.0 {
-                continue;
-            }
+            (disc.area != 0.0).then_some((end, rectangle, disc))
+        })
+    }
+
+    /// Flux of the field through what a cell has of the flat ends of a cylinder.
+    fn flux_through_ends(&self, sides: &Sides) -> f64 {
+        let [u, v] = others(self.xi);
+        let mut flux = 0.0;
+        for (end, rectangle, disc) in self.discs(sides) {
             let (inward, middle) = (end.inward[self.xi], rectangle.middle());
-            if let Wall::Cone { .. } = self.curved.wall {
-                let height = (0..3).map(|n| end.shift[n] * end.inward[n]).sum::<f64>();
-                let ratio = self.height_of_middle(sides) / height;
-                flux -= height / 3.0 * (1.0 + ratio * ratio * ratio) * disc.area / inward.abs();
-                continue;
-            }
             // Height of the end's plane above the cell's middle, over the middle of the rectangle and by its slope.
             let slope = [u, v].map(|n| -end.inward[n] / inward);
             let at_middle = end.shift[self.xi] - (sides[self.xi][0].h.value + sides[self.xi][1].h.value) * 0.5
@@ -226,6 +238,24 @@ impl Part {
                 + slope[1] * (middle[1] - end.shift[v]);
             let moment = at_middle * disc.area + slope[0] * disc.first[0] + slope[1] * disc.first[1];
             flux -= moment * inward / (inward.abs() * inward.abs() * inward.abs());
+        }
+        flux
+    }
+
+    /// The same of a cone whose field vanishes at the height of the cell's middle, or with none at its apex.
+    fn flux_through_ends_of_cone(&self, apex: f64, middle: Option<([f64; 3], Reference)>, sides: &Sides) -> f64 {
+        let axis = &self.curved.axis;
+        let dot = |a: [f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let mut flux = 0.0;
+        for (end, _, disc) in self.discs(sides) {
+            let field = match &middle {
+                Some((place, reference)) => {
+                    let above = dot([0, 1, 2].map(|n| end.shift[n] - place[n]), axis);
+                    along_axis(above, reference, end.radius)
+                }
+                None => (dot(end.shift, axis) - apex) / 3.0,
+            };
+            flux -= dot(end.inward, axis) * field * disc.area / end.inward[self.xi].abs();
         }
         flux
     }

@@ -31,7 +31,8 @@ impl<V: Vector> AsQuadric for Cylinder<V> {
 
 impl<V: Vector> AsQuadric for Cone<V> {
     fn quadric(&self) -> Option<QuadricSolid> {
-        QuadricSolid::cone(self.0.base, self.0.top, self.0.radius)
+        let [base, top] = self.ends();
+        QuadricSolid::truncated_cone(base, top, [self.base_radius(), self.top_radius()])
     }
 }
 

@@ -75,15 +75,36 @@ impl QuadricSolid {
     /// A cone from the centre and radius of its base to its apex; none if a length leaves 10⁻⁶⁰ to 10⁶⁰.
     #[must_use]
     pub fn cone<V: Vector>(base: V, apex: V, radius: V::Scalar) -> Option<Self> {
-        let (base, apex, radius) = (wide(base)?, wide(apex)?, radius.to_f64());
-        let (height, axis) = direction(apex, base)?;
-        if !SIZES.contains(&radius) {
+        Self::truncated_cone(base, apex, [radius, V::Scalar::ZERO])
+    }
+
+    /// A cone between the centres of its flat ends, by their radii, one of which may be 0; none if a length leaves 10⁻⁶⁰ to 10⁶⁰. Equal radii
+    /// make a cylinder.
+    #[must_use]
+    pub fn truncated_cone<V: Vector>(from: V, to: V, radii: [V::Scalar; 2]) -> Option<Self> {
+        let (from, to, [one, other]) = (wide(from)?, wide(to)?, radii.map(Real::to_f64));
+        if one == other {
+            return Some(Self::of(&[tube(from, to, one)?]));
+        }
+        // From the larger end; the origin is there, or in the apex if there is one.
+        let (wide_end, narrow, radii) = if one > other { (from, to, [one, other]) } else { (to, from, [other, one]) };
+        let (height, axis) = direction(wide_end, narrow)?;
+        if !SIZES.contains(&radii[0]) || !(radii[1] == 0.0 || SIZES.contains(&radii[1])) {
             return None;
         }
-        let shift = [0, 1, 2].map(|n| base[n] - apex[n]);
-        let end = End { center: base, shift, inward: axis.map(|a| -a), radius, closed: true };
-        let curved = Curved::new(Wall::Cone { slope: radius / height }, axis);
-        Some(Self::of(&[Part::new(apex, curved, [Some(end), None])]))
+        let slope = (radii[1] - radii[0]) / height;
+        let origin = if radii[1] == 0.0 { narrow } else { wide_end };
+        let end = |center: [f64; 3], sign: f64, radius: f64| End {
+            center,
+            shift: [0, 1, 2].map(|n| center[n] - origin[n]),
+            inward: axis.map(|a| a * sign),
+            radius,
+            closed: true,
+        };
+        let (base, top) = (end(wide_end, 1.0, radii[0]), end(narrow, -1.0, radii[1]));
+        let ends = [Some(base), (radii[1] > 0.0).then_some(top)];
+        let radius = if radii[1] == 0.0 { 0.0 } else { radii[0] };
+        Some(Self::of(&[Part::new(origin, Curved::new(Wall::Cone { radius, slope }, axis), ends)]))
     }
 
     /// An ellipsoid from its centre and half axes, which must be orthogonal; none if a length leaves 10⁻⁶⁰ to 10⁶⁰.

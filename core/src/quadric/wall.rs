@@ -1,10 +1,10 @@
 //! The curved surfaces: where grid lines pierce them, and the conics in which grid planes cut them.
 //!
-//! Everything is relative to the origin of a part: a point of a cylinder's axis, a cone's apex, a ball's centre. `a` is the unit vector of
+//! Everything is relative to the origin of a part: a point of a cylinder's or a cone's axis, a ball's centre. `a` is the unit vector of
 //! the axis. Discriminants are kept as products, so that a line that touches a surface is told from one that misses it by its distance.
 
 use super::arc::P2;
-use super::twofold::{Twofold, difference_of_squares, dot};
+use super::twofold::{Twofold, difference, difference_of_squares, dot};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 
@@ -66,8 +66,9 @@ pub(super) enum Wall {
     Cylinder {
         radius: f64,
     },
-    /// Radius at unit distance from the apex, towards the axis' end.
+    /// Radius where the origin is, and by how much it grows along the axis; with a slope.
     Cone {
+        radius: f64,
         slope: f64,
     },
     Ball {
@@ -100,7 +101,7 @@ impl Curved {
     pub fn span(&self, m: usize, q: [Twofold; 2]) -> Span {
         match &self.wall {
             Wall::Cylinder { radius } => self.span_of_cylinder(*radius, m, q),
-            Wall::Cone { slope } => self.span_of_cone(*slope, m, q.map(|q| q.value)),
+            Wall::Cone { radius, slope } => self.span_of_cone([*radius, *slope], m, q),
             Wall::Ball { radius } => {
                 let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
                 let square = difference_of_squares(*radius, far) - near.value * near.value;
@@ -128,55 +129,86 @@ impl Curved {
         symmetric(foot, difference_of_squares(radius, distance), across)
     }
 
+    /// With f and d the line's distances from the origin along and beside the axis, as seen along the line, and σ² = 1 − (slope cot)², the
+    /// line is inside where t² σ² c² − 2 b t + C < 0, and b² − σ² c² C = c² ((R + slope f / c)² − σ² d²): for every slope a product.
     #[inline]
-    fn span_of_cone(&self, slope: f64, m: usize, q: P2) -> Span {
+    fn span_of_cone(&self, [radius, slope]: [f64; 2], m: usize, q: [Twofold; 2]) -> Span {
         let [u, v] = others(m);
-        let (am, au, av) = (self.axis[m], self.axis[u], self.axis[v]);
-        let kappa = 1.0 + slope * slope;
-        let along = au * q[0] + av * q[1];
-        let radius = hypotenuse(q[0], q[1]);
-        let aside = Real::sqrt(kappa) * (av * q[0] - au * q[1]).abs();
-        let square = (slope * radius - aside) * (slope * radius + aside);
-        let leading = (self.across[m] - slope * am.abs()) * (self.across[m] + slope * am.abs());
-        if leading > 0.0 && !(square > 0.0) {
-            return Span::EMPTY;
+        let (am, au, av, across) = (self.axis[m], self.axis[u], self.axis[v], self.across[m]);
+        let growth = slope * am;
+        if !(across > 0.0) {
+            let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
+            let off = hypotenuse(near.value, far.value);
+            let room = difference_of_squares(radius, far) - near.value * near.value;
+            let sum = radius + off;
+            return ray(if sum > 0.0 { -(room / sum) / growth } else { 0.0 }, growth);
         }
-        let half = kappa * am * along;
-        let constant = radius * radius - kappa * along * along;
-        let root = Real::sqrt(square.max(0.0));
+        let beside = [av / across, -au / across];
+        let mut off = Twofold { value: beside[0] * q[0].value + beside[1] * q[1].value, rest: 0.0 };
+        let along = (au / across) * q[0].value + (av / across) * q[1].value;
+        let there = difference(radius, -(slope / across) * along);
+        let slant = growth / across;
+        let square = (1.0 - slant) * (1.0 + slant);
+        let half = am * ((1.0 + slope * slope) * along * across + slope * radius);
+        let leading = across * across * square;
+        let root = if square > 0.0 {
+            let narrow = Real::sqrt(square);
+            if (there.value - narrow * off.value.abs()).abs() < there.value * NEAR {
+                off = dot(beside, q);
+            }
+            let (off, lost) = if off.value < 0.0 { (-off.value, -off.rest) } else { (off.value, off.rest) };
+            let less = (there.value - narrow * off) + (there.rest - narrow * lost);
+            let more = (there.value + narrow * off) + (there.rest + narrow * lost);
+            if !(there.value > 0.0 && less > 0.0) {
+                return Span::EMPTY;
+            }
+            let root = Real::sqrt(less * more);
+            if square > 0.5 {
+                let (foot, half) = (half / leading, root / (across * square));
+                return Span { lo: foot - half, hi: foot + half };
+            }
+            across * root
+        } else {
+            across * hypotenuse(there.value, Real::sqrt(-square) * off.value)
+        };
         let sum = half + root.copysign(half);
         if sum == 0.0 {
             // The line through the apex along the axis, or a plane's worth of tangents.
-            return if leading < 0.0 { ray(0.0, am) } else { Span::EMPTY };
+            return if leading < 0.0 { ray(0.0, growth) } else { Span::EMPTY };
         }
-        let (s, t) = (sum / leading, constant / sum);
+        let (out, own) = (hypotenuse(off.value, along * am), radius + slope * along * across);
+        let (s, t) = (sum / leading, (out - own) * (out + own) / sum);
+        if leading == 0.0 {
+            return ray(t, growth);
+        }
         let (lo, hi) = (s.min(t), s.max(t));
         if leading < 0.0 {
-            return ray(if am > 0.0 { hi } else { lo }, am);
+            return ray(if growth > 0.0 { hi } else { lo }, growth);
         }
-        if along + am * ((lo + hi) * 0.5) > 0.0 { Span { lo, hi } } else { Span::EMPTY }
+        Span { lo, hi }
     }
 
-    /// The conic in a plane across axis `n`: quadratic part `[uu, uv, vv]`, and the linear part at unit height.
+    /// The conic in a plane across axis `n` at a height: quadratic part `[uu, uv, vv]`, and the linear part.
     #[inline(always)]
-    pub fn conic(&self, n: usize) -> ([f64; 3], P2) {
+    pub fn conic(&self, n: usize, h: f64) -> ([f64; 3], P2) {
         let [u, v] = others(n);
         let a = &self.axis;
         match &self.wall {
             Wall::Cylinder { .. } => {
                 let quadratic = [a[v] * a[v] + a[n] * a[n], -a[u] * a[v], a[u] * a[u] + a[n] * a[n]];
-                (quadratic, [-a[u] * a[n], -a[v] * a[n]])
+                (quadratic, [-a[u] * a[n] * h, -a[v] * a[n] * h])
             }
-            Wall::Cone { slope } => {
+            Wall::Cone { radius, slope } => {
                 let (k, kappa) = (slope * slope, 1.0 + slope * slope);
                 let square = |own: f64, other: f64| other * other + a[n] * a[n] - k * own * own;
                 let quadratic = [square(a[u], a[v]), -kappa * a[u] * a[v], square(a[v], a[u])];
-                (quadratic, [-kappa * a[u] * a[n], -kappa * a[v] * a[n]])
+                let along = -(kappa * a[n] * h + slope * radius);
+                (quadratic, [along * a[u], along * a[v]])
             }
             Wall::Ball { .. } => ([1.0, 0.0, 1.0], [0.0; 2]),
             Wall::Ellipsoid(map) => {
                 let form = &map.form;
-                ([form[u][u], form[u][v], form[v][v]], [form[u][n], form[v][n]])
+                ([form[u][u], form[u][v], form[v][v]], [form[u][n] * h, form[v][n] * h])
             }
         }
     }
@@ -192,13 +224,15 @@ impl Curved {
                 let center = [a[u], a[v]].map(|along| h.value * (along / a[n]));
                 (a[n] != 0.0).then(|| Ellipse { center, area: PI * radius * radius / a[n].abs() })
             }
-            Wall::Cone { slope } => {
-                let factor = (a[n].abs() - slope * self.across[n]) * (a[n].abs() + slope * self.across[n]);
-                if !(factor > 0.0 && h.value * a[n] > 0.0) {
+            Wall::Cone { radius, slope } => {
+                let tilt = slope.abs() * self.across[n];
+                let factor = (a[n].abs() - tilt) * (a[n].abs() + tilt);
+                let reach = slope * h.value + radius * a[n];
+                if !(factor > 0.0 && reach * a[n] > 0.0) {
                     return None;
                 }
-                let shift = (1.0 + slope * slope) * a[n] * h.value / factor;
-                let area = PI * slope * slope * h.value * h.value / (factor * Real::sqrt(factor));
+                let shift = ((1.0 + slope * slope) * a[n] * h.value + slope * radius) / factor;
+                let area = PI * reach * reach / (factor * Real::sqrt(factor));
                 Some(Ellipse { center: [a[u] * shift, a[v] * shift], area })
             }
             Wall::Ball { radius } => {

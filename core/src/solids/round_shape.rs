@@ -20,7 +20,7 @@ pub enum RoundShape<V: Vector> {
     Capsule(Capsule<V>),
     /// A cylinder with flat ends.
     Cylinder(Cylinder<V>),
-    /// A cone with a flat base.
+    /// A cone with a flat base, whole or truncated.
     Cone(Cone<V>),
 }
 

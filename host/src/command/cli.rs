@@ -212,9 +212,12 @@ pub struct PorosityArgs {
     /// Where the picture is cut, such as x=1.5 or x=1.5,z=0 (default: where the porosity shows most)
     #[arg(long, value_name = "AXIS=M", value_parser = parse_slice, value_delimiter = ',', allow_hyphen_values = true)]
     pub slice: Vec<(usize, f64)>,
-    /// Draw slices of the volume porosity
+    /// Draw slices of the volume porosity, or of what --show names
     #[arg(long, value_name = "FILE.png")]
     pub png: Option<PathBuf>,
+    /// What the picture shows: beta_v, or a field of --resistance or --drag such as a_x, s, tau_z, cr_x
+    #[arg(long, value_name = "FIELD", default_value = "beta_v")]
+    pub show: String,
     /// Write a report
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,

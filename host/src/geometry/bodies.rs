@@ -323,6 +323,9 @@ fn clean(
         [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
     }
     let mut shells = shells::shells(&mut mesh, &alive, solid_of);
+    if d.t_junction_edges > 0 {
+        copies::doubt_backs(&mesh, &mut shells);
+    }
     drop_copies(&mesh, &mut shells, rounding, d);
     d.shells = shells.len();
     d.turned = shells.iter().map(|s| s.turned).sum();

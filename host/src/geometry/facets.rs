@@ -34,9 +34,10 @@ pub fn triangles(form: &Form) -> Vec<[DVec3; 3]> {
             revolve((to - from).normalize_or_zero(), &profile, |p| from + p)
         }
         Form::Cone(s) => {
-            let ([base, apex], radius) = (s.ends(), s.base_radius());
-            let profile = [(0.0, 0.0), (radius, 0.0), (0.0, (apex - base).length())];
-            revolve((apex - base).normalize_or_zero(), &profile, |p| base + p)
+            let ([base, top], length) = (s.ends(), (s.ends()[1] - s.ends()[0]).length());
+            let profile = [(0.0, 0.0), (s.base_radius(), 0.0), (s.top_radius(), length), (0.0, length)];
+            let profile = if s.top_radius() > 0.0 { &profile[..] } else { &profile[..3] };
+            revolve((top - base).normalize_or_zero(), profile, |p| base + p)
         }
         Form::Capsule(s) => {
             let (axis, length) = ((s.to - s.from).try_normalize().unwrap_or(DVec3::Z), (s.to - s.from).length());

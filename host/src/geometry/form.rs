@@ -19,7 +19,7 @@ pub enum Form {
     Cylinder(Cylinder<DVec3>),
     /// A segment with a radius.
     Capsule(Capsule<DVec3>),
-    /// A cone with a flat base.
+    /// A cone with a flat base, whole or truncated.
     Cone(Cone<DVec3>),
     /// The convex hull of its corners; boxes that are turned, too.
     Hull(Arc<[DVec3]>),

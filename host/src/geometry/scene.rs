@@ -53,8 +53,8 @@ pub struct Scene {
 pub struct SceneSolid {
     /// Its name.
     pub name: String,
-    /// The line that it begins in.
-    pub line: usize,
+    /// An error about it, without a reason yet: where it stands, by its `path` if it is from a file.
+    pub place: Error,
     /// What it is.
     pub shape: Shape,
     /// Its own open fraction: 0 is solid.
@@ -130,5 +130,5 @@ fn solid(mut keys: StrictTable<'_>) -> Result<(SceneSolid, StrictTable<'_>)> {
     }
     let placement = Placement::read(&mut keys)?;
     keys.finish()?;
-    Ok((SceneSolid { name, line: keys.line(), shape, porosity, drag, placement }, keys))
+    Ok((SceneSolid { name, place: keys.place("path"), shape, porosity, drag, placement }, keys))
 }

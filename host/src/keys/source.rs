@@ -1,7 +1,7 @@
 //! The text of a file, for messages that show the place: line, column, the line itself with a mark.
 
 use super::value::{PlacedValue, Value};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, excerpt};
 use std::ops::Range;
 use std::path::Path;
 use toml::de::DeTable;
@@ -16,9 +16,6 @@ pub struct Source<'a> {
     /// Where its line breaks are.
     breaks: Vec<usize>,
 }
-
-/// Characters of a line that a message shows at most.
-const SHOWN: usize = 100;
 
 impl<'a> Source<'a> {
     /// A file's path and text.
@@ -74,14 +71,9 @@ impl<'a> Source<'a> {
         let (number, begin) = (self.line(span.start), self.begin(span.start));
         let end = self.breaks.get(number - 1).copied().unwrap_or(self.text.len());
         let text = |range: Range<usize>| self.text.get(range).unwrap_or("");
-        let line: Vec<char> = text(begin..end).trim_end().replace('\t', " ").chars().collect();
-        let column = text(begin..span.start.min(end)).chars().count().min(line.len());
-        let first = column.saturating_sub(SHOWN / 2);
-        let shown: String = line[first..].iter().take(SHOWN).collect();
-        let width = text(span.start.min(end)..span.end.clamp(span.start.min(end), end)).trim_end().chars().count();
-        let room = (shown.chars().count() + first).saturating_sub(column);
-        let (mark, number) = ("^".repeat(width.min(room).max(1)), number.to_string());
-        format!("{number:>4} | {shown}\n{:>4} | {}{mark}", "", " ".repeat(column - first))
+        let start = span.start.min(end);
+        let width = text(start..span.end.clamp(start, end)).trim_end().chars().count();
+        excerpt(number, text(begin..end), text(begin..start).chars().count(), width)
     }
 }
 

@@ -48,6 +48,14 @@ impl ColourMap {
         ColourMap { table }
     }
 
+    /// From light paper, for none, to dark blue, with a step between none and the least: for quantities that are zero in most cells.
+    #[must_use]
+    pub fn density() -> Self {
+        let ColourMap { table: even } = Self::sequential();
+        let falling = (0..STEPS - 1).rev().map(|step| even[step * LIGHTEST / (STEPS - 2)]);
+        ColourMap { table: [even[STEPS - 1]].into_iter().chain(falling).collect() }
+    }
+
     /// Blue over white to red-brown: for quantities with a sign, and a range symmetric about zero.
     #[must_use]
     pub fn diverging() -> Self {

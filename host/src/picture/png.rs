@@ -31,14 +31,37 @@ pub fn picture(
     through: [Option<f64>; 3],
 ) -> std::result::Result<Canvas, String> {
     let (telling, open) = survey(edges, beta_v).ok_or("beta_v does not have the grid's length")?;
-    let at = std::array::from_fn(|a| {
-        let cell = |x: f64| edges[a].partition_point(|&e| e <= x).clamp(1, edges[a].len() - 1) - 1;
-        through[a].map_or(telling[a], cell)
-    });
+    let at = cut(edges, telling, through);
     let note = note(edges, unit, open);
     let map = &ColourMap::open_fraction();
     let (name, range, ends) = ("beta_v", [0.0, 1.0], ["blocked", "open"]);
     Figure { title, note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.draw()
+}
+
+/// The picture of another field that is not negative, cut as [`picture`] is; `name` has its unit.
+///
+/// # Errors
+/// As [`picture`].
+pub fn picture_of(
+    (name, values): (&str, &[f64]),
+    title: &str,
+    edges: [&[f64]; 3],
+    unit: &str,
+    through: [Option<f64>; 3],
+) -> std::result::Result<Canvas, String> {
+    let (telling, mean) = survey(edges, values).ok_or_else(|| format!("{name} does not have the grid's length"))?;
+    let most = values.iter().copied().fold(0.0, f64::max);
+    let note = format!("{} · mean {}, most {}", grid_note(edges, unit), number(mean), number(most));
+    let (at, range, ends, map) = (cut(edges, telling, through), [0.0, most], ["", ""], &ColourMap::density());
+    Figure { title, note: &note, edges, unit, values, at, name, range, ends, map }.draw()
+}
+
+/// The cells that the slices show: those at the given coordinates, else the most telling ones.
+fn cut(edges: [&[f64]; 3], telling: [usize; 3], through: [Option<f64>; 3]) -> [usize; 3] {
+    std::array::from_fn(|a| {
+        let cell = |x: f64| edges[a].partition_point(|&e| e <= x).clamp(1, edges[a].len() - 1) - 1;
+        through[a].map_or(telling[a], cell)
+    })
 }
 
 /// Cells, their sizes, the domain, how much is open.

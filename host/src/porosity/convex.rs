@@ -27,7 +27,7 @@ pub enum Convex<'a> {
     Cylinder(Cylinder<DVec3>),
     /// A segment with a radius.
     Capsule(Capsule<DVec3>),
-    /// A cone with a flat base.
+    /// A cone with a flat base, whole or truncated.
     Cone(Cone<DVec3>),
     /// A hull and its facets.
     Polytope(Polytope<'a, DVec3>),

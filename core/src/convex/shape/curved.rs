@@ -109,24 +109,26 @@ impl<V: Vector> AxisFrame<V> {
         AxisFrame { base, top, axis, across: [u, unit.cross(u)], radius, height: axis.length(), ends }
     }
 
-    /// From the axis to the point of the circle farthest along a direction.
+    /// From the axis to the point of the unit circle farthest along a direction.
     #[inline(always)]
     fn rim(&self, direction: V) -> V {
         let [u, v] = self.across;
         let zero = V::Scalar::ZERO;
         let local = normalized(V::new(u.dot(direction), v.dot(direction), zero));
-        (u * local.x() + v * local.y()) * self.radius
+        u * local.x() + v * local.y()
     }
 
-    fn extent(&self) -> V::Scalar {
-        let bad = if self.radius >= V::Scalar::ZERO { V::Scalar::ZERO } else { V::Scalar::INFINITY };
-        let highest = self.base.abs() + self.axis.abs() + V::splat(self.radius);
+    /// `other` is a second radius.
+    fn extent(&self, other: V::Scalar) -> V::Scalar {
+        let zero = V::Scalar::ZERO;
+        let bad = if self.radius >= zero && other >= zero { zero } else { V::Scalar::INFINITY };
+        let highest = self.base.abs() + self.axis.abs() + V::splat(self.radius.max(other));
         magnitude(highest) * (V::Scalar::ONE + V::Scalar::from_f64(16.0) * V::Scalar::EPSILON) + bad
     }
 
-    fn slack(&self) -> V::Scalar {
+    fn slack(&self, other: V::Scalar) -> V::Scalar {
         // A handful of roundings in the frame, in the direction across it, in its unit vector and in the sums.
-        V::Scalar::from_f64(48.0) * V::Scalar::EPSILON * self.extent()
+        V::Scalar::from_f64(48.0) * V::Scalar::EPSILON * self.extent(other)
     }
 }
 
@@ -155,7 +157,7 @@ impl<V: Vector> Support for Cylinder<V> {
     type Vector = V;
     #[inline(always)]
     fn support(&self, direction: V, _: u32) -> SupportPoint<V> {
-        let rim = self.0.rim(direction);
+        let rim = self.0.rim(direction) * self.0.radius;
         let end = if self.0.axis.dot(direction) > V::Scalar::ZERO { self.0.axis } else { V::ZERO };
         only(self.0.base + end + rim)
     }
@@ -165,32 +167,45 @@ impl<V: Vector> Support for Cylinder<V> {
     }
     #[inline(always)]
     fn extent(&self) -> V::Scalar {
-        self.0.extent()
+        self.0.extent(V::Scalar::ZERO)
     }
     #[inline(always)]
     fn slack(&self) -> V::Scalar {
-        self.0.slack()
+        self.0.slack(V::Scalar::ZERO)
     }
 }
 
-/// A cone with a flat base.
+/// A cone with a flat base, whole or truncated: between two discs across one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone<V: Vector>(pub(crate) AxisFrame<V>);
+pub struct Cone<V: Vector> {
+    pub(crate) frame: AxisFrame<V>,
+    top_radius: V::Scalar,
+}
 
 impl<V: Vector> Cone<V> {
     /// From the centre and radius of its base to its apex. With both in one place it is that point.
     pub fn new(base: V, apex: V, radius: V::Scalar) -> Self {
-        Cone(AxisFrame::new(base, apex, radius))
+        Self::truncated(base, apex, radius, V::Scalar::ZERO)
     }
 
-    /// The centre of its base, and its apex.
+    /// Between the centres of its base and top, by the radii of both. With both in one place it is that point.
+    pub fn truncated(base: V, top: V, radius: V::Scalar, top_radius: V::Scalar) -> Self {
+        Cone { frame: AxisFrame::new(base, top, radius), top_radius }
+    }
+
+    /// The centres of its base and of its top, or its apex.
     pub fn ends(&self) -> [V; 2] {
-        [self.0.base, self.0.top]
+        [self.frame.base, self.frame.top]
     }
 
     /// The radius of its base. ([`Support::radius`] is that of rounding, zero.)
     pub fn base_radius(&self) -> V::Scalar {
-        self.0.radius
+        self.frame.radius
+    }
+
+    /// The radius of its top, zero if that is an apex.
+    pub fn top_radius(&self) -> V::Scalar {
+        self.top_radius
     }
 }
 
@@ -198,20 +213,23 @@ impl<V: Vector> Support for Cone<V> {
     type Vector = V;
     #[inline(always)]
     fn support(&self, direction: V, _: u32) -> SupportPoint<V> {
-        let rim = self.0.rim(direction);
-        let across = if self.0.axis.dot(direction) > rim.dot(direction) { self.0.axis } else { rim };
-        only(self.0.base + across)
+        let AxisFrame { base, axis, radius, .. } = self.frame;
+        let rim = self.frame.rim(direction);
+        let (low, high) = (rim * radius, axis + rim * self.top_radius);
+        only(base + if high.dot(direction) > low.dot(direction) { high } else { low })
     }
     #[inline(always)]
     fn center(&self) -> V {
-        self.0.base + self.0.axis * V::Scalar::from_f64(0.25)
+        let quarter = V::Scalar::from_f64(0.25);
+        let share = if self.top_radius > self.frame.radius * quarter { V::Scalar::HALF } else { quarter };
+        self.frame.base + self.frame.axis * share
     }
     #[inline(always)]
     fn extent(&self) -> V::Scalar {
-        self.0.extent()
+        self.frame.extent(self.top_radius)
     }
     #[inline(always)]
     fn slack(&self) -> V::Scalar {
-        self.0.slack()
+        self.frame.slack(self.top_radius)
     }
 }

@@ -83,7 +83,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
             let index = self.problem.mesh.index(cell);
             medium.contraction(cell, self.old.momentum.map(|m| m[index]))
         };
-        medium.beside(d, at, self.periodic[d]).into_iter().flatten().map(of).fold(R::ONE, R::smaller)
+        medium.mesh.beside(d, at, self.periodic[d]).into_iter().flatten().map(of).fold(R::ONE, R::smaller)
     }
 
     /// The same for the low and the high face of a cell, as far as they break.

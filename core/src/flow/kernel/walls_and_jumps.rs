@@ -202,7 +202,7 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
     fn beside(&self, i: usize) -> [Option<[usize; D]>; 2] {
         let mut face = self.at;
         face[0] = i;
-        self.medium.beside(self.d, face, self.slab.periodic[self.d])
+        self.medium.mesh.beside(self.d, face, self.slab.periodic[self.d])
     }
 
     /// The pace of the gas of a cell beside a face that is closed over an area.

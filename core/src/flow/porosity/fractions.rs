@@ -143,10 +143,3 @@ pub(in crate::flow) struct Medium<'a, R, const D: usize> {
     pub mesh: Mesh<'a, R, D>,
     pub porosity: Porosity<'a, R, D>,
 }
-
-impl<R: Real, const D: usize> Medium<'_, R, D> {
-    /// [`Mesh::beside`].
-    pub fn beside(&self, d: usize, at: [usize; D], periodic: bool) -> [Option<[usize; D]>; 2] {
-        self.mesh.beside(d, at, periodic)
-    }
-}

@@ -58,10 +58,10 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
             for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
                 let (left, right) = own.beside(0, bit == break_high(d));
                 let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
-                let closed = !(open > R::ZERO) && medium.beside(d, face, periodic[d]).iter().flatten().any(feels);
+                let closed = !(open > R::ZERO) && medium.mesh.beside(d, face, periodic[d]).iter().flatten().any(feels);
                 let inclined = |c: &[usize; D]| medium.holds_inclined_wall(*c);
                 let breaks = closed || is_jump(left, open, right, threshold);
-                if breaks && !medium.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
+                if breaks && !medium.mesh.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
                     bits |= bit;
                 }
             }

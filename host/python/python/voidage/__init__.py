@@ -95,8 +95,9 @@ class Body:
         return Body(7, [*start, *end, radius])
 
     @staticmethod
-    def cone(base, apex, radius):
-        return Body(8, [*base, *apex, radius])
+    def cone(base, apex, radius, top_radius=0.0):
+        """From base to apex; with a radius there it is truncated."""
+        return Body(11, [*base, *apex, radius, top_radius])
 
     @staticmethod
     def ellipsoid(center, half_axes):

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::files::npy;
 use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::grid::Edges;
+use crate::keys::reader::not_known;
 use crate::picture::png;
 use crate::porosity::Porosity;
 use crate::porosity::drag::ObstacleDrag;
@@ -48,6 +49,7 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     if args.png.is_none() && !args.slice.is_empty() {
         return Err(Error::usage("--slice cuts a picture: give --png FILE.png"));
     }
+    check_show(args)?;
     args.png.iter().try_for_each(|path| check_suffix("--png", path, "png"))?;
     args.report.iter().try_for_each(|path| check_suffix("--report", path, "json"))?;
     for (n, output) in outputs.iter().enumerate() {
@@ -62,6 +64,36 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// `--show` names a field that will be there, and a picture to show it in.
+fn check_show(args: &PorosityArgs) -> Result<()> {
+    let (show, wants) = (&args.show[..], args.resistance || args.drag.is_some());
+    let of_drag = DRAG.contains(&show);
+    let wrong = |reason: String| Err(Error::usage(format!("--show {show}: {reason}")));
+    match show {
+        BETA => Ok(()),
+        _ if !of_drag && !OBSTACLES.contains(&show) => {
+            let known: Vec<&str> = [BETA].into_iter().chain(OBSTACLES).chain(DRAG).collect();
+            wrong(not_known(show, &known))
+        }
+        _ if args.png.is_none() => wrong("give --png FILE.png".into()),
+        _ if of_drag && args.drag.is_none() => wrong("give --drag LAW, which finds it".into()),
+        _ if !wants => wrong("give --resistance, which finds it".into()),
+        _ => Ok(()),
+    }
+}
+
+/// What a picture shows unless told otherwise.
+const BETA: &str = "beta_v";
+
+/// Unit of a field of `--resistance` or `--drag`.
+fn unit_of(field: &str) -> &'static str {
+    match field {
+        "d_h" | "l_obs" => "m",
+        _ if field.starts_with("tau") => "–",
+        _ => "1/m",
+    }
 }
 
 /// The arrays that `--npy` writes.
@@ -97,9 +129,16 @@ pub(super) fn write(
         let name = |p: &PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
         let through = slices(args, edges)?;
-        let edges = edges.0.each_ref().map(|e| &e[..]);
+        let (grid, edges) = (edges, edges.0.each_ref().map(|e| &e[..]));
         progress.stage("png", |_| {
-            let canvas = png::picture(&title, edges, "m", &result.beta.v, through);
+            let shown = obstacle_fields(grid, obstacles).into_iter().find(|(name, ..)| *name == args.show);
+            let canvas = match shown {
+                Some((name, _, values)) => {
+                    let name = format!("{name}, {}", unit_of(&name));
+                    png::picture_of((&name, values), &title, edges, "m", through)
+                }
+                None => png::picture(&title, edges, "m", &result.beta.v, through),
+            };
             let canvas = canvas.map_err(|reason| Error::file(path, reason))?;
             if !is_stream(path) {
                 return make_place(path).and_then(|()| canvas.write(path));

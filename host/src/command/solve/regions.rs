@@ -1,5 +1,6 @@
 //! Regions of a case, boxes and balls, and the share of each cell that they take: what a region holds does not depend on the grid.
 
+use super::arrays::index;
 use super::case::{CaseFile, StateKeys};
 use crate::error::Result;
 use crate::grid::Edges;
@@ -116,14 +117,13 @@ impl Region {
             let share = move |e: &[f64]| ((to.min(e[1]) - from.max(e[0])) / (e[1] - e[0])).clamp(0.0, 1.0);
             edges.0[a].windows(2).map(share).collect::<Vec<f64>>()
         });
-        let [nx, ny, nz] = edges.cells();
-        let held = |a: usize, n: usize| (0..n).map(move |i| (a, i));
+        let [nx, ny, _] = edges.cells();
+        let [x, y, z] =
+            along.each_ref().map(|shares| shares.iter().copied().enumerate().filter(|(_, share)| *share > 0.0));
         let mut all = Vec::new();
-        for (_, k) in held(2, nz).filter(|&(a, i)| along[a][i] > 0.0) {
-            for (_, j) in held(1, ny).filter(|&(a, i)| along[a][i] > 0.0) {
-                for (_, i) in held(0, nx).filter(|&(a, i)| along[a][i] > 0.0) {
-                    all.push(((k * ny + j) * nx + i, along[0][i] * along[1][j] * along[2][k]));
-                }
+        for (k, in_z) in z {
+            for (j, in_y) in y.clone() {
+                all.extend(x.clone().map(|(i, in_x)| ((k * ny + j) * nx + i, in_x * in_y * in_z)));
             }
         }
         all
@@ -139,9 +139,11 @@ impl Region {
             let widest = met.map(|e| e[1] - e[0]).fold(0.0, f64::max);
             per_radius = per_radius.min(0.5 * (to - from) / widest);
         }
-        let [nx, ny, _] = edges.cells();
-        let width = |a: usize, i: usize| edges.0[a][i + 1] - edges.0[a][i];
-        let volume = |cell: usize| width(0, cell % nx) * width(1, cell / nx % ny) * width(2, cell / (nx * ny));
+        let widths = [0, 1, 2].map(|a| edges.widths(a));
+        let volume = |cell: usize| {
+            let [i, j, k] = index(cell, edges.cells());
+            widths[0][i] * widths[1][j] * widths[2][k]
+        };
         RegionReport {
             cells_per_radius: per_radius.is_finite().then_some(per_radius),
             volume: shares.iter().map(|&(cell, share)| share * volume(cell)).sum(),

@@ -6,6 +6,4 @@ pub mod books;
 pub mod boxes;
 pub mod doors;
 pub mod random;
-pub mod riemann;
-pub mod solids;
 pub mod truth;

@@ -1,7 +1,8 @@
 //! Runs cases side by side, each on one thread, and hands their outcomes over in the order of the list.
 
+use crate::command::stages;
 use crate::command::stress::case::{Effort, StressCase};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -41,10 +42,8 @@ pub fn run(
     threads: usize,
     mut done: impl FnMut(&StressOutcome),
 ) -> Result<Vec<StressOutcome>> {
-    let pools =
-        (0..threads.clamp(1, cases.len().max(1))).map(|_| rayon::ThreadPoolBuilder::new().num_threads(1).build());
-    let pools: Vec<_> =
-        pools.collect::<std::result::Result<_, _>>().map_err(|e| Error::new(format!("cannot start threads: {e}")))?;
+    let pools = (0..threads.clamp(1, cases.len().max(1))).map(|_| stages::threads(Some(1)));
+    let pools: Vec<_> = pools.collect::<Result<_>>()?;
     let (next, (sender, receiver)) = (AtomicUsize::new(0), mpsc::channel());
     std::thread::scope(|scope| {
         for pool in &pools {

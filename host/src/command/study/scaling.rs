@@ -136,8 +136,7 @@ fn run(recipe: &ScalingRecipe, count: usize, repeats: usize) -> Result<ScalingRo
         Along::Overlaps => lattice(count, 0.6, RINGS)?,
         Along::Threads => lattice(27, 0.6, 2 * RINGS)?,
     };
-    let steps: Vec<f64> = (0..=cells).map(|i| i as f64 / cells as f64).collect();
-    let edges = Edges([steps.clone(), steps.clone(), steps]);
+    let edges = Edges::cube(0.0, 1.0, cells);
     let grid = edges.grid(None)?;
     let pool = stages::threads(Some(u16::try_from(threads).map_err(|e| Error::new(format!("threads: {e}")))?))?;
     let ((), seconds) = timed(repeats, || {

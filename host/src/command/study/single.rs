@@ -97,8 +97,8 @@ fn round(form: &Form) -> Option<RoundShape<Vec3>> {
             RoundShape::Capsule(Capsule { from: c.from.as_vec3(), to: c.to.as_vec3(), radius: c.radius as f32 })
         }
         Form::Cone(c) => {
-            let [base, apex] = c.ends().map(|p| p.as_vec3());
-            RoundShape::Cone(Cone::new(base, apex, c.base_radius() as f32))
+            let [base, top] = c.ends().map(|p| p.as_vec3());
+            RoundShape::Cone(Cone::truncated(base, top, c.base_radius() as f32, c.top_radius() as f32))
         }
         _ => return None,
     })

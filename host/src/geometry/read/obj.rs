@@ -235,6 +235,6 @@ impl<'a> Reader<'a> {
     }
 
     fn error(&self, at: usize, reason: String) -> Error {
-        Error::at(self.path, self.tokens.line(at), reason)
+        self.tokens.error(self.path, at, reason)
     }
 }

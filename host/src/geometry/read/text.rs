@@ -3,6 +3,9 @@
 //! A place is a byte offset; it becomes a line number only when a message needs one, so that reading does not count lines.
 //! Lines end with LF, CR LF or CR alone.
 
+use crate::error::{Error, excerpt};
+use std::path::Path;
+
 /// A run of bytes without white space.
 #[derive(Debug, Clone, Copy)]
 pub struct Token<'a> {
@@ -145,12 +148,30 @@ impl<'a> Tokens<'a> {
         self.text.len()
     }
 
-    /// Line of an offset, counted from 1, as a place for a message.
+    /// Line of an offset, as a place for a message.
     pub fn line(&self, at: usize) -> String {
+        format!("line {}", self.line_number(at))
+    }
+
+    /// Line of an offset, counted from 1.
+    fn line_number(&self, at: usize) -> usize {
         let before = &self.text[..at.min(self.text.len())];
         let ends = |i: usize, byte: u8| byte == b'\n' || (byte == b'\r' && self.text.get(i + 1) != Some(&b'\n'));
-        let lines = before.iter().enumerate().filter(|&(i, &byte)| ends(i, byte)).count();
-        format!("line {}", lines + 1)
+        before.iter().enumerate().filter(|&(i, &byte)| ends(i, byte)).count() + 1
+    }
+
+    /// An error about the word at an offset: its line and column, and the line with a mark.
+    pub fn error(&self, path: &Path, at: usize, reason: impl Into<String>) -> Error {
+        let at = at.min(self.text.len());
+        let begin = self.text[..at].iter().rposition(|&byte| is_line_end(byte)).map_or(0, |end| end + 1);
+        let rest = &self.text[at..];
+        let line = &self.text[begin..at + rest.iter().position(|&byte| is_line_end(byte)).unwrap_or(rest.len())];
+        let [column, width] =
+            [&self.text[begin..at], &rest[..rest.iter().position(|&b| is_space(b)).unwrap_or(rest.len())]]
+                .map(|bytes| String::from_utf8_lossy(bytes).chars().count());
+        let number = self.line_number(at);
+        let excerpt = excerpt(number, &String::from_utf8_lossy(line), column, width);
+        Error { excerpt: Some(excerpt), ..Error::at(path, format!("line {number}, column {}", column + 1), reason) }
     }
 
     /// Where the text ends, as a place for a message: the line of its last word.

@@ -186,6 +186,40 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Redundant {
     found
 }
 
+/// Doubts what belongs together where shells share edges and some of them are backs of others: in a surface with two sides that was cut at
+/// T-junctions. Two closed shells that are each other's back, and a shell alone, are beyond doubt; so are parts that touch and all look outward.
+pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell]) {
+    let mut sets = Sets::new(shells.len());
+    let mut owner: HashMap<u64, usize> = HashMap::default();
+    for (s, shell) in shells.iter().enumerate() {
+        for [a, b] in shell.triangles.iter().flat_map(|&n| edges_of(mesh.triangles[n as usize])) {
+            sets.join(*owner.entry(key(a, b)).or_insert(s), s);
+        }
+    }
+    let owners = twins(mesh, shells);
+    let backs_of = |n: u32| owners.get(&back(from_lowest(mesh.triangles[n as usize]))).map_or(&[][..], |o| o);
+    let mut members: HashMap<usize, Vec<usize>> = HashMap::default();
+    (0..shells.len()).for_each(|s| members.entry(sets.find(s)).or_default().push(s));
+    for (cluster, members) in members {
+        let all = || members.iter().flat_map(|&s| shells[s].triangles.iter().map(move |&n| (s, n)));
+        let has_backs = all().any(|(_, n)| !backs_of(n).is_empty())
+            && members.iter().any(|&s| !(Seen::new(mesh, &shells[s], 0.0).volume > 0.0));
+        let beyond_doubt = match members[..] {
+            [_] => true,
+            [a, b] => {
+                let closed = shells[a].boundary.is_empty() && shells[b].boundary.is_empty();
+                closed && all().all(|(s, n)| backs_of(n) == [a + b - s])
+            }
+            _ => false,
+        };
+        if has_backs && !beyond_doubt {
+            for s in members {
+                (shells[s].guessed, shells[s].cluster) = (true, cluster);
+            }
+        }
+    }
+}
+
 /// How a shell may be redundant.
 #[derive(Clone, Copy)]
 enum Kind {

@@ -20,6 +20,11 @@ pub fn key(a: u32, b: u32) -> u64 {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
 
+/// The lower and the higher vertex of an edge.
+pub fn ends(edge: u64) -> [u32; 2] {
+    [(edge >> 32) as u32, edge as u32]
+}
+
 impl EdgeUses {
     /// Of the triangles that are `alive`.
     #[must_use]
@@ -53,7 +58,7 @@ impl EdgeUses {
     pub fn unmatched_points(&self, points: usize) -> Vec<bool> {
         let mut unmatched = vec![false; points];
         for uses in self.each().filter(|uses| balance(uses) != 0) {
-            for v in [uses[0].0 >> 32, uses[0].0 & 0xffff_ffff] {
+            for v in ends(uses[0].0) {
                 unmatched[v as usize] = true;
             }
         }

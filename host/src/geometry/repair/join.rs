@@ -6,7 +6,7 @@
 //! one named solid, then those already connected by other edges. So no shell depends on the order of a file, and a triangle and
 //! its exact reverse, between which there is nothing, are never joined.
 
-use crate::geometry::repair::edges::Use;
+use crate::geometry::repair::edges::{Use, ends};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::Indexed;
 use glam::DVec3;
@@ -54,16 +54,16 @@ struct Pairing {
 
 impl Fan {
     fn new(mesh: &Indexed, edge: u64, uses: &[(u64, Use)]) -> Self {
-        let [a, b] = [edge >> 32, edge & 0xffff_ffff];
-        let point = |v: u64| mesh.points[v as usize];
+        let [a, b] = ends(edge);
+        let point = |v: u32| mesh.points[v as usize];
         let axis = (point(b) - point(a)).normalize_or_zero();
         let apex = |u: &Use| {
             let corners = mesh.triangles[u.triangle as usize];
-            corners.into_iter().find(|&v| ![a, b].contains(&u64::from(v))).unwrap_or(corners[0])
+            corners.into_iter().find(|&v| v != a && v != b).unwrap_or(corners[0])
         };
         // From the edge to the third corner.
         let across = |v: u32| {
-            let d = point(u64::from(v)) - point(a);
+            let d = point(v) - point(a);
             d - axis * d.dot(axis)
         };
         let first = uses.iter().map(|(_, u)| across(apex(u)).normalize_or_zero()).find(|&d| d != DVec3::ZERO);

@@ -3,7 +3,7 @@
 //! Such a surface closes in space, and its triangles have no partners by their edges. So the triangles at the edge are cut at the corners that lie on it;
 //! then the surface closes in its edges as well, and where parts touch, or have two sides, it can be told what belongs together.
 
-use crate::geometry::repair::edges::{EdgeUses, Use, balance, key};
+use crate::geometry::repair::edges::{EdgeUses, Use, balance, ends, key};
 use crate::geometry::repair::weld::{Indexed, edges_of};
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
@@ -21,11 +21,10 @@ pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding:
     if corners.is_empty() {
         return 0;
     }
-    let cut: Vec<(usize, [u32; 3])> = mesh.triangles.iter().copied().enumerate().filter(|&(n, _)| alive[n]).collect();
+    let has_corners = |t: [u32; 3]| edges_of(t).iter().any(|&[a, b]| corners.contains_key(&key(a, b)));
+    let triangles = mesh.triangles.iter().copied().enumerate();
+    let cut: Vec<(usize, [u32; 3])> = triangles.filter(|&(n, t)| alive[n] && has_corners(t)).collect();
     for (n, triangle) in cut {
-        if !edges_of(triangle).iter().any(|&[a, b]| corners.contains_key(&key(a, b))) {
-            continue;
-        }
         let mut pieces = Vec::new();
         divide(triangle, edges_of(triangle).map(|edge| within(&corners, edge)), &mut pieces);
         alive[n] = !pieces.is_empty();
@@ -40,8 +39,8 @@ pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding:
         }
     }
     let parts = |(&edge, inner): (&u64, &Vec<u32>)| {
-        let ends = [(edge >> 32) as u32, (edge & 0xffff_ffff) as u32];
-        let all: Vec<u32> = std::iter::once(ends[0]).chain(inner.iter().copied()).chain([ends[1]]).collect();
+        let [low, high] = ends(edge);
+        let all: Vec<u32> = std::iter::once(low).chain(inner.iter().copied()).chain([high]).collect();
         all.windows(2).map(|w| key(w[0], w[1])).collect::<Vec<_>>()
     };
     let mut involved: Vec<u64> = corners.iter().flat_map(parts).filter(|e| odd.binary_search(e).is_ok()).collect();
@@ -72,19 +71,19 @@ fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
 
 /// Corners at which two of these edges run straight on.
 fn straight(mesh: &Indexed, edges: &[u64]) -> Vec<u32> {
-    let ends = edges.iter().flat_map(|&e| {
-        let (a, b) = ((e >> 32) as u32, (e & 0xffff_ffff) as u32);
+    let both_ways = |&edge: &u64| {
+        let [a, b] = ends(edge);
         [(a, b), (b, a)]
-    });
-    let mut ends: Vec<(u32, u32)> = ends.collect();
-    ends.sort_unstable();
+    };
+    let mut ways: Vec<(u32, u32)> = edges.iter().flat_map(both_ways).collect();
+    ways.sort_unstable();
     let runs_on = |around: &&[(u32, u32)]| {
         let from = mesh.points[around[0].0 as usize];
-        let ways: Vec<DVec3> =
+        let directions: Vec<DVec3> =
             around.iter().map(|&(_, to)| (mesh.points[to as usize] - from).normalize_or_zero()).collect();
-        (0..ways.len()).any(|i| ways[..i].iter().any(|w| w.dot(ways[i]) < STRAIGHT))
+        (0..directions.len()).any(|i| directions[..i].iter().any(|d| d.dot(directions[i]) < STRAIGHT))
     };
-    ends.chunk_by(|a, b| a.0 == b.0).filter(runs_on).map(|around| around[0].0).collect()
+    ways.chunk_by(|a, b| a.0 == b.0).filter(runs_on).map(|around| around[0].0).collect()
 }
 
 /// Which of some corners lie within which edges, from their lower end to their higher one.
@@ -97,7 +96,7 @@ fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> 
     let mut in_order: Vec<(f64, u32)> = corners.iter().map(|&v| (mesh.points[v as usize][axis], v)).collect();
     in_order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     for &edge in edges {
-        let [a, b] = [(edge >> 32) as u32, (edge & 0xffff_ffff) as u32];
+        let [a, b] = ends(edge);
         let (p, q) = (mesh.points[a as usize], mesh.points[b as usize]);
         let (lo, hi) = (p.min(q) - rounding, p.max(q) + rounding);
         let first = in_order.partition_point(|c| c.0 < lo[axis]);
@@ -149,13 +148,7 @@ fn divide([a, b, c]: [u32; 3], on: [Vec<u32>; 3], pieces: &mut Vec<[u32; 3]>) {
         Some(1) => (b, c, a, bc, ca, ab),
         Some(_) => (c, a, b, ca, ab, bc),
     };
-    if p < q {
-        let m = pq[0];
-        divide([p, m, r], [Vec::new(), Vec::new(), rp], pieces);
-        divide([m, q, r], [pq[1..].to_vec(), qr, Vec::new()], pieces);
-    } else {
-        let m = pq[pq.len() - 1];
-        divide([p, m, r], [pq[..pq.len() - 1].to_vec(), Vec::new(), rp], pieces);
-        divide([m, q, r], [Vec::new(), qr, Vec::new()], pieces);
-    }
+    let at = if p < q { 0 } else { pq.len() - 1 };
+    divide([p, pq[at], r], [pq[..at].to_vec(), Vec::new(), rp], pieces);
+    divide([pq[at], q, r], [pq[at + 1..].to_vec(), qr, Vec::new()], pieces);
 }

@@ -18,9 +18,11 @@ const MOST_TRIANGLES: usize = 30_000_000;
 /// A file that cannot be read or holds nothing solid, or copies without end; with the scene's line and the solid's name.
 pub fn add(scene: &Scene, bodies: &mut Bodies) -> Result<()> {
     for solid in &scene.solids {
+        // Of two places the one in the solid's own file is shown.
         let place = |e: &Error| {
             let reason = format!("solid \"{}\": {e}", solid.name);
-            Error::at(&scene.path, format!("line {}", solid.line), reason)
+            let excerpt = solid.place.excerpt.clone().filter(|_| e.excerpt.is_none());
+            Error { reason, excerpt, ..solid.place.clone() }
         };
         let first = bodies.bodies.len();
         add_solid(scene, solid, bodies).map_err(|e| place(&e))?;

@@ -39,16 +39,18 @@ pub enum Shape {
         /// Highest corner.
         max: DVec3,
     },
-    /// `from`, `to`, `radius`
+    /// `from`, `to`, `radius`; a cone's `top_radius`
     Round {
         /// Cylinder, capsule or cone.
         kind: Round,
         /// One end of the axis; a cone's base centre.
         from: DVec3,
-        /// The other; a cone's apex.
+        /// The other; a cone's top centre or apex.
         to: DVec3,
         /// Radius; a cone's at its base.
         radius: f64,
+        /// A cone's at `to`, 0 of an apex; of the others the same.
+        top_radius: f64,
     },
     /// `points`
     Hull(hull::HullSolid),
@@ -68,7 +70,7 @@ pub enum Round {
     Cylinder,
     /// Round ends beyond those of the axis.
     Capsule,
-    /// Apex at the end of the axis.
+    /// Apex at the end of the axis, or a second flat end.
     Cone,
 }
 
@@ -79,7 +81,7 @@ pub const SHAPES: [(&str, &[&str], &[&str]); 8] = [
     ("box", &["min", "max"], &[]),
     ("cylinder", &["from", "to", "radius"], &[]),
     ("capsule", &["from", "to", "radius"], &[]),
-    ("cone", &["from", "to", "radius"], &[]),
+    ("cone", &["from", "to", "radius"], &["top_radius"]),
     ("hull", &["points"], &[]),
     ("file", &["path"], &["unit", "scale"]),
 ];
@@ -127,7 +129,9 @@ impl Shape {
             if from == to && kind != Round::Capsule {
                 return Err(keys.wrong("to", "is the same point as from"));
             }
-            Ok(Shape::Round { kind, from, to, radius })
+            let top_radius =
+                if kind == Round::Cone { keys.get("top_radius", table::not_negative)?.unwrap_or(0.0) } else { radius };
+            Ok(Shape::Round { kind, from, to, radius, top_radius })
         };
         let shape = keys.need("shape", table::text)?;
         check_keys(keys, &shape)?;
@@ -196,13 +200,10 @@ impl Shape {
             Shape::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
             Shape::Ellipsoid { semi_axes, .. } => 4.0 / 3.0 * PI * semi_axes.element_product(),
             Shape::Box { min, max } => (max - min).element_product(),
-            Shape::Round { kind, from, to, radius } => {
-                let cylinder = PI * radius * radius * (to - from).length();
-                match kind {
-                    Round::Cylinder => cylinder,
-                    Round::Capsule => cylinder + 4.0 / 3.0 * PI * radius.powi(3),
-                    Round::Cone => cylinder / 3.0,
-                }
+            Shape::Round { kind, from, to, radius, top_radius } => {
+                let squares = radius * radius + radius * top_radius + top_radius * top_radius;
+                let straight = PI / 3.0 * squares * (to - from).length();
+                straight + if *kind == Round::Capsule { 4.0 / 3.0 * PI * radius.powi(3) } else { 0.0 }
             }
             Shape::Hull(hull) => hull.volume(),
             Shape::File { .. } => 0.0,
@@ -223,10 +224,10 @@ impl Shape {
             }
             Shape::Box { min, max } if motion.turn.is_none() => Form::Box(Aabb { min: at(min), max: at(max) }),
             Shape::Box { min, max } => Form::Hull(hull::corners_of_box(*min, *max).iter().map(at).collect()),
-            Shape::Round { kind, from, to, radius } => match kind {
+            Shape::Round { kind, from, to, radius, top_radius } => match kind {
                 Round::Cylinder => Form::Cylinder(Cylinder::new(at(from), at(to), *radius)),
                 Round::Capsule => Form::Capsule(Capsule { from: at(from), to: at(to), radius: *radius }),
-                Round::Cone => Form::Cone(Cone::new(at(from), at(to), *radius)),
+                Round::Cone => Form::Cone(Cone::truncated(at(from), at(to), *radius, *top_radius)),
             },
             Shape::Hull(hull) => Form::Hull(hull.corners.iter().map(at).collect::<Arc<[_]>>()),
             Shape::File { .. } => return None,

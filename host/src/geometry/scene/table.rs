@@ -171,10 +171,11 @@ impl<'a> StrictTable<'a> {
         items.iter().enumerate().map(read).collect()
     }
 
-    /// The line that the table begins in.
+    /// An error without a reason yet, at a key or, where that is not there, at the table.
     #[must_use]
-    pub fn line(&self) -> usize {
-        self.source.line(self.span.start)
+    pub fn place(&self, key: &str) -> Error {
+        let span = self.table.get(key).map_or(self.span.clone(), |value| value.span());
+        self.source.error(span, "")
     }
 
     /// Every key must have been asked for.
@@ -194,8 +195,7 @@ impl<'a> StrictTable<'a> {
     /// An error about a key, at its line.
     #[must_use]
     pub fn wrong(&self, key: &str, reason: impl std::fmt::Display) -> Error {
-        let span = self.table.get(key).map_or(self.span.clone(), |value| value.span());
-        self.source.error(span, format!("{}{key} {reason}", self.prefix()))
+        Error { reason: format!("{}{key} {reason}", self.prefix()), ..self.place(key) }
     }
 
     /// An error about the table, at its line.

@@ -1,9 +1,9 @@
 //! Resistance of any strength.
 
+use crate::command::riemann::{ExactRiemann, GasState};
 use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_most};
 use crate::command::stress::kit::books::Books;
 use crate::command::stress::kit::doors::{fixed_steps, run};
-use crate::command::stress::kit::riemann::{ExactRiemann, GasState};
 use crate::command::stress::kit::truth::larger;
 use crate::flow::Flow;
 use voidage_core::flow::{Boundary, Gas};

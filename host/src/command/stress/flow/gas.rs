@@ -1,9 +1,9 @@
 //! Gas in the open: shock tubes that trouble solvers, against exact solutions.
 
+use crate::command::riemann::{ExactRiemann, GasState};
 use crate::command::stress::case::{Criterion, Effort, Numbers, StressCase, at_most};
 use crate::command::stress::kit::books::Books;
 use crate::command::stress::kit::doors::run;
-use crate::command::stress::kit::riemann::{ExactRiemann, GasState};
 use crate::flow::Flow;
 use voidage_core::flow::{Boundary, Gas};
 

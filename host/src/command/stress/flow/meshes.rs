@@ -1,7 +1,7 @@
 //! What must not matter: units, axes, threads; and hardly any cells.
 
 use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_most};
-use crate::command::stress::kit::books::{bits, differ, face_count};
+use crate::command::stress::kit::books::{bits, differ, face_count, set_random_porosity};
 use crate::command::stress::kit::doors::{fixed_steps, steps};
 use crate::command::stress::kit::random::Random;
 use crate::command::stress::kit::truth::larger;
@@ -47,9 +47,7 @@ fn blast(density: f64, velocity: f64, length: f64) -> Result<Vec<f64>, FlowError
     let n = [24, 6];
     let mut random = Random::new(5);
     let mut flow: Flow<f64, 2> = Flow::uniform(n, [length / 8.0; 2], GAS, [[Boundary::Wall; 2]; 2]);
-    let volume = (0..flow.len()).map(|_| random.fraction()).collect();
-    let faces = [0, 1].map(|d| (0..face_count(n, d)).map(|_| random.fraction()).collect());
-    flow.set_porosity(volume, faces, Treatment::default())?;
+    set_random_porosity(&mut flow, n, &mut random)?;
     let drag: Vec<f64> = (0..flow.len()).map(|_| random.scale(1e-2, 1e2) / length).collect();
     flow.set_drag([drag.clone(), drag], [Vec::new(), Vec::new()]);
     for cell in 0..flow.len() {

@@ -1,10 +1,10 @@
 //! Closed, nearly closed and random space.
 
+use crate::command::riemann::{ExactRiemann, GasState};
 use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_most};
-use crate::command::stress::kit::books::{Books, bits, differ, face_count, unphysical};
+use crate::command::stress::kit::books::{Books, bits, differ, face_count, set_random_porosity, unphysical};
 use crate::command::stress::kit::doors::{run, steps};
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::riemann::{ExactRiemann, GasState};
 use crate::command::stress::kit::truth::larger;
 use crate::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Error as FlowError, Gas, Primitive};
@@ -161,9 +161,7 @@ fn closed_space(kind: usize) -> Space {
 fn random_box<const D: usize>(seed: u64, n: [usize; D], count: usize) -> Result<[f64; 4], FlowError> {
     let mut random = Random::new(seed);
     let mut flow: Flow<f64, D> = Flow::uniform(n, [0.1; D], GAS, [[Boundary::Wall; 2]; D]);
-    let volume = (0..flow.len()).map(|_| random.fraction()).collect();
-    let faces = std::array::from_fn(|d| (0..face_count(n, d)).map(|_| random.fraction()).collect());
-    flow.set_porosity(volume, faces, Treatment::default())?;
+    set_random_porosity(&mut flow, n, &mut random)?;
     for cell in 0..flow.len() {
         let (density, pressure) = (random.scale(1e-2, 1.0), random.scale(1e-3, 1e3));
         flow.set(cell, &Primitive { density, velocity: [0.0; D], pressure });

@@ -1,7 +1,7 @@
 //! Gas that rests must rest.
 
 use crate::command::stress::case::{Criterion, Effort, Numbers, StressCase, at_least, at_most};
-use crate::command::stress::kit::books::{Books, bits, differ, face_count};
+use crate::command::stress::kit::books::{Books, bits, differ, face_count, set_random_porosity};
 use crate::command::stress::kit::doors::steps;
 use crate::command::stress::kit::random::Random;
 use crate::command::stress::kit::truth::larger;
@@ -40,9 +40,7 @@ const GAS: Gas<f64> = Gas::Ideal { gamma: 1.4 };
 fn box_at_rest<const D: usize>(seed: u64, n: [usize; D], count: usize) -> Result<f64, voidage_core::flow::Error> {
     let mut random = Random::new(seed);
     let mut flow: Flow<f64, D> = Flow::uniform(n, [0.1; D], GAS, [[Boundary::Wall; 2]; D]);
-    let volume = (0..flow.len()).map(|_| random.fraction()).collect();
-    let faces = std::array::from_fn(|d| (0..face_count(n, d)).map(|_| random.fraction()).collect());
-    flow.set_porosity(volume, faces, Treatment::default())?;
+    set_random_porosity(&mut flow, n, &mut random)?;
     for cell in 0..flow.len() {
         flow.set(cell, &Primitive { density: random.scale(1e-3, 1.0), velocity: [0.0; D], pressure: 1.0 });
     }

@@ -4,8 +4,8 @@ use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_mos
 use crate::command::stress::kit::books::{Books, plane_porosity};
 use crate::command::stress::kit::doors::{measure, run, steps};
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{scene, turned_box};
 use crate::command::stress::kit::truth::{half_space, larger, open_fractions};
+use crate::command::triangulated::{scene, turned_box};
 use crate::flow::{Flow, Treatment};
 use crate::grid::Edges;
 use crate::porosity::Options;
@@ -145,8 +145,7 @@ fn deviation<const D: usize>(flow: &Flow<f64, D>, velocity: [f64; D], open: &[f6
 
 fn walls(effort: Effort) -> Numbers {
     let (mut most, mut floors, mut streams) = (0.0, 0, 0);
-    let axis: Vec<f64> = (0..=24).map(|i| 0.1 * f64::from(i)).collect();
-    let edges = Edges([axis.clone(), axis, vec![0.0, 0.1]]);
+    let edges = Edges::uniform(DVec3::ZERO, DVec3::new(2.4, 2.4, 0.1), [24, 24, 1]);
     for degrees in [0.1, 0.5, 2.0, 5.0, 20.0, 30.0, 45.0, 60.0, 80.0, 85.0, 89.0, 135.0, 200.0, 315.0] {
         let (sin, cos) = f64::to_radians(degrees).sin_cos();
         let normal = DVec3::new(-sin, cos, 0.0);

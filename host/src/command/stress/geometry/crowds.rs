@@ -4,8 +4,8 @@ use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_mos
 use crate::command::stress::kit::boxes::{VoxelUnion, share_of_disjoint};
 use crate::command::stress::kit::doors::measure;
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{cuboid, scene, turned_box, volume};
 use crate::command::stress::kit::truth::{larger, open_fractions, outside, worst};
+use crate::command::triangulated::{cuboid, scene, turned_box, volume};
 use crate::grid::Edges;
 use crate::porosity::Options;
 use glam::DVec3;
@@ -55,16 +55,11 @@ pub const CASES: &[StressCase] = &[
     ),
 ];
 
-fn even(lo: f64, hi: f64, n: u32) -> Vec<f64> {
-    (0..=n).map(|i| lo + (hi - lo) * f64::from(i) / f64::from(n)).collect()
-}
-
 fn coincident(_: Effort) -> Numbers {
     const SIDE: usize = 34;
     let corner = |n: usize| DVec3::new((n % SIDE) as f64, (n / SIDE % SIDE) as f64, (n / SIDE / SIDE) as f64);
     let bricks: Vec<_> = (0..SIDE.pow(3)).map(|n| cuboid(corner(n), corner(n) + DVec3::ONE)).collect();
-    let axis = even(-0.7, 35.3, 14);
-    let edges = Edges([axis.clone(), axis.clone(), axis]);
+    let edges = Edges::cube(-0.7, 35.3, 14);
     let found = measure(&edges, &scene(&bricks)?, Options::default())?;
     let block = [[DVec3::ZERO, DVec3::splat(SIDE as f64)]];
     let truth = open_fractions(&edges, |corners| share_of_disjoint(&block, corners));
@@ -73,8 +68,7 @@ fn coincident(_: Effort) -> Numbers {
 
 fn copies(_: Effort) -> Numbers {
     let one = turned_box(DVec3::splat(0.5), DVec3::new(0.3, 0.2, 0.1), Random::new(2).turn());
-    let axis = even(0.0, 1.0, 5);
-    let edges = Edges([axis.clone(), axis.clone(), axis]);
+    let edges = Edges::cube(0.0, 1.0, 5);
     let (mut error, mut outside) = (0.0, 0.0);
     for count in [2, 3, 5, 8, 40] {
         let bodies = scene(&vec![one.clone(); count])?;
@@ -95,8 +89,7 @@ fn overlapping(effort: Effort) -> Numbers {
     let count = effort.pick(10_000, 100_000);
     let boxes = VoxelUnion::random(&mut Random::new(1), 64, count, 6);
     let bodies = scene(&boxes.solids(DVec3::ZERO, 1.0))?;
-    let axis: Vec<usize> = (0..=8).map(|i| 8 * i).collect();
-    let planes = [axis.clone(), axis.clone(), axis];
+    let planes = [0, 1, 2].map(|_| (0..=8).map(|i| 8 * i).collect::<Vec<usize>>());
     let options = Options { bounds: true, ..Options::default() };
     let found = measure(&VoxelUnion::edges(&planes, DVec3::ZERO, 1.0), &bodies, options)?;
     let truth = boxes.truth(&planes);

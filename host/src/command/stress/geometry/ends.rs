@@ -4,8 +4,8 @@ use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_mos
 use crate::command::stress::kit::boxes::share_of_disjoint;
 use crate::command::stress::kit::doors::measure;
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{cuboid, ring, scene, turned_box};
 use crate::command::stress::kit::truth::{half_space, larger, open_fractions, worst};
+use crate::command::triangulated::{cuboid, ring, scene, turned_box};
 use crate::geometry::bodies::Bodies;
 use crate::geometry::scene;
 use crate::grid::Edges;
@@ -42,14 +42,9 @@ pub const CASES: &[StressCase] = &[
     ),
 ];
 
-fn edges(n: u32, lo: f64, hi: f64) -> Edges {
-    let axis: Vec<f64> = (0..=n).map(|i| lo + (hi - lo) * f64::from(i) / f64::from(n)).collect();
-    Edges([axis.clone(), axis.clone(), axis])
-}
-
 fn all_solid(_: Effort) -> Numbers {
     let (mut open, mut not_closed, mut scenes) = (0.0, 0, 0);
-    let grid = edges(5, 0.0, 1.0);
+    let grid = Edges::cube(0.0, 1.0, 5);
     let heap = (0..8).map(|n| {
         let [x, y, z] = [n & 1, n >> 1 & 1, n >> 2 & 1].map(|high| 0.45 * f64::from(high));
         cuboid(DVec3::new(x, y, z) - 0.1, DVec3::new(x, y, z) + 0.65)
@@ -71,7 +66,7 @@ fn all_solid(_: Effort) -> Numbers {
 
 fn all_open(_: Effort) -> Numbers {
     let (mut solid, mut not_open, mut scenes) = (0.0, 0, 0);
-    let grid = edges(5, 0.0, 1.0);
+    let grid = Edges::cube(0.0, 1.0, 5);
     for solids in [
         vec![],
         vec![cuboid(DVec3::splat(1.5), DVec3::splat(2.0))],
@@ -88,7 +83,7 @@ fn all_open(_: Effort) -> Numbers {
 
 fn cut_by_domain(effort: Effort) -> Numbers {
     let (mut error, mut scenes) = (0.0, 0);
-    let grid = edges(6, 0.0, 1.0);
+    let grid = Edges::cube(0.0, 1.0, 6);
     for seed in 0..effort.pick(50, 1000) {
         let mut random = Random::new(seed);
         let (mut lo, mut hi) = (random.point(DVec3::splat(0.1), DVec3::splat(0.5)), DVec3::ZERO);
@@ -122,7 +117,7 @@ fn parsed(text: &str) -> Result<Bodies, crate::error::Error> {
 }
 
 fn tangent(_: Effort) -> Numbers {
-    let grid = edges(4, 0.0, 4.0);
+    let grid = Edges::cube(0.0, 4.0, 4);
     let (mut cells, mut faces, mut scenes) = (0.0, 0.0, 0);
     // One of a row of four fills each cell of the middle; neighbours touch in a point, or along a line.
     let array = "array = { count = [4, 4, 4], step = [1, 1, 1] }";

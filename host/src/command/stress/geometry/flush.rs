@@ -4,10 +4,8 @@ use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_mos
 use crate::command::stress::kit::boxes::VoxelUnion;
 use crate::command::stress::kit::doors::measure;
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{
-    Corners, changed, cuboid, fan_prism, inward, ring, scene, turned_box, volume,
-};
 use crate::command::stress::kit::truth::{larger, worst};
+use crate::command::triangulated::{Corners, changed, cuboid, fan_prism, inward, ring, scene, turned_box, volume};
 use crate::grid::Edges;
 use crate::porosity::Options;
 use glam::{DMat3, DVec3};
@@ -44,11 +42,6 @@ pub const CASES: &[StressCase] = &[
     ),
 ];
 
-fn edges(n: u32) -> Edges {
-    let axis: Vec<f64> = (0..=n).map(|i| 2.0 * f64::from(i) / f64::from(n) - 1.0).collect();
-    Edges([axis.clone(), axis.clone(), axis])
-}
-
 fn double_sides(_: Effort) -> Numbers {
     let turn = Random::new(6).turn();
     let (mut change, mut error) = (0.0, 0.0);
@@ -58,8 +51,8 @@ fn double_sides(_: Effort) -> Numbers {
         ring(DVec3::ZERO, 0.6, 0.2, turn, 20),
     ] {
         let both: Vec<Corners> = solid.iter().zip(&inward(&solid)).flat_map(|(a, b)| [*a, *b]).collect();
-        let one = measure(&edges(7), &scene(std::slice::from_ref(&solid))?, Options::default())?;
-        let found = measure(&edges(7), &scene(&[both])?, Options::default())?;
+        let one = measure(&Edges::cube(-1.0, 1.0, 7), &scene(std::slice::from_ref(&solid))?, Options::default())?;
+        let found = measure(&Edges::cube(-1.0, 1.0, 7), &scene(&[both])?, Options::default())?;
         change = larger(change, worst(&found.beta, &one.beta));
         error = larger(error, (found.solid_volume / volume(&solid) - 1.0).abs());
     }
@@ -122,8 +115,8 @@ fn self_crossing(_: Effort) -> Numbers {
         // By triangles from the middle.
         let area: f64 = outline.iter().zip(outline.iter().cycle().skip(1)).map(|(p, q)| 0.5 * p.cross(*q).z).sum();
         let prism = |polygon: &[DVec3]| changed(&fan_prism(polygon, -0.53, -0.53 + height), |p| turn * p);
-        let crossing = measure(&edges(6), &scene(&[prism(&star(n, step))])?, Options::default())?;
-        let simple = measure(&edges(6), &scene(&[prism(&outline)])?, Options::default())?;
+        let crossing = measure(&Edges::cube(-1.0, 1.0, 6), &scene(&[prism(&star(n, step))])?, Options::default())?;
+        let simple = measure(&Edges::cube(-1.0, 1.0, 6), &scene(&[prism(&outline)])?, Options::default())?;
         error = larger(error, (crossing.solid_volume / (area * height) - 1.0).abs());
         change = larger(change, worst(&crossing.beta, &simple.beta));
     }

@@ -3,8 +3,8 @@
 use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_most};
 use crate::command::stress::kit::doors::measure;
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{Corners, cuboid, inward, ring, scene, turned_box, volume};
 use crate::command::stress::kit::truth::{larger, worst};
+use crate::command::triangulated::{Corners, cuboid, inward, ring, scene, turned_box, volume};
 use crate::geometry::bodies::Bodies;
 use crate::geometry::mesh::Mesh;
 use crate::grid::Edges;
@@ -45,11 +45,6 @@ pub const CASES: &[StressCase] = &[
     ),
 ];
 
-fn edges() -> Edges {
-    let axis: Vec<f64> = (0..=7).map(|i| 2.0 * f64::from(i) / 7.0 - 1.0).collect();
-    Edges([axis.clone(), axis.clone(), axis])
-}
-
 /// The same surface, spoiled in seven ways.
 fn spoiled(solid: &[Corners], seed: u64) -> Vec<Vec<Corners>> {
     let mut random = Random::new(seed);
@@ -83,11 +78,11 @@ fn repairs(_: Effort) -> Numbers {
     .into_iter()
     .enumerate()
     {
-        let plain = measure(&edges(), &scene(std::slice::from_ref(&solid))?, Options::default())?;
+        let plain = measure(&Edges::cube(-1.0, 1.0, 7), &scene(std::slice::from_ref(&solid))?, Options::default())?;
         for surface in spoiled(&solid, n as u64) {
             let bodies = scene(&[surface])?;
             mended += usize::from(!bodies.warnings.is_empty());
-            let found = measure(&edges(), &bodies, Options::default())?;
+            let found = measure(&Edges::cube(-1.0, 1.0, 7), &bodies, Options::default())?;
             change = larger(change, worst(&found.beta, &plain.beta));
             error = larger(error, (found.solid_volume / volume(&solid) - 1.0).abs());
         }
@@ -112,8 +107,8 @@ fn cracks(_: Effort) -> Numbers {
         let mut bodies = Bodies::default();
         bodies.add(&Mesh { triangles, ..mesh }, 1.0)?;
         cracked += usize::from(bodies.diagnoses.iter().any(|d| d.welded_by > 0.0));
-        let plain = measure(&edges(), &scene(std::slice::from_ref(&solid))?, Options::default())?;
-        let found = measure(&edges(), &bodies, Options::default())?;
+        let plain = measure(&Edges::cube(-1.0, 1.0, 7), &scene(std::slice::from_ref(&solid))?, Options::default())?;
+        let found = measure(&Edges::cube(-1.0, 1.0, 7), &bodies, Options::default())?;
         change = larger(change, worst(&found.beta, &plain.beta));
         error = larger(error, (found.solid_volume / volume(&solid) - 1.0).abs());
     }
@@ -136,6 +131,6 @@ fn non_finite(_: Effort) -> Numbers {
     }
     refused(vec![[DVec3::ZERO, DVec3::X, DVec3::X * 2.0]; 12]);
     refused(Vec::new());
-    let whole = measure(&edges(), &scene(&[solid])?, Options::default())?.solid_volume;
+    let whole = measure(&Edges::cube(-1.0, 1.0, 7), &scene(&[solid])?, Options::default())?.solid_volume;
     Ok(vec![accepted as f64, f64::from(tried), (whole - 1.0).abs()])
 }

@@ -4,8 +4,8 @@ use crate::command::stress::case::{Criterion, Effort, Numbers, StressCase, at_le
 use crate::command::stress::kit::boxes::VoxelUnion;
 use crate::command::stress::kit::doors::measure;
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{Corners, changed, coarse, ring, scene, turned_box};
 use crate::command::stress::kit::truth::{differing, half_space, larger, open_fractions, worst};
+use crate::command::triangulated::{Corners, changed, coarse, ring, scene, turned_box};
 use crate::grid::Edges;
 use crate::porosity::Options;
 use glam::DVec3;

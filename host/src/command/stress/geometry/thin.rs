@@ -4,8 +4,8 @@ use crate::command::stress::case::{Effort, Numbers, StressCase, at_least, at_mos
 use crate::command::stress::kit::boxes::share_of_disjoint;
 use crate::command::stress::kit::doors::measure;
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{cuboid, scene, turned_box};
 use crate::command::stress::kit::truth::{larger, open_fractions, worst};
+use crate::command::triangulated::{cuboid, scene, turned_box};
 use crate::grid::Edges;
 use crate::porosity::{FieldSet, Options};
 use glam::{DMat3, DVec3};

@@ -36,7 +36,7 @@ pub const CASES: &[StressCase] = &[
 const MOST: usize = 12;
 
 /// How many numbers a kind of shape takes.
-const KINDS: [usize; 11] = [3, 6, 9, 6, 12, 4, 7, 6, 7, 7, 12];
+const KINDS: [usize; 12] = [3, 6, 9, 6, 12, 4, 7, 6, 7, 7, 8, 12];
 
 /// A body of a kind from its numbers.
 fn body<'a>(kind: usize, n: &[f64; MOST], corners: &'a mut [DVec3; 4]) -> Result<AnyBody<'a, DVec3>, BodyError> {
@@ -53,6 +53,7 @@ fn body<'a>(kind: usize, n: &[f64; MOST], corners: &'a mut [DVec3; 4]) -> Result
         7 => Ellipsoid { center: v(0), semi_axes: v(3) }.into(),
         8 => Cylinder::new(v(0), v(3), n[6]).into(),
         9 => Cone::new(v(0), v(3), n[6]).into(),
+        10 => Cone::truncated(v(0), v(3), n[6], n[7]).into(),
         _ => Hull::new(&corners[..]).into(),
     };
     AnyBody::new(shape)

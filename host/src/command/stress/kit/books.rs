@@ -1,5 +1,6 @@
 //! What a flow must keep, and states that make none.
 
+use crate::command::stress::kit::random::Random;
 use crate::command::stress::kit::truth::larger;
 use crate::flow::{Flow, Treatment};
 use crate::grid::Edges;
@@ -62,6 +63,20 @@ pub fn differ(a: &[u64], b: &[u64]) -> f64 {
 pub fn plane_porosity(flow: &mut Flow<f64, 2>, edges: &Edges, open: &FieldSet) -> Result<(), FlowError> {
     debug_assert_eq!(edges.cells()[2], 1);
     flow.set_porosity(open.v.to_vec(), [open.x.to_vec(), open.y.to_vec()], Treatment::default()).map(|_| ())
+}
+
+/// Random open fractions of cells and faces for a flow of `n` cells.
+///
+/// # Errors
+/// The flow refuses them.
+pub fn set_random_porosity<const D: usize>(
+    flow: &mut Flow<f64, D>,
+    n: [usize; D],
+    random: &mut Random,
+) -> Result<(), FlowError> {
+    let volume = (0..flow.len()).map(|_| random.fraction()).collect();
+    let faces = std::array::from_fn(|d| (0..face_count(n, d)).map(|_| random.fraction()).collect());
+    flow.set_porosity(volume, faces, Treatment::default()).map(|_| ())
 }
 
 /// Faces of every axis: as many as a mesh of `n` cells has normal to axis `d`.

@@ -1,8 +1,8 @@
 //! Truths of boxes along the axes: products of overlaps, and counted voxels.
 
 use crate::command::stress::kit::random::Random;
-use crate::command::stress::kit::solids::{Corners, cuboid};
 use crate::command::stress::kit::truth::open_fractions;
+use crate::command::triangulated::{Corners, cuboid};
 use crate::grid::Edges;
 use crate::porosity::FieldSet;
 use glam::DVec3;

@@ -1,7 +1,8 @@
 //! Problems along a line: Sod, Shu and Osher, a porous slab, a nozzle.
 
-use super::exact::{GAMMA, LineState, ShockTube, expanded, mean, subsonic};
-use super::problems::{FlowChoice, FlowOutcome, advance, primitive, refused};
+use super::exact::{GAMMA, expanded, mean, subsonic};
+use super::problems::{FlowChoice, FlowOutcome, advance, refused};
+use crate::command::riemann::{ExactRiemann, GasState};
 use crate::error::Result;
 use crate::flow::{Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Conserved, Gas, Scheme};
@@ -20,7 +21,7 @@ fn fill<R: Scalar>(
     flow: &mut Flow<R, 1>,
     edge: &impl Fn(usize) -> f64,
     kinks: &[f64],
-    state: impl Fn(f64) -> LineState,
+    state: impl Fn(f64) -> GasState,
 ) {
     let conserved = |x: f64| {
         let s = state(x);
@@ -48,13 +49,13 @@ fn l1<R: Scalar>(
 /// # Errors
 /// The solver refuses.
 pub fn sod<R: Scalar>(choice: FlowChoice) -> Result<FlowOutcome> {
-    let (left, right) = (LineState { rho: 1.0, u: 0.0, p: 1.0 }, LineState { rho: 0.125, u: 0.0, p: 0.1 });
+    let (left, right) = (GasState { rho: 1.0, u: 0.0, p: 1.0 }, GasState { rho: 0.125, u: 0.0, p: 0.1 });
     let (mut flow, edge) = line::<R>(choice, 1.0, [Boundary::ZeroGradient; 2]);
     fill(&mut flow, &edge, &[0.5], |x| if x < 0.5 { left } else { right });
-    let (tube, end) = (ShockTube::new(left, right), 0.2);
+    let (tube, end) = (ExactRiemann::new(left, right, GAMMA), 0.2);
     let done = advance(&mut flow, end, false)?;
-    let kinks = tube.speeds().map(|s| 0.5 + s * end);
-    let exact = |i: usize| mean(|x| [tube.density((x - 0.5) / end)], edge(i), edge(i + 1), &kinks)[0];
+    let kinks = tube.kinks().map(|s| 0.5 + s * end);
+    let exact = |i: usize| mean(|x| [tube.at((x - 0.5) / end).rho], edge(i), edge(i + 1), &kinks)[0];
     Ok(FlowOutcome { error: l1(&flow, |w| w.density, exact), ..done })
 }
 
@@ -82,11 +83,11 @@ fn mean_of_cells(values: &[f64], a: f64, b: f64) -> f64 {
 
 /// The state of Shu and Osher at their time 1.8, with x from 0 to 10.
 fn shu_osher_flow<R: Scalar>(choice: FlowChoice) -> Result<(Flow<R, 1>, FlowOutcome)> {
-    let left = LineState { rho: 27.0 / 7.0, u: 4.0 * 35_f64.sqrt() / 9.0, p: 31.0 / 3.0 };
+    let left = GasState { rho: 27.0 / 7.0, u: 4.0 * 35_f64.sqrt() / 9.0, p: 31.0 / 3.0 };
     let state = |x: f64| {
-        if x < 1.0 { left } else { LineState { rho: 1.0 + 0.2 * (5.0 * (x - 5.0)).sin(), u: 0.0, p: 1.0 } }
+        if x < 1.0 { left } else { GasState { rho: 1.0 + 0.2 * (5.0 * (x - 5.0)).sin(), u: 0.0, p: 1.0 } }
     };
-    let sides = [Boundary::FarField(primitive(left)), Boundary::ZeroGradient];
+    let sides = [Boundary::FarField(left.along(0)), Boundary::ZeroGradient];
     let (mut flow, edge) = line::<R>(choice, 10.0, sides);
     fill(&mut flow, &edge, &[1.0], state);
     let done = advance(&mut flow, 1.8, false)?;
@@ -129,7 +130,7 @@ const SLAB: f64 = 0.5;
 pub fn slab<R: Scalar>(choice: FlowChoice) -> Result<FlowOutcome> {
     let up = expanded(0.3);
     let inside = subsonic(up.rho * up.u, SLAB);
-    let (mut flow, edge) = line::<R>(choice, 1.0, [Boundary::FarField(primitive(up)); 2]);
+    let (mut flow, edge) = line::<R>(choice, 1.0, [Boundary::FarField(up.along(0)); 2]);
     let n = choice.cells;
     let middle = |i: usize| 0.5 * (edge(i) + edge(i + 1));
     let in_slab = |i: usize| (0.4..0.6).contains(&middle(i));
@@ -140,7 +141,7 @@ pub fn slab<R: Scalar>(choice: FlowChoice) -> Result<FlowOutcome> {
         if a < b { a } else { b }
     };
     flow.set_porosity(volume, [(0..=n).map(narrower).collect()], Treatment::default()).map_err(refused)?;
-    (0..n).for_each(|cell| flow.set(cell, &primitive(up)));
+    (0..n).for_each(|cell| flow.set(cell, &up.along(0)));
     let done = advance(&mut flow, 100.0, true)?;
     let exact = |i: usize| if in_slab(i) { inside.p } else { up.p };
     let error = l1(&flow, |w| w.pressure, exact) / (0.5 * up.rho * up.u * up.u);

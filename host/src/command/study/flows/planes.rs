@@ -2,13 +2,12 @@
 
 use super::exact::{GAMMA, expanded, mean_of_cell};
 use super::problems::{FlowChoice, FlowOutcome, advance, refused};
+use crate::command::triangulated::{scene, turned_box};
 use crate::error::Result;
 use crate::flow::{Flow, Scalar, Treatment};
-use crate::geometry::bodies::Bodies;
-use crate::geometry::mesh::Mesh;
 use crate::grid::Edges;
 use crate::porosity::{FieldSet, Options, porosity};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use voidage_core::flow::{Boundary, Conserved, Gas, Primitive};
 
 /// Side of the square of the vortex, and its strength.
@@ -55,20 +54,12 @@ const ANGLE: f64 = 20.0;
 /// Open fractions of cells, x and y faces of a square of side 1 above a wall through its middle, by this program's own porosity.
 fn above_wall(n: usize) -> Result<[Vec<f64>; 3]> {
     let (sin, cos) = ANGLE.to_radians().sin_cos();
-    let (along, down) = (DVec3::new(cos, sin, 0.0), DVec3::new(sin, -cos, 0.0));
-    let corner = |a: f64, b: f64, z: f64| DVec3::new(0.5, 0.5, z) + along * (4.0 * a) + down * (4.0 * b);
-    let p = |n: usize| {
-        let bit = |b: usize| if n >> b & 1 == 1 { 1.0 } else { 0.0 };
-        corner(2.0 * bit(0) - 1.0, bit(1), 3.0 * bit(2) - 1.0)
-    };
-    // Quads of a box, which `down` mirrors: the winding is repaired when the mesh is read.
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let halves = |&[a, b, c, d]: &[usize; 4]| [[a, c, b], [a, d, c]].map(|t| t.map(p));
-    let triangles: Vec<[DVec3; 3]> = quads.iter().flat_map(halves).collect();
-    let mut bodies = Bodies::default();
-    bodies.add(&Mesh::from(triangles), 1.0)?;
-    let steps: Vec<f64> = (0..=n).map(|i| i as f64 / n as f64).collect();
-    let edges = Edges([steps.clone(), steps, vec![0.0, 1.0]]);
+    let [along, normal] = [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0)];
+    // The box reaches four sides of the square along the wall and four below it.
+    let center = DVec3::new(0.5, 0.5, 0.5) - normal * 2.0;
+    let wall = turned_box(center, DVec3::new(4.0, 2.0, 2.0), DMat3::from_cols(along, normal, DVec3::Z));
+    let bodies = scene(&[wall])?;
+    let edges = Edges::uniform(DVec3::ZERO, DVec3::ONE, [n, n, 1]);
     let FieldSet { v, x, y, .. } = porosity(&edges.grid(None)?, &bodies, Options::default()).beta;
     Ok([v.to_vec(), x.to_vec(), y.to_vec()])
 }

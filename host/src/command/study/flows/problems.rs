@@ -1,10 +1,9 @@
 //! The problems by name, what their errors are, and what they are counted from.
 
-use super::exact::LineState;
 use crate::error::{Error, Result};
 use crate::flow::{Flow, Scalar};
 use clap::ValueEnum;
-use voidage_core::flow::{Primitive, Scheme};
+use voidage_core::flow::Scheme;
 
 /// A built-in problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -70,11 +69,6 @@ impl FlowProblem {
     pub fn axes(self) -> i32 {
         if matches!(self, FlowProblem::Vortex | FlowProblem::InclinedWall) { 2 } else { 1 }
     }
-}
-
-/// A state along axis 0 as the solver takes it.
-pub(super) fn primitive<R: Scalar>(s: LineState) -> Primitive<R, 1> {
-    Primitive { density: R::from_f64(s.rho), velocity: [R::from_f64(s.u)], pressure: R::from_f64(s.p) }
 }
 
 /// Why the solver refused.

@@ -3,6 +3,7 @@
 //! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 4. Nothing here is shared with the
 //! kernel.
 
+use crate::flow::Scalar;
 use voidage_core::flow::Primitive;
 
 /// Gas on one side: density, velocity, pressure.
@@ -19,12 +20,14 @@ pub struct GasState {
 impl GasState {
     /// As the solver takes it, along an axis.
     #[must_use]
-    pub fn along<const D: usize>(self, axis: usize) -> Primitive<f64, D> {
-        let velocity = std::array::from_fn(|d| if d == axis { self.u } else { 0.0 });
-        Primitive { density: self.rho, velocity, pressure: self.p }
+    pub fn along<R: Scalar, const D: usize>(self, axis: usize) -> Primitive<R, D> {
+        let velocity = std::array::from_fn(|d| if d == axis { R::from_f64(self.u) } else { R::ZERO });
+        Primitive { density: R::from_f64(self.rho), velocity, pressure: R::from_f64(self.p) }
     }
 
-    fn sound(self, gamma: f64) -> f64 {
+    /// Speed of sound.
+    #[must_use]
+    pub fn sound(self, gamma: f64) -> f64 {
         (gamma * self.p / self.rho).sqrt()
     }
 
@@ -82,8 +85,17 @@ impl ExactRiemann {
     #[must_use]
     pub fn right_shock(&self) -> Option<f64> {
         let (p, _) = self.star?;
-        let (g, r) = (self.gamma, self.right);
-        (p > r.p).then(|| r.u + r.sound(g) * ((g + 1.0) / (2.0 * g) * p / r.p + (g - 1.0) / (2.0 * g)).sqrt())
+        (p > self.right.p).then(|| self.kinks()[4])
+    }
+
+    /// Speeds of the rays on which the solution is not smooth, ascending: head and tail of the left wave, contact, tail and head of the
+    /// right wave. Head and tail of a shock are one; without a contact its place is the left edge of the vacuum.
+    #[must_use]
+    pub fn kinks(&self) -> [f64; 5] {
+        let mirrored = self.star.map(|(p, u)| (p, -u));
+        let left = ends_of_wave(self.left, self.star, self.gamma);
+        let right = ends_of_wave(self.right.mirrored(), mirrored, self.gamma).map(|speed| -speed);
+        [left[0], left[1], self.star.map_or(left[1], |(_, u)| u), right[1], right[0]]
     }
 
     /// The state on the ray x/t = `ray`.
@@ -106,34 +118,37 @@ impl ExactRiemann {
     }
 }
 
+/// Behind the wave of the side whose wave runs to the left, Toro sec. 4.5.
+fn behind(s: GasState, (p, u): (f64, f64), g: f64) -> GasState {
+    let (q, m) = (p / s.p, (g - 1.0) / (g + 1.0));
+    let rho = s.rho * if p > s.p { (q + m) / (q * m + 1.0) } else { q.powf(1.0 / g) };
+    GasState { rho, u, p }
+}
+
+/// Speeds of the head and of the tail of a wave that runs to the left.
+fn ends_of_wave(s: GasState, star: Option<(f64, f64)>, g: f64) -> [f64; 2] {
+    let a = s.sound(g);
+    match star {
+        None => [s.u - a, s.u + 2.0 * a / (g - 1.0)],
+        Some((p, _)) if p > s.p => [s.u - a * ((g + 1.0) / (2.0 * g) * p / s.p + (g - 1.0) / (2.0 * g)).sqrt(); 2],
+        Some(star) => [s.u - a, star.1 - behind(s, star, g).sound(g)],
+    }
+}
+
 /// The state on a ray of the side whose wave runs to the left, Toro sec. 4.5.
 fn one_side(s: GasState, ray: f64, star: Option<(f64, f64)>, g: f64) -> GasState {
-    let a = s.sound(g);
-    let fan = || {
-        let c = 2.0 / (g + 1.0) + (g - 1.0) / ((g + 1.0) * a) * (s.u - ray);
-        GasState {
-            rho: s.rho * c.powf(2.0 / (g - 1.0)),
-            u: 2.0 / (g + 1.0) * (a + (g - 1.0) / 2.0 * s.u + ray),
-            p: s.p * c.powf(2.0 * g / (g - 1.0)),
-        }
-    };
-    let Some((p, u)) = star else {
-        return match ray {
-            _ if ray <= s.u - a => s,
-            _ if ray < s.u + 2.0 * a / (g - 1.0) => fan(),
-            _ => GasState { rho: 0.0, u: 0.0, p: 0.0 },
-        };
-    };
-    let (q, m) = (p / s.p, (g - 1.0) / (g + 1.0));
-    if p > s.p {
-        let speed = s.u - a * ((g + 1.0) / (2.0 * g) * q + (g - 1.0) / (2.0 * g)).sqrt();
-        let behind = GasState { rho: s.rho * (q + m) / (q * m + 1.0), u, p };
-        return if ray < speed { s } else { behind };
+    let [head, tail] = ends_of_wave(s, star, g);
+    if ray < head {
+        return s;
     }
-    let behind = GasState { rho: s.rho * q.powf(1.0 / g), u, p };
-    match ray {
-        _ if ray < s.u - a => s,
-        _ if ray > u - behind.sound(g) => behind,
-        _ => fan(),
+    if ray >= tail {
+        return star.map_or(GasState { rho: 0.0, u: 0.0, p: 0.0 }, |star| behind(s, star, g));
+    }
+    let a = s.sound(g);
+    let c = 2.0 / (g + 1.0) + (g - 1.0) / ((g + 1.0) * a) * (s.u - ray);
+    GasState {
+        rho: s.rho * c.powf(2.0 / (g - 1.0)),
+        u: 2.0 / (g + 1.0) * (a + (g - 1.0) / 2.0 * s.u + ray),
+        p: s.p * c.powf(2.0 * g / (g - 1.0)),
     }
 }
