@@ -21,8 +21,17 @@ pub const OTHERS: &str = "others";
 pub struct Measured<const D: usize> {
     /// Their name.
     pub name: String,
-    /// By cell: open fractions of the low and high faces of the live axes, and what is taken of cell and faces.
-    cells: Vec<(usize, [[f64; 2]; D], f64)>,
+    cells: Vec<Part<D>>,
+}
+
+/// What solids have in a cell.
+#[derive(Debug, Clone, Copy)]
+struct Part<const D: usize> {
+    cell: usize,
+    /// Open fractions of the low and high faces of the live axes.
+    faces: [[f64; 2]; D],
+    /// What is taken of the cell and of its faces.
+    taken: f64,
 }
 
 /// Force on the solids of a name.
@@ -68,12 +77,7 @@ fn part_of(bodies: &Bodies, wanted: &dyn Fn(&str) -> bool) -> Bodies {
 }
 
 /// What bodies alone have in the cells that they reach.
-fn alone<const D: usize>(
-    bodies: &Bodies,
-    edges: &Edges,
-    live: [usize; D],
-    options: Options,
-) -> Result<Vec<(usize, [[f64; 2]; D], f64)>> {
+fn alone<const D: usize>(bodies: &Bodies, edges: &Edges, live: [usize; D], options: Options) -> Result<Vec<Part<D>>> {
     let Some([low, high]) = bodies.bounds() else { return Ok(Vec::new()) };
     let shape = edges.cells();
     // The cells between the corners, and one more on each side.
@@ -95,11 +99,11 @@ fn alone<const D: usize>(
             let place: [usize; 3] = std::array::from_fn(|a| at[a] + if a == axis { side } else { 0 });
             faces[axis][(place[2] * size[1] + place[1]) * size[0] + place[0]]
         };
-        let open_faces = live.map(|axis| [face(axis, 0), face(axis, 1)]);
-        let taken = (1.0 - open) + open_faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
+        let faces = live.map(|axis| [face(axis, 0), face(axis, 1)]);
+        let taken = (1.0 - open) + faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
         if taken > 0.0 {
             let [i, j, k]: [usize; 3] = std::array::from_fn(|a| ranges[a].start + at[a]);
-            cells.push(((k * shape[1] + j) * shape[0] + i, open_faces, taken));
+            cells.push(Part { cell: (k * shape[1] + j) * shape[0] + i, faces, taken });
         }
     }
     Ok(cells)
@@ -120,11 +124,9 @@ impl<const D: usize> SolidShares<D> {
     pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>) -> Self {
         let names: Vec<String> = measured.iter().map(|m| m.name.clone()).collect();
         let mut shares = vec![Vec::new(); names.len()];
-        let mut by_cell: BTreeMap<usize, Vec<(usize, [[f64; 2]; D], f64)>> = BTreeMap::new();
+        let mut by_cell: BTreeMap<usize, Vec<(usize, Part<D>)>> = BTreeMap::new();
         for (group, m) in measured.iter().enumerate() {
-            for &(cell, faces, taken) in &m.cells {
-                by_cell.entry(cell).or_default().push((group, faces, taken));
-            }
+            m.cells.iter().for_each(|part| by_cell.entry(part.cell).or_default().push((group, *part)));
         }
         let (Some(solids), Some(others)) = (Solids::of(flow), names.len().checked_sub(1)) else {
             return SolidShares { names, shares };
@@ -139,24 +141,24 @@ impl<const D: usize> SolidShares<D> {
             // The part of a solid in the cell; where there is none, that in the cells beside it.
             let taken: Vec<f64> = {
                 let mut taken = vec![0.0; names.len()];
-                here.iter().for_each(|(group, _, t)| taken[*group] += t);
+                here.iter().for_each(|(group, part)| taken[*group] += part.taken);
                 if here.is_empty() {
                     let beside = flow.beside(cell).into_iter().filter_map(|c| by_cell.get(&c)).flatten();
-                    beside.for_each(|(group, _, t)| taken[*group] += t);
+                    beside.for_each(|(group, part)| taken[*group] += part.taken);
                 }
                 taken
             };
             let all: f64 = taken.iter().sum();
-            let own = |faces: &[[f64; 2]; D]| -> [f64; D] {
-                std::array::from_fn(|d| (faces[d][0] - faces[d][1]) * flow.area(d, at))
+            let own = |part: &Part<D>| -> [f64; D] {
+                std::array::from_fn(|d| (part.faces[d][0] - part.faces[d][1]) * flow.area(d, at))
             };
             let mut rest = walls;
-            here.iter().for_each(|(_, faces, _)| (0..D).for_each(|d| rest[d] -= own(faces)[d]));
+            here.iter().for_each(|(_, part)| (0..D).for_each(|d| rest[d] -= own(part)[d]));
             for (group, list) in shares.iter_mut().enumerate() {
                 let share = if all > 0.0 { taken[group] / all } else { f64::from(u8::from(group == others)) };
                 let mut area = rest.map(|r| share * r);
-                for (_, faces, _) in here.iter().filter(|(g, _, _)| *g == group) {
-                    (0..D).for_each(|d| area[d] += own(faces)[d]);
+                for (_, part) in here.iter().filter(|(g, _)| *g == group) {
+                    (0..D).for_each(|d| area[d] += own(part)[d]);
                 }
                 if share > 0.0 || area != [0.0; D] {
                     list.push((cell, area, share));
