@@ -4,7 +4,7 @@ use crate::flow::boundary::Boundary;
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
-use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::problem::PressureForm;
@@ -110,17 +110,6 @@ fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>,
 /// Pressure in the middle of the cell beyond a side of the domain, from that of the cell inside: a wall mirrors it.
 fn middle<R: Real, const D: usize>(side: &Boundary<R, D>, inside: R, ghost: &Primitive<R, D>) -> R {
     if *side == Boundary::Wall { inside } else { ghost.pressure }
-}
-
-/// Open fraction of a cell below which no pace is slow: what flows in dust follows from its rounding. Larger: the flux in small cells
-/// is the plain one.
-const DUST: f64 = 1e-6;
-
-/// A pace through a face of an open fraction between two cells of open fractions.
-#[inline(always)]
-pub(in crate::flow) fn tightened<R: Real>(pace: R, open: R, low: R, high: R) -> R {
-    let least = R::smaller(low, high);
-    if least > R::from_f64(DUST) { pace * (open / least) } else { R::INFINITY }
 }
 
 /// The pace of the faces of a row along or across axis `d`, whose open fractions are `face`; `at` names the cell above the first of them.

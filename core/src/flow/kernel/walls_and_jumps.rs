@@ -5,9 +5,8 @@
 //! would stagnate at a pressure wrong by rho c u. At a jump both cells are flat along the axis and the throat map acts.
 
 use crate::flow::boundary::Boundary;
-use crate::flow::kernel::fluxes::tightened;
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, Three, var};
-use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::flags::{break_high, break_low, marked};
