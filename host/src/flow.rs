@@ -321,6 +321,23 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a])
     }
 
+    /// The cells behind the faces of a cell, the other end of a periodic axis left out.
+    pub fn beside(&self, cell: usize) -> Vec<usize> {
+        let (at, n) = (self.coordinates(cell), self.cells());
+        let mut stride = 1;
+        let mut beside = Vec::with_capacity(2 * D);
+        for d in 0..D {
+            if at[d] > 0 {
+                beside.push(cell - stride);
+            }
+            if at[d] + 1 < n[d] {
+                beside.push(cell + stride);
+            }
+            stride *= n[d];
+        }
+        beside
+    }
+
     /// Open volume of a cell.
     pub fn open_volume(&self, cell: usize) -> R {
         let volume = self.volume(self.coordinates(cell));

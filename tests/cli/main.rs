@@ -2,6 +2,7 @@
 
 mod bad_inputs;
 mod drag;
+mod forces;
 mod inspect;
 mod kit;
 mod maxima;

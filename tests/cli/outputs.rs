@@ -97,11 +97,13 @@ fn columns(path: &std::path::Path) -> BTreeSet<String> {
 #[test]
 fn reports_and_tables_of_solve() {
     let at = Scratch::new();
-    fs::write(at.file("scene.toml"), "[[solid]]\nshape = \"box\"\nmin = [0.5, 0, 0]\nmax = [0.7, 1, 1]\n")
-        .expect("written");
+    fs::write(
+        at.file("scene.toml"),
+        "[[solid]]\nname = \"NAME\"\nshape = \"box\"\nmin = [0.5, 0, 0]\nmax = [0.7, 1, 1]\n",
+    )
+    .expect("written");
     let ideal = "model = \"ideal\"\ngamma = 1.4\ngas_constant = 287";
-    let more =
-        "[porosity]\nscene = \"scene.toml\"\n[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\nmaxima = {}\n";
+    let more = "[porosity]\nscene = \"scene.toml\"\n[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\nmaxima = {}\nforces = [\"*\"]\n";
     let isentropic = "model = \"isentropic\"\ngamma = 1.4\nrho = 1.2\np = 1e5";
     let cases = [
         ("ideal", tube(ideal, "T = 300, p = 1e5", more)),

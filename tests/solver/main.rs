@@ -7,6 +7,7 @@ mod convergence;
 mod extremes;
 mod inclined;
 mod invariance;
+mod low_mach;
 mod patches;
 mod reference;
 mod repairs;

@@ -1,6 +1,6 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`],
+//! In reading order: [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`],
 //! [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
 
 mod arrays;
@@ -16,6 +16,7 @@ pub mod report;
 pub mod run;
 pub mod setup;
 pub mod sides;
+pub mod solids;
 pub mod space;
 pub mod state;
 pub mod table;

@@ -1,14 +1,15 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
+use crate::flow::boundary::Boundary;
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
-use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::problem::PressureForm;
 use crate::flow::riemann::Solver;
-use crate::flow::state::{Conserved, rotate_back};
+use crate::flow::state::{Conserved, Primitive, rotate_back};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
@@ -57,7 +58,11 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
             }
         }
     };
-    rows::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &slab.face_gas, work.flux, m);
+    let pace = &mut work.coefficients.pace[..m];
+    if S::LOW_MACH {
+        paces(slab, 0, row.at, openings.face(), pace);
+    }
+    rows::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &slab.face_gas, pace, work.flux);
     if let Some(medium) = &slab.medium {
         let marks = &medium.porosity.marks[row.start..][..n];
         let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
@@ -88,16 +93,86 @@ fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>,
     let (n, m, gas) = (slab.size.n, slab.size.m, slab.problem.gas);
     let inner_low = rows::face_state::<R, D>(work.right, m, 0);
     let inner_high = rows::face_state::<R, D>(work.left, m, n);
+    let (of_low, of_high) = (work.right[(D + 2) * m], work.left[(D + 2) * m + n]);
     let (low, high) = if slab.periodic[0] {
-        (inner_high, inner_low)
+        ((inner_high, of_high), (inner_low, of_low))
     } else {
         let [a, b] = [false, true].map(|high| slab.problem.side(0, high, row.at));
-        (a.ghost_face(&inner_low, 0, true, gas), b.ghost_face(&inner_high, 0, false, gas))
+        let (low, high) = (a.ghost_face(&inner_low, 0, true, gas), b.ghost_face(&inner_high, 0, false, gas));
+        ((low, middle(a, of_low, &low)), (high, middle(b, of_high, &high)))
     };
-    rows::put_state(work.left, m, 0, &low);
-    work.left[(D + 2) * m] = low.pressure;
-    rows::put_state(work.right, m, n, &high);
-    work.right[(D + 2) * m + n] = high.pressure;
+    rows::put_state(work.left, m, 0, &low.0);
+    work.left[(D + 2) * m] = low.1;
+    rows::put_state(work.right, m, n, &high.0);
+    work.right[(D + 2) * m + n] = high.1;
+}
+
+/// Pressure in the middle of the cell beyond a side of the domain, from that of the cell inside: a wall mirrors it.
+fn middle<R: Real, const D: usize>(side: &Boundary<R, D>, inside: R, ghost: &Primitive<R, D>) -> R {
+    if *side == Boundary::Wall { inside } else { ghost.pressure }
+}
+
+/// The pace of the faces of a row along or across axis `d`, whose open fractions are `face`; `at` names the cell above the first of them.
+/// What comes from beyond the domain, walls and periodic sides apart, is given: no pace is too fast for it.
+fn paces<R: Real, const D: usize>(slab: &Slab<'_, R, D>, d: usize, at: [usize; D], face: Option<&[R]>, pace: &mut [R]) {
+    let (mesh, n) = (&slab.problem.mesh, slab.size.n);
+    let widths = mesh.widths[d];
+    let (cells, periodic) = (widths.len(), slab.periodic[d]);
+    // Beyond an end lies the other one of a periodic axis, else the cell at this one.
+    let beyond = |other: usize, own: usize| if periodic { other } else { own };
+    let above = |k: usize| if k < cells { k } else { beyond(0, cells - 1) };
+    let below = |k: usize| if k > 0 { k - 1 } else { beyond(cells - 1, 0) };
+    if slab.even[d] {
+        pace.fill(slab.dt / widths[0]);
+    } else if d == 0 {
+        for (i, pace) in pace.iter_mut().enumerate() {
+            *pace = slab.dt / R::smaller(widths[below(i)], widths[above(i)]);
+        }
+    } else {
+        pace.fill(slab.dt / R::smaller(widths[below(at[d])], widths[above(at[d])]));
+    }
+    if let (Some(medium), Some(face)) = (&slab.medium, face) {
+        let volume = medium.porosity.volume;
+        let row = |k: usize| {
+            let mut a = at;
+            a[d] = k;
+            mesh.index(a)
+        };
+        if d == 0 {
+            let volume = &volume[mesh.index(at)..][..n];
+            for i in [0, n] {
+                pace[i] = tightened(pace[i], face[i], volume[below(i)], volume[above(i)]);
+            }
+            let beside = volume.iter().zip(&volume[1..]);
+            for ((pace, open), (low, high)) in pace[1..n].iter_mut().zip(&face[1..n]).zip(beside) {
+                *pace = tightened(*pace, *open, *low, *high);
+            }
+        } else {
+            let [low, high] = [below(at[d]), above(at[d])].map(|k| &volume[row(k)..][..n]);
+            for ((pace, open), (low, high)) in pace.iter_mut().zip(face).zip(low.iter().zip(high)) {
+                *pace = tightened(*pace, *open, *low, *high);
+            }
+        }
+    }
+    if periodic {
+        return;
+    }
+    let given = |high: bool, at: [usize; D]| *slab.problem.side(d, high, at) != Boundary::Wall;
+    if d == 0 {
+        for (i, high) in [(0, false), (cells, true)] {
+            if given(high, at) {
+                pace[i] = R::INFINITY;
+            }
+        }
+    } else if at[d] == 0 || at[d] == cells {
+        for (i, pace) in pace.iter_mut().enumerate() {
+            let mut beside = at;
+            beside[0] = i;
+            if given(at[d] > 0, beside) {
+                *pace = R::INFINITY;
+            }
+        }
+    }
 }
 
 /// ½ g dx of the cells of a row along `d`, where its place is `k`, if gravity acts there.
@@ -125,9 +200,8 @@ fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
-    left: &[R],
-    right: &[R],
-    flux: &mut [R],
+    [left, right]: [&[R]; 2],
+    (flux, pace): (&mut [R], &mut [R]),
 ) {
     let n = slab.size.n;
     let (k, cells) = (at[d], slab.problem.mesh.cells()[d]);
@@ -153,7 +227,11 @@ fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
             }
         }
     };
-    rows::fluxes::<R, S, D, ENERGY>(left, right, openings, &slab.face_gas, flux, n);
+    let pace = &mut pace[..n];
+    if S::LOW_MACH {
+        paces(slab, d, at, openings.face(), pace);
+    }
+    rows::fluxes::<R, S, D, ENERGY>(left, right, openings, &slab.face_gas, pace, flux);
     if let Some(medium) = &slab.medium {
         let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
@@ -176,7 +254,7 @@ fn ghosts<R: Real, const D: usize>(
         let boundary = slab.problem.side(d, !low, at);
         let w = boundary.ghost_face(&rows::face_state::<R, D>(inner, n, i), d, low, slab.problem.gas);
         rows::put_state(out, n, i, &w);
-        out[(D + 2) * n + i] = w.pressure;
+        out[(D + 2) * n + i] = middle(boundary, inner[(D + 2) * n + i], &w);
     }
 }
 
@@ -254,7 +332,8 @@ fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
     } else {
         ghosts(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
-    fluxes_of_faces::<R, D, S, ENERGY>(slab, d, at, below_state, &work.right[..f], &mut work.flux[..f]);
+    let to = (&mut work.flux[..f], &mut *work.coefficients.pace);
+    fluxes_of_faces::<R, D, S, ENERGY>(slab, d, at, [below_state, &work.right[..f]], to);
     let last = mesh.cells()[d];
     for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
         if at[d] == edge {

@@ -12,7 +12,7 @@
 //! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., sec. 14.4 (MUSCL-Hancock) and 16.5.
 
 use crate::flow::limiter::Slope;
-use crate::flow::riemann::{FaceGas, Solver};
+use crate::flow::riemann::{FaceGas, Slowness, Solver};
 use crate::flow::state::{Fields, FieldsMut, Gas, Primitive, each, sum};
 use crate::number::real::Real;
 
@@ -353,19 +353,30 @@ pub(crate) enum Openings<'a, R> {
     Paper(&'a [R], &'a [R], &'a [R]),
 }
 
-/// Fluxes through a row of faces of axis `d`, from face state blocks `m` long in the frame of the axis.
+impl<'a, R> Openings<'a, R> {
+    /// Open fractions of the faces; none without porosity.
+    pub(crate) fn face(&self) -> Option<&'a [R]> {
+        match self {
+            Openings::None => None,
+            Openings::Geometric(face) | Openings::Paper(face, _, _) => Some(face),
+        }
+    }
+}
+
+/// Fluxes through a row of faces of axis `d`, from face state blocks in the frame of the axis, as long as `pace`: time step over width, times
+/// open area over open volume.
 pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool>(
     left: &[R],
     right: &[R],
     openings: Openings<'_, R>,
     gas: &FaceGas<R>,
+    pace: &[R],
     out: &mut [R],
-    m: usize,
 ) {
     match openings {
-        Openings::None => face_loop::<R, S, D, ENERGY, 0>(left, right, [&[]; 3], gas, out, m),
-        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, 1>(left, right, [b; 3], gas, out, m),
-        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, 2>(left, right, [b, l, r], gas, out, m),
+        Openings::None => face_loop::<R, S, D, ENERGY, 0>([left, right], [&[]; 3], gas, pace, out),
+        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, 1>([left, right], [b; 3], gas, pace, out),
+        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, 2>([left, right], [b, l, r], gas, pace, out),
     }
 }
 
@@ -376,13 +387,13 @@ const SHUT: f64 = 1e-9;
 /// `FORM`: 0 plain, 1 geometric, 2 paper.
 #[inline(always)]
 fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM: u8>(
-    left: &[R],
-    right: &[R],
+    [left, right]: [&[R]; 2],
     openings: [&[R]; 3],
     gas: &FaceGas<R>,
+    pace: &[R],
     out: &mut [R],
-    m: usize,
 ) {
+    let m = pace.len();
     let (l_rho, l_u, l_p) = state::<R, D>(left, m);
     let (r_rho, r_u, r_p) = state::<R, D>(right, m);
     let (l_wall, r_wall) = (var(left, D + 2, m), var(right, D + 2, m));
@@ -392,7 +403,8 @@ fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM:
     for i in 0..m {
         let l = Primitive { density: l_rho[i], velocity: each(|c| l_u[c][i]), pressure: l_p[i] };
         let r = Primitive { density: r_rho[i], velocity: each(|c| r_u[c][i]), pressure: r_p[i] };
-        let f = S::flux::<R, D, ENERGY>(&l, &r, gas);
+        let bend = (l.pressure - l_wall[i]) + (r.pressure - r_wall[i]);
+        let f = S::slow_flux::<R, D, ENERGY>(&l, &r, gas, Slowness { bend, pace: pace[i] });
         let (mut to_left, mut to_right) = (f.momentum[0] - l_wall[i], f.momentum[0] - r_wall[i]);
         let b = face[i];
         let open = |x: R| if FORM == 0 { x } else { b * x };

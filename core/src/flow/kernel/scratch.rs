@@ -105,7 +105,7 @@ impl Sizes {
             changes = changes.saturating_add(product([self.change_rows::<D>(d), v, self.n]));
             d += 1;
         }
-        let metric = product([4 * D + 5, self.n]).saturating_add(product([2, self.m]));
+        let metric = product([4 * D + 5, self.n]).saturating_add(product([3, self.m]));
         window.saturating_add(row).saturating_add(lagged).saturating_add(changes).saturating_add(metric)
     }
 
@@ -162,6 +162,8 @@ pub(in crate::flow) struct RowCoefficients<'s, R, const D: usize> {
     pub spare: &'s mut [R],
     pub vol_left: &'s mut [R],
     pub vol_right: &'s mut [R],
+    /// Of faces: see [`crate::flow::riemann::Slowness`].
+    pub pace: &'s mut [R],
 }
 
 impl<'s, R: Real, const D: usize> Work<'s, R, D> {
@@ -195,6 +197,7 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
                 spare: arena.take(s.n),
                 vol_left: arena.take(s.m),
                 vol_right: arena.take(s.m),
+                pace: arena.take(s.m),
             },
         }
     }

@@ -142,3 +142,14 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         row * len..(row + 1) * len
     }
 }
+
+/// Open fraction of a cell below which no pace is slow: what flows in dust follows from its rounding. Larger: the flux in small cells
+/// is the plain one.
+const DUST: f64 = 1e-6;
+
+/// A pace through a face of an open fraction between two cells of open fractions.
+#[inline(always)]
+pub(in crate::flow) fn tightened<R: Real>(pace: R, open: R, low: R, high: R) -> R {
+    let least = R::smaller(low, high);
+    if least > R::from_f64(DUST) { pace * (open / least) } else { R::INFINITY }
+}

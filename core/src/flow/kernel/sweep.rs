@@ -14,7 +14,7 @@ use crate::flow::kernel::scratch::{Sizes, Work};
 use crate::flow::kernel::slab::{Part, RowAt, Slab};
 use crate::flow::kernel::update::{update, update_below};
 use crate::flow::problem::Problem;
-use crate::flow::riemann::{Hllc, Hlle, Riemann, Rusanov, Solver};
+use crate::flow::riemann::{Hllc, HllcLowMach, Hlle, Riemann, Rusanov, Solver};
 use crate::flow::state::FieldsMut;
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
@@ -29,9 +29,11 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
 ) -> Report<R, D> {
     let run = match (problem.gas.has_energy(), problem.scheme.riemann) {
         (true, Riemann::Hllc) => sweep::<R, D, Hllc, true>,
+        (true, Riemann::HllcLowMach) => sweep::<R, D, HllcLowMach, true>,
         (true, Riemann::Hlle) => sweep::<R, D, Hlle, true>,
         (true, Riemann::Rusanov) => sweep::<R, D, Rusanov, true>,
         (false, Riemann::Hllc) => sweep::<R, D, Hllc, false>,
+        (false, Riemann::HllcLowMach) => sweep::<R, D, HllcLowMach, false>,
         (false, Riemann::Hlle) => sweep::<R, D, Hlle, false>,
         (false, Riemann::Rusanov) => sweep::<R, D, Rusanov, false>,
     };

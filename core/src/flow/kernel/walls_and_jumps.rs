@@ -6,14 +6,14 @@
 
 use crate::flow::boundary::Boundary;
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, Three, var};
-use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, jump_fluxes};
 use crate::flow::problem::PressureForm;
-use crate::flow::riemann::Solver;
+use crate::flow::riemann::{Slowness, Solver};
 use crate::flow::state::Primitive;
 use crate::number::real::Real;
 
@@ -204,6 +204,13 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
         self.medium.mesh.beside(self.d, face, self.slab.periodic[self.d])
     }
 
+    /// The pace of the gas of a cell beside a face that is closed over an area.
+    fn pace(&self, side: usize, i: usize, area: R) -> R {
+        let Some(cell) = self.beside(i)[side] else { return R::ZERO };
+        let volume = self.medium.porosity.volume[self.medium.mesh.index(cell)];
+        tightened(self.slab.dt / self.medium.mesh.widths[self.d][cell[self.d]], area, volume, volume)
+    }
+
     /// How far the gas passes a face as a contraction.
     fn contraction(&self, i: usize) -> R {
         let mut face = self.at;
@@ -280,8 +287,11 @@ fn wall_flux<R: Real, const D: usize, S: Solver>(row: &BrokenRow<'_, R, D>, i: u
         let w = rows::face_state(row.states[side], m, i);
         let image = Boundary::Wall.ghost_face(&w, d, side == 1, problem.gas);
         let pair: [&Primitive<R, D>; 2] = if side == 0 { [&w, &image] } else { [&image, &w] };
-        let f = S::flux::<R, D, false>(pair[0], pair[1], &row.slab.face_gas);
-        row.contraction(i) * area * (f.momentum[0] - row.states[side][(D + 2) * m + i])
+        let reference = row.states[side][(D + 2) * m + i];
+        let above = w.pressure - reference;
+        let slowness = Slowness { bend: above + above, pace: row.pace(side, i, area) };
+        let f = S::slow_flux::<R, D, false>(pair[0], pair[1], &row.slab.face_gas, slowness);
+        row.contraction(i) * area * (f.momentum[0] - reference)
     };
     let (to_left, to_right) = (push(0), push(1));
     for v in 0..D + 2 {

@@ -406,6 +406,8 @@ pub enum LimiterName {
 pub enum RiemannName {
     /// HLLC.
     Hllc,
+    /// HLLC, softened where the gas is slow.
+    HllcLowMach,
     /// HLLE.
     Hlle,
     /// Rusanov.
@@ -433,6 +435,9 @@ pub struct OutputKeys {
     /// Points whose state is kept at every step.
     #[serde(default)]
     pub probes: Vec<Probe>,
+    /// Solids whose forces are kept, by name; `*` stands for all.
+    #[serde(default)]
+    pub forces: Vec<String>,
     /// Point through which pictures are cut.
     pub slice: Option<[f64; 3]>,
     /// Ends of the colours of pictures.

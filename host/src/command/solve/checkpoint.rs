@@ -164,6 +164,7 @@ fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
         Riemann::Hllc => 0.0,
         Riemann::Hlle => 1.0,
         Riemann::Rusanov => 2.0,
+        Riemann::HllcLowMach => 3.0,
         _ => UNNAMED,
     };
     let limiter = match scheme.limiter {

@@ -28,7 +28,7 @@ pub fn force<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], ambient: f64
 }
 
 /// What the gas pushes.
-struct Solids<'a, const D: usize> {
+pub(super) struct Solids<'a, const D: usize> {
     beta_v: Option<&'a [f64]>,
     faces: [Option<&'a [f64]>; D],
     /// Quadratic and linear coefficients; empty where zero.
@@ -37,7 +37,7 @@ struct Solids<'a, const D: usize> {
 
 impl<'a, const D: usize> Solids<'a, D> {
     /// Those of a flow; none if its space is open and nothing drags.
-    fn of(flow: &'a Flow<f64, D>) -> Option<Self> {
+    pub(super) fn of(flow: &'a Flow<f64, D>) -> Option<Self> {
         let (mut faces, mut drag) = ([None; D], [[&[][..]; D]; 2]);
         faces.iter_mut().zip(flow.faces()).for_each(|(to, from)| *to = Some(from));
         drag.iter_mut().flatten().zip(flow.drag()).for_each(|(to, from)| *to = from);
@@ -53,16 +53,33 @@ impl<'a, const D: usize> Solids<'a, D> {
             return;
         }
         let at = flow.coordinates(cell);
-        let volume = flow.volume(at);
+        let (over, drag) = (flow.get(cell).pressure - ambient, self.drag(flow, cell));
+        for d in 0..D {
+            sum[d] += over * self.wall(flow, d, at);
+            sum[d] += drag[d];
+        }
+    }
+
+    /// Vector area of the walls in a cell and in its faces along an axis.
+    pub(super) fn wall(&self, flow: &Flow<f64, D>, d: usize, at: [usize; D]) -> f64 {
+        let Some(faces) = self.faces[d] else { return 0.0 };
+        let [low, high] = [0, 1].map(|side| faces[flow.face(d, at, side)]);
+        (low - high) * flow.area(d, at)
+    }
+
+    /// Something in a cell drags.
+    pub(super) fn drags(&self, cell: usize) -> bool {
+        self.drag.iter().flatten().any(|c| c.get(cell).is_some_and(|c| *c > 0.0))
+    }
+
+    /// Drag of what a cell does not resolve.
+    pub(super) fn drag(&self, flow: &Flow<f64, D>, cell: usize) -> [f64; D] {
         let w = flow.get(cell);
         let speed = w.velocity.iter().fold(0.0, |s, u| s + u * u).sqrt();
-        for d in 0..D {
-            if let Some(faces) = self.faces[d] {
-                let [low, high] = [0, 1].map(|side| faces[flow.face(d, at, side)]);
-                sum[d] += (w.pressure - ambient) * (low - high) * flow.area(d, at);
-            }
+        let volume = flow.open_volume(cell);
+        std::array::from_fn(|d| {
             let [quadratic, linear] = [0, 1].map(|n| self.drag[n][d].get(cell).copied().unwrap_or(0.0));
-            sum[d] += open * w.density * (linear + 0.5 * quadratic * speed) * w.velocity[d] * volume;
-        }
+            volume * w.density * (linear + 0.5 * quadratic * speed) * w.velocity[d]
+        })
     }
 }

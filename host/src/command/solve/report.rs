@@ -6,6 +6,7 @@ use super::maxima::{Maxima, Peaks};
 use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
 use super::sides::PatchReport;
+use super::solids::SolidForce;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use serde::Serialize;
@@ -62,6 +63,9 @@ pub struct Report {
     patches: Vec<PatchReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     maxima: Option<MaximaReport>,
+    /// Forces on solids at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    forces: Vec<SolidForce>,
     skipped: Vec<String>,
     warnings: Vec<String>,
     /// Seconds of this session by stage.
@@ -159,6 +163,7 @@ impl Report {
             regions: setup.regions.clone(),
             patches: setup.patches.clone(),
             maxima: None,
+            forces: Vec::new(),
             skipped: setup.skipped.clone(),
             warnings: progress.warnings.clone(),
             stages: progress.seconds.clone(),
@@ -170,6 +175,12 @@ impl Report {
     pub fn with_maxima(self, maxima: Option<&Maxima>, probes: Vec<Peaks>) -> Self {
         let report = |m: &Maxima| MaximaReport { ambient: m.ambient, threshold: m.threshold, probes };
         Report { maxima: maxima.map(report), ..self }
+    }
+
+    /// With the forces on solids, if they were asked for.
+    #[must_use]
+    pub fn with_forces(self, forces: Vec<SolidForce>) -> Self {
+        Report { forces, ..self }
     }
 
     /// A few lines for the terminal.
@@ -203,6 +214,9 @@ impl Report {
             let energy = energy.map_or_else(String::new, |e| format!(", energy by {e:.1e}"));
             let momentum = format!("({x:.1e}, {y:.1e}, {z:.1e})");
             progress.say(format!("floors        changed the mass by {mass:.1e}, the momentum by {momentum}{energy}"));
+        }
+        for SolidForce { name, force: [x, y, z] } in &self.forces {
+            progress.say(format!("force         ({x:.4e}, {y:.4e}, {z:.4e}) N on {name}"));
         }
         progress.say(format!(
             "time          {:.3} s, {:.2} million cell updates/s",

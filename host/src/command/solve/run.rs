@@ -8,6 +8,7 @@ use super::maxima::{Maxima, Peaks, lowest_pressure};
 use super::pictures::Pictures;
 use super::report::{Done, Report};
 use super::setup::{Setup, live_axes, setup};
+use super::solids::{SolidForce, SolidShares};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
@@ -101,6 +102,7 @@ fn run<const D: usize>(
     let peaks = run.peaks(file);
     let summary =
         Report::new(file, &run.setup, &run.journal, run.done, &progress).with_maxima(run.maxima.as_ref(), peaks);
+    let summary = summary.with_forces(run.forces());
     summary.say(&progress);
     json::write(&run.dir.join(REPORT), &summary)
 }
@@ -242,7 +244,8 @@ impl<'a, const D: usize> Run<'a, D> {
             0 => Table::new(&dir.join(name), head),
             bytes => Table::resume(&dir.join(name), head, bytes),
         };
-        let log = table("log.csv", LOG_HEAD, journal.log)?;
+        let of_solids = setup.solids.as_ref().map_or_else(String::new, SolidShares::head);
+        let log = table("log.csv", &format!("{LOG_HEAD}{of_solids}"), journal.log)?;
         let probes = match cells.is_empty() {
             true => None,
             false => Some((table("probes.csv", &probe_head(output), journal.probes)?, cells)),
@@ -373,10 +376,13 @@ impl<'a, const D: usize> Run<'a, D> {
             let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
             let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
             let [x, y, z] = force(flow, self.setup.live, self.ambient);
-            let line = format!(
+            let mut line = format!(
                 "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
                 change.density
             );
+            for SolidForce { force: [x, y, z], .. } in self.forces() {
+                let _ = write!(line, ",{x},{y},{z}"); // a String takes anything
+            }
             self.log.line(&line)?;
         }
         if let Some((table, cells)) = &mut self.probes {
@@ -393,6 +399,12 @@ impl<'a, const D: usize> Run<'a, D> {
             table.line(&line)?;
         }
         Ok(())
+    }
+
+    /// The present forces on the solids that are asked for.
+    fn forces(&self) -> Vec<SolidForce> {
+        let Setup { flow, solids, live, .. } = &self.setup;
+        solids.as_ref().map_or_else(Vec::new, |solids| solids.forces(flow, *live, self.ambient))
     }
 
     /// The last state, the largest values over time, and the pictures with the colours of the whole run.

@@ -5,6 +5,7 @@ use super::case::{AXES, CaseFile, GasKeys, LimiterName, Model, Pressure, Riemann
 use super::inlet::Inlet;
 use super::regions::RegionReport;
 use super::sides::{self, PatchReport, Sides};
+use super::solids::SolidShares;
 use super::space;
 use super::state::States;
 use crate::command::progress::Progress;
@@ -36,6 +37,8 @@ pub struct Setup<const D: usize> {
     pub regions: Vec<RegionReport>,
     /// What patches on the sides came to.
     pub patches: Vec<PatchReport>,
+    /// Shares of the solids whose forces are kept.
+    pub solids: Option<SolidShares<D>>,
     /// What was left out because nothing needs it.
     pub skipped: Vec<String>,
 }
@@ -95,11 +98,12 @@ pub fn setup<const D: usize>(
 
     let (keys, usual) = (&case.porosity, Treatment::default());
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
-    let (mut report, mut by_law) = (None, None);
+    let (mut report, mut by_law, mut measured) = (None, None, Vec::new());
     match space::load(file, edges, live, progress)? {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
             by_law = space.drag;
+            measured = space.solids;
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
             let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
             if matched_faces > 0 {
@@ -142,8 +146,9 @@ pub fn setup<const D: usize>(
     }
     let (edges, cfl) = (edges.clone(), cfl(file)?);
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
+    let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow));
     let patches = sides::report(file, &flow, &edges, live, progress);
-    Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, skipped })
+    Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, solids, skipped })
 }
 
 /// The stable step over that of the same gas in open space; 1 where there is none.
@@ -209,6 +214,7 @@ fn scheme(file: &CaseFile) -> Result<(Scheme, usize)> {
     };
     let riemann = match keys.riemann.unwrap_or(RiemannName::Hllc) {
         RiemannName::Hllc => Riemann::Hllc,
+        RiemannName::HllcLowMach => Riemann::HllcLowMach,
         RiemannName::Hlle => Riemann::Hlle,
         RiemannName::Rusanov => Riemann::Rusanov,
     };

@@ -2,11 +2,13 @@
 
 use super::arrays;
 use super::case::{CaseFile, LawName, Paths, PorosityKeys};
+use super::solids::{self, Measured, OTHERS};
 use crate::command::cli::SceneArgs;
 use crate::command::obstacles::{Wanted, obstacles, warn_of_no_force};
 use crate::command::progress::Progress;
 use crate::command::stages;
 use crate::error::Result;
+use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
@@ -21,6 +23,8 @@ pub struct Space<const D: usize> {
     pub faces: [Vec<f64>; D],
     /// `cr` of the axes that flow, by the law of the case.
     pub drag: Option<[Vec<f64>; D]>,
+    /// What the solids whose forces are asked for have alone.
+    pub solids: Vec<Measured<D>>,
 }
 
 /// The open fractions of a case; none where all of the space is open.
@@ -47,7 +51,7 @@ pub fn load<const D: usize>(
                 .collect::<Result<_>>()?;
             let mut faces = faces.into_iter();
             let faces = std::array::from_fn(|_| faces.next().unwrap_or_default());
-            Space { volume: read("v", cells)?, faces, drag: None }
+            Space { volume: read("v", cells)?, faces, drag: None, solids: Vec::new() }
         }
         (None, None) => return Ok(None),
         (Some(_), Some(_)) => return Err(file.wrong("porosity", "takes scene or from, not both")),
@@ -76,6 +80,11 @@ fn from_scene<const D: usize>(
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
     let mut result = stages::measure(&bodies, edges, options, progress)?;
+    let wanted = wanted_solids(file, &bodies)?;
+    let solids = match wanted.is_empty() {
+        true => Vec::new(),
+        false => progress.stage("solids", |_| solids::measure(&bodies, &wanted, edges, live, options))?,
+    };
     let (grid, law) = (edges.grid(None)?, law(file)?);
     let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);
     let wanted = Wanted {
@@ -91,7 +100,31 @@ fn from_scene<const D: usize>(
     let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));
     let FieldSet { v, x, y, z } = result.beta;
     let faces = [x, y, z];
-    Ok(Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()), drag })
+    Ok(Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()), drag, solids })
+}
+
+/// Names of the solids whose forces are asked for; `*` stands for all.
+fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
+    let mut names: Vec<String> = Vec::new();
+    let known = |name: &str| bodies.bodies.iter().any(|b| b.name == name);
+    for (n, name) in file.case.output.forces.iter().enumerate() {
+        let more: Vec<&String> = match &name[..] {
+            "*" => bodies.bodies.iter().map(|b| &b.name).filter(|b| !b.is_empty()).collect(),
+            name if known(name) => vec![&file.case.output.forces[n]],
+            name => return Err(file.wrong(&format!("output.forces[{n}]"), format!("no solid is called \"{name}\""))),
+        };
+        for name in more {
+            if name.contains([',', '"', '\n', '\r']) || name == OTHERS {
+                let reason =
+                    format!("\"{name}\" cannot head a column: no commas, quotes, line ends, and not \"{OTHERS}\"");
+                return Err(file.wrong(&format!("output.forces[{n}]"), reason));
+            }
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+    }
+    Ok(names)
 }
 
 /// Is there a resistance that needs no law?
@@ -138,6 +171,7 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
         ("porosity.depth", keys.depth.is_some()),
         ("porosity.faces", keys.faces.is_some()),
         ("drag.law", file.case.drag.law.is_some()),
+        ("output.forces", !file.case.output.forces.is_empty()),
     ];
     match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {
         Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene")),

@@ -1,0 +1,141 @@
+//! Forces on single solids, against the force on all and against what each feels alone.
+
+use crate::kit::{Scratch, json, solve, solved, stderr};
+use std::collections::BTreeMap;
+use std::fs;
+
+/// The columns of `log.csv` by their names.
+fn log(at: &Scratch, dir: &str) -> BTreeMap<String, Vec<f64>> {
+    let text = fs::read_to_string(at.file(dir).join("log.csv")).expect("a log");
+    let mut lines = text.lines();
+    let names: Vec<String> = lines.next().expect("a head").split(',').map(str::to_owned).collect();
+    let rows: Vec<Vec<f64>> = lines.map(|l| l.split(',').map(|x| x.parse().expect("a number")).collect()).collect();
+    names.into_iter().enumerate().map(|(n, name)| (name, rows.iter().map(|r| r[n]).collect())).collect()
+}
+
+fn cube(name: &str, low: [f64; 3], side: f64) -> String {
+    let high = low.map(|x| x + side);
+    format!("[[solid]]\nname = \"{name}\"\nshape = \"box\"\nmin = {low:?}\nmax = {high:?}\n")
+}
+
+/// A stream of air along x through a box of 2.4 × 0.8 × 0.8 m.
+fn case(u: f64, more: &str) -> String {
+    format!(
+        r#"
+[grid]
+x = {{ points = [0, 2.4], cells = [24] }}
+y = {{ points = [0, 0.8], cells = [8] }}
+z = {{ points = [0, 0.8], cells = [8] }}
+[porosity]
+scene = "scene.toml"
+[gas]
+model = "ideal"
+gamma = 1.4
+[initial]
+uniform = {{ rho = 1.2, u = {u}, p = 1e5 }}
+[boundary]
+x_min = {{ type = "far-field", rho = 1.2, u = {u}, p = 1e5 }}
+x_max = {{ type = "far-field", rho = 1.2, u = {u}, p = 1e5 }}
+y_min = "wall"
+y_max = "wall"
+z_min = "wall"
+z_max = "wall"
+{more}
+"#
+    )
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Solids across the planes of the grid, touching and overlapping each other, with drag of what is hidden in cells.
+#[test]
+fn forces_on_solids_add_up_to_the_force_on_all() {
+    let at = Scratch::new();
+    let scene = [
+        cube("tank", [0.53, 0.21, 0.17], 0.31),
+        cube("lid", [0.81, 0.33, 0.3], 0.14),
+        cube("bar", [1.43, 0.405, 0.0], 0.05),
+        cube("pole", [1.61, 0.3, 0.3], 0.2),
+    ];
+    fs::write(at.file("scene.toml"), scene.concat()).expect("written");
+    let more = "[drag]\nlaw = \"bluff\"\n[time]\nmax_steps = 40\n[output]\nformats = []\n";
+    for names in ["[\"*\"]", "[\"tank\", \"bar\"]", "[\"lid\"]"] {
+        solved(&at, &case(40.0, &format!("{more}forces = {names}\n")), names, &["-q", "--force"]);
+        let log = log(&at, names);
+        let steps = log["time"].len();
+        assert_eq!(steps, 41);
+        for axis in AXES {
+            let all = &log[&format!("force_{axis}")];
+            let parts: Vec<&Vec<f64>> =
+                log.iter().filter(|(n, _)| n.ends_with(&format!(" force_{axis}"))).map(|(_, v)| v).collect();
+            assert!(parts.len() >= 2);
+            for step in 0..steps {
+                let sum: f64 = parts.iter().map(|p| p[step]).sum();
+                let size: f64 = parts.iter().map(|p| p[step].abs()).sum::<f64>() + 1.0;
+                assert!((sum - all[step]).abs() < 1e-12 * size, "{names} {axis} {step}: {sum} {}", all[step]);
+            }
+        }
+        let report = json(&at.file(names).join("report.json"));
+        let last = report["forces"].as_array().expect("forces").iter();
+        for solid in last {
+            let name = solid["name"].as_str().expect("a name");
+            for (a, axis) in AXES.iter().enumerate() {
+                let logged = *log[&format!("{name} force_{axis}")].last().expect("a line");
+                assert_eq!(solid["force"][a].as_f64().expect("a number"), logged, "{name}");
+            }
+        }
+    }
+}
+
+/// Gas at rest pushes no solid, wherever it stands.
+#[test]
+fn a_cube_in_gas_at_rest_feels_nothing() {
+    let at = Scratch::new();
+    for (n, low) in [[0.8, 0.3, 0.3], [0.77, 0.28, 0.31], [0.05, 0.21, 0.43]].into_iter().enumerate() {
+        fs::write(at.file("scene.toml"), cube("a", low, 0.2) + &cube("b", [1.51, 0.33, 0.3], 0.23)).expect("written");
+        let more = "[time]\nmax_steps = 3\n[output]\nformats = []\nambient = 1\nforces = [\"a\", \"b\"]\n";
+        let dir = format!("out{n}");
+        solved(&at, &case(0.0, more), &dir, &["-q"]);
+        // Some 1e5 Pa on faces of 0.04 m².
+        for (name, values) in log(&at, &dir).iter().filter(|(name, _)| name.contains(" force_")) {
+            assert!(values.iter().all(|f| f.abs() < 1e-9), "{name}: {values:?}");
+        }
+    }
+}
+
+/// Two cubes 14 cells apart, for six steps, which reach two cells each: each as alone.
+#[test]
+fn two_cubes_apart_feel_what_each_feels_alone() {
+    let at = Scratch::new();
+    let cubes = [cube("front", [0.33, 0.28, 0.31], 0.22), cube("back", [1.93, 0.28, 0.31], 0.22)];
+    let run = |dir: &str, scene: &str, names: &str| {
+        fs::write(at.file("scene.toml"), scene).expect("written");
+        let more = format!("[time]\nmax_steps = 6\n[output]\nformats = []\nforces = {names}\n");
+        solved(&at, &case(30.0, &more), dir, &["-q"]);
+        log(&at, dir)
+    };
+    let both = run("both", &cubes.concat(), "[\"front\", \"back\"]");
+    let alone = [run("a", &cubes[0], "[\"front\"]"), run("b", &cubes[1], "[\"back\"]")];
+    for (name, alone) in ["front", "back"].into_iter().zip(&alone) {
+        for axis in AXES {
+            let column = format!("{name} force_{axis}");
+            let (f, g) = (&both[&column], &alone[&format!("force_{axis}")]);
+            assert_eq!(f.len(), g.len());
+            let most = g.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+            for (a, b) in f.iter().zip(g) {
+                assert!((a - b).abs() < 1e-9 * most, "{column}: {a} {b}");
+            }
+        }
+        assert!(both[&format!("{name} force_x")].iter().any(|f| f.abs() > 1.0), "{name} feels something");
+    }
+    assert!(both["others force_x"].iter().all(|f| *f == 0.0));
+}
+
+#[test]
+fn a_solid_that_is_not_there_is_told() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), cube("a", [0.8, 0.3, 0.3], 0.2)).expect("written");
+    let output = solve(&at, &case(0.0, "[time]\nmax_steps = 1\n[output]\nforces = [\"b\"]\n"), "out", &["-q"]);
+    let text = stderr(&output);
+    assert!(!output.status.success() && text.contains("output.forces[0]") && text.contains("\"b\""), "{text}");
+}
