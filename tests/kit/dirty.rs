@@ -117,6 +117,9 @@ const SHAPES: [(&str, &[&str]); 9] = [
 /// Keys with one number.
 const SINGLE: [&str; 5] = ["radius", "top_radius", "tube", "angle", "porosity"];
 
+/// Keys of shapes that may be left out.
+const OPTIONAL: [&str; 3] = ["top_radius", "start", "angle"];
+
 /// A scene of solids with numbers of any size is measured or refused; with one key misspelled, missing or of the wrong kind it is refused
 /// by an error that names the key and the line.
 pub fn scenes_of_solids_are_measured_or_refused(bytes: &[u8]) {
@@ -151,13 +154,20 @@ pub fn scenes_of_solids_are_measured_or_refused(bytes: &[u8]) {
     let at = usize::from(fault / 3) % needed;
     let key = pairs[at].0.clone();
     match fault % 3 {
-        0 => pairs[at].0.push('x'),
         1 => pairs[at].1 = "\"no\"".to_owned(),
-        _ => drop(pairs.remove(at)),
+        2 if !OPTIONAL.contains(&&*key) => drop(pairs.remove(at)),
+        _ => pairs[at].0.push('x'),
     }
     // Its other numbers must not be refused first.
     for (key, value) in pairs.iter_mut().filter(|(_, value)| value != "\"no\"") {
-        *value = if SINGLE.contains(&&**key) || key.starts_with("radius") { "0.5" } else { "[1, 1, 1]" }.to_owned();
+        let good = match key.trim_end_matches('x') {
+            "tube" => "0.25",
+            single if SINGLE.contains(&single) => "0.5",
+            "to" | "ma" => "[2, 2, 2]",
+            "start" => "[1, -1, 0]",
+            _ => "[1, 1, 1]",
+        };
+        *value = good.to_owned();
     }
     let text = text(&solids);
     let error = measure_scene(&text).unwrap_or_else(|| panic!("not refused:\n{text}"));
