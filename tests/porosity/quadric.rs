@@ -317,3 +317,21 @@ fn planes_through_and_beside_a_centre() {
         }
     }
 }
+
+/// Long thin cones, whole and truncated, in many cells: arcs of less than half an ellipse whose shadow on the cone's circle is more than half of it.
+#[test]
+fn long_thin_cones_have_their_volume() {
+    let random = &mut Random::new(711);
+    let even: Vec<f64> = (0..=40).map(|i| f64::from(i) * 0.67).collect();
+    for round in 0..400 {
+        let along = random.vector::<DVec3>(1.0).normalize() * 7.0;
+        let center = random.point(DVec3::splat(13.0), DVec3::splat(14.0));
+        let radius = 14.0 * 10_f64.powf(random.between(-2.5, -1.0));
+        let taper = if round % 2 == 0 { 0.0 } else { random.between(0.0, 1.0) };
+        let cone =
+            QuadricSolid::truncated_cone(center - along, center + along, [radius, radius * taper]).expect("a cone");
+        let found: f64 = shares_of_cells(&cone, [&even, &even, &even]).iter().sum();
+        let volume = PI * radius * radius * (1.0 + taper + taper * taper) * 14.0 / 3.0 / 0.67_f64.powi(3);
+        assert!((found - volume).abs() < 1e-11 * (1.0 + volume), "{round}: {found} cells, not {volume}");
+    }
+}

@@ -130,11 +130,11 @@ impl Shape {
         let round = |kind: Round, keys: &mut StrictTable| {
             let (from, to) = (keys.need("from", table::point)?, keys.need("to", table::point)?);
             let radius = keys.need("radius", table::positive)?;
+            let top_radius =
+                if kind == Round::Cone { keys.get("top_radius", table::not_negative)?.unwrap_or(0.0) } else { radius };
             if from == to && kind != Round::Capsule {
                 return Err(keys.wrong("to", "is the same point as from"));
             }
-            let top_radius =
-                if kind == Round::Cone { keys.get("top_radius", table::not_negative)?.unwrap_or(0.0) } else { radius };
             Ok(Shape::Round { kind, from, to, radius, top_radius })
         };
         let shape = keys.need("shape", table::text)?;
