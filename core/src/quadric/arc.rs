@@ -58,8 +58,8 @@ pub(super) struct Bow {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Lens {
     Nothing,
-    /// All but the triangle to a corner, given from the first point, is nothing.
-    Triangle(P2),
+    /// All but the triangle to a corner, given from the first point, is nothing; and its area, which the corner tells only to rounding.
+    Triangle(P2, f64),
     Bow(Bow),
 }
 
@@ -79,8 +79,8 @@ pub(super) fn lens_of(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Lens {
     if turn * turn >= kappa * tau * SHARP {
         // Two lines: what is left is the triangle of the points and the lines' crossing.
         let along = kappa / (2.0 * turn);
-        let finite = kappa * along < f64::INFINITY;
-        return if finite { Lens::Triangle(tangent.map(|t| t * along)) } else { Lens::Nothing };
+        let area = kappa * along * 0.25;
+        return if area < f64::INFINITY { Lens::Triangle(tangent.map(|t| t * along), area) } else { Lens::Nothing };
     }
     let ratio = Real::sqrt(kappa / tau);
     Lens::Bow(Bow { chord, tangent, size: kappa * ratio * 0.125, ratio, w: turn * ratio / kappa })
@@ -91,9 +91,8 @@ pub(super) fn lens_of(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Lens {
 pub(super) fn lens(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Moments {
     match lens_of(p, q, s, gradients) {
         Lens::Nothing => Moments::default(),
-        Lens::Triangle(corner) => {
+        Lens::Triangle(corner, area) => {
             let d = sub(q, p);
-            let area = (cross(d, corner) * 0.5).abs();
             Moments { area, first: [0, 1].map(|n: usize| (d[n] + corner[n]) / 3.0 * area) }
         }
         Lens::Bow(Bow { chord: d, tangent: t, size, ratio, w }) => {

@@ -172,9 +172,8 @@ impl RegionOfCone<'_> {
         let section = self.section;
         match lens_of(p, q, section.quadratic, [section.gradient(p), section.gradient(q)]) {
             Lens::Nothing => 0.0,
-            Lens::Triangle(corner) => {
+            Lens::Triangle(corner, area) => {
                 let low = self.sigma(p);
-                let area = (cross(sub(q, p), corner) * 0.5).abs();
                 self.triangle(area, [low, low + self.rise(corner), self.sigma(q)])
             }
             Lens::Bow(bow) => self.bow(&bow, self.sigma(p)),
