@@ -2,6 +2,9 @@
 
 use std::hint::black_box;
 use std::time::Instant;
+use voidage::geometry::bodies::Bodies;
+use voidage::grid::Edges;
+use voidage::porosity::{Options, Porosity, porosity};
 
 /// Nanoseconds per item of several ways to do the same work: the medians over rounds in which each has its turn, so that a machine that
 /// slows down slows all of them.
@@ -15,6 +18,32 @@ pub fn compare(items: usize, rounds: usize, ways: &mut [&mut dyn FnMut() -> usiz
         }
     }
     times.into_iter().map(median).collect()
+}
+
+/// Median seconds of porosity fields in a pool of threads (0: all of the machine), and the fields: of `runs` runs after one to warm up, of
+/// three where that takes a second, of that one where it takes five.
+pub fn porosity_seconds(
+    bodies: &Bodies,
+    edges: &Edges,
+    threads: usize,
+    runs: usize,
+    options: Options,
+) -> (f64, Porosity) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let grid = edges.grid(None).expect("a grid");
+    let run = || {
+        let begin = Instant::now();
+        let result = porosity(&grid, bodies, options);
+        (begin.elapsed().as_secs_f64(), result)
+    };
+    pool.install(|| {
+        let (first, result) = run();
+        match first {
+            5.0.. => (first, result),
+            1.0.. => (median((0..3).map(|_| run().0).collect()), result),
+            _ => (median((0..runs).map(|_| run().0).collect()), result),
+        }
+    })
 }
 
 fn median(mut times: Vec<f64>) -> f64 {

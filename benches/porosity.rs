@@ -4,11 +4,11 @@
 //! shared corpus is present.
 
 use std::path::Path;
-use std::time::Instant;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::read;
 use voidage::grid::{Edges, GridSpec, edges};
-use voidage::porosity::{Options, Porosity, porosity};
+use voidage::porosity::Options;
+use voidage_benches::porosity_seconds;
 use voidage_tests::solids::{scene, sixteen_spheres};
 use voidage_tests::truth::{Truth, fixture, shared};
 
@@ -16,8 +16,7 @@ const RUNS: usize = 9;
 
 fn main() {
     println!("{:34} {:>15} {:>9} {:>9} {:>9} {:>9}", "case", "cells", "1 thread", "all", "max error", "max gap");
-    let axis: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
-    let unit = Edges([axis.clone(), axis.clone(), axis]);
+    let unit = Edges::cube(0.0, 1.0, 100);
     case("16 spheres of 362 points", &scene(&sixteen_spheres()), &unit, None);
     let skid = read(&fixture("cad_skid.stl"));
     let truth = Truth::read(&fixture("cad_skid.stl.npz"));
@@ -40,8 +39,8 @@ fn read(path: &Path) -> Bodies {
 fn case(name: &str, bodies: &Bodies, edges: &Edges, truth: Option<&Truth>) {
     let [nx, ny, nz] = edges.cells();
     let runs = if nx * ny * nz > 10_000_000 { 3 } else { RUNS };
-    let (one, _) = median(bodies, edges, 1, runs);
-    let (all, result) = median(bodies, edges, 0, runs);
+    let (one, _) = porosity_seconds(bodies, edges, 1, runs, Options::default());
+    let (all, result) = porosity_seconds(bodies, edges, 0, runs, Options::default());
     let error = truth.map_or_else(|| "-".to_owned(), |t| format!("{:.1e}", t.compare(&result.beta).worst()));
     println!(
         "{name:34} {:>15} {:>7.1}ms {:>7.1}ms {error:>9} {:>9.1e}",
@@ -50,22 +49,4 @@ fn case(name: &str, bodies: &Bodies, edges: &Edges, truth: Option<&Truth>) {
         all * 1e3,
         result.max_gap
     );
-}
-
-/// Median seconds of the computation alone, after one run to warm up.
-fn median(bodies: &Bodies, edges: &Edges, threads: usize, runs: usize) -> (f64, Porosity) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let grid = edges.grid(None).expect("a grid");
-    pool.install(|| {
-        let mut result = porosity(&grid, bodies, Options::default());
-        let mut seconds: Vec<f64> = (0..runs)
-            .map(|_| {
-                let begin = Instant::now();
-                result = porosity(&grid, bodies, Options::default());
-                begin.elapsed().as_secs_f64()
-            })
-            .collect();
-        seconds.sort_by(f64::total_cmp);
-        (seconds[runs / 2], result)
-    })
 }

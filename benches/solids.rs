@@ -5,12 +5,12 @@
 
 use glam::DVec3;
 use std::path::Path;
-use std::time::Instant;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
 use voidage::geometry::scene::{self, load};
 use voidage::grid::Edges;
-use voidage::porosity::{Options, Porosity, porosity};
+use voidage::porosity::Options;
+use voidage_benches::porosity_seconds;
 use voidage_core::convex::shape::Cylinder;
 use voidage_core::torus::TorusShape;
 use voidage_tests::random::Random;
@@ -23,26 +23,25 @@ fn main() {
         "{:34} {:>15} {:>10} {:>10} {:>7} {:>9} {:>9}",
         "case", "cells", "1 thread", "2 threads", "gain", "ns a cell", "max gap"
     );
-    let rack = uniform([104, 104, 34], 0.5);
-    let hall = uniform([200, 200, 60], 0.5);
+    let rack = Edges::uniform(DVec3::ZERO, DVec3::new(52.0, 52.0, 17.0), [104, 104, 34]);
+    let hall = Edges::uniform(DVec3::ZERO, DVec3::new(100.0, 100.0, 30.0), [200, 200, 60]);
     case("1000 pipes, aligned", &pipes(1000, false, &rack), &rack);
     case("1000 pipes, oblique", &pipes(1000, true, &rack), &rack);
     case("10000 pipes, aligned", &pipes(10_000, false, &hall), &hall);
     case("10000 pipes, oblique", &pipes(10_000, true, &hall), &hall);
     let balls: Vec<Form> = sixteen_balls().into_iter().map(Form::Sphere).collect();
-    case("16 balls", &formulas(&balls), &uniform([100; 3], 0.01));
+    case("16 balls", &formulas(&balls), &Edges::cube(0.0, 1.0, 100));
     case("200 elbows, aligned", &elbows(200, false, &rack), &rack);
     case("200 elbows, oblique", &elbows(200, true, &rack), &rack);
     let platform = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/examples/study/platform_scene.toml");
     let platform = scene::read(&platform).expect("the shipped platform");
-    let edges = platform.grid.clone().unwrap_or_else(|| uniform([99, 99, 63], 1.0));
+    let edges = platform
+        .grid
+        .clone()
+        .unwrap_or_else(|| Edges::uniform(DVec3::ZERO, DVec3::new(99.0, 99.0, 63.0), [99, 99, 63]));
     let mut bodies = Bodies::default();
     load::add(&platform, &mut bodies).expect("solids");
     case("the shipped platform", &bodies, &edges);
-}
-
-fn uniform(cells: [usize; 3], size: f64) -> Edges {
-    Edges(cells.map(|n| (0..=n).map(|i| i as f64 * size).collect()))
 }
 
 /// Pipes of 0.05 to 0.25 m radius and 2 to 12 m length in a grid.
@@ -80,8 +79,8 @@ fn elbows(count: usize, oblique: bool, edges: &Edges) -> Bodies {
 
 fn case(name: &str, bodies: &Bodies, edges: &Edges) {
     let [nx, ny, nz] = edges.cells();
-    let (one, result) = median(bodies, edges, 1);
-    let (two, _) = median(bodies, edges, 2);
+    let (one, result) = porosity_seconds(bodies, edges, 1, RUNS, Options::default());
+    let (two, _) = porosity_seconds(bodies, edges, 2, RUNS, Options::default());
     let cut = result.beta.v.iter().filter(|&&b| b > 0.0 && b < 1.0).count().max(1);
     println!(
         "{name:34} {:>15} {:>8.1}ms {:>8.1}ms {:>7.2} {:>9.0} {:>9.1e}",
@@ -92,24 +91,4 @@ fn case(name: &str, bodies: &Bodies, edges: &Edges) {
         one * 1e9 / cut as f64,
         result.max_gap
     );
-}
-
-/// Median seconds of the computation alone, after one run to warm up; fewer runs of long ones.
-fn median(bodies: &Bodies, edges: &Edges, threads: usize) -> (f64, Porosity) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let grid = edges.grid(None).expect("a grid");
-    pool.install(|| {
-        let begin = Instant::now();
-        let mut result = porosity(&grid, bodies, Options::default());
-        let runs = if begin.elapsed().as_secs_f64() > 1.0 { 3 } else { RUNS };
-        let mut seconds: Vec<f64> = (0..runs)
-            .map(|_| {
-                let begin = Instant::now();
-                result = porosity(&grid, bodies, Options::default());
-                begin.elapsed().as_secs_f64()
-            })
-            .collect();
-        seconds.sort_by(f64::total_cmp);
-        (seconds[runs / 2], result)
-    })
 }

@@ -2,22 +2,21 @@
 //!
 //! One line a case: medians of the computation alone on one thread and on two, the solid found against the truth, the largest gap.
 //! Finer tolerances than 1e-4 are left out: the faces that touch a ball need ever smaller parts, and 1e-5 takes hours. Solids by formula
-//! will be measured exactly one day, without subdivision.
+//! need none of this (bench `solids`).
 
 use std::f64::consts::PI;
-use std::time::Instant;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
-use voidage::porosity::{Leaf, Method, Options, Porosity, porosity};
+use voidage::porosity::{Leaf, Method, Options};
+use voidage_benches::porosity_seconds;
 use voidage_tests::solids::{formulas, scene, sixteen_balls, sixteen_spheres, volume};
 
 const RUNS: usize = 5;
 
 fn main() {
     println!("{:40} {:>9} {:>9} {:>9} {:>9} {:>9}", "case", "1 thread", "2", "solid", "max gap", "queries");
-    let axis: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
-    let unit = Edges([axis.clone(), axis.clone(), axis]);
+    let unit = Edges::cube(0.0, 1.0, 100);
     let solids = sixteen_spheres();
     let (spheres, truth) = (scene(&solids), solids.iter().map(|s| volume(s)).sum::<f64>());
     let gjk = Options { method: Method::Gjk, depth: 3, ..Options::default() };
@@ -35,8 +34,8 @@ fn main() {
 }
 
 fn case(name: &str, bodies: &Bodies, edges: &Edges, options: Options, truth: f64) {
-    let (one, _) = median(bodies, edges, 1, options);
-    let (two, result) = median(bodies, edges, 2, options);
+    let (one, _) = porosity_seconds(bodies, edges, 1, RUNS, options);
+    let (two, result) = porosity_seconds(bodies, edges, 2, RUNS, options);
     println!(
         "{name:40} {:>7.1}ms {:>7.1}ms {:>8.3}% {:>9.1e} {:>9}",
         one * 1e3,
@@ -45,21 +44,4 @@ fn case(name: &str, bodies: &Bodies, edges: &Edges, options: Options, truth: f64
         result.max_gap,
         result.gjk.queries
     );
-}
-
-fn median(bodies: &Bodies, edges: &Edges, threads: usize, options: Options) -> (f64, Porosity) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let grid = edges.grid(None).expect("a grid");
-    pool.install(|| {
-        let mut result = porosity(&grid, bodies, options);
-        let mut seconds: Vec<f64> = (0..RUNS)
-            .map(|_| {
-                let begin = Instant::now();
-                result = porosity(&grid, bodies, options);
-                begin.elapsed().as_secs_f64()
-            })
-            .collect();
-        seconds.sort_by(f64::total_cmp);
-        (seconds[RUNS / 2], result)
-    })
 }

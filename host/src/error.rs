@@ -51,10 +51,16 @@ impl Error {
 /// Characters of a line that a message shows at most.
 const SHOWN: usize = 100;
 
-/// A line of a file by its number, and a mark under `width` of its characters from the one after `column` others on.
+/// A line of a file by its number, and a mark under `width` of its characters from the one after `column` others on. Characters that would
+/// command a terminal stand as �, a tab as a space.
 #[must_use]
 pub fn excerpt(number: usize, line: &str, column: usize, width: usize) -> String {
-    let line: Vec<char> = line.trim_end().replace('\t', " ").chars().collect();
+    let harmless = |c: char| match c {
+        '\t' => ' ',
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    let line: Vec<char> = line.trim_end().chars().map(harmless).collect();
     let column = column.min(line.len());
     let first = column.saturating_sub(SHOWN / 2);
     let shown: String = line[first..].iter().take(SHOWN).collect();

@@ -108,6 +108,25 @@ fn a_plane_that_is_touched_but_for_rounding() {
     agrees(Family::Tangent, 2_815_233_781_385_205_047).expect("right areas");
 }
 
+/// A pipe along x but for two units in the last place: a plane along it meets it in a rectangle.
+#[test]
+fn a_pipe_aligned_but_for_rounding() {
+    let [from, to] = [1.259_029_430_475_024_7, 1.600_212_832_502_424];
+    let [y, z, radius] = [0.338_102_746_910_566_47, 0.824_602_460_730_262_8, 0.077_162_059_956_558_4];
+    let edges = [4.0, 5.0, 3.0].map(|n| (0..9).map(|i| f64::from(i) / n).collect::<Vec<_>>());
+    let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
+    let almost = DVec3::new(to, y, z - 2.0 * f64::EPSILON / 2.0);
+    for to in [DVec3::new(to, y, z), almost] {
+        let solid = QuadricSolid::cylinder(DVec3::new(from, y, z), to, radius).expect("a cylinder");
+        let found = shares(&solid, &grid);
+        let half = (radius * radius - (0.4 - y) * (0.4 - y)).sqrt();
+        let truth = (1.5 - from) * 2.0 * half / (0.25 / 3.0);
+        let [nx, ny, _] = grid.face_shape(1);
+        let share = found.fields[2][(2 * ny + 2) * nx + 5];
+        assert!((share - truth).abs() < 1e-14, "{share} instead of {truth}");
+    }
+}
+
 /// A pipe that ends in a plane of the grid blocks it, and closes nothing beyond.
 #[test]
 fn a_flat_end_in_a_plane_blocks_it() {

@@ -12,6 +12,7 @@ each axis, so that neither is measured against itself alone. Seconds are those o
 import argparse
 import json
 import logging
+import os
 import pathlib
 import subprocess
 import sys
@@ -156,6 +157,10 @@ def main():
     args.add_argument("--fine", type=int, default=400, help="cells along each axis of the truth in the plane")
     args = args.parse_args()
     logging.disable(logging.INFO)
+    args.program = str(pathlib.Path(args.program).resolve())
+    # PyClaw leaves a log where it is run.
+    elsewhere = tempfile.TemporaryDirectory()
+    os.chdir(elsewhere.name)
     problems = [
         Problem("Sod", sod, (0, 1), 0.2, 1, [100, 200, 400, 800], lambda x: sod_exact(x - 0.5, 0.2)),
         Problem("Shu-Osher", shu_osher, (-5, 5), 1.8, 1, [200, 400, 800]),

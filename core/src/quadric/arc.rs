@@ -5,32 +5,13 @@
 //!
 //! Reference: E. Lee, "The rational Bézier representation for conics", in: Geometric Modeling, SIAM 1987.
 
+use crate::number::plane::{P2, cross, dot, sub};
 use crate::number::real::Real;
-
-/// A point or vector in a plane.
-pub(super) type P2 = [f64; 2];
-
-/// `a - b`.
-#[inline(always)]
-pub(super) fn sub(a: P2, b: P2) -> P2 {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-/// The vector product, positive if `b` lies to the left of `a`.
-#[inline(always)]
-pub(super) fn cross(a: P2, b: P2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
 
 /// A symmetric matrix `[uu, uv, vv]` times a vector.
 #[inline(always)]
 pub(super) fn times(s: [f64; 3], d: P2) -> P2 {
     [s[0] * d[0] + s[1] * d[1], s[1] * d[0] + s[2] * d[1]]
-}
-
-#[inline(always)]
-fn dot(a: P2, b: P2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 /// Area and first moments about a given point.

@@ -6,9 +6,10 @@
 //! hardly changes. Its integrals over triangles and lenses are those of the difference of an area and that of its central shadow, taken as one: of
 //! a triangle by the σ of its corners, of a lens by how the weight of its arc changes in the shadow.
 
-use super::arc::{Bow, Lens, P2, bends, cross, lens_of, sub};
+use super::arc::{Bow, Lens, bends, lens_of};
 use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
-use super::wall::{Curved, Ellipse, others};
+use super::wall::{Curved, Ellipse};
+use crate::number::plane::{P2, cross, others, sub};
 use crate::number::real::Real;
 
 /// A plane across axis `n` at height `h` from the origin of a cone.

@@ -1,7 +1,7 @@
 //! Where a grid plane meets a flat end.
 
-use super::arc::P2;
 use super::wall::hypotenuse;
+use crate::number::plane::P2;
 
 /// Where a plane of the grid meets the plane of an end: a linear function, not negative inside, and the chord that the disc has there.
 #[derive(Clone, Copy, Debug)]

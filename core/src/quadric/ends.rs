@@ -1,10 +1,11 @@
 //! Flat ends: discs across an axis.
 
-use super::arc::{Moments, P2, cross, sub, times};
+use super::arc::{Moments, times};
 use super::end_line::EndLine;
 use super::outline::{Rectangle, Section, Side, cut};
 use super::twofold::{Twofold, difference, difference_of_squares};
-use super::wall::{Ellipse, Span, hypotenuse, others};
+use super::wall::{Ellipse, Span, hypotenuse};
+use crate::number::plane::{P2, cross, others, sub};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 

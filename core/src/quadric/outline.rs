@@ -1,8 +1,9 @@
 //! What a convex solid has of a rectangle in a grid plane: straight pieces along the rectangle's sides and along flat ends, arcs between.
 
-use super::arc::{Moments, P2, cross, lens, sub, times};
+use super::arc::{Moments, lens, times};
 use super::end_line::EndLine;
 use super::wall::{Ellipse, Span};
+use crate::number::plane::{P2, cross, sub};
 use heapless::Vec;
 
 /// A rectangle in a plane; coordinates are relative to the part's origin.

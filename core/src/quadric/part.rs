@@ -11,7 +11,8 @@ use super::ends::End;
 use super::outline::{Rectangle, Region, Section};
 use super::solid_angle::PlaneOfUnitBall;
 use super::twofold::{Twofold, difference, difference_of_squares};
-use super::wall::{Curved, Span, Wall, hypotenuse, others};
+use super::wall::{Curved, Span, Wall, hypotenuse};
+use crate::number::plane::others;
 use crate::number::real::Real;
 use core::f64::consts::PI;
 

@@ -6,8 +6,8 @@
 //!
 //! Reference for triangles: A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983).
 
-use super::arc::{P2, cross, sub};
 use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
+use crate::number::plane::{P2, cross, sub};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 

@@ -3,8 +3,8 @@
 //! Everything is relative to the origin of a part: a point of a cylinder's or a cone's axis, a ball's centre. `a` is the unit vector of
 //! the axis. Discriminants are kept as products, so that a line that touches a surface is told from one that misses it by its distance.
 
-use super::arc::P2;
 use super::twofold::{Twofold, difference, difference_of_squares, dot};
+use crate::number::plane::{P2, others};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 
@@ -29,12 +29,6 @@ impl Span {
     pub fn intersection(self, other: Self) -> Self {
         Span { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
     }
-}
-
-/// The two axes after one, so that all three turn to the right.
-#[inline(always)]
-pub(super) const fn others(axis: usize) -> [usize; 2] {
-    [[1, 2], [2, 0], [0, 1]][axis]
 }
 
 /// A whole ellipse in a plane.

@@ -1,6 +1,6 @@
 //! What a disc has of a convex polygon: area and first moments.
 
-use super::ring::{P2, cross2, dot2};
+use crate::number::plane::{self, P2};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 use heapless::Vec;
@@ -13,7 +13,7 @@ pub(super) fn cut(polygon: &Polygon, constant: f64, slope: P2) -> Polygon {
     let mut kept = Polygon::new();
     for (n, &p) in polygon.iter().enumerate() {
         let q = polygon.get(n + 1).or(polygon.first()).copied().unwrap_or(p);
-        let (here, there) = (constant + dot2(slope, p), constant + dot2(slope, q));
+        let (here, there) = (constant + plane::dot(slope, p), constant + plane::dot(slope, q));
         if here >= 0.0 {
             let _ = kept.push(p);
         }
@@ -31,12 +31,12 @@ pub(super) fn moments(radius: f64, polygon: &Polygon) -> (f64, P2) {
     for (n, &p) in polygon.iter().enumerate() {
         let q = polygon.get(n + 1).or(polygon.first()).copied().unwrap_or(p);
         let d = [q[0] - p[0], q[1] - p[1]];
-        let square = dot2(d, d);
+        let square = plane::dot(d, d);
         if !(square > 0.0) {
             continue;
         }
         // The side within the disc, by its share of the way.
-        let (along, aside) = (dot2(p, d), cross2(p, d));
+        let (along, aside) = (plane::dot(p, d), plane::cross(p, d));
         let left = (radius * Real::sqrt(square) - aside.abs()) * (radius * Real::sqrt(square) + aside.abs());
         let half = Real::sqrt(left.max(0.0));
         let (from, to) = (((-along - half) / square).clamp(0.0, 1.0), ((-along + half) / square).clamp(0.0, 1.0));
@@ -59,19 +59,19 @@ pub(super) fn moments(radius: f64, polygon: &Polygon) -> (f64, P2) {
 
 /// The triangle of the origin and two points.
 fn triangle(a: P2, b: P2) -> (f64, P2) {
-    let area = cross2(a, b) * 0.5;
+    let area = plane::cross(a, b) * 0.5;
     (area, [0, 1].map(|k: usize| area * (a[k] + b[k]) / 3.0))
 }
 
 /// The sector of the disc between the directions of two points.
 fn sector(radius: f64, a: P2, b: P2) -> (f64, P2) {
-    let turn = cross2(a, b);
+    let turn = plane::cross(a, b);
     if turn == 0.0 {
         return (0.0, [0.0; 2]);
     }
-    let angle = libm::atan2(turn, dot2(a, b)).clamp(-PI, PI);
+    let angle = libm::atan2(turn, plane::dot(a, b)).clamp(-PI, PI);
     let unit = |p: P2| {
-        let length = Real::sqrt(dot2(p, p));
+        let length = Real::sqrt(plane::dot(p, p));
         [p[0] / length, p[1] / length]
     };
     let (u, v) = (unit(a), unit(b));

@@ -5,10 +5,10 @@
 //! square term, it has one root at most, and between those of the cubic's derivative so has the cubic.
 
 use super::roots::root;
+use crate::number::plane::{self, P2};
 use crate::number::real::Real;
 use heapless::Vec;
 
-pub(super) type P2 = [f64; 2];
 pub(super) type P3 = [f64; 3];
 
 #[inline(always)]
@@ -16,26 +16,16 @@ pub(super) fn dot(a: P3, b: P3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-#[inline(always)]
-pub(super) fn cross2(a: P2, b: P2) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-#[inline(always)]
-pub(super) fn dot2(a: P2, b: P2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
 /// Length of a vector; exact if one component is zero.
 #[inline(always)]
 pub(super) fn length2(a: P2) -> f64 {
-    if a[0] == 0.0 || a[1] == 0.0 { a[0].abs() + a[1].abs() } else { Real::sqrt(dot2(a, a)) }
+    if a[0] == 0.0 || a[1] == 0.0 { a[0].abs() + a[1].abs() } else { Real::sqrt(plane::dot(a, a)) }
 }
 
 /// The angle by which one direction lies before another, −π to π.
 #[inline(always)]
 pub(super) fn ahead(q: P2, of: P2) -> f64 {
-    libm::atan2(cross2(of, q), dot2(of, q))
+    libm::atan2(plane::cross(of, q), plane::dot(of, q))
 }
 
 /// Flat ends, in planes through the axis.
@@ -229,17 +219,17 @@ impl Ring {
         let mut toward = [x, y];
         if let Some(ends) = &self.ends {
             let [start, end] = ends.toward;
-            let (past, left) = (cross2(start, toward), cross2(toward, end));
+            let (past, left) = (plane::cross(start, toward), plane::cross(toward, end));
             let within = if ends.wide { past >= 0.0 || left >= 0.0 } else { past >= 0.0 && left >= 0.0 };
-            if !within || (past == 0.0 && left == 0.0 && !(dot2(toward, ends.middle) >= 0.0)) {
-                toward = if dot2(toward, start) > dot2(toward, end) { start } else { end };
+            if !within || (past == 0.0 && left == 0.0 && !(plane::dot(toward, ends.middle) >= 0.0)) {
+                toward = if plane::dot(toward, start) > plane::dot(toward, end) { start } else { end };
             }
         }
         let across = length2(toward);
         let toward =
             if across > 0.0 { toward.map(|x| x / across) } else { self.ends.as_ref().map_or([1.0, 0.0], |e| e.middle) };
         // In the disc across the ring there: the direction less what it has along the tangent.
-        let (out, up) = (dot2([x, y], toward), z);
+        let (out, up) = (plane::dot([x, y], toward), z);
         let size = length2([out, up]);
         let scale = if size > 0.0 { self.tube / size } else { 0.0 };
         let (rho, height) = (self.radius + out * scale, up * scale);

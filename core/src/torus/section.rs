@@ -9,17 +9,12 @@
 //! In planes across the axis the section is a ring between two circles, and exact.
 
 use super::disc::{self, Polygon};
-use super::ring::{P2, P3, Ring, ahead, cross2, dot2, length2};
+use super::ring::{P3, Ring, ahead, length2};
 use super::touching::{Events, Lines, azimuths, chord};
+use crate::number::plane::{self, P2, others};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 use heapless::Vec;
-
-/// The two axes after one, so that all three turn to the right.
-#[inline(always)]
-pub(super) const fn others(axis: usize) -> [usize; 2] {
-    [[1, 2], [2, 0], [0, 1]][axis]
-}
 
 /// A rectangle in a plane across axis `n`, from the centre, in the order of [`others`].
 #[derive(Clone, Copy, Debug)]
@@ -240,7 +235,7 @@ impl LinesOfFace<'_> {
         let (ring, [iu, iv]) = (self.ring, others(n));
         let along = |m: usize| {
             let axis = ring.axis(m);
-            [dot2([axis[0], axis[1]], toward), axis[2]]
+            [plane::dot([axis[0], axis[1]], toward), axis[2]]
         };
         let (normal, to_u, to_v) = (along(n), along(iu), along(iv));
         let place = |form: P2, p: P2| form[0] * (ring.radius + p[0]) + form[1] * p[1];
@@ -371,8 +366,8 @@ impl LinesOfFace<'_> {
     fn pieces(&self, alpha: P2, beta: P2, from: f64, to: f64) -> [Option<[f64; 2]>; 2] {
         if self.reference.cut {
             let toward = self.reference.toward;
-            let at = -cross2(alpha, toward) / cross2(beta, toward);
-            let behind = dot2(alpha, toward) + at * dot2(beta, toward) < 0.0;
+            let at = -plane::cross(alpha, toward) / plane::cross(beta, toward);
+            let behind = plane::dot(alpha, toward) + at * plane::dot(beta, toward) < 0.0;
             if behind && at > from && at < to {
                 return [Some([from, at]), Some([at, to])];
             }
@@ -387,7 +382,7 @@ impl LinesOfFace<'_> {
         }
         let near = |t: f64| length2([alpha[0] + t * beta[0], alpha[1] + t * beta[1]]);
         let size = length2(beta) * w;
-        let closest = (-dot2(alpha, beta) / dot2(beta, beta)).clamp(m - w, m + w);
+        let closest = (-plane::dot(alpha, beta) / plane::dot(beta, beta)).clamp(m - w, m + w);
         let least = if size > 0.0 { near(closest) } else { 1.0 };
         let count = libm::ceil((size / (least * 0.25)).min(64.0)).max(1.0);
         let short = w / count;
@@ -404,12 +399,12 @@ impl LinesOfFace<'_> {
     /// The same over a short piece, ψ by the series of the logarithm about its middle.
     fn short(&self, alpha: P2, beta: P2, [constant, slope]: P2, m: f64, w: f64) -> f64 {
         let q = [alpha[0] + m * beta[0], alpha[1] + m * beta[1]];
-        let square = dot2(q, q);
+        let square = plane::dot(q, q);
         let psi = ahead(q, self.reference.toward);
         let mut sum = 2.0 * psi * constant;
         if square > 0.0 {
             // z = β w / q
-            let z = [dot2(beta, q) * w / square, cross2(q, beta) * w / square];
+            let z = [plane::dot(beta, q) * w / square, plane::cross(q, beta) * w / square];
             let mut power = z;
             let mut k = 1.0;
             while k < 40.0 {

@@ -1,9 +1,10 @@
 //! The door of this room: a torus or a pipe bend, and what it tells of a layer.
 
-use super::ring::{Ends, P2, P3, Ring, ahead, dot, length2};
-use super::section::{Rectangle, Reference, Section, others};
+use super::ring::{Ends, P3, Ring, ahead, dot, length2};
+use super::section::{Rectangle, Reference, Section};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
+use crate::number::plane::{P2, others};
 use crate::number::real::{Real, Vector};
 use core::f64::consts::PI;
 use core::ops::Range;

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::flow::Flow;
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
+use crate::porosity::shadows::{cells, faces_of_cell};
 use crate::porosity::{Options, porosity};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -88,25 +89,18 @@ fn alone<const D: usize>(bodies: &Bodies, edges: &Edges, live: [usize; D], optio
         first.min(shape[a] - 1)..end.max(1)
     });
     let block = Edges(std::array::from_fn(|a| edges.0[a][ranges[a].start..=ranges[a].end].to_vec()));
-    let n = block.cells();
-    let found = porosity(&block.grid(None)?, bodies, options).beta;
-    let faces = [&found.x[..], &found.y[..], &found.z[..]];
-    let mut cells = Vec::new();
-    for (at_block, &open) in found.v.iter().enumerate() {
-        let at = [at_block % n[0], at_block / n[0] % n[1], at_block / n[0] / n[1]];
-        let face = |axis: usize, side: usize| {
-            let size: [usize; 3] = std::array::from_fn(|a| n[a] + usize::from(a == axis));
-            let place: [usize; 3] = std::array::from_fn(|a| at[a] + if a == axis { side } else { 0 });
-            faces[axis][(place[2] * size[1] + place[1]) * size[0] + place[0]]
-        };
-        let faces = live.map(|axis| [face(axis, 0), face(axis, 1)]);
+    let grid = block.grid(None)?;
+    let found = porosity(&grid, bodies, options).beta;
+    let mut parts = Vec::new();
+    for (at, open) in cells(&grid).zip(&found.v) {
+        let faces = live.map(|axis| faces_of_cell(&grid, axis, at).map(|face| found.faces(axis)[face]));
         let taken = (1.0 - open) + faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
         if taken > 0.0 {
             let [i, j, k]: [usize; 3] = std::array::from_fn(|a| ranges[a].start + at[a]);
-            cells.push(Part { cell: (k * shape[1] + j) * shape[0] + i, faces, taken });
+            parts.push(Part { cell: (k * shape[1] + j) * shape[0] + i, faces, taken });
         }
     }
-    Ok(cells)
+    Ok(parts)
 }
 
 /// Shares of each solid in the cells where the gas pushes.
