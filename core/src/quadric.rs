@@ -30,6 +30,7 @@
 //! 4. `part`: one curved surface between flat ends, its fluxes and its volume in a cell; `window`: the cells it may reach
 //! 5. `spread`: the shares of a part in a layer
 //! 6. `solid`: the door; `shapes`: the shapes that GJK knows, as such solids
+//! 7. `slice`: what several parts have in common of a rectangle in a plane; `shared`: what several solids share of a cell or face
 
 mod arc;
 mod cone;
@@ -38,6 +39,8 @@ mod ends;
 mod outline;
 mod part;
 mod shapes;
+mod shared;
+mod slice;
 mod solid;
 mod solid_angle;
 mod spread;
@@ -46,4 +49,5 @@ mod wall;
 mod window;
 
 pub use shapes::AsQuadric;
+pub use shared::excess;
 pub use solid::QuadricSolid;

@@ -107,15 +107,7 @@ impl Exact {
     /// Area that the solid has of a rectangle across axis `n` at a coordinate.
     #[must_use]
     pub fn area(&self, n: usize, at: f64, u: [f64; 2], v: [f64; 2]) -> f64 {
-        let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
-        let place = |x: f64, y: f64| {
-            let mut p = DVec3::ZERO;
-            (p[n], p[iu], p[iv]) = (at, x, y);
-            p
-        };
-        let chord = |y: f64| self.chord(place(u[0], y), iu).map_or(0.0, |c| (c[1].min(u[1]) - c[0].max(u[0])).max(0.0));
-        let depth = |y: f64| least(&|x| self.depth(place(x, y)), u);
-        integral(&chord, &depth, v, 4e-16 * self.roughness() * (u[1] - u[0]) * (v[1] - v[0]), 18)
+        common_area(std::slice::from_ref(self), n, at, [u, v], 4e-16 * self.roughness())
     }
 
     /// Volume in a box. Integrated in two orders of the axes; where they disagree the middle of three.
@@ -133,24 +125,58 @@ impl Exact {
 
     /// The same, the outer integral along an axis.
     fn volume_along(&self, n: usize, lo: DVec3, hi: DVec3) -> f64 {
-        let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
-        let (u, v) = ([lo[iu], hi[iu]], [lo[iv], hi[iv]]);
-        let depth = |at: f64| {
-            let place = |x: f64, y: f64| {
-                let mut p = DVec3::ZERO;
-                (p[n], p[iu], p[iv]) = (at, x, y);
-                p
-            };
-            least(&|y| least(&|x| self.depth(place(x, y)), u), v)
-        };
-        integral(
-            &|at| self.area(n, at, u, v),
-            &depth,
-            [lo[n], hi[n]],
-            1e-14 * self.roughness() * (hi - lo).element_product(),
-            10,
-        )
+        let rough = self.roughness();
+        common_volume_along(std::slice::from_ref(self), n, [lo, hi], [4e-16 * rough, 1e-14 * rough])
     }
+}
+
+/// Area that solids have in common of a rectangle across axis `n` at a coordinate; `tolerance` is a share of the rectangle.
+#[must_use]
+pub fn common_area(solids: &[Exact], n: usize, at: f64, [u, v]: [[f64; 2]; 2], tolerance: f64) -> f64 {
+    let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
+    let place = |x: f64, y: f64| {
+        let mut p = DVec3::ZERO;
+        (p[n], p[iu], p[iv]) = (at, x, y);
+        p
+    };
+    let chord = |y: f64| {
+        let common = solids.iter().try_fold(u, |common, s| meet(common, s.chord(place(u[0], y), iu)?));
+        common.map_or(0.0, |c| c[1] - c[0])
+    };
+    let depth = |y: f64| least(&|x| depth(solids, place(x, y)), u);
+    integral(&chord, &depth, v, tolerance * (u[1] - u[0]) * (v[1] - v[0]), 18)
+}
+
+/// Volume that solids have in common in a box; `tolerance` is a share of the box.
+#[must_use]
+pub fn common_volume(solids: &[Exact], [lo, hi]: [DVec3; 2], tolerance: f64) -> f64 {
+    common_volume_along(solids, 0, [lo, hi], [0.1 * tolerance, tolerance])
+}
+
+/// The same, the outer integral along an axis; tolerances of the areas and of the volume.
+fn common_volume_along(solids: &[Exact], n: usize, [lo, hi]: [DVec3; 2], tolerances: [f64; 2]) -> f64 {
+    let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
+    let (u, v) = ([lo[iu], hi[iu]], [lo[iv], hi[iv]]);
+    let depth = |at: f64| {
+        let place = |x: f64, y: f64| {
+            let mut p = DVec3::ZERO;
+            (p[n], p[iu], p[iv]) = (at, x, y);
+            p
+        };
+        least(&|y| least(&|x| depth(solids, place(x, y)), u), v)
+    };
+    integral(
+        &|at| common_area(solids, n, at, [u, v], tolerances[0]),
+        &depth,
+        [lo[n], hi[n]],
+        tolerances[1] * (hi - lo).element_product(),
+        10,
+    )
+}
+
+/// A convex function, negative inside all solids.
+fn depth(solids: &[Exact], p: DVec3) -> f64 {
+    solids.iter().map(|s| s.depth(p)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The least value of a convex function on an interval, by the golden section; of negative ones any.

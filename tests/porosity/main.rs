@@ -1,6 +1,7 @@
 //! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
 
 mod boxes;
+mod common;
 mod core_alone;
 mod dirty;
 mod drag;

@@ -10,7 +10,7 @@ use crate::number::real::Real;
 use core::f64::consts::PI;
 
 /// A flat end of a part.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct End {
     /// Its centre.
     pub center: [f64; 3],

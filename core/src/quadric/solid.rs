@@ -9,7 +9,7 @@ use crate::grid::cell_range::RangeKind;
 use crate::number::real::{Real, Vector};
 
 /// A solid by formula: convex, of one to three parts that share no volume.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct QuadricSolid {
     parts: heapless::Vec<Part, 3>,
 }
@@ -39,6 +39,11 @@ fn direction(from: [f64; 3], to: [f64; 3]) -> Option<(f64, [f64; 3])> {
 impl QuadricSolid {
     fn of(parts: &[Part]) -> Self {
         QuadricSolid { parts: parts.iter().copied().collect() }
+    }
+
+    /// Its parts, which share no volume.
+    pub(super) fn parts(&self) -> &[Part] {
+        &self.parts
     }
 
     /// A ball; none if its radius or centre leaves 10⁻⁶⁰ to 10⁶⁰.

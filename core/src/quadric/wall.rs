@@ -39,7 +39,7 @@ pub(super) struct Ellipse {
 }
 
 /// An ellipsoid by the map that makes it the unit ball.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UnitMap {
     /// Images of the three axes.
     pub columns: [[f64; 3]; 3],
@@ -54,7 +54,7 @@ pub(super) struct UnitMap {
 }
 
 /// A curved surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
 pub(super) enum Wall {
     Cylinder {
@@ -72,7 +72,7 @@ pub(super) enum Wall {
 }
 
 /// A curved surface along an axis.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Curved {
     pub wall: Wall,
     /// Unit vector along the axis; any for balls and ellipsoids.
@@ -182,6 +182,65 @@ impl Curved {
         Span { lo, hi }
     }
 
+    /// In a plane across axis `n`, the second coordinates (in the order of [`others`]) between which lines along the first one meet the inside;
+    /// infinite where there is no end.
+    pub fn rows(&self, n: usize, h: Twofold) -> P2 {
+        let [u, v] = others(n);
+        let (a, across) = (&self.axis, self.across[u]);
+        let all = [f64::NEG_INFINITY, f64::INFINITY];
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let circle = |radius: f64| {
+            let square = difference_of_squares(radius, h);
+            if square > 0.0 { [-Real::sqrt(square), Real::sqrt(square)] } else { none }
+        };
+        // Where `p + q v` is positive.
+        let positive = |p: f64, q: f64| match -p / q {
+            _ if q == 0.0 => {
+                if p > 0.0 {
+                    all
+                } else {
+                    none
+                }
+            }
+            at if q > 0.0 => [at, f64::INFINITY],
+            at => [f64::NEG_INFINITY, at],
+        };
+        let both = |one: P2, other: P2| [one[0].max(other[0]), one[1].min(other[1])];
+        match &self.wall {
+            Wall::Ball { radius } => circle(*radius),
+            Wall::Cylinder { radius } if !(across > 0.0) => circle(*radius),
+            Wall::Cylinder { radius } => {
+                let (own, other) = (a[n] / across, -a[v] / across * h.value);
+                both(positive(radius - other, -own), positive(radius + other, own))
+            }
+            Wall::Cone { .. } if !(across > 0.0) => all,
+            Wall::Cone { radius, slope } => {
+                // As in `span_of_cone`: the radius seen along the line, and how far it passes from the axis.
+                let (there, grows) =
+                    (radius + slope * a[n] / across * (h.value / across), slope * a[v] / (across * across));
+                let slant = slope * a[u] / across;
+                let square = (1.0 - slant) * (1.0 + slant);
+                if !(square > 0.0) {
+                    return all;
+                }
+                let narrow = Real::sqrt(square);
+                let (off, moves) = (-a[v] / across * h.value * narrow, a[n] / across * narrow);
+                both(positive(there - off, grows - moves), positive(there + off, grows + moves))
+            }
+            Wall::Ellipsoid(map) => {
+                let (reach, outermost) = (map.reach[n], &map.outermost[n]);
+                // Half the length along v that the outline has in this plane: that of the section through the centre, and its share.
+                let square = difference_of_squares(reach, h) / (reach * reach);
+                let half = hypotenuse_of_difference(map.reach[v], outermost[v] * reach);
+                if !(square > 0.0) {
+                    return none;
+                }
+                let (middle, half) = (outermost[v] * h.value, half * Real::sqrt(square));
+                [middle - half, middle + half]
+            }
+        }
+    }
+
     /// The conic in a plane across axis `n` at a height: quadratic part `[uu, uv, vv]`, and the linear part.
     #[inline(always)]
     pub fn conic(&self, n: usize, h: f64) -> ([f64; 3], P2) {
@@ -267,6 +326,11 @@ fn ray(from: f64, sign: f64) -> Span {
 pub(super) fn hypotenuse(a: f64, b: f64) -> f64 {
     let (a, b) = (a.abs(), b.abs());
     if a == 0.0 || b == 0.0 { a + b } else { Real::sqrt(a * a + b * b) }
+}
+
+/// `√(a² − b²)`, zero if `b` is larger.
+fn hypotenuse_of_difference(a: f64, b: f64) -> f64 {
+    Real::sqrt(((a - b.abs()) * (a + b.abs())).max(0.0))
 }
 
 impl UnitMap {

@@ -13,7 +13,7 @@ use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::grid::fields::Layer;
 use voidage_core::number::aabb::Aabb;
-use voidage_core::quadric::{AsQuadric, QuadricSolid};
+use voidage_core::quadric::{AsQuadric, QuadricSolid, excess};
 use voidage_core::subdivide::SubdivisionRule;
 use voidage_core::torus::{TorusShape, TorusSolid};
 
@@ -242,6 +242,11 @@ impl FormulaSolid {
         }
     }
 
+    /// The same solid once more.
+    fn is_same(&self, other: &FormulaSolid) -> bool {
+        matches!((&self.kind, &other.kind), (Kind::Quadric(one, _), Kind::Quadric(another, _)) if one == another)
+    }
+
     fn pair_with(&self, body: usize) -> Option<Pair> {
         let at = self.partners.binary_search_by_key(&body, |p| p.0).ok()?;
         Some(self.partners[at].1)
@@ -405,7 +410,7 @@ pub fn add(
         return doubtful;
     }
     add_alone(sums, layer);
-    add_shared(solids, grid, part, memory, layer, &mut |meeting, kind, range| {
+    add_shared(solids, grid, part, memory, layer, rule.tol, &mut |meeting, kind, range| {
         let convex: Option<Vec<Convex<'static>>> = meeting.iter().map(|s| s.convex()).collect();
         match (convex, box_of(grid, kind, range)) {
             (Some(bodies), _) => union(&bodies, kind, range),
@@ -453,6 +458,7 @@ fn add_shared(
     part: LayerPart,
     memory: &mut FormulaMemory,
     layer: &mut Layer<f64>,
+    tol: f64,
     union: &mut impl FnMut(&[&FormulaSolid], RangeKind, CellRange) -> Bounds<f64>,
 ) {
     let FormulaMemory { sums, entries } = memory;
@@ -475,26 +481,33 @@ fn add_shared(
         };
         let alone = sums[number(kind)][at];
         let mut found = Bounds { lower: alone, upper: alone };
-        let (mut largest, mut sum) = (0.0_f64, 0.0);
+        let (mut largest, mut sum) = (0.0_f64, Bounds { lower: 0.0, upper: 0.0 });
         bodies.clear();
         for &(n, [share, error]) in &shares {
             let share = if share > FULL { 1.0 } else { share };
             let (low, high) = ((share - error).max(0.0), share + error);
+            if bodies.iter().any(|other| other.is_same(solids[n])) {
+                continue;
+            }
             if shares.len() > 1 && meets(n) {
                 bodies.push(solids[n]);
-                (largest, sum) = (largest.max(low), sum + high);
+                (largest, sum) = (largest.max(low), Bounds { lower: sum.lower + low, upper: sum.upper + high });
             } else {
                 (found.lower, found.upper) = (found.lower + low, found.upper + high);
             }
         }
         if !bodies.is_empty() {
-            let known = Bounds { lower: largest, upper: sum.min(1.0) };
-            let ends = if shares.len() == bodies.len() { concentric(&bodies, grid, kind, range) } else { None };
+            let known = Bounds { lower: largest, upper: sum.upper.min(1.0) };
+            let ends =
+                if shares.iter().all(|&(n, _)| meets(n)) { concentric(&bodies, grid, kind, range) } else { None };
             let errors: f64 = shares.iter().map(|(_, [_, error])| 2.0 * error).sum();
             let known = match ends {
                 _ if largest == 1.0 => known,
                 Some(apart) => Bounds { lower: largest, upper: (largest + errors + apart).min(1.0) },
-                None => narrowed(known, union(&bodies, kind, range)),
+                None => match box_of(grid, kind, range).and_then(|cell| by_sections(&bodies, sum, cell, tol)) {
+                    Some(found) if found.gap() <= 2.0 * tol => narrowed(known, found),
+                    found => narrowed(found.map_or(known, |f| narrowed(known, f)), union(&bodies, kind, range)),
+                },
             };
             (found.lower, found.upper) = (found.lower + known.lower, found.upper + known.upper);
         }
@@ -507,6 +520,27 @@ fn add_shared(
         sum[at] += found.upper - alone;
     }
 }
+
+/// The union of solids of which all have closed forms, by what they have in common; `sum` is that of their shares. None if there are too many of
+/// them.
+fn by_sections(solids: &[&FormulaSolid], sum: Bounds<f64>, cell: Aabb<DVec3>, tol: f64) -> Option<Bounds<f64>> {
+    fn quadric<'s>(s: &&'s FormulaSolid) -> Option<&'s QuadricSolid> {
+        match &s.kind {
+            Kind::Quadric(solid, _) => Some(solid),
+            Kind::Torus(..) => None,
+        }
+    }
+    let quadrics: Vec<&QuadricSolid> = solids.iter().map(quadric).collect::<Option<_>>()?;
+    let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
+    let size: f64 = sides.iter().map(|[lo, hi]| hi - lo).filter(|width| *width > 0.0).product();
+    let flat = sides.iter().any(|[lo, hi]| lo == hi);
+    let enough = if flat { EXACT } else { tol };
+    let [low, high] = excess(&quadrics, sides, enough * size)?;
+    Some(Bounds { lower: (sum.lower - high / size).max(0.0), upper: (sum.upper - low / size).min(1.0) })
+}
+
+/// Areas that solids have in common are wanted this close, as a share of a face.
+const EXACT: f64 = 1e-13;
 
 /// Adds an entry to the shares of a place, ordered by solids.
 fn add_share(shares: &mut Vec<(usize, [f64; 2])>, &(_, _, n, share): &Entry) {

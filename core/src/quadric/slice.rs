@@ -1,0 +1,537 @@
+//! What several convex parts have in common of a rectangle in a plane: its area, by rows.
+//!
+//! In a row, at a height `v`, each part has a span along `u`; what all have in common reaches from the greatest of their low ends to the least of
+//! their high ends. High ends are concave functions of the height, low ends convex ones, so the length in common, where negative too, is
+//! concave: Newton's method from outside and secants from inside close in on the heights between which it is positive.
+//!
+//! Between two rows, the integral over any of the high ends less that over any of the low ends is an upper bound of the area, and the
+//! trapezoid of the two lengths a lower one. Where one wall is proved to be the innermost on its side all the way (its tangents stay
+//! within the chords of the others), the integral over it is the area itself, in closed form: a trapezoid and the lens of an arc.
+
+use super::arc::{Lens, bend, lens_of};
+use super::end_line::EndLine;
+use super::outline::Section;
+use super::part::{Part, Plane};
+use super::twofold::difference;
+use super::wall::Span;
+use crate::number::plane::{P2, others};
+use crate::number::real::Real;
+use core::cell::Cell;
+use heapless::Vec;
+
+/// Most rows between two others.
+const MOST_STEPS: usize = 240;
+
+/// Most parts that are looked at together.
+pub(super) const MOST_PARTS: usize = 8;
+
+/// A rectangle across an axis, and how closely its area is wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Window {
+    /// The axis that it is across.
+    pub n: usize,
+    pub u: P2,
+    pub v: P2,
+    /// Bounds of the area this close will do.
+    pub enough: f64,
+}
+
+/// What is found in a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Common {
+    /// No row meets all parts: the sum of the spans' heights exceeds that of the window by this length; negative, and concave over planes.
+    NoRow(f64),
+    /// Rows meet all parts, but no area was found: bounds of the greatest length in common, which is concave over planes. A positive upper
+    /// bound is rounding.
+    Apart([f64; 2]),
+    /// Lower and upper bound of the area.
+    Area([f64; 2]),
+}
+
+/// Which function bounds a row: a wall by its number, an end by its number, or the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Boundary {
+    Wall(u8),
+    End(u8),
+    Window,
+}
+
+/// A side of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Low,
+    High,
+}
+
+/// A curved surface in the plane.
+struct WallInPlane<'a> {
+    part: &'a Part,
+    plane: Plane,
+    /// The part's origin in the plane.
+    origin: P2,
+}
+
+/// The line of a flat end that bounds rows on one side: `u = at + slope (v − from)`.
+#[derive(Clone, Copy)]
+struct LineOfEnd {
+    side: Side,
+    at: f64,
+    from: f64,
+    slope: f64,
+}
+
+/// Parts in a plane.
+pub(super) struct Slice<'a> {
+    window: Window,
+    walls: Vec<WallInPlane<'a>, MOST_PARTS>,
+    ends: Vec<LineOfEnd, { 2 * MOST_PARTS }>,
+    /// Heights between which rows meet all parts.
+    rows: P2,
+    /// Lengths that rounding may make.
+    noise: f64,
+    /// Ends closer than this count as one; wider where curves run so close to each other that no number of rows would do.
+    tie: Cell<f64>,
+}
+
+/// A row: the spans of the walls, and what they have in common.
+#[derive(Clone, Copy)]
+struct Row {
+    v: f64,
+    spans: [Span; MOST_PARTS],
+    low: f64,
+    high: f64,
+    left: Boundary,
+    right: Boundary,
+}
+
+impl Row {
+    fn length(&self) -> f64 {
+        self.high - self.low
+    }
+}
+
+impl WallInPlane<'_> {
+    fn section(&self) -> &Section {
+        self.plane.section()
+    }
+
+    #[inline]
+    fn span(&self, u_axis: usize, v: f64) -> Span {
+        let span = self.part.curved.span(u_axis, [difference(v, self.origin[1]), self.plane.h]);
+        Span { lo: span.lo + self.origin[0], hi: span.hi + self.origin[0] }
+    }
+
+    /// Half the gradient of its conic in a point.
+    fn gradient(&self, u: f64, v: f64) -> P2 {
+        self.section().gradient([u - self.origin[0], v - self.origin[1]])
+    }
+}
+
+impl<'a> Slice<'a> {
+    /// Of a plane at a coordinate.
+    pub fn new(parts: impl Iterator<Item = &'a Part>, window: Window, coordinate: f64) -> Self {
+        let [u, v] = others(window.n);
+        let size = |x: P2| x[0].abs().max(x[1].abs());
+        let far = size(window.u).max(size(window.v)).max(coordinate.abs());
+        let mut slice =
+            Slice { window, walls: Vec::new(), ends: Vec::new(), rows: window.v, noise: 0.0, tie: Cell::new(0.0) };
+        let mut reach = far;
+        for part in parts {
+            let plane = part.plane(window.n, coordinate);
+            let origin = [part.origin[u], part.origin[v]];
+            reach = reach.max(size(origin)).max(part.origin.get(window.n).map_or(0.0, |x| x.abs()));
+            for line in plane.lines().iter().flatten() {
+                slice.add_end(line, origin);
+            }
+            let [first, last] = part.curved.rows(window.n, plane.h);
+            slice.narrow(origin[1] + first, origin[1] + last);
+            let _ = slice.walls.push(WallInPlane { part, plane, origin });
+        }
+        slice.noise = 8.0 * f64::EPSILON * reach;
+        slice.tie = Cell::new(slice.noise.max(window.enough / (16.0 * (window.v[1] - window.v[0]))));
+        slice
+    }
+
+    fn narrow(&mut self, first: f64, last: f64) {
+        let [a, b] = &mut self.rows;
+        (*a, *b) = (a.max(first), b.min(last));
+    }
+
+    /// A flat end bounds rows on one side, or the heights of rows.
+    fn add_end(&mut self, line: &EndLine, origin: P2) {
+        let [du, dv] = [self.window.u, self.window.v].map(|[lo, hi]| hi - lo);
+        let [along, up] = line.slope;
+        let [u0, v0] = [line.shift[0] + origin[0], line.shift[1] + origin[1]];
+        if along.abs() * du > 1e-14 * up.abs() * dv {
+            let side = if along > 0.0 { Side::Low } else { Side::High };
+            let _ = self.ends.push(LineOfEnd { side, at: u0 - line.constant / along, from: v0, slope: -up / along });
+        } else if up != 0.0 {
+            let middle = (self.window.u[0] + self.window.u[1]) * 0.5;
+            let v = v0 - (line.constant + along * (middle - u0)) / up;
+            if up > 0.0 { self.narrow(v, f64::INFINITY) } else { self.narrow(f64::NEG_INFINITY, v) }
+        } else if !(line.constant >= 0.0) {
+            self.narrow(f64::INFINITY, f64::NEG_INFINITY);
+        }
+    }
+
+    /// The row at a height; none where rounding lets a span vanish.
+    fn row(&self, v: f64) -> Option<Row> {
+        let Window { n, u: [u0, u1], .. } = self.window;
+        let [u_axis, _] = others(n);
+        let beyond = 4.0 * (u1 - u0);
+        let mut row = Row {
+            v,
+            spans: [Span::ALL; MOST_PARTS],
+            low: u0,
+            high: u1,
+            left: Boundary::Window,
+            right: Boundary::Window,
+        };
+        for (number, (wall, into)) in self.walls.iter().zip(&mut row.spans).enumerate() {
+            let span = wall.span(u_axis, v);
+            if !(span.lo <= span.hi) {
+                return None;
+            }
+            let span = Span { lo: span.lo.max(u0 - beyond), hi: span.hi.min(u1 + beyond) };
+            *into = span;
+            if span.lo > row.low {
+                (row.low, row.left) = (span.lo, Boundary::Wall(number as u8));
+            }
+            if span.hi < row.high {
+                (row.high, row.right) = (span.hi, Boundary::Wall(number as u8));
+            }
+        }
+        for (number, end) in self.ends.iter().enumerate() {
+            let u = end.at + end.slope * (v - end.from);
+            match end.side {
+                Side::Low if u > row.low => (row.low, row.left) = (u, Boundary::End(number as u8)),
+                Side::High if u < row.high => (row.high, row.right) = (u, Boundary::End(number as u8)),
+                _ => {}
+            }
+        }
+        Some(row)
+    }
+
+    /// The row at an end of the heights, or close by.
+    fn end_row(&self, v: f64, inward: f64) -> Option<Row> {
+        let mut step = 0.0;
+        for _ in 0..12 {
+            if let Some(row) = self.row(v + inward * step) {
+                return Some(row);
+            }
+            step = (step * 8.0).max(self.noise);
+        }
+        None
+    }
+
+    /// Where a boundary stands in a row.
+    fn place(&self, row: &Row, side: Side, boundary: Boundary) -> f64 {
+        let window = self.window.u;
+        match boundary {
+            Boundary::Window => window[usize::from(side == Side::High)],
+            Boundary::Wall(n) => row.spans.get(usize::from(n)).map_or(f64::NAN, |s| match side {
+                Side::Low => s.lo,
+                Side::High => s.hi,
+            }),
+            Boundary::End(n) => self.ends.get(usize::from(n)).map_or(f64::NAN, |e| e.at + e.slope * (row.v - e.from)),
+        }
+    }
+
+    /// By how much a boundary recedes as rows rise; infinite where a wall turns.
+    fn slope(&self, row: &Row, side: Side, boundary: Boundary) -> f64 {
+        match boundary {
+            Boundary::Window => 0.0,
+            Boundary::End(n) => self.ends.get(usize::from(n)).map_or(f64::NAN, |e| e.slope),
+            Boundary::Wall(n) => {
+                let u = self.place(row, side, boundary);
+                self.walls.get(usize::from(n)).map_or(f64::NAN, |wall| {
+                    let [gu, gv] = wall.gradient(u, row.v);
+                    -gv / gu
+                })
+            }
+        }
+    }
+
+    /// The slope of the length in common, of a concave function: any that holds on one side.
+    fn rise(&self, row: &Row) -> f64 {
+        self.slope(row, Side::High, row.right) - self.slope(row, Side::Low, row.left)
+    }
+
+    /// What all parts have in common.
+    pub fn common(&self) -> Common {
+        let [first, last] = self.rows;
+        if !(first < last) {
+            return Common::NoRow((last - first).min(0.0));
+        }
+        let (Some(a), Some(b)) = (self.end_row(first, 1.0), self.end_row(last, -1.0)) else {
+            return Common::Apart([0.0, self.tie.get()]);
+        };
+        // What the rows beside the ends may hold that were left out.
+        let room = ((a.v - first) + (last - b.v)).max(0.0) * (self.window.u[1] - self.window.u[0])
+            + self.noise * (last - first + self.window.u[1] - self.window.u[0]);
+        match self.peak(&a, &b) {
+            Err(bounds) => Common::Apart(bounds),
+            Ok(peak) => {
+                let ((a, before), (b, behind)) = (self.begin(a, peak), self.begin(b, peak));
+                let lost = before + behind;
+                let (below, above) = (self.area(a, peak), self.area(peak, b));
+                let (low, high) = (below[0] + above[0], below[1] + above[1]);
+                Common::Area([(low - room).max(0.0), high + lost + room])
+            }
+        }
+    }
+
+    /// A row with something in common. Else bounds of the greatest length in common, the upper one not negative if it was not found out.
+    fn peak(&self, a: &Row, b: &Row) -> Result<Row, P2> {
+        let (mut a, mut b) = (*a, *b);
+        let mut best = if a.length() > b.length() { a } else { b };
+        for turn in 0..60 {
+            let least = best.length();
+            if least > self.tie.get() {
+                return Ok(best);
+            }
+            let width = b.v - a.v;
+            let (at, most) = below_tangents([a.length(), b.length()], [self.rise(&a), self.rise(&b)], width);
+            if most < 0.0 && most - least <= -0.25 * most {
+                return Err([least, most]);
+            }
+            if !(width > self.noise) || (turn > 40 && most <= self.tie.get()) {
+                break;
+            }
+            let at = if turn % 4 == 3 { 0.5 * width } else { at.clamp(0.02 * width, 0.98 * width) };
+            let Some(row) = self.row(a.v + at) else { break };
+            if row.length() > best.length() {
+                best = row;
+            }
+            if self.rise(&row) > 0.0 { a = row } else { b = row }
+        }
+        if best.length() > 0.0 { Ok(best) } else { Err([best.length(), self.tie.get()]) }
+    }
+
+    /// Closes in on where the length in common begins, from a row at the end: a row where it is not negative, and what may lie beyond that.
+    fn begin(&self, end: Row, peak: Row) -> (Row, f64) {
+        let (mut outer, mut inner) = (end, peak);
+        if outer.length() >= -self.noise {
+            return (outer, 0.0);
+        }
+        let mut lost = f64::INFINITY;
+        for _ in 0..60 {
+            let width = inner.v - outer.v;
+            // Between both it is not above the inner one's tangent.
+            let most = inner.length() + (-self.rise(&inner) * width).max(0.0);
+            lost = width.abs() * most;
+            if lost <= self.window.enough / 64.0 || width.abs() <= self.noise {
+                break;
+            }
+            // Newton from outside stays outside, the secant comes out inside.
+            let newton = outer.v - outer.length() / self.rise(&outer);
+            let within = |v: f64| (v - outer.v) * width > 0.0 && (inner.v - v) * width > 0.0;
+            let next = if within(newton) { newton } else { outer.v + width * 0.5 };
+            if let Some(row) = self.row(next) {
+                if row.length() <= 0.0 { outer = row } else { inner = row }
+            }
+            let secant = outer.v - (inner.v - outer.v) * (outer.length() / (inner.length() - outer.length()));
+            if (secant - outer.v) * (inner.v - secant) > 0.0
+                && let Some(row) = self.row(secant)
+            {
+                if row.length() < 0.0 { outer = row } else { inner = row }
+            }
+        }
+        (inner, if lost.is_finite() { lost } else { 0.0 })
+    }
+
+    /// Bounds of the area between two rows with something in common, in either order.
+    fn area(&self, from: Row, to: Row) -> P2 {
+        let [from, to] = if from.v <= to.v { [from, to] } else { [to, from] };
+        let tie = self.tie.get();
+        let mut found = self.in_panels(from, to);
+        for _ in 0..5 {
+            if found.is_ok() {
+                break;
+            }
+            self.tie.set(self.tie.get() * 64.0);
+            found = self.in_panels(from, to);
+        }
+        self.tie.set(tie);
+        found.unwrap_or_else(|bounds| bounds)
+    }
+
+    /// The same, from low to high; as an error if that needs too many rows.
+    fn in_panels(&self, mut a: Row, last: Row) -> Result<P2, P2> {
+        let all = last.v - a.v;
+        let mut waiting: Vec<Row, 48> = Vec::new();
+        let _ = waiting.push(last);
+        let (mut lower, mut upper) = (0.0, 0.0);
+        let (mut steps, mut early) = (0, false);
+        let enough = (0.5 * self.window.enough).max((0.25 * self.noise).max(4.0 * (self.tie.get() - self.noise)) * all);
+        while let Some(b) = waiting.last().copied() {
+            let width = b.v - a.v;
+            let ([low, high], at) = self.between(&a, &b);
+            let within = |at: f64| at.max(a.v + self.noise).min(b.v - self.noise);
+            let at = at.filter(|_| (high - low) * all > enough * width && width > 4.0 * self.noise);
+            early |= at.is_some() && (steps > MOST_STEPS || waiting.is_full());
+            match at.filter(|_| !early).and_then(|at| self.row(within(at))) {
+                Some(row) => {
+                    steps += 1;
+                    let _ = waiting.push(row);
+                }
+                None => {
+                    (lower, upper) = (lower + low, upper + high);
+                    a = b;
+                    let _ = waiting.pop();
+                }
+            }
+        }
+        if early { Err([lower, upper]) } else { Ok([lower, upper]) }
+    }
+
+    /// Bounds of the area between two rows; and where to look next, unless the bounds are close.
+    fn between(&self, a: &Row, b: &Row) -> (P2, Option<f64>) {
+        let width = b.v - a.v;
+        let trapezoid = (a.length().max(0.0) + b.length().max(0.0)) * 0.5 * width;
+        let (high, no_proof) = self.innermost(a, b, Side::High);
+        let (low, nor_there) = self.innermost(a, b, Side::Low);
+        let integral = |side: Side, [one, other]: [Boundary; 2]| {
+            let found = self.integral(a, b, side, one);
+            match side {
+                _ if one == other => found,
+                Side::High => found.min(self.integral(a, b, side, other)),
+                Side::Low => found.max(self.integral(a, b, side, other)),
+            }
+        };
+        let upper = (integral(Side::High, high) - integral(Side::Low, low)).max(trapezoid);
+        match no_proof.or(nor_there) {
+            None => {
+                // As if walls stood a little higher or lower.
+                let moved = self.noise * ((b.high - a.high).abs() + (b.low - a.low).abs());
+                ([(upper - 2.0 * (self.tie.get() * width + moved)).max(trapezoid), upper], None)
+            }
+            at => ([trapezoid, upper], at),
+        }
+    }
+
+    /// The boundary that is innermost on a side of two rows, twice, or one for each row; and, unless it is proved to be so between them, where
+    /// to look.
+    fn innermost(&self, a: &Row, b: &Row, side: Side) -> ([Boundary; 2], Option<f64>) {
+        let inner = |row: &Row| if side == Side::High { (row.right, row.high) } else { (row.left, row.low) };
+        let sign = if side == Side::High { 1.0 } else { -1.0 };
+        let ((of_a, at_a), (of_b, at_b)) = (inner(a), inner(b));
+        let counts = |row: &Row, boundary: Boundary, best: f64| {
+            sign * (self.place(row, side, boundary) - best) <= self.tie.get()
+        };
+        let chosen = if of_a == of_b || counts(b, of_a, at_b) {
+            of_a
+        } else if counts(a, of_b, at_a) {
+            of_b
+        } else {
+            return ([of_a, of_b], Some(self.crossing(a, b, side, [of_a, of_b])));
+        };
+        // Straight sides lie within chords of concave ones if their ends do.
+        let Boundary::Wall(_) = chosen else { return ([chosen; 2], None) };
+        let width = b.v - a.v;
+        let places = |boundary: Boundary| [a, b].map(|row| sign * self.place(row, side, boundary));
+        let own = places(chosen);
+        let along = (own[1] - own[0]) / width;
+        // How far its tangents, where they meet, are from its chord.
+        let slopes = [a, b].map(|row| sign * self.slope(row, side, chosen) - along);
+        let (at, bulge) = below_tangents([0.0; 2], slopes, width);
+        let within = |boundary: Boundary| {
+            let other = places(boundary);
+            let room = [other[0] - own[0], other[1] - own[1]];
+            boundary == chosen
+                || bulge <= room[0] + (room[1] - room[0]) * (at / width) + self.tie.get()
+                || self.same(a, b, side, [chosen, boundary])
+        };
+        let walls = (0..self.walls.len()).map(|n| Boundary::Wall(n as u8));
+        let ends = self.ends.iter().enumerate().filter(|(_, e)| e.side == side).map(|(n, _)| Boundary::End(n as u8));
+        let proved = walls.chain(ends).chain([Boundary::Window]).all(within);
+        ([chosen; 2], (!proved).then(|| a.v + at.clamp(0.2 * width, 0.8 * width)))
+    }
+
+    /// By how much rounding may move a boundary in a row: as if the row were a little higher or lower.
+    fn room(&self, row: &Row, side: Side, boundary: Boundary) -> f64 {
+        let [u, v] = [self.window.u, self.window.v].map(|[lo, hi]| hi - lo);
+        let most = 8.0 * Real::sqrt(self.noise * (u + v));
+        let steep = self.noise * self.slope(row, side, boundary).abs();
+        self.tie.get() + if steep < most { steep } else { most }
+    }
+
+    /// Are two walls one curve between two rows? Conics that agree in five places do.
+    fn same(&self, a: &Row, b: &Row, side: Side, two: [Boundary; 2]) -> bool {
+        let close = |row: &Row| {
+            let [p, q] = two.map(|boundary| self.place(row, side, boundary));
+            (p - q).abs() <= two.map(|boundary| self.room(row, side, boundary)).into_iter().fold(0.0, f64::max)
+        };
+        let width = b.v - a.v;
+        close(a) && close(b) && [0.2, 0.5, 0.8].iter().all(|t| self.row(a.v + t * width).is_some_and(|r| close(&r)))
+    }
+
+    /// Where two boundaries of a side cross, of which each is innermost in one of two rows.
+    fn crossing(&self, a: &Row, b: &Row, side: Side, [of_a, of_b]: [Boundary; 2]) -> f64 {
+        let difference = |row: &Row| self.place(row, side, of_a) - self.place(row, side, of_b);
+        let (mut x, mut y) = ((a.v, difference(a)), (b.v, difference(b)));
+        let mut at = (a.v + b.v) * 0.5;
+        let mut last = 0;
+        for _ in 0..40 {
+            let next = x.0 + (y.0 - x.0) * (x.1 / (x.1 - y.1));
+            let (lo, hi) = (x.0.min(y.0), x.0.max(y.0));
+            at = if next > lo && next < hi { next } else { (lo + hi) * 0.5 };
+            let Some(row) = self.row(at) else { break };
+            let d = difference(&row);
+            if d.abs() <= 0.25 * self.tie.get() || !(hi - lo > self.noise) {
+                break;
+            }
+            // Regula falsi that halves the weight of an end that stays (the Illinois method).
+            if d * x.1 > 0.0 {
+                x = (at, d);
+                y.1 *= if last == 1 { 0.5 } else { 1.0 };
+                last = 1;
+            } else {
+                y = (at, d);
+                x.1 *= if last == 2 { 0.5 } else { 1.0 };
+                last = 2;
+            }
+        }
+        at
+    }
+
+    /// The integral over a boundary between two rows.
+    fn integral(&self, a: &Row, b: &Row, side: Side, boundary: Boundary) -> f64 {
+        let (p, q) = (self.place(a, side, boundary), self.place(b, side, boundary));
+        let trapezoid = (p + q) * 0.5 * (b.v - a.v);
+        let Boundary::Wall(n) = boundary else { return trapezoid };
+        let Some(wall) = self.walls.get(usize::from(n)) else { return trapezoid };
+        let (from, to) = ([p - wall.origin[0], a.v - wall.origin[1]], [q - wall.origin[0], b.v - wall.origin[1]]);
+        let section = wall.section();
+        let gradients = [section.gradient(from), section.gradient(to)];
+        let lens = match side {
+            Side::High => lens_of(from, to, section.quadratic, gradients),
+            Side::Low => lens_of(to, from, section.quadratic, [gradients[1], gradients[0]]),
+        };
+        let area = match lens {
+            Lens::Nothing => 0.0,
+            Lens::Triangle(_, area) => area,
+            Lens::Bow(bow) => bow.size * bend(bow.w),
+        };
+        if side == Side::High { trapezoid + area } else { trapezoid - area }
+    }
+}
+
+/// The greatest value that a concave function can have on an interval of a width, from its values and slopes at the ends, and where; infinite
+/// slopes are allowed at ends.
+fn below_tangents([p, q]: P2, [up, down]: P2, width: f64) -> (f64, f64) {
+    if !(up > 0.0) {
+        (0.0, p)
+    } else if !(down < 0.0) {
+        (width, q)
+    } else if up.is_finite() && down.is_finite() {
+        let at = ((q - p - down * width) / (up - down)).clamp(0.0, width);
+        (at, (p + up * at).min(q + down * (at - width)))
+    } else if down.is_finite() {
+        (0.0, q - down * width)
+    } else if up.is_finite() {
+        (width, p + up * width)
+    } else {
+        (0.5 * width, f64::INFINITY)
+    }
+}
