@@ -1,4 +1,4 @@
-//! Solids known by formula in the layers of a grid: closed forms, and subdivision only where two of them may share a cell.
+//! Solids known by formula in the layers of a grid: closed forms, and sections where two of them share a cell.
 //!
 //! They enter [`crate::surface::layer::Layers`] beside bodies of triangles, as [`OtherBodies`](crate::surface::OtherBodies), or alone.
 //!

@@ -38,13 +38,14 @@ pub fn layers(bytes: &[u8]) {
     crate::door::never_panics::<Vec3>(seed);
 }
 
-/// Shares of any solid by formula, and the sum of those of a solid of some family.
+/// Shares of any solid by formula, the sum of those of a solid of some family, and what two and three have in common by two tolerances.
 pub fn quadric(bytes: &[u8]) {
     let Some((seed, _)) = bytes.split_first_chunk() else { return };
     let seed = u64::from_le_bytes(*seed);
     crate::quadric::never_panics::<DVec3>(seed);
     crate::quadric::never_panics::<Vec3>(seed);
     crate::quadric::parts_sum_to_the_whole(seed);
+    crate::meeting::bounds_agree(seed);
 }
 
 /// Booleans of both stages against the oracle.

@@ -11,6 +11,7 @@ pub mod fields;
 pub mod fuzzed;
 pub mod gjk;
 pub mod lattice;
+pub mod meeting;
 pub mod oracle;
 pub mod pairs;
 pub mod quadrature;

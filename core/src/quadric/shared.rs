@@ -39,12 +39,12 @@ fn meet(a: &[P2; 3], b: &[P2; 3]) -> [P2; 3] {
 
 /// Bounds of the sum of the volumes of some solids in a cell, given by its low and high coordinates, less the volume of their union there; of
 /// areas, if the cell is flat along one axis. The bounds are about `enough` apart, or more where that takes too long. None if there is
-/// more in the cell than this is made for.
+/// more in the cell than this is made for, or they are so large that rounding leaves nothing to rely on.
 #[must_use]
-pub fn excess(solids: &[&QuadricSolid], cell: [P2; 3], enough: f64) -> Option<P2> {
+pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2; 3], enough: f64) -> Option<P2> {
     let flat = cell.iter().position(|[lo, hi]| lo == hi);
     let mut parts: Vec<OnePart, MOST_AT_HAND> = Vec::new();
-    for (solid, body) in solids.iter().enumerate() {
+    for (solid, body) in solids.into_iter().enumerate() {
         for part in body.parts() {
             let extent = meet(&cell, &[0, 1, 2].map(|n| part.extent(n)));
             if reaches(&extent, flat) {
@@ -90,13 +90,17 @@ pub fn excess(solids: &[&QuadricSolid], cell: [P2; 3], enough: f64) -> Option<P2
                 0.125 * left
             };
             let all = || of_set().chain([one]).map(|p| p.part);
-            let [low, high] = match flat {
-                Some(n) => area(all(), &extent, n, cell[n][0], share),
-                None => volume(all(), &extent, share),
+            let plane = flat.map(|n| (n, cell[n][0]));
+            let [low, high] = if set.len() == 1 {
+                common::<2>(all(), &extent, plane, share)
+            } else {
+                common::<MOST_PARTS>(all(), &extent, plane, share)
             };
-            if sets > MOST_SETS || high.is_nan() {
+            // Of huge solids rounding may leave nothing to rely on.
+            if sets > MOST_SETS || !(low - high <= enough) {
                 return None;
             }
+            let [low, high] = [low.min(high), high.max(low)];
             // Pairs count, threes are taken back, and so on.
             let [more, less] = if set.len() % 2 == 1 { [low, high] } else { [-high, -low] };
             (found[0], found[1]) = (found[0] + more, found[1] + less);
@@ -115,10 +119,16 @@ fn reaches(extent: &[P2; 3], flat: Option<usize>) -> bool {
     extent.iter().enumerate().all(|(n, [lo, hi])| lo < hi || (flat == Some(n) && lo == hi))
 }
 
-/// Bounds of the area that parts have in common in a plane across axis `n`.
-fn area<'a>(parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3], n: usize, coordinate: f64, enough: f64) -> P2 {
+/// Bounds of the volume that up to `N` parts have in common in a box, or of the area in a plane across an axis at a coordinate.
+fn common<'a, const N: usize>(
+    parts: impl Iterator<Item = &'a Part> + Clone,
+    extent: &[P2; 3],
+    plane: Option<(usize, f64)>,
+    enough: f64,
+) -> P2 {
+    let Some((n, coordinate)) = plane else { return volume::<N>(parts, extent, enough) };
     let window = window(extent, n, enough);
-    match Slice::new(parts, window, coordinate).common() {
+    match Slice::<N>::new(parts, window, coordinate).common() {
         Common::Area(bounds) => bounds,
         Common::NoRow(_) => [0.0; 2],
         Common::Apart([_, most]) => [0.0, most.max(0.0) * (window.v[1] - window.v[0])],
@@ -139,8 +149,8 @@ enum Sample {
     Root(P2),
 }
 
-/// Bounds of the volume that parts have in common in a box.
-fn volume<'a>(parts: impl Iterator<Item = &'a Part> + Clone, extent: &[P2; 3], enough: f64) -> P2 {
+/// Bounds of the volume that up to `N` parts have in common in a box.
+fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, extent: &[P2; 3], enough: f64) -> P2 {
     let n = across(parts.clone(), extent);
     let [first, last] = extent[n];
     let [u, v] = others(n);
@@ -149,7 +159,7 @@ fn volume<'a>(parts: impl Iterator<Item = &'a Part> + Clone, extent: &[P2; 3], e
         return [0.0, all * (last - first)];
     }
     let within = window(extent, n, (0.125 * enough / (last - first)).min(1e-3 * all));
-    let slice = |at: f64| match Slice::new(parts.clone(), within, at).common() {
+    let slice = |at: f64| match Slice::<N>::new(parts.clone(), within, at).common() {
         Common::NoRow(width) => Sample::NoRow(width),
         Common::Apart(bounds) => Sample::Apart(bounds),
         Common::Area([lower, upper]) if lower > 0.0 => Sample::Root([Real::sqrt(lower), Real::sqrt(upper)]),

@@ -80,10 +80,10 @@ struct LineOfEnd {
     slope: f64,
 }
 
-/// Parts in a plane.
-pub(super) struct Slice<'a> {
+/// Up to `N` parts in a plane.
+pub(super) struct Slice<'a, const N: usize> {
     window: Window,
-    walls: Vec<WallInPlane<'a>, MOST_PARTS>,
+    walls: Vec<WallInPlane<'a>, N>,
     ends: Vec<LineOfEnd, { 2 * MOST_PARTS }>,
     /// Heights between which rows meet all parts.
     rows: P2,
@@ -95,16 +95,16 @@ pub(super) struct Slice<'a> {
 
 /// A row: the spans of the walls, and what they have in common.
 #[derive(Clone, Copy)]
-struct Row {
+struct Row<const N: usize> {
     v: f64,
-    spans: [Span; MOST_PARTS],
+    spans: [Span; N],
     low: f64,
     high: f64,
     left: Boundary,
     right: Boundary,
 }
 
-impl Row {
+impl<const N: usize> Row<N> {
     fn length(&self) -> f64 {
         self.high - self.low
     }
@@ -127,7 +127,7 @@ impl WallInPlane<'_> {
     }
 }
 
-impl<'a> Slice<'a> {
+impl<'a, const N: usize> Slice<'a, N> {
     /// Of a plane at a coordinate.
     pub fn new(parts: impl Iterator<Item = &'a Part>, window: Window, coordinate: f64) -> Self {
         let [u, v] = others(window.n);
@@ -175,18 +175,12 @@ impl<'a> Slice<'a> {
     }
 
     /// The row at a height; none where rounding lets a span vanish.
-    fn row(&self, v: f64) -> Option<Row> {
+    fn row(&self, v: f64) -> Option<Row<N>> {
         let Window { n, u: [u0, u1], .. } = self.window;
         let [u_axis, _] = others(n);
         let beyond = 4.0 * (u1 - u0);
-        let mut row = Row {
-            v,
-            spans: [Span::ALL; MOST_PARTS],
-            low: u0,
-            high: u1,
-            left: Boundary::Window,
-            right: Boundary::Window,
-        };
+        let mut row =
+            Row { v, spans: [Span::ALL; N], low: u0, high: u1, left: Boundary::Window, right: Boundary::Window };
         for (number, (wall, into)) in self.walls.iter().zip(&mut row.spans).enumerate() {
             let span = wall.span(u_axis, v);
             if !(span.lo <= span.hi) {
@@ -213,7 +207,7 @@ impl<'a> Slice<'a> {
     }
 
     /// The row at an end of the heights, or close by.
-    fn end_row(&self, v: f64, inward: f64) -> Option<Row> {
+    fn end_row(&self, v: f64, inward: f64) -> Option<Row<N>> {
         let mut step = 0.0;
         for _ in 0..12 {
             if let Some(row) = self.row(v + inward * step) {
@@ -225,7 +219,7 @@ impl<'a> Slice<'a> {
     }
 
     /// Where a boundary stands in a row.
-    fn place(&self, row: &Row, side: Side, boundary: Boundary) -> f64 {
+    fn place(&self, row: &Row<N>, side: Side, boundary: Boundary) -> f64 {
         let window = self.window.u;
         match boundary {
             Boundary::Window => window[usize::from(side == Side::High)],
@@ -238,7 +232,7 @@ impl<'a> Slice<'a> {
     }
 
     /// By how much a boundary recedes as rows rise; infinite where a wall turns.
-    fn slope(&self, row: &Row, side: Side, boundary: Boundary) -> f64 {
+    fn slope(&self, row: &Row<N>, side: Side, boundary: Boundary) -> f64 {
         match boundary {
             Boundary::Window => 0.0,
             Boundary::End(n) => self.ends.get(usize::from(n)).map_or(f64::NAN, |e| e.slope),
@@ -253,7 +247,7 @@ impl<'a> Slice<'a> {
     }
 
     /// The slope of the length in common, of a concave function: any that holds on one side.
-    fn rise(&self, row: &Row) -> f64 {
+    fn rise(&self, row: &Row<N>) -> f64 {
         self.slope(row, Side::High, row.right) - self.slope(row, Side::Low, row.left)
     }
 
@@ -282,7 +276,7 @@ impl<'a> Slice<'a> {
     }
 
     /// A row with something in common. Else bounds of the greatest length in common, the upper one not negative if it was not found out.
-    fn peak(&self, a: &Row, b: &Row) -> Result<Row, P2> {
+    fn peak(&self, a: &Row<N>, b: &Row<N>) -> Result<Row<N>, P2> {
         let (mut a, mut b) = (*a, *b);
         let mut best = if a.length() > b.length() { a } else { b };
         for turn in 0..60 {
@@ -309,7 +303,7 @@ impl<'a> Slice<'a> {
     }
 
     /// Closes in on where the length in common begins, from a row at the end: a row where it is not negative, and what may lie beyond that.
-    fn begin(&self, end: Row, peak: Row) -> (Row, f64) {
+    fn begin(&self, end: Row<N>, peak: Row<N>) -> (Row<N>, f64) {
         let (mut outer, mut inner) = (end, peak);
         if outer.length() >= -self.noise {
             return (outer, 0.0);
@@ -341,7 +335,7 @@ impl<'a> Slice<'a> {
     }
 
     /// Bounds of the area between two rows with something in common, in either order.
-    fn area(&self, from: Row, to: Row) -> P2 {
+    fn area(&self, from: Row<N>, to: Row<N>) -> P2 {
         let [from, to] = if from.v <= to.v { [from, to] } else { [to, from] };
         let tie = self.tie.get();
         let mut found = self.in_panels(from, to);
@@ -357,9 +351,9 @@ impl<'a> Slice<'a> {
     }
 
     /// The same, from low to high; as an error if that needs too many rows.
-    fn in_panels(&self, mut a: Row, last: Row) -> Result<P2, P2> {
+    fn in_panels(&self, mut a: Row<N>, last: Row<N>) -> Result<P2, P2> {
         let all = last.v - a.v;
-        let mut waiting: Vec<Row, 48> = Vec::new();
+        let mut waiting: Vec<Row<N>, 48> = Vec::new();
         let _ = waiting.push(last);
         let (mut lower, mut upper) = (0.0, 0.0);
         let (mut steps, mut early) = (0, false);
@@ -386,7 +380,7 @@ impl<'a> Slice<'a> {
     }
 
     /// Bounds of the area between two rows; and where to look next, unless the bounds are close.
-    fn between(&self, a: &Row, b: &Row) -> (P2, Option<f64>) {
+    fn between(&self, a: &Row<N>, b: &Row<N>) -> (P2, Option<f64>) {
         let width = b.v - a.v;
         let trapezoid = (a.length().max(0.0) + b.length().max(0.0)) * 0.5 * width;
         let (high, no_proof) = self.innermost(a, b, Side::High);
@@ -412,11 +406,11 @@ impl<'a> Slice<'a> {
 
     /// The boundary that is innermost on a side of two rows, twice, or one for each row; and, unless it is proved to be so between them, where
     /// to look.
-    fn innermost(&self, a: &Row, b: &Row, side: Side) -> ([Boundary; 2], Option<f64>) {
-        let inner = |row: &Row| if side == Side::High { (row.right, row.high) } else { (row.left, row.low) };
+    fn innermost(&self, a: &Row<N>, b: &Row<N>, side: Side) -> ([Boundary; 2], Option<f64>) {
+        let inner = |row: &Row<N>| if side == Side::High { (row.right, row.high) } else { (row.left, row.low) };
         let sign = if side == Side::High { 1.0 } else { -1.0 };
         let ((of_a, at_a), (of_b, at_b)) = (inner(a), inner(b));
-        let counts = |row: &Row, boundary: Boundary, best: f64| {
+        let counts = |row: &Row<N>, boundary: Boundary, best: f64| {
             sign * (self.place(row, side, boundary) - best) <= self.tie.get()
         };
         let chosen = if of_a == of_b || counts(b, of_a, at_b) {
@@ -449,7 +443,7 @@ impl<'a> Slice<'a> {
     }
 
     /// By how much rounding may move a boundary in a row: as if the row were a little higher or lower.
-    fn room(&self, row: &Row, side: Side, boundary: Boundary) -> f64 {
+    fn room(&self, row: &Row<N>, side: Side, boundary: Boundary) -> f64 {
         let [u, v] = [self.window.u, self.window.v].map(|[lo, hi]| hi - lo);
         let most = 8.0 * Real::sqrt(self.noise * (u + v));
         let steep = self.noise * self.slope(row, side, boundary).abs();
@@ -457,8 +451,8 @@ impl<'a> Slice<'a> {
     }
 
     /// Are two walls one curve between two rows? Conics that agree in five places do.
-    fn same(&self, a: &Row, b: &Row, side: Side, two: [Boundary; 2]) -> bool {
-        let close = |row: &Row| {
+    fn same(&self, a: &Row<N>, b: &Row<N>, side: Side, two: [Boundary; 2]) -> bool {
+        let close = |row: &Row<N>| {
             let [p, q] = two.map(|boundary| self.place(row, side, boundary));
             (p - q).abs() <= two.map(|boundary| self.room(row, side, boundary)).into_iter().fold(0.0, f64::max)
         };
@@ -467,8 +461,8 @@ impl<'a> Slice<'a> {
     }
 
     /// Where two boundaries of a side cross, of which each is innermost in one of two rows.
-    fn crossing(&self, a: &Row, b: &Row, side: Side, [of_a, of_b]: [Boundary; 2]) -> f64 {
-        let difference = |row: &Row| self.place(row, side, of_a) - self.place(row, side, of_b);
+    fn crossing(&self, a: &Row<N>, b: &Row<N>, side: Side, [of_a, of_b]: [Boundary; 2]) -> f64 {
+        let difference = |row: &Row<N>| self.place(row, side, of_a) - self.place(row, side, of_b);
         let (mut x, mut y) = ((a.v, difference(a)), (b.v, difference(b)));
         let mut at = (a.v + b.v) * 0.5;
         let mut last = 0;
@@ -496,7 +490,7 @@ impl<'a> Slice<'a> {
     }
 
     /// The integral over a boundary between two rows.
-    fn integral(&self, a: &Row, b: &Row, side: Side, boundary: Boundary) -> f64 {
+    fn integral(&self, a: &Row<N>, b: &Row<N>, side: Side, boundary: Boundary) -> f64 {
         let (p, q) = (self.place(a, side, boundary), self.place(b, side, boundary));
         let trapezoid = (p + q) * 0.5 * (b.v - a.v);
         let Boundary::Wall(n) = boundary else { return trapezoid };

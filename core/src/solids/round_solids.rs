@@ -1,7 +1,8 @@
 //! Solids in the caller's memory, as bodies of a layer.
 //!
 //! Each solid's shares are added up. Where only one has a share, that is exact. Where several have one and GJK proves that no two of them
-//! meet, the sum is exact too; elsewhere their union is subdivided in that cell or face, and the result is bounds.
+//! meet, the sum is exact too; elsewhere what they have in common is measured by sections, or if they are too many, their union is
+//! subdivided in that cell or face, and the result is bounds.
 
 use super::round_shape::RoundShape;
 use crate::convex::gjk::{Intersection, intersect};
@@ -12,7 +13,7 @@ use crate::grid::cell_range::{CellRange, RangeKind};
 use crate::grid::fields::{Fields, Layer, accumulate};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::quadric::{AsQuadric, QuadricSolid};
+use crate::quadric::{AsQuadric, QuadricSolid, excess};
 use crate::subdivide::{QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, TooLittleMemory, share};
 use crate::surface::OtherBodies;
 
@@ -216,10 +217,38 @@ impl<'m, V: Vector> RoundSolids<'m, V> {
         if !doubtful && all_apart(near, queries) {
             return Bounds { lower: sum, upper: sum };
         }
+        if !doubtful && let Some(found) = by_sections(solids, place, sum, *rule) {
+            return found;
+        }
         let Ok(found) = share(place, near, *rule, &mut memory.lists, queries) else { return Bounds::UNKNOWN };
         // The sum limits the union, unless it contradicts by rounding.
         if !doubtful && sum < found.upper && sum >= found.lower { Bounds { upper: sum, ..found } } else { found }
     }
+}
+
+/// Bounds of the union of solids that have `sum` in all of a cell or face, by what they have in common; none if these are not close.
+fn by_sections<V: Vector>(
+    solids: &[RoundSolid<V>],
+    place: &Aabb<V>,
+    sum: V::Scalar,
+    rule: SubdivisionRule<V::Scalar>,
+) -> Option<Bounds<V::Scalar>> {
+    let real = V::Scalar::from_f64;
+    let [min, max] = [place.min, place.max].map(|p| p.to_array().map(Real::to_f64));
+    let sides = [0, 1, 2].map(|n: usize| [min[n], max[n]]);
+    let (mut size, mut flat) = (1.0, false);
+    for [lo, hi] in sides {
+        if lo < hi { size *= hi - lo } else { flat = true }
+    }
+    // Areas are exact but for rounding.
+    let enough = if flat { 1e-13 } else { rule.tol.to_f64() };
+    let near = solids.iter().filter(|s| s.bounds.touches(*place)).map(|s| &s.formula);
+    let [low, high] = excess(near, sides, enough * size)?.map(|common| common / size);
+    let (lower, upper) = (sum - real(high), sum - real(low));
+    // Shares were rounded, and their sum.
+    let rounded = real(8.0) * V::Scalar::EPSILON * sum;
+    let bounds = Bounds { lower: (lower - rounded).max(V::Scalar::ZERO), upper: (upper + rounded).min(V::Scalar::ONE) };
+    (bounds.upper - bounds.lower <= real(2.0) * rule.tol).then_some(bounds)
 }
 
 /// Are any two of some shapes proved to be apart?

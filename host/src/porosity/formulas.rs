@@ -535,7 +535,7 @@ fn by_sections(solids: &[&FormulaSolid], sum: Bounds<f64>, cell: Aabb<DVec3>, to
     let size: f64 = sides.iter().map(|[lo, hi]| hi - lo).filter(|width| *width > 0.0).product();
     let flat = sides.iter().any(|[lo, hi]| lo == hi);
     let enough = if flat { EXACT } else { tol };
-    let [low, high] = excess(&quadrics, sides, enough * size)?;
+    let [low, high] = excess(quadrics, sides, enough * size)?;
     Some(Bounds { lower: (sum.lower - high / size).max(0.0), upper: (sum.upper - low / size).min(1.0) })
 }
 
