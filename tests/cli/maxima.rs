@@ -1,6 +1,6 @@
 //! Largest values over time and forces on solids, against what they must be.
 
-use crate::kit::{Scratch, array, json, solved};
+use crate::kit::{Scratch, array, json, solve, solved, stderr};
 use std::fs;
 
 /// Lines of `log.csv` as numbers.
@@ -241,4 +241,69 @@ fn pictures_have_one_range() {
     .expect("written");
     solved(&at, &case.replace("[gas]", "[porosity]\nscene = \"scene.toml\"\n[gas]"), "wall", &["-q"]);
     assert!(png("wall", "pressure_0000") != png("own", "pressure_0000"));
+}
+
+/// A blast in a closed box, on 16 cells along an axis and on 8.
+const BLAST: &str = r#"
+[grid]
+x = { points = [0, 1], cells = [16] }
+y = { points = [0, 1], cells = [16] }
+[gas]
+model = "ideal"
+gamma = 1.4
+[initial]
+uniform = { rho = 1.2, p = 1e5 }
+regions = [{ center = [0.3, 0.3], radius = 0.2, p = 5e5, rho = 1.2 }]
+[boundary]
+x_min = "wall"
+x_max = "wall"
+y_min = "wall"
+y_max = "wall"
+[time]
+end = 1e-3
+[output]
+formats = []
+probes = [{ name = "far", at = [0.9, 0.9, 0] }, { name = "near", at = [0.55, 0.3, 0] }]
+"#;
+
+/// The check tells what a run on half the cells finds by itself.
+#[test]
+fn half_the_cells_beside_all() {
+    let at = Scratch::new();
+    solved(&at, BLAST, "fine", &["-q", "--refine-check"]);
+    let fine = json(&at.file("fine/report.json"));
+    let coarse = BLAST.replace("cells = [16]", "cells = [8]").replace("formats", "maxima = {}\nformats");
+    solved(&at, &coarse, "coarse", &["-q"]);
+    let coarse = json(&at.file("coarse/report.json"));
+    let check = &fine["refine_check"];
+    assert_eq!(check["cells"], serde_json::json!([8, 8, 1]));
+    assert_eq!(check["steps"], coarse["steps"]);
+    let peaks = check["peaks"].as_array().expect("a list");
+    assert_eq!(
+        peaks.iter().map(|p| p["name"].as_str().expect("a name")).collect::<Vec<_>>(),
+        ["anywhere", "far", "near"]
+    );
+    for n in 0..2 {
+        for key in ["overpressure", "impulse", "dynamic_pressure"] {
+            let found = &peaks[n + 1][key];
+            assert_eq!(found["fine"], fine["maxima"]["probes"][n][key], "{key}");
+            assert_eq!(found["coarse"], coarse["maxima"]["probes"][n][key], "{key}");
+            let [fine, coarse, change] = ["fine", "coarse", "change"].map(|k| found[k].as_f64().expect("a number"));
+            assert!(fine != coarse && (change - (fine - coarse) / fine).abs() < 1e-12, "{key}");
+            assert!(peaks[0][key]["fine"].as_f64().expect("a number") >= fine, "{key}");
+        }
+    }
+}
+
+/// What cannot be halved is refused before anything runs.
+#[test]
+fn cases_that_cannot_be_halved() {
+    let at = Scratch::new();
+    let few = BLAST.replace("y = { points = [0, 1], cells = [16] }", "y = { points = [0, 1], cells = [3] }");
+    let output = solve(&at, &few, "few", &["--refine-check"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("fewer than 4 cells along y"), "{}", stderr(&output));
+    let fields = BLAST.replace("[gas]", "[porosity]\nfrom = \"fields\"\n[gas]");
+    let output = solve(&at, &fields, "fields", &["--refine-check"]);
+    assert!(stderr(&output).contains("porosity.from") && !at.file("fields").exists(), "{}", stderr(&output));
 }

@@ -63,6 +63,11 @@ fn volume_inside(lo: DVec3, hi: DVec3, planes: &[HalfSpace]) -> f64 {
         (DVec3::NEG_Z, -lo.z),
     ];
     let all = distinct(&sides.into_iter().chain(planes.iter().copied()).collect::<Vec<_>>());
+    // Two planes back to back leave no volume, whatever rounding makes of their facets.
+    let closed = |&(n, o): &HalfSpace| all.iter().any(|&(m, p)| (n + m).length() < 1e-11 && o + p < 1e-11);
+    if all.iter().any(closed) {
+        return 0.0;
+    }
     let (middle, size) = ((lo + hi) * 0.5, (hi - lo).length());
     let facet = |n: usize| {
         let (normal, offset) = all[n];

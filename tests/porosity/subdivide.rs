@@ -44,6 +44,12 @@ proptest! {
     }
 }
 
+/// A box with a side in a plane of the grid.
+#[test]
+fn a_box_that_touches_a_plane() {
+    bounds_hold_the_union(&[Part { kind: 0, center: [0, 10, 0], half: [6, 1, 6], seed: 0 }], 0);
+}
+
 fn unit_grid(n: usize) -> Edges {
     let axis: Vec<f64> = (0..=n).map(|i| i as f64 / n as f64).collect();
     Edges([axis.clone(), axis.clone(), axis])

@@ -74,7 +74,7 @@ pub struct RoundMemory<'m, V: Vector> {
     pub lists: SubdivisionMemory<'m, V>,
 }
 
-/// Owners of a place: none, or this one, or one less than the number of the only solid that has a share.
+/// Owners of a place: 0 for none, the largest number for several; else the index of the only solid that has a share, plus one.
 const NOBODY: u32 = 0;
 const SEVERAL: u32 = u32::MAX;
 

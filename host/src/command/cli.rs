@@ -241,6 +241,9 @@ pub struct SolveArgs {
     /// Replace the results of a finished run in that directory
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
+    /// Run the case on half the cells along each axis as well, and tell the largest values of both side by side
+    #[arg(long)]
+    pub refine_check: bool,
     /// Number of threads (default: all cores)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,

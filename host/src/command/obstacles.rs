@@ -1,7 +1,7 @@
 //! The stage of obstacles, shared by `porosity` and `solve`: what stands between the faces of cells, and what it resists.
 
 use super::progress::Progress;
-use crate::geometry::bodies::Bodies;
+use crate::geometry::bodies::{Bodies, Body};
 use crate::picture::ticks::measure;
 use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use crate::porosity::resistance::{Resistance, resistance};
@@ -96,6 +96,22 @@ fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Pr
             bodies.files(),
             hidden.cells,
             HIDDEN * 100.0
+        ));
+    }
+}
+
+/// Say which porous solids slow nothing down.
+pub fn warn_of_gratings(bodies: &Bodies, progress: &mut Progress) {
+    let free = |b: &&Body| b.porosity > 0.0 && b.porosity < 1.0 && b.drag.cr.is_none();
+    let mut gratings = bodies.bodies.iter().filter(free);
+    if let Some(first) = gratings.next() {
+        let others = gratings.count();
+        let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+        progress.warn(format!(
+            "{}: \"{}\"{others} with a porosity, but without cr: the gas passes with no loss but that of narrower faces; cr = … of the solid \
+             gives a loss of ½ ρ cr |u| u a metre",
+            bodies.files(),
+            first.name
         ));
     }
 }

@@ -1,7 +1,7 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
 //! In reading order: [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`],
-//! [`table`], [`checkpoint`], [`report`], what it writes; [`run`].
+//! [`table`], [`checkpoint`], [`report`], what it writes; [`refine`], the same case on half the cells; [`run`].
 
 mod arrays;
 pub mod case;
@@ -11,6 +11,7 @@ pub mod frames;
 pub mod inlet;
 pub mod maxima;
 pub mod pictures;
+pub mod refine;
 pub mod regions;
 pub mod report;
 pub mod run;

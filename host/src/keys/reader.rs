@@ -95,9 +95,37 @@ pub fn not_known(key: &str, known: &[&str]) -> String {
     format!("is not known here{near} (known: {})", known.join(", "))
 }
 
-/// The known word that differs least from what was typed, if it differs little.
+/// Words that others use, and ours.
+const OTHERS_SAY: [(&str, &str); 20] = [
+    ("pipe", "cylinder"),
+    ("tube", "cylinder"),
+    ("rod", "cylinder"),
+    ("ball", "sphere"),
+    ("cuboid", "box"),
+    ("block", "box"),
+    ("cube", "box"),
+    ("elbow", "torus"),
+    ("bend", "torus"),
+    ("ring", "torus"),
+    ("frustum", "cone"),
+    ("stl", "file"),
+    ("mesh", "file"),
+    ("outflow", "outlet"),
+    ("inflow", "inlet"),
+    ("open", "far-field"),
+    ("freestream", "far-field"),
+    ("slip", "wall"),
+    ("symmetry", "wall"),
+    ("extrapolate", "zero-gradient"),
+];
+
+/// The known word that means what was typed, or differs least from it, if it differs little.
 #[must_use]
 pub fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
+    let same = |word: &&str| OTHERS_SAY.contains(&(&typed.to_lowercase()[..], word));
+    if let Some(word) = known.iter().copied().find(same) {
+        return Some(word);
+    }
     let far = |word: &str| (distance(typed, word), word.len());
     let near = known.iter().copied().min_by_key(|word| far(word))?;
     (far(near).0 <= 1 + typed.chars().count() / 4).then_some(near)

@@ -1,7 +1,8 @@
-//! Solids by formula in a layer: closed forms, and subdivision only where two of them truly meet in a cell.
+//! Solids by formula in a layer: closed forms, and sections where two of them truly meet in a cell.
 //!
 //! Shares of solids that do not meet add up, and that is exact. Which pairs meet is asked of GJK once for each pair of solids whose boxes
-//! overlap. Only in a cell or face that two such solids share is their union subdivided; a solid that closes the cell settles it.
+//! overlap. Only in a cell or face that two such solids share is what they have in common taken off ([`voidage_core::quadric::excess`]); with
+//! tori, or too many solids, their union is subdivided there. A solid that closes the cell settles it.
 
 use super::convex::Convex;
 use glam::DVec3;
@@ -323,6 +324,8 @@ pub struct FormulaMemory {
     /// Sums of the shares of cells and x, y, z faces.
     sums: [Vec<f64>; 4],
     entries: Vec<Entry>,
+    /// Cells so far in which solids meet.
+    pub shared: usize,
 }
 
 const KINDS: [RangeKind; 4] = [RangeKind::Cells, RangeKind::Faces(0), RangeKind::Faces(1), RangeKind::Faces(2)];
@@ -376,7 +379,7 @@ pub fn add(
         sums.clear();
         sums.resize(length(layer, kind), 0.0);
     }
-    let FormulaMemory { sums, entries } = memory;
+    let FormulaMemory { sums, entries, .. } = memory;
     entries.clear();
     for (n, s) in solids.iter().enumerate() {
         let worst = match &s.kind {
@@ -461,7 +464,7 @@ fn add_shared(
     tol: f64,
     union: &mut impl FnMut(&[&FormulaSolid], RangeKind, CellRange) -> Bounds<f64>,
 ) {
-    let FormulaMemory { sums, entries } = memory;
+    let FormulaMemory { sums, entries, shared } = memory;
     entries.sort_by_key(|e| (e.0, e.1, e.2));
     let mut shares: Vec<(usize, [f64; 2])> = Vec::new();
     let mut bodies: Vec<&FormulaSolid> = Vec::new();
@@ -497,6 +500,7 @@ fn add_shared(
             }
         }
         if !bodies.is_empty() {
+            *shared += usize::from(kind == RangeKind::Cells);
             let known = Bounds { lower: largest, upper: sum.upper.min(1.0) };
             let ends =
                 if shares.iter().all(|&(n, _)| meets(n)) { concentric(&bodies, grid, kind, range) } else { None };

@@ -2,7 +2,7 @@
 
 use super::CellCounts;
 use super::fields::Slices;
-use super::road::{Lists, Road};
+use super::road::{Lists, Road, RoadWithLists};
 use glam::DVec3;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
@@ -37,15 +37,15 @@ pub struct Summary {
 }
 
 impl Summary {
-    fn new(report: LayerReport<f64>, tally: QueryCount, leaks: Vec<(usize, f64)>) -> Self {
+    fn new(report: LayerReport<f64>, others: &RoadWithLists, leaks: Vec<(usize, f64)>) -> Self {
         let CellKinds { open, cut, closed, ambiguous } = report.cells;
         Summary {
-            cells: CellCounts { open, cut, closed, ambiguous },
+            cells: CellCounts { open, cut, closed, ambiguous: ambiguous.max(others.shared()) },
             volume: report.solid_volume,
             max_gap: report.max_gap,
             divided: report.divided,
             winding: report.defects.winding,
-            tally,
+            tally: others.tally(),
             leaks,
         }
     }
@@ -180,7 +180,7 @@ impl Worker {
         let Target { beta, bounds } = target;
         let bounds = bounds.map(|both| both.map(Slices::for_core));
         let report = layers.zeroed_layer(k, beta.for_core(), bounds, &mut memory, &mut others, note_leak).expect(FITS);
-        Summary::new(report, others.tally(), leaks)
+        Summary::new(report, &others, leaks)
     }
 }
 

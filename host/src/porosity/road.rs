@@ -149,7 +149,7 @@ impl<'a> Road<'a> {
 
     /// The bodies and a thread's memory for them, as the layers of a grid in the core take them.
     pub fn with<'r>(&'r self, grid: &'r Grid<'r, f64>, lists: &'r mut Lists) -> RoadWithLists<'r, 'a> {
-        RoadWithLists { road: self, grid, lists, tally: QueryCount::default() }
+        RoadWithLists { road: self, grid, lists, tally: QueryCount::default(), shared: 0 }
     }
 
     /// Work with what lies between two z planes of the grid: the bodies that do, and of surfaces the triangles.
@@ -230,6 +230,8 @@ pub struct RoadWithLists<'r, 'a> {
     grid: &'r Grid<'r, f64>,
     lists: &'r mut Lists,
     tally: QueryCount,
+    /// Cells of the whole grid in which solids by formula meet.
+    shared: usize,
 }
 
 impl RoadWithLists<'_, '_> {
@@ -237,6 +239,12 @@ impl RoadWithLists<'_, '_> {
     #[must_use]
     pub fn tally(&self) -> QueryCount {
         self.tally
+    }
+
+    /// In how many cells of the whole grid solids by formula meet.
+    #[must_use]
+    pub fn shared(&self) -> usize {
+        self.shared
     }
 
     /// Add what goes by closed forms; by subdivision where that fails.
@@ -251,6 +259,7 @@ impl RoadWithLists<'_, '_> {
         let mut solids: Vec<&FormulaSolid> = self.road.formulas.iter().copied().filter(near).collect();
         let mut subdivided: Vec<Convex> = Vec::new();
         let mut memory = std::mem::take(&mut self.lists.formulas);
+        memory.shared = 0;
         let mut tally = QueryCount::default();
         while !solids.is_empty() {
             let union = |bodies: &[Convex<'static>], kind: RangeKind, range: CellRange| {
@@ -271,6 +280,7 @@ impl RoadWithLists<'_, '_> {
                 !doubtful.contains(&(n - 1))
             });
         }
+        self.shared += if self.is_whole(grid) { memory.shared } else { 0 };
         self.lists.formulas = memory;
         if !subdivided.is_empty() {
             let options = self.road.rule;
@@ -291,9 +301,14 @@ impl RoadWithLists<'_, '_> {
 
     /// Counts the queries of the whole grid, not those of divided cells.
     fn count(&mut self, grid: &Grid<f64>, found: QueryCount) {
-        if grid.cells() == self.grid.cells() && grid.bounds() == self.grid.bounds() {
+        if self.is_whole(grid) {
             self.tally = self.tally + found;
         }
+    }
+
+    /// Is it the whole grid, not a divided cell?
+    fn is_whole(&self, grid: &Grid<f64>) -> bool {
+        grid.cells() == self.grid.cells() && grid.bounds() == self.grid.bounds()
     }
 
     /// Add to some places of a layer what lies between two z planes.

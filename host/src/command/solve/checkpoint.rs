@@ -36,6 +36,22 @@ pub fn keep_untouched(dir: &Path) -> Result<()> {
     atomically(&to, |out| out.write_all(&bytes))
 }
 
+/// Name of the last checkpoint of an unfinished run in whose place another begins.
+pub const BEFORE: &str = "checkpoint_before.bin";
+
+/// Renames the checkpoint in `dir`, if there is one; whether there was.
+///
+/// # Errors
+/// The file cannot be renamed.
+pub fn put_aside(dir: &Path) -> Result<bool> {
+    let path = dir.join(NAME);
+    match std::fs::rename(&path, dir.join(BEFORE)) {
+        Ok(()) => Ok(true),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(e) => Err(Error::io(&path, "rename", &e)),
+    }
+}
+
 /// Removes the copy that an earlier run has left in `dir`.
 ///
 /// # Errors

@@ -138,6 +138,22 @@ impl Maxima {
         Vtr { x, y, z, cell: cell.collect(), ..Vtr::default() }.write(&dir.join("maxima.vtr"))
     }
 
+    /// The largest values of all open cells, and the first arrival, under a name.
+    #[must_use]
+    pub fn greatest(&self, name: String, beta_v: Option<&[f64]>) -> Peaks {
+        let open = |cell: &usize| beta_v.is_none_or(|b| b[*cell] > 0.0);
+        let most =
+            |values: &[f64]| (0..values.len()).filter(open).map(|cell| values[cell]).fold(f64::NEG_INFINITY, f64::max);
+        let first = (0..self.arrival.len()).filter(open).map(|cell| self.arrival[cell]).fold(f64::NAN, f64::min);
+        Peaks {
+            name,
+            overpressure: most(&self.overpressure),
+            impulse: most(&self.impulse),
+            arrival: Some(first).filter(|t| !t.is_nan()),
+            dynamic_pressure: most(&self.dynamic),
+        }
+    }
+
     /// The largest values in a cell, for a probe of that name.
     #[must_use]
     pub fn peaks(&self, name: String, cell: usize) -> Peaks {

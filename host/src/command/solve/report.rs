@@ -3,6 +3,7 @@
 use super::case::{AXES, CaseFile, GasKeys};
 use super::checkpoint::Journal;
 use super::maxima::{Maxima, Peaks};
+use super::refine::{Compared, RefineCheck};
 use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
 use super::sides::PatchReport;
@@ -66,6 +67,9 @@ pub struct Report {
     /// Forces on solids at the end.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forces: Vec<SolidForce>,
+    /// The same case on half the cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine_check: Option<RefineCheck>,
     skipped: Vec<String>,
     warnings: Vec<String>,
     /// Seconds of this session by stage.
@@ -102,6 +106,7 @@ struct MaximaReport {
     ambient: f64,
     /// Overpressure whose arrival is told.
     threshold: f64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     probes: Vec<Peaks>,
 }
 
@@ -164,6 +169,7 @@ impl Report {
             patches: setup.patches.clone(),
             maxima: None,
             forces: Vec::new(),
+            refine_check: None,
             skipped: setup.skipped.clone(),
             warnings: progress.warnings.clone(),
             stages: progress.seconds.clone(),
@@ -181,6 +187,12 @@ impl Report {
     #[must_use]
     pub fn with_forces(self, forces: Vec<SolidForce>) -> Self {
         Report { forces, ..self }
+    }
+
+    /// With what the case came to on half the cells.
+    #[must_use]
+    pub fn with_refine_check(self, check: RefineCheck) -> Self {
+        Report { refine_check: Some(check), ..self }
     }
 
     /// A few lines for the terminal.
@@ -217,6 +229,17 @@ impl Report {
         }
         for SolidForce { name, force: [x, y, z] } in &self.forces {
             progress.say(format!("force         ({x:.4e}, {y:.4e}, {z:.4e}) N on {name}"));
+        }
+        if let Some(RefineCheck { cells: [nx, ny, nz], peaks, .. }) = &self.refine_check {
+            progress.say(format!("refine check  peaks here, on {nx} × {ny} × {nz} cells, and the change between both"));
+            for peak in peaks {
+                let of = |name: &str, unit: &str, Compared { fine, coarse, change }: Compared| {
+                    let change = change.map_or_else(|| "–".to_owned(), |c| format!("{:+.1} %", 100.0 * c));
+                    format!("{name} {fine:.4e}, {coarse:.4e} {unit} ({change})")
+                };
+                let pressure = of("overpressure", "Pa", peak.overpressure);
+                progress.say(format!("  {:<12}{pressure}; {}", peak.name, of("impulse", "Pa s", peak.impulse)));
+            }
         }
         progress.say(format!(
             "time          {:.3} s, {:.2} million cell updates/s",

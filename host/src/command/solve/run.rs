@@ -6,6 +6,7 @@ use super::force::force;
 use super::frames::{self, Snapshot, cell_at, create};
 use super::maxima::{Maxima, Peaks, lowest_pressure};
 use super::pictures::Pictures;
+use super::refine;
 use super::report::{Done, Report};
 use super::setup::{Setup, live_axes, setup};
 use super::solids::{SolidForce, SolidShares};
@@ -34,7 +35,11 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
         return print(template::CASE.as_bytes());
     };
     let mut progress = Progress::new(&args.talk);
-    let file = CaseFile::read(path)?;
+    let mut file = CaseFile::read(path)?;
+    if args.refine_check {
+        file.case.output.maxima.get_or_insert_default();
+    }
+    let file = file;
     let mut remarks = Vec::new();
     let edges = file.edges(&mut remarks)?;
     remarks.into_iter().for_each(|r| progress.warn(r));
@@ -44,11 +49,15 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
         (None, None) => return Err(Error::usage("give an output directory with -o")),
     };
     keep_inputs(&file, &dir)?;
-    keep_results(&dir, args)?;
-    threads(args.threads)?.install(|| match live_axes(&edges)[..] {
-        [a] => run(&file, &edges, [a], dir, args.resume, progress),
-        [a, b] => run(&file, &edges, [a, b], dir, args.resume, progress),
-        [a, b, c] => run(&file, &edges, [a, b, c], dir, args.resume, progress),
+    let live = live_axes(&edges);
+    if args.refine_check {
+        refine::check(&file, &edges, &live)?;
+    }
+    keep_results(&dir, args, &mut progress)?;
+    threads(args.threads)?.install(|| match live[..] {
+        [a] => run(&file, &edges, [a], dir, args, progress),
+        [a, b] => run(&file, &edges, [a, b], dir, args, progress),
+        [a, b, c] => run(&file, &edges, [a, b, c], dir, args, progress),
         _ => Ok(()), // there are one to three
     })
 }
@@ -56,10 +65,17 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
 /// Name of the report, which a run writes last: where it is, the run is finished.
 const REPORT: &str = "report.json";
 
-/// A finished run is not replaced unless that is asked for.
-fn keep_results(dir: &Path, args: &SolveArgs) -> Result<()> {
+/// A finished run is not replaced unless that is asked for; of an unfinished one the last state is kept.
+fn keep_results(dir: &Path, args: &SolveArgs, progress: &mut Progress) -> Result<()> {
     let report = dir.join(REPORT);
-    if args.resume || !report.exists() {
+    if args.resume {
+        return Ok(());
+    }
+    if !report.exists() {
+        if checkpoint::put_aside(dir)? {
+            let (dir, kept) = (dir.display(), checkpoint::BEFORE);
+            progress.warn(format!("{dir}: held a run that had not ended; its last state is kept in {kept}"));
+        }
         return Ok(());
     }
     if args.force {
@@ -87,24 +103,35 @@ fn run<const D: usize>(
     edges: &Edges,
     live: [usize; D],
     dir: PathBuf,
-    resume: bool,
+    args: &SolveArgs,
     mut progress: Progress,
 ) -> Result<()> {
     let limits = Limits::new(file)?;
     let setup = progress.stage("setup", |p| setup(file, edges, live, p))?;
-    let mut run = Run::begin(file, setup, limits, dir, resume, &mut progress)?;
+    let mut run = Run::begin(file, setup, limits, dir, args.resume, &mut progress)?;
     let stepped = {
         let _watch = interrupt::Watch::new();
         progress.stage("steps", |p| run.steps(&p.line()))
     };
     stepped?;
     progress.stage("output", |_| run.last())?;
-    let peaks = run.peaks(file);
-    let summary =
-        Report::new(file, &run.setup, &run.journal, run.done, &progress).with_maxima(run.maxima.as_ref(), peaks);
-    let summary = summary.with_forces(run.forces());
+    let report = |run: &Run<D>, progress: &Progress| {
+        let report = Report::new(file, &run.setup, &run.journal, run.done, progress);
+        report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_forces(run.forces())
+    };
+    let mut summary = report(&run, &progress);
+    json::write(&run.dir.join(REPORT), &summary)?;
+    if let Some(maxima) = run.maxima.as_ref().filter(|_| args.refine_check) {
+        let anywhere = refine::anywhere(maxima, run.setup.flow.beta_v());
+        let fine = std::iter::once(anywhere).chain(run.peaks(file)).collect();
+        let until = (run.ambient, run.setup.flow.time);
+        let _watch = interrupt::Watch::new();
+        let checked = progress.stage("refine-check", |p| refine::run(file, edges, live, fine, until, &p.line()))?;
+        summary = report(&run, &progress).with_refine_check(checked);
+        json::write(&run.dir.join(REPORT), &summary)?;
+    }
     summary.say(&progress);
-    json::write(&run.dir.join(REPORT), &summary)
+    Ok(())
 }
 
 /// When to do what.

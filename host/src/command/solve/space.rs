@@ -4,15 +4,17 @@ use super::arrays;
 use super::case::{CaseFile, LawName, Paths, PorosityKeys};
 use super::solids::{self, Measured, OTHERS};
 use crate::command::cli::SceneArgs;
-use crate::command::obstacles::{Wanted, obstacles, warn_of_no_force};
+use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_no_force};
 use crate::command::progress::Progress;
 use crate::command::stages;
+use crate::command::streams::is_stream;
 use crate::error::Result;
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
+use std::path::PathBuf;
 
 /// Open fractions of all cells and of the faces of the axes that flow.
 #[derive(Debug, Clone)]
@@ -74,6 +76,11 @@ fn from_scene<const D: usize>(
     if paths.is_empty() {
         return Err(file.wrong("porosity.scene", "names no file"));
     }
+    let absent = |path: &&PathBuf| !is_stream(path) && !file.resolve(path).exists();
+    if let Some(path) = paths.iter().find(absent) {
+        let reason = format!("{}: cannot open: No such file or directory", file.resolve(path).display());
+        return Err(file.wrong("porosity.scene", reason));
+    }
     let scene = SceneArgs { scene: paths.iter().map(|p| file.resolve(p)).collect(), unit: keys.unit };
     // The flow has a grid of its own; that of a scene file is for the scene alone.
     let (bodies, _) = stages::load(&scene, progress)?;
@@ -96,6 +103,9 @@ fn from_scene<const D: usize>(
     let found = obstacles(&grid, &bodies, &mut result, options, wanted, progress);
     if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none()) {
         warn_of_no_force(&bodies, resistance, progress);
+    }
+    if !silent {
+        warn_of_gratings(&bodies, progress);
     }
     let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));
     let FieldSet { v, x, y, z } = result.beta;

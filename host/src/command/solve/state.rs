@@ -35,6 +35,11 @@ impl<const D: usize> States<'_, D> {
     /// Something is missing, contradicts, or is no state.
     pub fn state(&self, key: &str, keys: &StateKeys, base: Option<Primitive<f64, D>>) -> Result<Primitive<f64, D>> {
         let missing = |name: &str| self.file.wrong(key, format!("{name} is missing"));
+        for (name, value) in [("p", keys.p), ("T", keys.temperature), ("rho", keys.rho)] {
+            if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
+                return Err(self.file.wrong(key, format!("{name} = {value} is not a positive number")));
+            }
+        }
         let velocity = self.velocity(key, keys, base.map(|b| b.velocity))?;
         let (density, pressure) = if self.gas.has_energy() {
             let pressure = keys.p.or(base.map(|b| b.pressure)).ok_or_else(|| missing("p"))?;

@@ -1,0 +1,156 @@
+//! `--refine-check`: the same case on half the cells along each axis that flows, and the largest values of both runs side by side.
+
+use super::case::{CaseFile, MaximaKeys};
+use super::frames::cell_at;
+use super::maxima::{Maxima, Peaks};
+use super::setup::setup;
+use crate::command::cli::TalkArgs;
+use crate::command::interrupt;
+use crate::command::progress::{Meter, Progress};
+use crate::error::{Error, Result};
+use crate::grid::Edges;
+use serde::Serialize;
+
+/// Fewest cells along an axis that can be halved.
+const FEWEST: usize = 4;
+
+/// Name under which the largest values of all open cells are told.
+const ANYWHERE: &str = "anywhere";
+
+/// What both runs found.
+#[derive(Debug, Clone, Serialize)]
+pub struct RefineCheck {
+    /// Cells of the coarse run.
+    pub cells: [usize; 3],
+    /// Its steps.
+    pub steps: usize,
+    /// Of all open cells, then of each probe.
+    pub peaks: Vec<ComparedPeaks>,
+}
+
+/// Largest values in one place.
+#[derive(Debug, Clone, Serialize)]
+pub struct ComparedPeaks {
+    /// Name of the probe, or `anywhere`.
+    pub name: String,
+    /// Of p − p₀.
+    pub overpressure: Compared,
+    /// Of its integral over time.
+    pub impulse: Compared,
+    /// Of ½ ρ |u|².
+    pub dynamic_pressure: Compared,
+}
+
+/// A value on the cells of the case and on half of them.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Compared {
+    /// On the cells of the case.
+    pub fine: f64,
+    /// On half of them.
+    pub coarse: f64,
+    /// (fine − coarse) / fine; none if that is no number.
+    pub change: Option<f64>,
+}
+
+impl Compared {
+    fn new(fine: f64, coarse: f64) -> Self {
+        Compared { fine, coarse, change: Some((fine - coarse) / fine).filter(|c| c.is_finite()) }
+    }
+}
+
+/// Can the case be run on half the cells?
+///
+/// # Errors
+/// It takes fields from files, or has too few cells; told before the first run begins.
+pub fn check(file: &CaseFile, edges: &Edges, live: &[usize]) -> Result<()> {
+    let case = &file.case;
+    let from_files = [
+        ("porosity.from", case.porosity.from.is_some()),
+        ("initial.from", case.initial.from.is_some()),
+        ("drag.from", case.drag.from.is_some()),
+    ];
+    if let Some((key, _)) = from_files.iter().find(|(_, given)| *given) {
+        return Err(file.wrong(key, "has arrays for the cells of the case; --refine-check needs half of them"));
+    }
+    let cells = edges.cells();
+    match live.iter().find(|&&axis| cells[axis] < FEWEST) {
+        Some(&axis) => {
+            let axis = ["x", "y", "z"][axis];
+            Err(file.wrong("grid", format!("has fewer than {FEWEST} cells along {axis}; --refine-check halves them")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Every second edge of the axes that flow, and the last.
+fn coarser(edges: &Edges, live: &[usize]) -> Edges {
+    let mut coarse = edges.clone();
+    for &axis in live {
+        let fine = &edges.0[axis];
+        coarse.0[axis] = fine[..fine.len() - 1].iter().step_by(2).chain(fine.last()).copied().collect();
+    }
+    coarse
+}
+
+/// Runs the case on half the cells to the time `end`, and compares with the largest values of the run on all: `fine` of all open cells and of
+/// each probe.
+///
+/// # Errors
+/// The coarse run fails, or is interrupted.
+pub fn run<const D: usize>(
+    file: &CaseFile,
+    edges: &Edges,
+    live: [usize; D],
+    fine: Vec<Peaks>,
+    (ambient, end): (f64, f64),
+    line: &Meter,
+) -> Result<RefineCheck> {
+    let edges = coarser(edges, &live);
+    // What there is to warn of has been said of the cells of the case.
+    let mut silent = Progress::new(&TalkArgs { quiet: true, verbose: false });
+    let mut setup = setup(file, &edges, live, &mut silent)?;
+    let usual = MaximaKeys::default();
+    let mut maxima = Maxima::new(file.case.output.maxima.as_ref().unwrap_or(&usual), ambient, &setup.flow);
+    while setup.flow.time < end {
+        let (before, steps) = (setup.flow.time, setup.flow.steps);
+        let place = |reason: &str| {
+            Error::new(format!("--refine-check, on half the cells: step {steps}, t = {before}: {reason}"))
+        };
+        if interrupt::asked() {
+            return Err(place("interrupted; the run on all cells is finished, and its results are written"));
+        }
+        let stepped = setup.flow.advance(setup.cfl, end);
+        match stepped {
+            Ok(dt) if setup.flow.time > before => {
+                maxima.step(&setup.flow, dt);
+                for inlet in &setup.inlets {
+                    inlet.relax(&mut setup.flow, dt);
+                }
+            }
+            Ok(_) => return Err(place("the time step has shrunk to nothing")),
+            Err(error) => return Err(place(&error.to_string())),
+        }
+        if line.is_due() {
+            line.tell(&format!("half the cells: step {}  t = {:.4e} s", setup.flow.steps, setup.flow.time));
+        }
+    }
+    let [nx, ny, _] = edges.cells();
+    let probes = file.case.output.probes.iter().enumerate().filter_map(|(n, probe)| {
+        let at = cell_at(&edges, probe.at)?;
+        Some(maxima.peaks(probe.name(n), (at[2] * ny + at[1]) * nx + at[0]))
+    });
+    let coarse: Vec<Peaks> = std::iter::once(anywhere(&maxima, setup.flow.beta_v())).chain(probes).collect();
+    let peaks = fine.into_iter().zip(coarse).map(|(fine, coarse)| ComparedPeaks {
+        overpressure: Compared::new(fine.overpressure, coarse.overpressure),
+        impulse: Compared::new(fine.impulse, coarse.impulse),
+        dynamic_pressure: Compared::new(fine.dynamic_pressure, coarse.dynamic_pressure),
+        name: fine.name,
+    });
+    Ok(RefineCheck { cells: edges.cells(), steps: setup.flow.steps, peaks: peaks.collect() })
+}
+
+/// The largest values of all open cells.
+#[must_use]
+pub fn anywhere(maxima: &Maxima, beta_v: Option<&[f64]>) -> Peaks {
+    maxima.greatest(ANYWHERE.to_owned(), beta_v)
+}
