@@ -97,8 +97,8 @@ fn totals(union: &[SurfaceArea<f64>], sum: &[SurfaceArea<f64>], reports: &[AreaR
     }
 }
 
-/// Less surface than this, over a cell's narrowest side, is rounding; so is a thousandth of it as a share of the cell.
-const ROUNDING: f64 = 1e-9;
+/// Less solid than this, as a share of a cell, is rounding.
+const ROUNDING: f64 = 2e-13;
 
 /// Areas over volumes, and the lengths that follow.
 fn densities(grid: &Grid<f64>, open: &[f64], union: &[SurfaceArea<f64>]) -> Resistance {
@@ -110,13 +110,12 @@ fn densities(grid: &Grid<f64>, open: &[f64], union: &[SurfaceArea<f64>]) -> Resi
         for dy in &y {
             for (dx, (&open, area)) in x.iter().zip(&mut cells) {
                 let area = area.times((dx * dy * dz).recip());
-                // What is left of rounding has no size.
-                let counts = area.wetted * dx.min(*dy).min(*dz) > ROUNDING && 1.0 - open > ROUNDING * 1e-3;
-                let length = |share: f64| if counts { 4.0 * share / area.wetted } else { 0.0 };
+                let length = |share: f64| if area.wetted > 0.0 { 4.0 * share / area.wetted } else { 0.0 };
                 found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a.push(f));
                 found.s.push(area.wetted);
                 found.d_h.push(length(open));
-                found.l_obs.push(length(1.0 - open));
+                // What rounding leaves of a solid has no size.
+                found.l_obs.push(if 1.0 - open > ROUNDING { length(1.0 - open) } else { 0.0 });
             }
         }
     }
