@@ -61,7 +61,7 @@ fn agrees(family: Family, seed: u64) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, max_shrink_iters: 4, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, max_shrink_iters: 4, ..ProptestConfig::default() })]
     #[test]
     fn what_is_common_lies_within_its_bounds(seed in any::<u64>(), family in 0..FAMILIES.len()) {
         agrees(FAMILIES[family], seed)?;
