@@ -12,14 +12,14 @@ use crate::number::real::Real;
 use heapless::Vec;
 
 /// Most slices of what some parts have in common; and of them, most at hand at once.
-const MOST_SLICES: usize = 1 << 14;
-const MOST_AT_ONCE: usize = 256;
+const MOST_SLICES: usize = 1 << 16;
+const MOST_AT_ONCE: usize = 64;
 
 /// Most ranges of heights that wait to be looked at.
-const MOST_RANGES: usize = 32;
+const MOST_RANGES: usize = 24;
 
 /// Most parts of solids in one cell.
-const MOST_AT_HAND: usize = 24;
+const MOST_AT_HAND: usize = 16;
 
 /// Most sets of parts that are looked at.
 const MOST_SETS: usize = 400;
@@ -203,15 +203,13 @@ fn in_range(slice: &impl Fn(f64) -> Sample, [first, last]: P2, [all, rows]: P2, 
         if total[1] - total[0] <= enough || more == 0 || samples.len() + more > MOST_AT_ONCE {
             return (total, samples.len());
         }
-        let mut finer: Vec<(f64, Sample), MOST_AT_ONCE> = Vec::new();
-        for (at, sample) in samples.iter().enumerate() {
-            let _ = finer.push(*sample);
-            if let (Some(true), Some(next)) = (wide.get(at), samples.get(at + 1)) {
-                let middle = 0.5 * (sample.0 + next.0);
-                let _ = finer.push((middle, slice(middle)));
+        // From the last to the first, so that those before keep their places.
+        for at in (0..steps).rev().filter(|at| wide.get(*at) == Some(&true)) {
+            if let (Some(low), Some(high)) = (samples.get(at), samples.get(at + 1)) {
+                let middle = 0.5 * (low.0 + high.0);
+                let _ = samples.insert(at + 1, (middle, slice(middle)));
             }
         }
-        samples = finer;
     }
 }
 

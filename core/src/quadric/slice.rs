@@ -22,8 +22,11 @@ use heapless::Vec;
 /// Most rows between two others.
 const MOST_STEPS: usize = 240;
 
+/// Most rows that wait to be reached.
+const MOST_WAITING: usize = 22;
+
 /// Most parts that are looked at together.
-pub(super) const MOST_PARTS: usize = 8;
+pub(super) const MOST_PARTS: usize = 6;
 
 /// A rectangle across an axis, and how closely its area is wanted.
 #[derive(Clone, Copy, Debug)]
@@ -353,7 +356,7 @@ impl<'a, const N: usize> Slice<'a, N> {
     /// The same, from low to high; as an error if that needs too many rows.
     fn in_panels(&self, mut a: Row<N>, last: Row<N>) -> Result<P2, P2> {
         let all = last.v - a.v;
-        let mut waiting: Vec<Row<N>, 48> = Vec::new();
+        let mut waiting: Vec<Row<N>, MOST_WAITING> = Vec::new();
         let _ = waiting.push(last);
         let (mut lower, mut upper) = (0.0, 0.0);
         let (mut steps, mut early) = (0, false);
