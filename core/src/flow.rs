@@ -49,6 +49,7 @@ pub mod step_report;
 pub use boundary::{Boundary, Patch};
 pub use drag::Drag;
 pub use error::Error;
+pub use kernel::flux_choice::{AnyFlux, Barotropic, FluxChoice, OneFlux, WithEnergy};
 pub use limiter::Limiter;
 pub use porosity::clusters::cluster_scratch;
 pub use porosity::fractions::Mesh;

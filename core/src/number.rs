@@ -2,8 +2,13 @@
 //!
 //! - [`real`]: `f32` and `f64`, and the vectors of glam over them, from one text
 //! - [`aabb`]: axis-aligned boxes
+//! - [`words`]: words for exact integers of their values
 //! - `plane`: points of planes across an axis
+//! - `root`: the square root where there is no std
 
 pub mod aabb;
 pub(crate) mod plane;
 pub mod real;
+#[cfg(not(feature = "std"))]
+mod root;
+pub mod words;

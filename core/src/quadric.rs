@@ -49,5 +49,5 @@ mod wall;
 mod window;
 
 pub use shapes::AsQuadric;
-pub use shared::excess;
+pub use shared::{excess, share_of_union};
 pub use solid::QuadricSolid;

@@ -195,6 +195,36 @@ fn exact_integers_hold_the_whole_range_of_numbers() {
 }
 
 #[test]
+fn exact_integers_of_single_precision_hold_its_whole_range() {
+    // Double precision has far more words than these numbers need.
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut number = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        let size =
+            [f32::MAX, f32::MAX, f32::from_bits(1), f32::from_bits(0x7f7f_fffe), 0.0, 1.0][(state >> 40) as usize % 6];
+        if state & 1 == 0 { size } else { -size }
+    };
+    let mut seen = [0; 3];
+    for case in 0..3000 {
+        let points: [Vec3; 6] = core::array::from_fn(|_| Vec3::from_array(core::array::from_fn(|_| number())));
+        let wide = points.map(|p| p.as_dvec3());
+        let ([a, b], [c, d]) = ([&points[..3], &points[3..]].map(Hull::new), [&wide[..3], &wide[3..]].map(Hull::new));
+        let (single, double) = (exact::relation(&a, &b, None), exact::relation(&c, &d, None));
+        let (single, double) = (single.expect("finite"), double.expect("finite"));
+        assert_eq!(single.contact(), double.contact(), "case {case}: {points:?}");
+        assert_eq!(exact::distance(&a, &b, None), exact::distance(&c, &d, None), "case {case}: {points:?}");
+        if let (Relation::Disjoint(x), Relation::Disjoint(y)) = (&single, &double) {
+            assert_eq!(x.to_array(), y.to_array(), "case {case}: {points:?}");
+            assert_eq!(x.gap(&a, &b), Ok(core::cmp::Ordering::Greater), "case {case}: {points:?}");
+        }
+        seen[single.contact() as usize] += 1;
+    }
+    assert!(seen.iter().all(|&n| n > 50), "cases of each kind: {seen:?}");
+}
+
+#[test]
 fn a_thickened_body_meets_what_its_core_does_not() {
     let bar = Segment { from: Vec3::ZERO, to: Vec3::X };
     let point = Point(Vec3::new(0.5, 1.0, 0.0));

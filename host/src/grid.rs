@@ -8,6 +8,9 @@ use glam::DVec3;
 use std::path::Path;
 use voidage_core::grid::{Grid, GridError};
 
+/// Names of the axes.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// Where the grid comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GridSpec {
@@ -99,10 +102,17 @@ impl Edges {
         };
         [end(|e| e.first()), end(|e| e.last())]
     }
+
+    /// What there is to say of a coordinate that lies outside the grid along an axis; nothing of others.
+    #[must_use]
+    pub fn misses(&self, axis: usize, at: f64) -> Option<String> {
+        let ([lo, hi], name) = (self.bounds().map(|p| p[axis]), AXES[axis]);
+        (!(lo..=hi).contains(&at)).then(|| format!("the grid reaches from {lo} to {hi} along {name}"))
+    }
 }
 
 fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
-    let name = |axis: usize| ["x", "y", "z"][axis];
+    let name = |axis: usize| AXES[axis];
     match error {
         GridError::NoCell { axis } => (format!("axis {}", name(axis)), "needs at least two edges".into()),
         GridError::NotFinite { axis, index } => {

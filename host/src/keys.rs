@@ -1,8 +1,9 @@
 //! Files of keys and values (TOML, JSON) as the types of the program, with messages in the words of whoever wrote the file.
 //!
-//! In reading order: [`source`], a file's text and places in it; [`value`], what stands there; [`reader`], from values to types.
+//! In reading order: [`slips`], what is wrong with its spelling; [`source`], a file's text and places in it; [`value`], what stands there; [`reader`], from values to types.
 
 pub mod reader;
+pub mod slips;
 pub mod source;
 pub mod value;
 

@@ -19,6 +19,9 @@
 //! # Ok::<(), voidage::error::Error>(())
 //! ```
 //!
+//! A whole program with its `Cargo.toml`, from an STL file and a scene of pipes to fields, files and a flow, stands on the page of the
+//! package, `README.md`; it runs as a test.
+//!
 //! | to … | use |
 //! |---|---|
 //! | read STL and OBJ files | [`geometry::read`] |
@@ -89,6 +92,11 @@
 //! Data flows one way: [`grid`], [`geometry`] → [`porosity`] → [`flow`] → [`files`], `picture`; `command`, which nothing else uses, shows the
 //! stages in order. Without the features `cli`, `pictures` and `scene` nothing here needs a terminal, a picture or a TOML file.
 #![forbid(unsafe_code)]
+
+/// The program on the page of the package is a test, too.
+#[cfg(all(doctest, feature = "scene"))]
+#[doc = include_str!("../README.md")]
+struct PackagePage;
 
 #[cfg(feature = "cli")]
 pub mod command;

@@ -46,6 +46,35 @@ fn bars_exert_their_force() {
     assert!((pdr / plate - 1.0).abs() < 0.15, "{pdr}, {plate}");
 }
 
+/// A porous solid without a resistance of its own is told, unless the case says that it is meant so; one with a resistance is not.
+#[test]
+fn gratings_without_resistance_are_told() {
+    let at = Scratch::new();
+    let grating = |keys: &str| {
+        format!("[[solid]]\nname = \"grating\"\nshape = \"box\"\nmin = [5, -1, -1]\nmax = [5.5, 4, 4]\n{keys}\n")
+    };
+    let said = |scene: &str, drag: &str| {
+        fs::write(at.file("grating.toml"), scene).expect("written");
+        let short = channel("grating.toml", drag).replace("end = 2", "max_steps = 1");
+        stderr(&solved(&at, &short, "out", &["--force"]))
+    };
+    let warning = "\"grating\" with a porosity, but without cr: the gas passes with no loss but that of narrower faces";
+    for drag in ["", "[drag]\nlaw = \"pdr\""] {
+        let text = said(&grating("porosity = 0.5"), drag);
+        assert!(text.contains(warning), "{drag}: {text}");
+    }
+    let two = grating("porosity = 0.5") + &grating("porosity = 0.7\ntranslate = [2, 0, 0]");
+    assert!(said(&two, "").contains("\"grating\" and 1 more with a porosity"));
+    for (keys, drag) in [
+        ("porosity = 0.5\ncr = 4", "[drag]\nlaw = \"pdr\""),
+        ("porosity = 0", ""),
+        ("porosity = 0.5", "[drag]\nlaw = \"none\""),
+    ] {
+        let text = said(&grating(keys), drag);
+        assert!(!text.contains("without cr"), "{keys} {drag}: {text}");
+    }
+}
+
 /// Without a law there is no force, and that is said; `none` says that it is meant so.
 #[test]
 fn frontal_area_without_force_is_told() {

@@ -131,6 +131,98 @@ fn two_cubes_apart_feel_what_each_feels_alone() {
     assert!(both["others force_x"].iter().all(|f| *f == 0.0));
 }
 
+/// Copies of an array and parts of a file go by the name of their solid; a part may be asked for by its own.
+#[test]
+fn copies_and_parts_are_one_solid() {
+    let at = Scratch::new();
+    let rack = cube("rack", [0.53, 0.21, 0.17], 0.11) + "array = { count = [2, 1, 2], step = [0.5, 0, 0.3] }\n";
+    let parts = "o a\nv 1.6 .2 .2\nv 1.8 .2 .2\nv 1.6 .4 .2\nv 1.6 .2 .4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n\
+                 o b\nv 1.6 .5 .2\nv 1.8 .5 .2\nv 1.6 .7 .2\nv 1.6 .5 .4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+    fs::write(at.file("parts.obj"), parts).expect("written");
+    let file = "[[solid]]\nname = \"tanks\"\nshape = \"file\"\npath = \"parts.obj\"\n";
+    fs::write(at.file("scene.toml"), rack + file).expect("written");
+    let run = |names: &str, dir: &str| {
+        let more = format!("[time]\nmax_steps = 20\n[output]\nformats = []\nforces = {names}\n");
+        solved(&at, &case(40.0, &more), dir, &["-q"]);
+        log(&at, dir)
+    };
+    let all = run("[\"*\"]", "all");
+    let last = |log: &BTreeMap<String, Vec<f64>>, name: &str| *log[&format!("{name} force_x")].last().expect("a line");
+    assert!(last(&all, "rack") > 1.0 && last(&all, "tanks") > 0.1, "both feel the stream");
+    assert_eq!(all.keys().filter(|k| k.ends_with(" force_x")).count(), 3, "rack, tanks, others: {:?}", all.keys());
+    let parts = run("[\"tanks/a\", \"tanks\"]", "parts");
+    assert_eq!(run("[\"tanks\", \"tanks/a\"]", "turned"), parts, "in whatever order they are asked for");
+    let sum = last(&parts, "tanks/a") + last(&parts, "tanks");
+    assert!((sum - last(&all, "tanks")).abs() < 1e-9 * sum.abs() && last(&parts, "tanks/a") != 0.0, "{sum}");
+    assert!((last(&parts, "others") - last(&all, "rack")).abs() < 1e-9 * last(&all, "rack").abs());
+}
+
+/// Solids that lie outside the grid, all or one of them: said, with columns of zeros.
+#[test]
+fn solids_outside_the_grid_keep_their_columns() {
+    let at = Scratch::new();
+    let far = cube("far", [10.0, 0.0, 0.0], 1.0);
+    let near = cube("near", [0.8, 0.3, 0.3], 0.2);
+    for (scene, names) in [(far.clone(), "[\"*\"]"), (far.clone(), "[\"far\"]"), (far + &near, "[\"*\"]")] {
+        fs::write(at.file("scene.toml"), scene).expect("written");
+        let more = format!("[time]\nmax_steps = 2\n[output]\nformats = []\nforces = {names}\n");
+        let output = solved(&at, &case(40.0, &more), "out", &["--force"]);
+        let said = stderr(&output);
+        assert!(
+            said.contains("solid \"far\": without a part in the grid that no other name has: all forces on them are 0"),
+            "{said}"
+        );
+        assert!(!said.contains("solid \"near\":"), "{said}");
+        let log = log(&at, "out");
+        for name in ["far", "others"] {
+            for axis in AXES {
+                assert_eq!(log[&format!("{name} force_{axis}")], [0.0; 3]);
+            }
+        }
+        let report = json(&at.file("out/report.json"));
+        let far = report["forces"].as_array().expect("forces").iter().find(|f| f["name"] == "far").expect("far");
+        assert_eq!((&far["force"], &far["largest"]), (&serde_json::json!([0.0, 0.0, 0.0]), &serde_json::json!(0.0)));
+    }
+}
+
+/// The largest forces over a run are those of its log, with their signs and times; of a run that was resumed they are those of the whole.
+#[test]
+fn largest_forces_over_the_run() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), cube("tank", [0.53, 0.21, 0.17], 0.31)).expect("written");
+    let wall = "x_min = { type = \"far-field\", rho = 1.2, u = 40, p = 1e5 }";
+    let run = |steps: usize, log_every: usize, dir: &str, more: &[&str]| {
+        let output = format!(
+            "[time]\nmax_steps = {steps}\n[output]\nformats = []\nlog_every = {log_every}\nforces = [\"tank\"]\n"
+        );
+        let text = case(40.0, &output);
+        assert!(text.contains(wall));
+        solved(&at, &text.replace(wall, "x_min = \"wall\""), dir, more);
+        json(&at.file(dir).join("report.json"))["forces"].clone()
+    };
+    let whole = run(60, 1, "whole", &["-q"]);
+    let log = log(&at, "whole");
+    let tank = &whole[0];
+    for (a, axis) in AXES.iter().enumerate() {
+        let forces = &log[&format!("tank force_{axis}")];
+        let most = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let first = forces.iter().position(|f| f.abs() == most).expect("one");
+        assert_eq!(tank["peak"][a].as_f64(), Some(forces[first]), "{axis}");
+        assert_eq!(tank["peak_time"][a].as_f64(), Some(log["time"][first]), "{axis}");
+    }
+    let sizes: Vec<f64> = (0..log["time"].len())
+        .map(|n| AXES.map(|axis| log[&format!("tank force_{axis}")][n].powi(2)).iter().sum::<f64>().sqrt())
+        .collect();
+    let most = sizes.iter().copied().fold(0.0, f64::max);
+    let first = sizes.iter().position(|s| *s == most).expect("one");
+    assert!(first > 0 && first < 60, "the largest force is neither the first nor the last: {first}");
+    assert_eq!((tank["largest"].as_f64(), tank["largest_time"].as_f64()), (Some(most), Some(log["time"][first])));
+    // Lines of the log that are left out do not hide a peak, nor does a run that stops on the way.
+    assert_eq!(run(60, 50, "seldom", &["-q"]), whole);
+    run(first + 5, 1, "resumed", &["-q"]);
+    assert_eq!(run(60, 1, "resumed", &["-q", "--resume"]), whole);
+}
+
 #[test]
 fn a_solid_that_is_not_there_is_told() {
     let at = Scratch::new();

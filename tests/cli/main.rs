@@ -9,6 +9,7 @@ mod maxima;
 mod outputs;
 mod outside;
 mod packages;
+mod pascals;
 mod patches;
 mod planes;
 mod porosity;

@@ -123,6 +123,15 @@ fn reports_and_tables_of_solve() {
         })
         .collect();
     assert_told("solve", &reports);
+    for report in &reports {
+        let seconds = |field: &str| report[field].as_f64().expect("seconds");
+        let stages: f64 =
+            ["setup", "steps", "output"].iter().map(|s| report["stages"][s].as_f64().expect("seconds")).sum();
+        assert!(
+            seconds("seconds") > 0.0 && stages > seconds("seconds") && seconds("seconds_in_all") >= stages,
+            "{report}"
+        );
+    }
     assert_eq!(columns(&at.file("ideal/log.csv")), documented("log"));
     assert_eq!(columns(&at.file("ideal/probes.csv")), documented("probes"));
 }

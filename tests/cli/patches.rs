@@ -70,7 +70,11 @@ fn patches_that_cannot_be_are_told() {
     assert_eq!(says("side = \"x_mid\"\ntype = \"wall\"", "x_mid"), Some(1));
     assert_eq!(says("side = \"x_min\"", "boundary.patch[0]: needs a type"), Some(1));
     assert_eq!(says("side = \"x_min\"\ntype = \"outlet\"", "an outlet needs p"), Some(1));
-    assert_eq!(says("side = \"x_min\"\ntype = \"wall\"\nradius = 1", "is not a key of this type (wall)"), Some(1));
+    assert_eq!(says("side = \"x_min\"\ntype = \"wall\"\np = 1", "is not a key of this type (wall)"), Some(1));
+    assert_eq!(
+        says("side = \"x_min\"\ntype = \"wall\"\nradius = 1", "boundary.patch[0].radius: is not known here"),
+        Some(1)
+    );
     assert_eq!(says("side = \"x_min\"\ntype = \"periodic\"", "a part of a side cannot be periodic"), Some(1));
     let nothing = "side = \"x_min\"\ntype = \"zero-gradient\"\nmin = [0, 3, 0]";
     assert_eq!(says(nothing, "boundary.patch[0] covers the middle of no face"), Some(0));

@@ -170,7 +170,15 @@ fn errors_name_file_place_and_reason() {
             "key cells: 10 × 10 × 4000000000 cells",
         ),
         ("[1, 2]", "a grid is a table"),
-        ("cells = [3, 3, 3]\n", "needs x, y, z or origin, spacing, cells"),
+        ("cells = [3, 3, 3]\n", "needs x, y, z or origin, spacing, cells; origin, spacing are missing"),
+        (
+            "X = [0, 1]\ny = [0, 1]\nz = [0, 1]\n",
+            "line 1, column 1: key X is not known here; did you mean x?\n   1 | X = [0, 1]\n     | ^\n",
+        ),
+        (
+            "origin = [0, 0, 0]\nspacng = [1, 1, 1]\ncells = [1, 1, 1]\n",
+            "line 2, column 1: key spacng is not known here; did you mean spacing?\n   2 | spacng = [1, 1, 1]\n     | ^^^^^^\n",
+        ),
         ("x = { points = [0, 1], cells = [0] }\ny = [0, 1]\nz = [0, 1]\n", "key x: a segment needs at least one cell"),
     ];
     for (text, reason) in grids {

@@ -114,7 +114,7 @@ const WRONG: [(&str, &[&str]); 53] = [
         &["solid \"a\"", "radius must be positive", "-1"],
     ),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0@", &["must be positive"]),
-    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, nan]@\nradius = 1", &["center [2]", "nan"]),
+    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, nan]@\nradius = 1", &["center[2]", "nan"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, -inf]@\nradius = 1", &["inf"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0]@\nradius = 1", &["three values, not 2"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, \"x\"]@\nradius = 1", &["number, not a text"]),
@@ -126,7 +126,7 @@ const WRONG: [(&str, &[&str]); 53] = [
     ),
     (
         "[[solid]]\nname = \"a\"\nshape = \"ellipsoid\"\ncenter = [0, 0, 0]\nsemi_axes = [1, 0, 1]@",
-        &["semi_axes [1]", "positive"],
+        &["semi_axes[1]", "positive"],
     ),
     ("[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]@", &["above min"]),
     ("[[solid]]\nname = \"a\"\nshape = \"cylinder\"\nfrom = [1, 1, 1]\nto = [1, 1, 1]@\nradius = 1", &["same point"]),
@@ -225,6 +225,60 @@ const WRONG: [(&str, &[&str]); 53] = [
     ),
     ("[[solid]]\nname = \"a\nshape@", &["line"]),
 ];
+
+/// Slips in the spelling of the file itself, the words of the message, and the part of the line that it marks.
+const SLIPS: [(&str, &str, &str); 16] = [
+    (
+        "[[solid]]\nshape = \"sphere\"\n[solid]@",
+        "solid stands here as [solid] and before in line 1 as [[solid]]: each of several is a table [[solid]]",
+        "^^^^^",
+    ),
+    ("[solid]\nname = \"a\"\n[[solid]]@", "solid stands here as [[solid]] and before in line 1 as [solid]", "^^^^^"),
+    ("[grid]\nx = [0, 1]\n[grid]@", "the table [grid] is given twice", "^^^^"),
+    ("[[solid]]\nname = \"a\"\nname = \"b\"@", "key name is given twice in this table", "^^^^"),
+    ("[[solid]]\nradius 1@", "`=` and a value are missing behind this key", "^"),
+    ("[[solid]]\nname = tank@", "this is no value: numbers are written as 2.5 or 1e-3, texts stand in quotes", "^^^^"),
+    ("[[solid]]\nradius = 1 m@", "this is no value", "^^^"),
+    ("[[solid]]\nradius = @", "a value is missing here", "^"),
+    (
+        "[[solid]]\nradius = 1,2@",
+        "nothing may follow a value on its line but a comment; decimals are written with a point",
+        "^",
+    ),
+    ("[[solid]]\nradius = .5@", "a number needs a digit before its point", "^"),
+    ("[[solid]]\nfrom = [0 0 0]@", "commas between the values of a list", "^^^^^"),
+    ("[[solid]]\nfrom = [0, 0, 0@", "`]` is missing at the end of this list", "^"),
+    ("[[solid]@", "`]]` is missing at the end of this head of a table", "^"),
+    ("[[solid]]\nname = \"a@", "this text has no closing quote", "^"),
+    ("[[solid]]\nrotate = { axis = \"z\" angle = 3 }@", "a comma is missing before this key", "^"),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\narray = { count = [1, 1, 2.5], step = [1, 1, 1] }@",
+        "solid \"a\": array: count[2] takes a whole number, not 2.5",
+        "^^^",
+    ),
+];
+
+#[test]
+fn slips_are_said_in_the_words_of_the_file() {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    for (text, words, mark) in SLIPS {
+        let line = text.split('@').next().map_or(0, |before| before.matches('\n').count() + 1);
+        fs::write(&scene, text.replace('@', "\n")).expect("written");
+        let output = voidage(&[&"porosity", &scene, &"--cells", &"2x2x2"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}\n{said}");
+        assert!(said.contains(&format!("scene.toml: line {line}, column ")), "{text}\n{said}");
+        assert!(said.contains(words), "{words}\n{text}\n{said}");
+        assert_eq!(said.lines().last().map(|l| l.trim_matches([' ', '|'])), Some(mark), "{text}\n{said}");
+    }
+    // What others call a shape.
+    for (word, ours) in [("pipe", "cylinder"), ("ball", "sphere"), ("elbow", "torus"), ("mesh", "file")] {
+        fs::write(&scene, format!("[[solid]]\nshape = \"{word}\"\n")).expect("written");
+        let said = stderr(&voidage(&[&"porosity", &scene, &"--cells", &"2x2x2"]));
+        assert!(said.contains(&format!("did you mean {ours}?")), "{said}");
+    }
+}
 
 #[test]
 fn what_is_wrong_is_said_with_its_place() {

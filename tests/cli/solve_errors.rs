@@ -55,6 +55,7 @@ fn keys() {
     );
     fails("end = 0.1", "end = 0.1\nstop = 2", &["line 17, column 1: key time.stop", "(known: end, max_steps)"]);
     fails("rho = 1, u = 0.5, p = 1", "density = 1, p = 1", &["line 9, column 13: key initial.uniform.density"]);
+    fails("[time]", "[[boundary.patches]]\nside = \"x_min\"\n[time]", &["boundary.patches", "did you mean patch?"]);
     fails("cells = [4]", "cells = [4], ratio = [1]", &["key grid.x.ratio", "did you mean ratios?"]);
     fails("x = { points = [0, 1], cells = [4] }", "x = \"a\"", &["key grid.x: takes a list of edges, or { points"]);
     let mark = "\n   7 | gamma = \"1.4\"\n     |         ^^^^^";
@@ -76,7 +77,7 @@ fn keys() {
     fails(
         "y_min = { type = \"wall\" }",
         "y_min = 3",
-        &["key boundary.y_min: takes a table with any of", "not a whole number"],
+        &["key boundary.y_min: takes a word or a table with any of type, rho,", "not a whole number"],
     );
     fails("end = 0.1", "", &["line 15, column 1: key time: needs end or max_steps"]);
     fails("gamma = 1.4", "", &["line 5, column 1: key gas.gamma: is missing"]);
@@ -86,7 +87,7 @@ fn keys() {
         &["line 8", "key gas.sound_speed: is not a key of this model (ideal)"],
     );
     fails("end = 0.1", "max_steps = -3", &["key time.max_steps: takes a whole number from 0, not -3"]);
-    fails("end = 0.1", "max_steps = 3.5", &["key time.max_steps: takes a whole number, not a number"]);
+    fails("end = 0.1", "max_steps = 3.5", &["key time.max_steps: takes a whole number, not 3.5"]);
     fails("end = 0.1", "end = 1e999", &["line 16, column 7: 1e999 is too large for a number"]);
     fails("[time]", "[gravity]\ng = [0, -9.81]\n[time]", &["key gravity.g: takes 3 values, not 2"]);
     fails(
@@ -154,6 +155,7 @@ fn sides_by_a_word() {
 fn numbers() {
     fails("gamma = 1.4", "gamma = 1", &["key gas.gamma: needs a number above 1, not 1"]);
     fails("end = 0.1", "end = -1", &["key time.end: needs a positive time, not -1"]);
+    fails("end = 0.1", "max_steps = 1e4", &["max_steps: takes a whole number, not 10000.0: without a point"]);
     fails("end = 0.1", "end = nan", &["key time.end", "not NaN"]);
     fails(
         "[time]",
@@ -175,16 +177,82 @@ fn numbers() {
     );
 }
 
+/// What a first user types in a state or a region, and the sentence that helps.
+#[test]
+fn slips_in_states_and_regions() {
+    let uniform = "{ rho = 1, u = 0.5, p = 1 }\n[boundary]";
+    let velocity = "is not known here; did you mean u, v, w, the velocities along x, y, z? (known: rho, T, u, v, w, p)";
+    let words =
+        &["line 9, column 22: key initial.uniform.velocity: ", velocity, "\n     |                      ^^^^^^^^\n"];
+    for value in ["[1, 0, 0]", "\"1 m/s\"", "1"] {
+        fails(uniform, &format!("{{ rho = 1, velocity = {value}, p = 1 }}\n[boundary]"), words);
+    }
+    fails(uniform, "{ density = 1, p = 1 }\n[boundary]", &["uniform.density: is not known here; did you mean rho?"]);
+    fails(uniform, "{ rho = 1, u = [1, 0], p = 1 }\n[boundary]", &["uniform.u: takes a number, not a list", "^^^^^^"]);
+    let no_table = "key initial.uniform: takes a table with any of rho, T, u, v, w, p, not a text";
+    fails(uniform, "\"rest\"\n[boundary]", &["line 9, column 11: ", no_table]);
+    let region = |keys: &str| format!("{{ rho = 1, p = 1 }}\nregions = [{{ {keys} }}]\n[boundary]");
+    let mark = "\n     |            ^^^^";
+    for (keys, words) in [
+        ("radius = 0.2, p = 2", &["line 10, column 12: key initial.regions[0]: a ball needs a center", mark][..]),
+        ("center = [0.5], p = 2", &["line 10, column 12: key initial.regions[0]: a ball needs a radius", mark]),
+        ("center = [0.5], radius = 0, p = 2", &["key initial.regions[0].radius: needs a positive number, not 0"]),
+        ("center = [0.5], radius = 0.2, max = [1], p = 2", &["key initial.regions[0].max: is of a box", "^^^"]),
+        (
+            "center = [0.5], radius = 0.2",
+            &["line 10, column 12: key initial.regions[0]: has no state", "rho, T, u, v", mark],
+        ),
+        ("min = [0.5]", &["key initial.regions[0]: has no state and would change nothing: it needs any of rho, T"]),
+        ("centre = [0.5], radius = 0.2, p = 2", &["key initial.regions[0].centre", "did you mean center?"]),
+        (
+            "type = \"wall\", p = 2",
+            &["key initial.regions[0].type: is not known here", "(known: rho, T, u, v, w, p, min, max"],
+        ),
+    ] {
+        fails(uniform, &region(keys), words);
+    }
+    fails(
+        "[boundary]",
+        "[[region]]\nmin = [0.5]\np = 2\n[boundary]",
+        &["key region: regions stand in", "[[initial.regions]]"],
+    );
+    fails("y_min = { type = \"wall\" }", "y_min = { type = \"outflow\", p = 1 }", &["did you mean outlet?"]);
+}
+
+/// Pictures are cut within the grid, whether any are drawn or not.
+#[test]
+fn a_slice_outside_the_grid() {
+    let end = "end = 0.1";
+    for (point, place, range) in [
+        ("[5, 0.5, 0.5]", "output.slice[0]: x = 5", "from 0 to 1 along x"),
+        ("[0.5, -0.1, 0.5]", "output.slice[1]: y = -0.1", "from 0 to 1 along y"),
+        ("[0.5, 0.5, nan]", "output.slice[2]: z = ", "from 0 to 1 along z"),
+    ] {
+        for formats in ["", "formats = [\"png\"]\n"] {
+            let output = format!("{end}\n[output]\n{formats}slice = {point}\n");
+            fails(end, &output, &[place, &format!("the grid reaches {range}"), "slice = ["]);
+        }
+    }
+}
+
 #[test]
 fn states_and_sides() {
     fails("x = {", "file = \"grid.toml\"\nx = {", &["key grid.file: a grid is either here or in another file"]);
     let uniform = "rho = 1, u = 0.5, p = 1 }\n[boundary]";
-    fails(uniform, "rho = -1, p = 1 }\n[boundary]", &["key initial.uniform: rho = -1 is not a positive number"]);
-    fails(uniform, "rho = 1, p = nan }\n[boundary]", &["key initial.uniform: p = NaN"]);
+    fails(uniform, "rho = -1, p = 1 }\n[boundary]", &["key initial.uniform.rho: needs a positive number, not -1"]);
+    fails(uniform, "rho = 1, p = nan }\n[boundary]", &["key initial.uniform.p: needs a positive number, not NaN"]);
+    fails(uniform, "T = 0, p = 1 }\n[boundary]", &["key initial.uniform.T: needs a positive number, not 0", " ^\n"]);
+    let outlet = "{ type = \"outlet\", p = 1 }";
+    fails(outlet, "{ type = \"outlet\", p = -1 }", &["line 12", "boundary.x_max", "not -1"]);
+    fails(outlet, "{ type = \"far-field\", T = -1, p = 1 }", &["line 12", "boundary.x_max.T: needs a positive number"]);
     fails(uniform, "rho = 1 }\n[boundary]", &["key initial.uniform: p is missing"]);
     fails(uniform, "rho = 1, p = 1, w = 3 }\n[boundary]", &["key initial.uniform.w: axis z has one cell"]);
     fails(uniform, "T = 300, p = 1 }\n[boundary]", &["T needs gas.gas_constant"]);
-    fails(uniform, "rho = 1, p = 1, min = [0] }\n[boundary]", &["key initial.uniform.min: is not a key of this table"]);
+    fails(
+        uniform,
+        "rho = 1, p = 1, min = [0] }\n[boundary]",
+        &["key initial.uniform.min: is not known here (known: rho, T, u, v, w, p)\n"],
+    );
     fails(
         "uniform = { rho = 1, u = 0.5, p = 1 }",
         "regions = [{ max = [0.6], rho = 1, p = 1 }]",
@@ -198,7 +266,7 @@ fn states_and_sides() {
         "inlet\", rho = 1, u = -2",
         &["key boundary.x_min.u: must point into the domain"],
     );
-    fails("inlet\", rho = 1, u = 0.5", "inlet\", u = 2", &["key boundary.x_min: rho is missing"]);
+    fails("inlet\", rho = 1, u = 0.5", "inlet\", u = 2", &["key boundary.x_min: rho or T is missing"]);
     fails(
         "y_min = { type = \"wall\" }",
         "y_min = { type = \"periodic\" }",
@@ -217,8 +285,12 @@ fn files() {
         assert!(!at.file("out").exists());
         stderr(&output)
     };
+    // A file of the scene that is not there, by the key and the line that name it.
     let scene = CASE.replace("[gas]", "[porosity]\nscene = \"no.stl\"\n[gas]");
-    assert!(said(&scene).contains("no.stl: cannot"), "{}", said(&scene));
+    let text = said(&scene);
+    let place = "case.toml: line 6, column 9: key porosity.scene: ";
+    assert!(text.contains(place) && text.contains("no.stl: cannot open: No such file"), "{text}");
+    assert!(text.contains("\n   6 | scene = \"no.stl\"\n     |         ^^^^^^^^\n"), "{text}");
     let both = CASE.replace("[gas]", "[porosity]\nscene = \"no.stl\"\nfrom = \"beta\"\n[gas]");
     assert!(said(&both).contains("key porosity: takes scene or from, not both"), "{}", said(&both));
 

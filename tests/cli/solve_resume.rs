@@ -208,6 +208,15 @@ fn a_kill_leaves_the_last_checkpoint() {
     }
     assert!(child.wait_with_output().expect("the program ends").status.success());
     assert_same(&at, "whole", "killed");
+    // A finished run that goes on is not finished: no report says so.
+    let done = fs::read_to_string(at.file("killed/log.csv")).expect("a log").lines().count();
+    assert!(at.file("killed/report.json").exists());
+    fs::write(at.file("case.toml"), wind("end = 1000", "")).expect("a case");
+    let mut child = background(&at, "killed", &["--resume"]);
+    wait_for_steps(&at, "killed", done + 2);
+    child.kill().expect("killed");
+    child.wait().expect("gone");
+    assert!(!at.file("killed/report.json").exists());
 }
 
 #[test]
@@ -238,9 +247,13 @@ fn checkpoints_that_do_not_fit_are_refused() {
     }
     let path = at.file("out/checkpoint.bin");
     let whole = fs::read(&path).expect("a checkpoint");
-    for (length, flip, words) in
-        [(whole.len(), 5000, "its checksum is wrong"), (whole.len() - 9, 0, "damaged"), (4, 0, "no checkpoint")]
-    {
+    // The eighth byte is the version of the layout.
+    for (length, flip, words) in [
+        (whole.len(), 5000, "its checksum is wrong"),
+        (whole.len(), 7, "is no checkpoint of this version"),
+        (whole.len() - 9, 0, "damaged"),
+        (4, 0, "no checkpoint"),
+    ] {
         let mut bytes = whole[..length].to_vec();
         if flip > 0 {
             bytes[flip] ^= 1;
@@ -320,4 +333,37 @@ fn floors_that_matter_stop_the_run() {
         assert!(text.contains(part), "{part} in {text}");
     }
     assert!(text.trim_end().ends_with("checkpoint.bin") && !at.file("out/final").exists(), "{text}");
+}
+
+/// A run that has not ended is put aside when another takes its place, and can be taken up again; one that has ended is not.
+#[test]
+fn a_checkpoint_is_put_aside() {
+    let at = Scratch::new();
+    solved(&at, &falling(-1.0, 3), "out", &["-q"]);
+    let [now, before, report] =
+        ["checkpoint.bin", "checkpoint_before.bin", "report.json"].map(|n| at.file("out").join(n));
+    let kept = fs::read(&now).expect("a checkpoint");
+    // As if the run had been killed at its last step.
+    let finished = fs::read(&report).expect("a report");
+    // A case that is wrong leaves all as it is, even with --force.
+    let wrong = falling(-1.0, 5) + "ambient = -1\n";
+    assert_eq!(solve(&at, &wrong, "out", &["--force"]).status.code(), Some(1));
+    assert!(fs::read(&report).expect("a report") == finished);
+    fs::remove_file(&report).expect("a report");
+    assert_eq!(solve(&at, &wrong, "out", &[]).status.code(), Some(1));
+    assert!(fs::read(&now).expect("a checkpoint") == kept && !before.exists());
+    let text = stderr(&solved(&at, &falling(-1.0, 5), "out", &[]));
+    assert!(text.contains("held a run that had not ended; its last state is kept in checkpoint_before.bin"), "{text}");
+    assert!(fs::read(&before).expect("kept") == kept && fs::read(&now).expect("a new one") != kept);
+    // A finished run that is replaced on demand leaves what was put aside before.
+    let text = stderr(&solved(&at, &falling(-1.0, 4), "out", &["--force"]));
+    assert!(!text.contains("not ended") && fs::read(&before).expect("kept") == kept, "{text}");
+    // With its table it is a checkpoint as any other.
+    let [rho, log] = ["final/rho.npy", "log.csv"].map(|name| at.file("out").join(name));
+    let last = [&rho, &log].map(|path| fs::read(path).expect("a file"));
+    fs::copy(&before, &now).expect("a copy");
+    fs::rename(at.file("out/log_before.csv"), &log).expect("the table that was kept");
+    assert_ne!(fs::read(&log).expect("a table"), last[1]);
+    solved(&at, &falling(-1.0, 4), "out", &["-q", "--resume"]);
+    assert!([&rho, &log].map(|path| fs::read(path).expect("a file")) == last);
 }

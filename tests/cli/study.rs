@@ -120,13 +120,17 @@ fn wrong_cases_say_where() {
     let case = dir.file("case.toml");
     let changed = [
         ("threads = [1, 2]", "threads = []", "at least one threads"),
-        ("threads = [1, 2]", "threads = [0]", "line 4, column 11: threads [0] must be at least 1"),
+        ("threads = [1, 2]", "threads = [0]", "line 4, column 12: threads[0] must be at least 1"),
         ("threads = [1, 2]", "threads = [99999]", "at most 1024"),
         ("repeats = 1", "repeat = 1", "line 3, column 1: key repeat is not known here; did you mean repeats?"),
         ("method = \"surface\"", "method = \"magic\"", "\"magic\" is not known: auto, surface, gjk"),
         ("exact = 0.064", "exact = nan", "exact takes a finite number"),
         ("exact = 0.064", "probe = { cell = [1, 1, 2], beta_v = 1 }", "outside of the grid 2x2x2"),
-        ("exact = 0.064", "probe = { cell = [1, 1, -2], beta_v = 1 }", "cell [2] takes a whole number"),
+        (
+            "exact = 0.064",
+            "probe = { cell = [1, 1, -2], beta_v = 1 }",
+            "cell[2] takes a whole number from 0 on, not -2",
+        ),
         ("files = [\"scene.toml\"]", "files = [\"absent.toml\"]", "absent.toml: cannot open"),
         ("files = [\"scene.toml\"]", "", "needs files or [[scene.solid]]"),
         ("shape = \"box\"", "shape = \"bix\"", "line 9, column 9: solid \"brick\": shape \"bix\" is not known"),
@@ -286,6 +290,46 @@ fn pictures_say_what_they_show() {
     assert!(fs::read_to_string(out.join("study.svg")).expect("a picture").contains("Pareto front"));
 }
 
+/// Tolerances and depths of one method share its colour; a tint of its own tells each, in the legend and in the picture. What a method cannot
+/// measure is said on the page.
+#[test]
+fn tints_tell_tolerances_and_depths_apart() {
+    let dir = Scratch::new();
+    let (case, out) = (dir.file("case.toml"), dir.file("out"));
+    let hollow =
+        "[[scene.solid]]\nshape = \"torus\"\ncenter = [0.5, 0.5, 0.5]\naxis = \"z\"\nradius = 0.3\ntube = 0.1\n";
+    let text = "repeats = 1\nrefine = [1, 2]\n[[scene]]\nname = \"ball\"\n[[scene.solid]]\nshape = \"sphere\"\ncenter = [0.5, 0.5, 0.5]\nradius = 0.4\n\
+        [[grid]]\norigin = [0, 0, 0]\nspacing = [0.25, 0.25, 0.25]\ncells = [4, 4, 4]\n\
+        [[method]]\nname = \"planes\"\nmethod = \"gjk\"\ntol = [1e-1, 1e-2, 1e-3]\n\
+        [[method]]\nname = \"leaves\"\nmethod = \"gjk\"\nleaf = \"solid\"\ndepth = [1, 2]\n\
+        [[method]]\nname = \"alone\"\n";
+    fs::write(&case, format!("{text}[[scene]]\nname = \"ring\"\n{hollow}")).expect("written");
+    let output = voidage(&[&"study", &case, &"-q", &"-o", &out]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let svg = fs::read_to_string(out.join("study.svg")).expect("a picture");
+    for words in [">planes<", ">leaves<", ">alone<", ">tol 1e-1<", ">tol 1e-2<", ">tol 1e-3<", ">depth 1<", ">depth 2<"]
+    {
+        assert!(svg.contains(words), "{words}: {svg}");
+    }
+    // Within the rim of the colour of "planes": white, half and half, the colour itself.
+    for (colour, tint) in
+        [("the coarsest", "fill=\"#ffffff\""), ("between", "fill=\"#90aac9\""), ("the finest", "fill=\"#205493\"")]
+    {
+        assert!(svg.matches(tint).count() > 1, "{colour}: {svg}");
+    }
+    let left_out = "ring: method \"planes, tol 1e-1\" is left out: ";
+    for (name, heading) in [("study.html", "<h2>What is not here</h2>"), ("study.md", "## What is not here\n")] {
+        let page = fs::read_to_string(out.join(name)).expect("a page").replace("&quot;", "\"").replace("&#34;", "\"");
+        assert!(page.contains(heading) && page.matches(left_out).count() == 1, "{page}");
+    }
+    // A study that lacks nothing says nothing of the kind.
+    fs::write(&case, text.replace("\"gjk\"", "\"auto\"")).expect("written");
+    let output = voidage(&[&"study", &case, &"-q", &"-o", &out, &"--force"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let page = fs::read_to_string(out.join("study.md")).expect("a page");
+    assert!(!page.contains("What is not here"), "{page}");
+}
+
 const FLOWS: &str = r#"
 title = "Flows & more"
 note = "What <readers> should know."
@@ -381,7 +425,7 @@ fn wrong_flows_say_where() {
     let changed = [
         ("problem = \"slab\"", "problem = \"slap\"", "sod, shu-osher, vortex, slab, nozzle, inclined-wall"),
         ("cells = 20", "cells = 3", "must be from 4 to 100000, not 3"),
-        ("order = [1, 2]", "order = [1, 3]", "order [1] must be 1 or 2, not 3"),
+        ("order = [1, 2]", "order = [1, 3]", "order[1] must be 1 or 2, not 3"),
         ("along = \"overlaps\"", "along = \"sides\"", "cells, triangles, bodies, overlaps, threads"),
         ("counts = [2, 8, 27]", "counts = []", "counts is an empty list"),
         ("counts = [2, 8, 27]", "counts = [200000]", "must be at most 100000"),

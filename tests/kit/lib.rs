@@ -14,6 +14,7 @@ pub mod lattice;
 pub mod meeting;
 pub mod oracle;
 pub mod pairs;
+pub mod precise;
 pub mod quadrature;
 pub mod quadric;
 pub mod random;

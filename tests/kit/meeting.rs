@@ -184,7 +184,40 @@ pub fn solids(random: &mut Random, family: Family) -> Vec<Exact> {
     }
 }
 
-/// A coarse and a fine tolerance, and the parts of a cell, bound the same number; extreme numbers do no harm.
+/// The same solid at another scale, then moved.
+fn elsewhere(exact: &Exact, scale: f64, shift: DVec3) -> Exact {
+    let at = |p: DVec3| p * scale + shift;
+    match *exact {
+        Exact::Ball(center, radius) => Exact::Ball(at(center), radius * scale),
+        Exact::Ellipsoid(center, axes) => Exact::Ellipsoid(at(center), axes.map(|a| a * scale)),
+        Exact::Cylinder(from, to, radius) => Exact::Cylinder(at(from), at(to), radius * scale),
+        Exact::Capsule(from, to, radius) => Exact::Capsule(at(from), at(to), radius * scale),
+        Exact::Cone(base, apex, radius) => Exact::Cone(at(base), at(apex), radius * scale),
+        Exact::Frustum(from, to, radii) => Exact::Frustum(at(from), at(to), radii.map(|r| r * scale)),
+    }
+}
+
+/// The unit cube, a part of it that may be thin along some axes, or a face across an axis.
+fn cell(random: &mut Random) -> [[f64; 2]; 3] {
+    let mut cell = [[0.0, 1.0]; 3];
+    if random.below(2) == 0 {
+        for side in &mut cell {
+            if random.below(2) == 0 {
+                let width = 10_f64.powf(random.between(-4.0, 0.0));
+                let low = random.between(0.0, 1.0 - width);
+                *side = [low, low + width];
+            }
+        }
+    }
+    if random.below(2) == 0 {
+        let at = random.below(3);
+        cell[at] = [random.between(cell[at][0], cell[at][1]); 2];
+    }
+    cell
+}
+
+/// A coarse and a fine tolerance, the parts of a cell, and the same at another scale and place, bound the same number; extreme numbers do no
+/// harm.
 ///
 /// # Panics
 /// If not.
@@ -193,33 +226,43 @@ pub fn bounds_agree(seed: u64) {
     let family = FAMILIES[random.below(FAMILIES.len())];
     let exact = solids(random, family);
     let all: Vec<QuadricSolid> = exact.iter().map(quadric).collect();
-    let unit = [0.0, 1.0];
+    let cell = cell(random);
+    let size = cell.iter().map(|[lo, hi]| if lo == hi { 1.0 } else { hi - lo }).product::<f64>();
     let rough = if family == Family::Huge { 1e-9 } else { 1e-11 };
-    let mut cell = [unit; 3];
-    if random.below(2) == 0 {
-        let at = random.below(3);
-        cell[at] = [random.between(0.01, 0.99); 2];
-    }
     let bounds = |cell: [[f64; 2]; 3], enough: f64| excess(&all, cell, enough).expect("few solids");
-    let fine = bounds(cell, 1e-5);
+    let fine = bounds(cell, 1e-5 * size);
+    let rough = rough * size.max(1e-4);
+    let same = |other: [f64; 2], rough: f64, what: &str| {
+        let apart = (other[0] - fine[1]).max(fine[0] - other[1]);
+        assert!(apart <= rough, "{family:?} {seed}: {what} {other:?}, else {fine:?} in {cell:?} of {exact:?}");
+    };
     for enough in [1e-2, 1e-3] {
-        let coarse = bounds(cell, enough);
-        let apart = (coarse[0] - fine[1]).max(fine[0] - coarse[1]);
-        assert!(apart <= rough, "{family:?} {seed}: {coarse:?} and {fine:?} of {exact:?}");
-        assert!(coarse[1] - coarse[0] <= 1.01 * enough, "{family:?} {seed}: {coarse:?} of {exact:?}");
+        let coarse = bounds(cell, enough * size);
+        same(coarse, rough, "coarsely");
+        assert!(coarse[1] - coarse[0] <= 1.01 * enough * size + rough, "{family:?} {seed}: {coarse:?} of {exact:?}");
     }
-    let cut: [f64; 3] = [0; 3].map(|_| random.between(0.2, 0.8));
+    let cut: [f64; 3] = [0, 1, 2].map(|n| cell[n][0] + (cell[n][1] - cell[n][0]) * random.between(0.2, 0.8));
     let mut parts = [0.0; 2];
     for n in 0..8 {
-        let side = |a: usize| if n >> a & 1 == 0 { [0.0, cut[a]] } else { [cut[a], 1.0] };
-        let part = [0, 1, 2].map(|a| if cell[a] == unit { side(a) } else { cell[a] });
-        if (0..3).all(|a| cell[a] == unit || n >> a & 1 == 0) {
-            let found = bounds(part, 1e-4);
+        let side = |a: usize| if n >> a & 1 == 0 { [cell[a][0], cut[a]] } else { [cut[a], cell[a][1]] };
+        if (0..3).all(|a| cell[a][0] < cell[a][1] || n >> a & 1 == 0) {
+            let found = bounds([0, 1, 2].map(side), 1e-4 * size);
             parts = [parts[0] + found[0], parts[1] + found[1]];
         }
     }
-    let apart = (parts[0] - fine[1]).max(fine[0] - parts[1]);
-    assert!(apart <= rough, "{family:?} {seed}: in parts {parts:?}, in all {fine:?} of {exact:?}");
+    same(parts, rough, "in parts");
+    // Far off, coordinates are rounded: by their last bit, each surface moves.
+    let (scale, far) = (10_f64.powf(random.between(-7.0, 7.0)), [0.0, 1e2, 1e5][random.below(3)]);
+    let shift = random.vector::<DVec3>(far * scale);
+    let there: Vec<QuadricSolid> = exact.iter().map(|e| quadric(&elsewhere(e, scale, shift))).collect();
+    let moved = [0, 1, 2].map(|n| cell[n].map(|x| x * scale + shift[n]));
+    if (0..3).all(|n| (moved[n][0] < moved[n][1]) == (cell[n][0] < cell[n][1])) {
+        let unit = if cell.iter().any(|[lo, hi]| lo == hi) { scale * scale } else { scale.powi(3) };
+        let found = excess(&there, moved, 1e-4 * size * unit).expect("few solids").map(|x| x / unit);
+        // Where curves touch, a shift of e moves where they do by its root.
+        let rounded = far * f64::EPSILON;
+        same(found, rough + 30.0 * rounded.sqrt() * size.max(rounded.sqrt()), "elsewhere");
+    }
     extremes(random);
 }
 

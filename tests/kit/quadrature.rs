@@ -132,7 +132,20 @@ impl Exact {
 
 /// Area that solids have in common of a rectangle across axis `n` at a coordinate; `tolerance` is a share of the rectangle.
 #[must_use]
-pub fn common_area(solids: &[Exact], n: usize, at: f64, [u, v]: [[f64; 2]; 2], tolerance: f64) -> f64 {
+pub fn common_area(solids: &[Exact], n: usize, at: f64, window: [[f64; 2]; 2], tolerance: f64) -> f64 {
+    area_by_chords(Exact::chord, solids, n, at, window, tolerance)
+}
+
+/// The same, with chords from elsewhere.
+#[must_use]
+pub fn area_by_chords(
+    chord_of: impl Fn(&Exact, DVec3, usize) -> Option<[f64; 2]>,
+    solids: &[Exact],
+    n: usize,
+    at: f64,
+    [u, v]: [[f64; 2]; 2],
+    tolerance: f64,
+) -> f64 {
     let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
     let place = |x: f64, y: f64| {
         let mut p = DVec3::ZERO;
@@ -140,7 +153,7 @@ pub fn common_area(solids: &[Exact], n: usize, at: f64, [u, v]: [[f64; 2]; 2], t
         p
     };
     let chord = |y: f64| {
-        let common = solids.iter().try_fold(u, |common, s| meet(common, s.chord(place(u[0], y), iu)?));
+        let common = solids.iter().try_fold(u, |common, s| meet(common, chord_of(s, place(u[0], y), iu)?));
         common.map_or(0.0, |c| c[1] - c[0])
     };
     let depth = |y: f64| least(&|x| depth(solids, place(x, y)), u);

@@ -103,6 +103,13 @@ fn closed_volumes() {
     }
 }
 
+/// The half ball at the end of a capsule that is all but upright reaches over the cell's bottom by a sliver, long and 1e-14 thick: little in every
+/// slice, and little between them.
+#[test]
+fn a_sliver_of_a_half_ball_is_bounded_closely() {
+    agrees(Family::NearlyAligned, 7_643_991_702_517_342_692).expect("close bounds");
+}
+
 /// Nothing is claimed of what does not meet.
 #[test]
 fn what_is_apart_has_nothing_in_common() {
@@ -122,5 +129,5 @@ fn crowds_are_refused() {
 /// Whatever the tolerance, and however the cell is cut, bounds hold the same number; and no numbers make it panic.
 #[test]
 fn bounds_of_wholes_and_parts_agree() {
-    (0..1500).for_each(bounds_agree);
+    (0..500).for_each(bounds_agree);
 }

@@ -242,6 +242,27 @@ fn copies_that_nearly_coincide_have_narrow_bounds() {
     }
 }
 
+/// A body that stands a thousand times in one place, each from a file of its own, is one body; of two that differ in porosity the less open one.
+#[test]
+fn a_body_a_thousand_times_is_one() {
+    let turned = turned_box(DVec3::new(0.5, 0.45, 0.55), DVec3::new(0.31, 0.17, 0.23), Random::new(3).turn());
+    let edges = [0, 1, 2].map(|_| (0..=8).map(|n| f64::from(n) / 8.0).collect());
+    let grid = Edges(edges);
+    let run = |bodies: &_| porosity(&grid.grid(None).expect("a grid"), bodies, Options::default());
+    let (one, mut all) = (scene(std::slice::from_ref(&turned)), scene(&vec![turned; 1000]));
+    let (of_one, of_all) = (run(&one), run(&all));
+    assert_close(&of_all.beta, &of_one.beta, 1e-13, "a thousand");
+    assert!(of_all.max_gap < 1e-13, "{}", of_all.max_gap);
+    for porosity in [0.0, 0.25] {
+        for (n, body) in all.bodies.iter_mut().enumerate() {
+            body.porosity = if n == 700 { porosity } else { 0.5 };
+        }
+        let mut one = one.clone();
+        one.bodies[0].porosity = porosity;
+        assert_close(&run(&all).beta, &run(&one).beta, 1e-14, &format!("porosity {porosity}"));
+    }
+}
+
 /// Where division thins the bodies of a cell it goes on for as long as their number asks for, not for a time that is the same for all.
 #[test]
 fn ten_thousand_pieces_in_one_cell_are_summed() {

@@ -101,6 +101,21 @@ fn the_junctions_of_a_capsule_in_grid_planes_count_once() {
     }
 }
 
+/// A capsule of 5000 cells whose surface all but lies in a face: arithmetic of 50 digits gives 0.316992130062978.
+#[test]
+fn a_huge_capsule_that_cuts_a_face_flat() {
+    agrees(Family::Huge, 5_126_940_677_642_304_581).expect("right areas");
+    let (from, to) = (
+        DVec3::new(-2347.2730663278453, -666.8610491091372, -2509.2619327847615),
+        DVec3::new(1427.8518817778252, 3179.4110785190983, 332.8638661565394),
+    );
+    let solid = QuadricSolid::capsule(from, to, 1724.6878574378077).expect("a capsule");
+    let edges = voidage_tests::quadric::edges();
+    let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
+    let found = shares(&solid, &grid).fields[3][(4 * 8 + 6) * 9 + 5];
+    assert!((found - 0.316992130062978).abs() < 1e-11, "{found}");
+}
+
 /// Pipes beside a plane by one radius, but for the last bits: the sliver that the plane cuts off, from the numbers as they are.
 #[test]
 fn a_plane_that_is_touched_but_for_rounding() {

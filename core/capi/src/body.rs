@@ -3,6 +3,7 @@
 use crate::input::{Arrays, all, give, given, same_layout};
 use crate::status::{Answer, Status};
 use crate::types::{Body, Contact, Distance, Kind};
+use core::ffi::CStr;
 use core::slice;
 use voidage_core::convex::exact;
 use voidage_core::convex::shape::{
@@ -137,19 +138,22 @@ pub struct Pair<R> {
 
 impl<R: Real> Pair<R> {
     unsafe fn ask<T>(&self, question: impl FnOnce(BodyQuery<R::Vector>) -> T) -> Answer<T> {
-        let body = |at, name, index| unsafe { any_body(&given(at, name)?).map_err(|refusal| refusal.index(index)) };
-        let (a, b) = (body(self.a, c"a", 0)?, body(self.b, c"b", 1)?);
-        let query = BodyQuery::new(&a, &b);
-        if self.hint.is_null() {
-            return Ok(question(query));
+        let (a, b) = unsafe { (body(self.a, c"a", 0)?, body(self.b, c"b", 1)?) };
+        let mut query = BodyQuery::new(&a, &b);
+        if !self.hint.is_null() {
+            let hint = unsafe { self.hint.cast::<[R; 3]>().read_unaligned() };
+            all(&hint, Real::is_finite, c"hint")?;
+            if hint != [R::ZERO; 3] {
+                query = query.hint(R::Vector::from_array(hint));
+            }
         }
-        let hint = unsafe { self.hint.cast::<[R; 3]>().read_unaligned() };
-        all(&hint, Real::is_finite, c"hint")?;
-        if hint == [R::ZERO; 3] {
-            return Ok(question(query));
-        }
-        Ok(question(query.hint(R::Vector::from_array(hint))))
+        Ok(question(query))
     }
+}
+
+/// A body of a pair.
+unsafe fn body<'a, R: Real>(at: *const Body<R>, name: &'static CStr, index: usize) -> Answer<AnyBody<'a, R::Vector>> {
+    unsafe { any_body(&given(at, name)?).map_err(|refusal| refusal.index(index)) }
 }
 
 /// Whether two bodies meet.
@@ -179,9 +183,14 @@ pub unsafe fn distance<R: Real>(pair: &Pair<R>, distance: *mut Distance<R>) -> A
     if distance.is_null() {
         return Err(Status::Null.of(c"distance"));
     }
-    let found = unsafe { pair.ask(|query| query.distance())? };
+    let found = unsafe { pair.ask(|query| told(query.distance()))? };
+    unsafe { give(distance, found) };
+    Ok(())
+}
+
+fn told<R: Real>(found: Clearance<R::Vector>) -> Distance<R> {
     let none = Distance::default();
-    let found = match found {
+    match found {
         Clearance::Apart { distance, a, b, lower, upper } => {
             Distance { contact: Contact::Apart as i32, distance, lower, upper, a: a.to_array(), b: b.to_array() }
         }
@@ -191,7 +200,5 @@ pub unsafe fn distance<R: Real>(pair: &Pair<R>, distance: *mut Distance<R>) -> A
             Distance { contact: Contact::Undecided as i32, lower, upper, ..none }
         }
         _ => Distance { contact: Contact::Undecided as i32, upper: R::INFINITY, ..none },
-    };
-    unsafe { give(distance, found) };
-    Ok(())
+    }
 }

@@ -194,7 +194,8 @@ pub unsafe fn rate<R: Real>(flow: *mut Flow<R>, rate: *mut R) -> Answer {
 pub unsafe fn step<R: Real>(flow: *mut Flow<R>, dt: R, report: *mut StepReport<R>) -> Answer {
     let flow = unsafe { opened(flow)? };
     all(&[dt], |dt| dt > R::ZERO && dt.is_finite(), c"dt")?;
-    let found = of_state!(&mut flow.state, s => s.step(dt)?);
+    let mut found = StepReport::default();
+    of_state!(&mut flow.state, s => s.step(dt, &mut found)?);
     unsafe { give(report, found) };
     Ok(())
 }

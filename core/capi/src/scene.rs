@@ -18,6 +18,7 @@ struct CheckedSolids<'a, V: Vector> {
 /// What is asked of a scene: its surfaces, and its solids.
 type CheckedScene<'a, V> = (Checked<'a, V>, CheckedSolids<'a, V>);
 
+#[inline(never)]
 unsafe fn checked<'a, R: Real>(asked: &Asked<R>, arrays: &mut Arrays) -> Answer<CheckedScene<'a, R::Vector>> {
     let scene = unsafe { given(asked.scene, c"scene")? };
     let question = Question { grid: asked.grid, surface: scene.surface, options: asked.options };
@@ -47,6 +48,7 @@ struct SceneWork<'m, V: Vector> {
     memory: RoundMemory<'m, V>,
 }
 
+#[inline(never)]
 fn work<'a: 'm, 'm, V: Vector, M: Memory<'m>>(
     asked: &Checked<'a, V>,
     solids: &CheckedSolids<V>,
@@ -74,6 +76,7 @@ fn work<'a: 'm, 'm, V: Vector, M: Memory<'m>>(
     }
 }
 
+#[inline(never)]
 fn bytes_for<V: Vector>(asked: &Checked<V>, solids: &CheckedSolids<V>) -> usize {
     let mut measure = Measure::new();
     work(asked, solids, &mut measure);
@@ -97,14 +100,14 @@ pub unsafe fn porosity<R: Real>(asked: &Asked<R>, reply: &Reply<R>) -> Answer {
     let mut arrays = Arrays::new();
     unsafe {
         let (question, solids) = checked(asked, &mut arrays)?;
-        let outputs = reply.checked(&mut arrays, &question.window)?;
+        let mut outputs = reply.checked(&mut arrays, &question.window)?;
         let needed = bytes_for(&question, &solids);
         arrays.work(reply.work, reply.bytes, needed)?;
         let SceneWork { surface, solids, memory } = work(&question, &solids, &mut Cut::new(reply.work, needed));
         let rule = SubdivisionRule { leaf: LeafRule::Plane, depth: question.options.depth, tol: question.options.tol };
         let others = RoundSolids::new(&question.window.grid, solids, rule, memory);
         let mut others = others.map_err(|_| Status::Memory.of(c"work"))?;
-        let mut report = run(&question, outputs, surface, &mut others)?;
+        let mut report = run(&question, &mut outputs, surface, &mut others)?;
         let queries = others.queries();
         (report.queries, report.undecided) = (queries.queries, queries.undecided);
         give(reply.report, report);

@@ -100,8 +100,11 @@ pub struct Checked<'a, V: Vector> {
 }
 
 impl<R: Real> Question<R> {
+    /// Not inlined, as other parts of a call: then the stack of one is free when the next begins.
+    ///
     /// # Safety
     /// As of [`Arrays::read`].
+    #[inline(never)]
     pub unsafe fn checked<'a>(&self, arrays: &mut Arrays) -> Answer<Checked<'a, R::Vector>> {
         unsafe {
             let grid = checked(arrays, &given(self.grid, c"grid")?)?;
@@ -142,6 +145,7 @@ pub struct SurfaceWork<'m, V: Vector> {
 
 impl<'a, V: Vector> Checked<'a, V> {
     /// Memory for this question; `others`: there are bodies beside those of triangles.
+    #[inline(never)]
     pub fn work<'m, M: Memory<'m>>(&self, memory: &mut M, others: bool) -> SurfaceWork<'m, V>
     where
         'a: 'm,
@@ -192,6 +196,7 @@ pub struct Outputs<'o, R> {
 impl<R: Real> Reply<R> {
     /// # Safety
     /// As of [`Arrays::write`].
+    #[inline(never)]
     pub unsafe fn checked<'o>(&self, arrays: &mut Arrays, window: &Window<R>) -> Answer<Outputs<'o, R>> {
         let Fractions { value, lower, upper } = unsafe { given(self.fractions, c"fractions")? };
         let areas = !(value.x.is_null() && value.y.is_null() && value.z.is_null());
@@ -236,9 +241,10 @@ fn layer<'o, R: Real>(slices: &'o mut Slices<R>, window: &Window<R>, n: usize) -
 }
 
 /// Computes the layers asked for.
+#[inline(never)]
 pub fn run<V: Vector, O: OtherBodies<V>>(
     asked: &Checked<V>,
-    mut outputs: Outputs<V::Scalar>,
+    outputs: &mut Outputs<V::Scalar>,
     work: SurfaceWork<V>,
     others: &mut O,
 ) -> Answer<PorosityReport<V::Scalar>> {
@@ -287,6 +293,7 @@ pub unsafe fn work_bytes<R: Real>(question: &Question<R>) -> usize {
     bytes_for(&asked)
 }
 
+#[inline(never)]
 fn bytes_for<V: Vector>(asked: &Checked<V>) -> usize {
     let mut measure = Measure::new();
     asked.work(&mut measure, false);
@@ -305,15 +312,25 @@ unsafe fn surface_of<'a, R: Real>(question: &Question<R>, arrays: &mut Arrays) -
 /// # Safety
 /// As of [`Arrays::read`] and [`Arrays::write`]; `report` is null or can be written.
 pub unsafe fn porosity<R: Real>(question: &Question<R>, reply: &Reply<R>) -> Answer {
+    unsafe {
+        let (asked, mut outputs, needed) = opened(question, reply)?;
+        let work = asked.work(&mut Cut::new(reply.work, needed), false);
+        give(reply.report, run(&asked, &mut outputs, work, &mut ())?);
+    }
+    Ok(())
+}
+
+/// What is asked, where the answer goes, and bytes of work, all checked.
+type Opened<'a, 'o, V> = (Checked<'a, V>, Outputs<'o, <V as Vector>::Scalar>, usize);
+
+#[inline(never)]
+unsafe fn opened<'a, 'o, R: Real>(question: &Question<R>, reply: &Reply<R>) -> Answer<Opened<'a, 'o, R::Vector>> {
     let mut arrays = Arrays::new();
     unsafe {
         let asked = surface_of(question, &mut arrays)?;
         let outputs = reply.checked(&mut arrays, &asked.window)?;
         let needed = bytes_for(&asked);
         arrays.work(reply.work, reply.bytes, needed)?;
-        let work = asked.work(&mut Cut::new(reply.work, needed), false);
-        let report = run(&asked, outputs, work, &mut ())?;
-        give(reply.report, report);
+        Ok((asked, outputs, needed))
     }
-    Ok(())
 }

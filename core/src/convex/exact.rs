@@ -8,10 +8,11 @@
 //! looks around the origin, `distance` rounds what was found.
 //!
 //! Signs are of degree 4 at most in the coordinates. Integers are used and not floating-point expansions because a product of expansions is
-//! no longer exact once a term underflows. Needs up to 66 kB of stack, by a fill pattern on a Cortex-M4F.
+//! no longer exact once a term underflows. How many words they have follows from the scalar.
 
 use crate::convex::gjk::{Intersection, intersect};
 use crate::convex::shape::Vertices;
+use crate::convex::support::ScalarOf;
 
 mod distance;
 mod integer;
@@ -51,7 +52,7 @@ where
 }
 
 /// How two bodies lie, exactly. `hint` is a direction from `a` to `b` to start with.
-pub fn relation<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Relation, NotFinite>
+pub fn relation<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<Relation<ScalarOf<A>>, NotFinite>
 where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,

@@ -14,7 +14,7 @@ pub enum Meeting<V: Vector> {
     Apart(SeparationProof<V>),
     /// Points are shared, but no inner point: along this direction from the first body to the second nothing of the first lies beyond anything
     /// of the second. Told only of bodies given by vertices.
-    Touching(ExactAxis),
+    Touching(ExactAxis<V::Scalar>),
     /// An inner point is shared.
     Overlapping(MeetingProof<V>),
     /// Rounding hides it.
@@ -24,12 +24,11 @@ pub enum Meeting<V: Vector> {
 /// Why two bodies are apart.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-#[expect(clippy::large_enum_variant, reason = "an exact axis is some 2 kB, and nothing is allocated here")]
-pub enum SeparationProof<V> {
+pub enum SeparationProof<V: Vector> {
     /// A direction from the first body to the second, of any length, that separates them: see [`gjk::separates`].
     Axis(V),
     /// A direction that separates them, exact: [`ExactAxis::gap`] is `Greater`.
-    Exact(ExactAxis),
+    Exact(ExactAxis<V::Scalar>),
 }
 
 /// Why two bodies overlap.
@@ -57,7 +56,6 @@ impl<V: Vector> Meeting<V> {
 /// How far apart two bodies are.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-#[expect(clippy::large_enum_variant, reason = "an exact axis is some 2 kB, and nothing is allocated here")]
 pub enum Clearance<V: Vector> {
     /// No point is shared.
     Apart {
@@ -73,7 +71,7 @@ pub enum Clearance<V: Vector> {
         upper: V::Scalar,
     },
     /// The distance is zero, and no inner point is shared; see [`Meeting::Touching`].
-    Touching(ExactAxis),
+    Touching(ExactAxis<V::Scalar>),
     /// An inner point is shared.
     Overlapping(MeetingProof<V>),
     /// Rounding hides whether they meet.

@@ -36,6 +36,8 @@ pub enum Error {
     OtherMesh,
     /// A number of the gas is not positive and finite, or its ratio of specific heats is not above 1.
     Gas,
+    /// The step is compiled for another Riemann solver or another kind of gas.
+    OtherFlux,
     /// A cell outside the physical set (density or pressure not positive, or not finite).
     Unphysical {
         /// Its flat index.
@@ -61,6 +63,7 @@ impl fmt::Display for Error {
             Error::Gas => f.write_str(
                 "a number of the gas is not positive and finite, or its ratio of specific heats is not above 1",
             ),
+            Error::OtherFlux => f.write_str("the step is compiled for another Riemann solver or another kind of gas"),
             Error::Unphysical { cell } => {
                 write!(f, "the density or pressure of cell {cell} is not positive, or its state is not finite")
             }

@@ -7,8 +7,10 @@
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
 //! - `sweep`: the rows of a slab in order, in tiles that stay in a core's cache
+//! - `flux_choice`: which solvers and gases of it a program links
 //! - `long_line`: a long line of cells in pieces
 
+pub(crate) mod flux_choice;
 pub(crate) mod fluxes;
 pub(crate) mod long_line;
 pub(crate) mod positive_fluxes;

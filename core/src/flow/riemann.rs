@@ -114,16 +114,22 @@ impl<R: Real> FaceGas<R> {
 }
 
 /// What a solver that is kind to slow flow needs to know of a face besides its two states.
-#[derive(Clone, Copy)]
-pub(crate) struct Slowness<R> {
+#[derive(Clone, Copy, Debug)]
+pub struct Slowness<R> {
     /// By how much the pressures at the face exceed those in the middle of their cells, in all.
     pub bend: R,
     /// Time step over the width of the cells, times open area over open volume.
     pub pace: R,
 }
 
-/// A solver as a type, so that the loop over a row holds no choice.
-pub(crate) trait Solver {
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// A solver as a type, so that the loop over a row holds no choice. Those of this crate, no others.
+pub trait Solver: sealed::Sealed {
+    /// Its name at run time.
+    const KIND: Riemann;
     /// It looks at the [`Slowness`] of a face.
     const LOW_MACH: bool = false;
 
@@ -146,12 +152,24 @@ pub(crate) trait Solver {
     }
 }
 
-pub(crate) struct HllcLowMach;
-pub(crate) struct Hllc;
-pub(crate) struct Hlle;
-pub(crate) struct Rusanov;
+/// [`Riemann::Hllc`].
+#[derive(Clone, Copy, Debug)]
+pub struct Hllc;
+/// [`Riemann::HllcLowMach`].
+#[derive(Clone, Copy, Debug)]
+pub struct HllcLowMach;
+/// [`Riemann::Hlle`].
+#[derive(Clone, Copy, Debug)]
+pub struct Hlle;
+/// [`Riemann::Rusanov`].
+#[derive(Clone, Copy, Debug)]
+pub struct Rusanov;
+
+impl sealed::Sealed for Hllc {}
 
 impl Solver for Hllc {
+    const KIND: Riemann = Riemann::Hllc;
+
     #[inline(always)]
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
@@ -162,7 +180,10 @@ impl Solver for Hllc {
     }
 }
 
+impl sealed::Sealed for HllcLowMach {}
+
 impl Solver for HllcLowMach {
+    const KIND: Riemann = Riemann::HllcLowMach;
     const LOW_MACH: bool = true;
 
     #[inline(always)]
@@ -314,7 +335,11 @@ fn blend<R: Real, const D: usize, const ENERGY: bool>(
     Flux { mass, momentum, energy, pressure }
 }
 
+impl sealed::Sealed for Hlle {}
+
 impl Solver for Hlle {
+    const KIND: Riemann = Riemann::Hlle;
+
     /// Toro eq. (10.21), regrouped about the mean of both fluxes.
     #[inline(always)]
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
@@ -330,7 +355,11 @@ impl Solver for Hlle {
     }
 }
 
+impl sealed::Sealed for Rusanov {}
+
 impl Solver for Rusanov {
+    const KIND: Riemann = Riemann::Rusanov;
+
     /// Toro eq. (10.42): the mean of both sides less the fastest wave times half the jump.
     #[inline(always)]
     fn flux<R: Real, const D: usize, const ENERGY: bool>(

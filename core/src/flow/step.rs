@@ -2,6 +2,7 @@
 
 use crate::flow::error::{Error, fits};
 use crate::flow::fallback::FALLBACKS;
+use crate::flow::kernel::flux_choice::{AnyFlux, FluxChoice};
 use crate::flow::kernel::scratch::{PIECE, Sizes, in_pieces};
 use crate::flow::kernel::slab::Part;
 use crate::flow::kernel::{long_line, sweep};
@@ -38,6 +39,23 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         first_order: Option<&[u8]>,
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
+        self.advance_slab_by::<AnyFlux>(old, new, slab, dt, first_order, scratch)
+    }
+
+    /// The same, compiled for some solvers and gases only.
+    ///
+    /// # Errors
+    /// As of [`Problem::advance_slab`]; and [`Error::OtherFlux`].
+    pub fn advance_slab_by<F: FluxChoice>(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        slab: Range<usize>,
+        dt: R,
+        first_order: Option<&[u8]>,
+        scratch: &mut [R],
+    ) -> Result<Report<R, D>, Error> {
+        let run = F::sweep(self)?;
         self.check_fields(old)?;
         let cells = self.mesh.cells();
         let slab = if D == 1 { 0..1 } else { slab.start..slab.end.min(cells[D - 1]) };
@@ -55,9 +73,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         }
         let part = Part { old, dt, first_order, layers: slab, reported: 0..cells[0] };
         if in_pieces::<D>(self.mesh.len()) {
-            return Ok(long_line::advance(self, &part, new, scratch));
+            return Ok(long_line::advance(self, &part, new, scratch, run));
         }
-        Ok(sweep::advance(self, &part, new, scratch))
+        Ok(sweep::advance(self, &part, new, scratch, run))
     }
 
     /// Makes a starting field ready for its first step and returns its largest signal rate: clusters whose cells differ much share
@@ -110,9 +128,25 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         marks: &mut [u8],
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
+        self.step_by::<AnyFlux>(old, new, dt, marks, scratch)
+    }
+
+    /// The same, compiled for some solvers and gases only: `problem.step_by::<OneFlux<Hllc, WithEnergy>>(…)` links some 60 % of the code of
+    /// [`Problem::step`].
+    ///
+    /// # Errors
+    /// As of [`Problem::step`]; and [`Error::OtherFlux`].
+    pub fn step_by<F: FluxChoice>(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        dt: R,
+        marks: &mut [u8],
+        scratch: &mut [R],
+    ) -> Result<Report<R, D>, Error> {
         fits(self.mesh.len(), marks.len())?;
         let all = 0..self.mesh.cells()[D - 1];
-        let mut report = self.advance_slab(old, new, all.clone(), dt, None, scratch)?;
+        let mut report = self.advance_slab_by::<F>(old, new, all.clone(), dt, None, scratch)?;
         self.merge(old, new, &mut report)?;
         if report.unphysical == 0 {
             return Ok(report);
@@ -122,7 +156,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             if self.mark_troubled(&new.as_fields(), marks)? == 0 {
                 break;
             }
-            report = self.advance_slab(old, new, all.clone(), dt, Some(marks), scratch)?;
+            report = self.advance_slab_by::<F>(old, new, all.clone(), dt, Some(marks), scratch)?;
             self.merge(old, new, &mut report)?;
             if report.unphysical == 0 {
                 return Ok(report);

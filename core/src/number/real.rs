@@ -2,9 +2,12 @@
 //!
 //! The only file that knows a precision. [`Real`] and [`Vector`] are sealed and hold what this crate uses, no more.
 //!
-//! Correctly rounded operations (`sqrt`, `floor`, `abs`) come from std under the feature `std` and from libm without it;
+//! Correctly rounded operations (`sqrt`, `floor`, `abs`) come from std under the feature `std` and from libm or the processor without it;
 //! everything that is not correctly rounded always comes from libm. So the feature changes speed, never bits.
 
+#[cfg(not(feature = "std"))]
+use crate::number::root;
+use crate::number::words::ExactWords;
 use core::fmt::{Debug, Display};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -19,6 +22,7 @@ mod sealed {
 /// A binary floating-point scalar: `f32` or `f64`.
 pub trait Real:
     sealed::Sealed
+    + ExactWords
     + Copy
     + Default
     + Debug
@@ -331,7 +335,7 @@ macro_rules! real {
 real!(
     f32,
     glam::Vec3,
-    [libm::sqrtf, libm::floorf, libm::expf, libm::expm1f, libm::logf, libm::powf],
+    [root::sqrtf, libm::floorf, libm::expf, libm::expm1f, libm::logf, libm::powf],
     0x7f80_0000,
     65536.0,
     65536.0

@@ -5,15 +5,16 @@
 //! between slices are lower bounds and the chords' extensions upper ones, and slices are added where these are apart.
 
 use super::part::Part;
-use super::slice::{Common, MOST_PARTS, Slice, Window};
+use super::slice::{MOST_PARTS, Slice, Window};
 use super::solid::QuadricSolid;
+use crate::grid::bounds::Bounds;
 use crate::number::plane::{P2, others};
 use crate::number::real::Real;
 use heapless::Vec;
 
 /// Most slices of what some parts have in common; and of them, most at hand at once.
 const MOST_SLICES: usize = 1 << 16;
-const MOST_AT_ONCE: usize = 64;
+const MOST_AT_ONCE: usize = 40;
 
 /// Most ranges of heights that wait to be looked at.
 const MOST_RANGES: usize = 24;
@@ -23,6 +24,9 @@ const MOST_AT_HAND: usize = 16;
 
 /// Most sets of parts that are looked at.
 const MOST_SETS: usize = 400;
+
+/// Areas that solids have in common are wanted this close, as a share of a face.
+const CLOSE_AREAS: f64 = 1e-13;
 
 /// A part of one of the solids, and where it may be in the cell.
 #[derive(Clone, Copy)]
@@ -35,6 +39,23 @@ struct OnePart<'a> {
 /// What both boxes hold.
 fn meet(a: &[P2; 3], b: &[P2; 3]) -> [P2; 3] {
     [0, 1, 2].map(|n: usize| [a[n][0].max(b[n][0]), a[n][1].min(b[n][1])])
+}
+
+/// Bounds of the share of a cell or face that the union of some solids has, from bounds of the sum of their shares; of cells about `tol` apart, of
+/// faces as close as rounding allows. `cell` and none as in [`excess`].
+#[must_use]
+pub fn share_of_union<'a>(
+    solids: impl IntoIterator<Item = &'a QuadricSolid>,
+    cell: [P2; 3],
+    sum: Bounds<f64>,
+    tol: f64,
+) -> Option<Bounds<f64>> {
+    let (mut size, mut close) = (1.0, tol);
+    for [lo, hi] in cell {
+        if lo < hi { size *= hi - lo } else { close = CLOSE_AREAS }
+    }
+    let [low, high] = excess(solids, cell, close * size)?.map(|common| common / size);
+    Some(Bounds { lower: (sum.lower - high).max(0.0), upper: (sum.upper - low).min(1.0) })
 }
 
 /// Bounds of the sum of the volumes of some solids in a cell, given by its low and high coordinates, less the volume of their union there; of
@@ -128,11 +149,7 @@ fn common<'a, const N: usize>(
 ) -> P2 {
     let Some((n, coordinate)) = plane else { return volume::<N>(parts, extent, enough) };
     let window = window(extent, n, enough);
-    match Slice::<N>::new(parts, window, coordinate).common() {
-        Common::Area(bounds) => bounds,
-        Common::NoRow(_) => [0.0; 2],
-        Common::Apart([_, most]) => [0.0, most.max(0.0) * (window.v[1] - window.v[0])],
-    }
+    Slice::<N>::new(parts, window, coordinate).common().area
 }
 
 fn window(extent: &[P2; 3], n: usize, enough: f64) -> Window {
@@ -140,13 +157,31 @@ fn window(extent: &[P2; 3], n: usize, enough: f64) -> Window {
     Window { n, u: extent[u], v: extent[v], enough }
 }
 
-/// What a slice tells.
+/// What a slice tells: bounds of the square root of its area, and the rest of [`Common`](super::slice::Common).
 #[derive(Clone, Copy)]
-enum Sample {
-    NoRow(f64),
-    Apart(P2),
-    /// Bounds of the square root of the area, the lower one positive.
-    Root(P2),
+struct Sample {
+    at: f64,
+    root: P2,
+    height: P2,
+    length: P2,
+}
+
+impl Sample {
+    /// The bounds of the square root of the area, if it is certain that there is one.
+    fn root(&self) -> Option<P2> {
+        (self.root[0] > 0.0).then_some(self.root)
+    }
+
+    /// Bounds of the square root of the area, the lower one only if it is certain that something is in it: concave over those heights.
+    fn root_within(&self) -> P2 {
+        let [low, high] = self.root;
+        [if low > 0.0 || self.length[0] > 0.0 { low } else { f64::NEG_INFINITY }, high]
+    }
+
+    /// Is it certain that there is nothing in it?
+    fn is_empty(&self) -> bool {
+        self.height[1] < 0.0 || self.length[1] < 0.0
+    }
 }
 
 /// Bounds of the volume that up to `N` parts have in common in a box.
@@ -159,11 +194,9 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
         return [0.0, all * (last - first)];
     }
     let within = window(extent, n, (0.125 * enough / (last - first)).min(1e-3 * all));
-    let slice = |at: f64| match Slice::<N>::new(parts.clone(), within, at).common() {
-        Common::NoRow(width) => Sample::NoRow(width),
-        Common::Apart(bounds) => Sample::Apart(bounds),
-        Common::Area([lower, upper]) if lower > 0.0 => Sample::Root([Real::sqrt(lower), Real::sqrt(upper)]),
-        Common::Area([_, upper]) => Sample::Apart([0.0, upper / (within.v[1] - within.v[0])]),
+    let slice = |at: f64| {
+        let found = Slice::<N>::new(parts.clone(), within, at).common();
+        Sample { at, root: found.area.map(Real::sqrt), height: found.height, length: found.length }
     };
     let mut found = [0.0; 2];
     let mut waiting: Vec<(P2, f64), MOST_RANGES> = Vec::new();
@@ -186,10 +219,10 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
 
 /// The same between two heights, of windows of an area `all` and a height `rows`, with slices at hand; and how many there were.
 fn in_range(slice: &impl Fn(f64) -> Sample, [first, last]: P2, [all, rows]: P2, enough: f64) -> (P2, usize) {
-    let mut samples: Vec<(f64, Sample), MOST_AT_ONCE> = Vec::new();
+    let mut samples: Vec<Sample, MOST_AT_ONCE> = Vec::new();
     for part in 0..=4 {
         let at = if part == 4 { last } else { first + (last - first) * (f64::from(part) / 4.0) };
-        let _ = samples.push((at, slice(at)));
+        let _ = samples.push(slice(at));
     }
     loop {
         let (mut total, mut wide) = ([0.0, 0.0], Vec::<bool, MOST_AT_ONCE>::new());
@@ -206,8 +239,8 @@ fn in_range(slice: &impl Fn(f64) -> Sample, [first, last]: P2, [all, rows]: P2, 
         // From the last to the first, so that those before keep their places.
         for at in (0..steps).rev().filter(|at| wide.get(*at) == Some(&true)) {
             if let (Some(low), Some(high)) = (samples.get(at), samples.get(at + 1)) {
-                let middle = 0.5 * (low.0 + high.0);
-                let _ = samples.insert(at + 1, (middle, slice(middle)));
+                let middle = slice(0.5 * (low.at + high.at));
+                let _ = samples.insert(at + 1, middle);
             }
         }
     }
@@ -227,66 +260,47 @@ fn across<'a>(parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3]) -> usize 
 }
 
 /// Bounds of the volume between two slices, from them and those beside; `all` is the area of the window, `rows` its height.
-fn between(samples: &[(f64, Sample)], at: usize, [all, rows]: P2) -> P2 {
+fn between(samples: &[Sample], at: usize, [all, rows]: P2) -> P2 {
     let one = |n: usize| samples.get(n).copied();
-    let before = at.checked_sub(1).and_then(one);
-    let (Some(from), Some(to), after) = (one(at), one(at + 1), one(at + 2)) else { return [0.0; 2] };
-    let width = to.0 - from.0;
-    let root = |s: (f64, Sample)| match s.1 {
-        Sample::Root(bounds) => Some((s.0, bounds)),
-        _ => None,
-    };
-    // A line through an upper bound at `near`, and beyond it a lower one: its values at both ends.
-    let extended = |beyond: (f64, P2), near: (f64, P2)| {
-        let slope = (near.1[1] - beyond.1[0]) / (near.0 - beyond.0);
-        [from.0, to.0].map(|z| near.1[1] + slope * (z - near.0))
-    };
-    let line = |beyond: Option<(f64, Sample)>, near: (f64, Sample)| Some(extended(root(beyond?)?, root(near)?));
-    let above = [line(before, from), line(after, to)];
-    match (root(from), root(to)) {
+    let (Some(from), Some(to)) = (one(at), one(at + 1)) else { return [0.0; 2] };
+    let beside = [at.checked_sub(1).and_then(one), Some(from), Some(to), one(at + 2)];
+    let width = to.at - from.at;
+    let mean = lowest(lines(beside, |s| s.root_within()), Real::sqrt(all));
+    match (from.root(), to.root()) {
         (None, None) => {
             // What is common lies between two planes: nothing beyond a plane in which there is nothing.
-            let elsewhere = samples.iter().any(|s| root(*s).is_some());
-            let nothing = |s: Sample| match s {
-                Sample::NoRow(width) => width < 0.0,
-                Sample::Apart([_, most]) => most < 0.0,
-                Sample::Root(_) => false,
-            };
-            if elsewhere && (nothing(from.1) || nothing(to.1)) {
+            let some = |mut samples: core::slice::Iter<'_, Sample>| samples.any(|s| s.root().is_some());
+            let (before, after) = samples.split_at(at + 1);
+            if (from.is_empty() && some(before.iter())) || (to.is_empty() && some(after.iter())) {
                 return [0.0; 2];
             }
-            let length = longest(before, from, to, after, |s| match s {
-                Sample::Apart(bounds) => Some(bounds),
-                _ => None,
-            });
-            let height = longest(before, from, to, after, |s| match s {
-                Sample::NoRow(height) => Some([height; 2]),
-                _ => None,
-            });
-            [0.0, all.min(length.max(0.0) * rows).min(height.max(0.0) * (all / rows)) * width]
+            let length = greatest(lines(beside, |s| s.length));
+            let height = greatest(lines(beside, |s| s.height));
+            [0.0, mean.min(length.max(0.0) * rows).min(height.max(0.0) * (all / rows)) * width]
         }
         (p, q) => {
-            let low = |s: Option<(f64, P2)>| s.map_or(0.0, |s| s.1[0]);
-            let lower = if p.is_some() && q.is_some() { squares(low(p), low(q)) * width } else { 0.0 };
-            [lower, lowest(above, Real::sqrt(all)) * width]
+            let lower = if let (Some(p), Some(q)) = (p, q) { squares(p[0], q[0]) * width } else { 0.0 };
+            [lower, mean * width]
         }
     }
 }
 
-/// An upper bound between two slices of what is concave over heights, from bounds in them and in those beside; infinite if nothing is known.
-fn longest(
-    before: Option<(f64, Sample)>,
-    from: (f64, Sample),
-    to: (f64, Sample),
-    after: Option<(f64, Sample)>,
-    value: impl Fn(Sample) -> Option<P2>,
-) -> f64 {
-    let line = |beyond: Option<(f64, Sample)>, near: (f64, Sample)| {
-        let ((z, beyond), (y, near)) = ((beyond?.0, value(beyond?.1)?), (near.0, value(near.1)?));
-        let slope = (near[1] - beyond[0]) / (y - z);
-        Some([from.0, to.0].map(|z| near[1] + slope * (z - y)))
+/// Upper bounds of what is concave over heights between the middle two of four slices, by their values there: lines through a lower bound in
+/// an outer one and an upper bound in the one next to it; none where these are infinite.
+fn lines(beside: [Option<Sample>; 4], value: impl Fn(Sample) -> P2) -> [Option<P2>; 2] {
+    let line = |beyond: Option<Sample>, near: Option<Sample>, far: Option<Sample>| {
+        let (beyond, near, far) = (beyond?, near?, far?);
+        let ([lower, _], [_, upper]) = (value(beyond), value(near));
+        let there = upper + (upper - lower) / (near.at - beyond.at) * (far.at - near.at);
+        there.is_finite().then_some([upper, there])
     };
-    match [line(before, from), line(after, to)] {
+    let [before, from, to, after] = beside;
+    [line(before, from, to), line(after, to, from).map(|[near, far]| [far, near])]
+}
+
+/// The greatest value of the lower of two lines; infinite if there is none.
+fn greatest(lines: [Option<P2>; 2]) -> f64 {
+    match lines {
         [None, None] => f64::INFINITY,
         [Some(l), None] | [None, Some(l)] => l[0].max(l[1]),
         [Some(l), Some(r)] => {

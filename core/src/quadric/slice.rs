@@ -39,16 +39,19 @@ pub(super) struct Window {
     pub enough: f64,
 }
 
-/// What is found in a plane.
+/// Bounds that say nothing.
+const UNKNOWN: P2 = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// What some parts have in common in a plane, by lower and upper bounds.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Common {
-    /// No row meets all parts: the sum of the spans' heights exceeds that of the window by this length; negative, and concave over planes.
-    NoRow(f64),
-    /// Rows meet all parts, but no area was found: bounds of the greatest length in common, which is concave over planes. A positive upper
-    /// bound is rounding.
-    Apart([f64; 2]),
-    /// Lower and upper bound of the area.
-    Area([f64; 2]),
+pub(super) struct Common {
+    pub area: P2,
+    /// From the highest of the parts' lowest rows to the lowest of their highest ones: negative if no row meets all of them. A concave
+    /// function of where the plane is.
+    pub height: P2,
+    /// The greatest length that a row has in common, negative if there is a gap in all of them: concave, too. Infinite bounds where no row
+    /// meets all parts, where none could be computed, or where there certainly is an area.
+    pub length: P2,
 }
 
 /// Which function bounds a row: a wall by its number, an end by its number, or the window.
@@ -234,7 +237,7 @@ impl<'a, const N: usize> Slice<'a, N> {
         }
     }
 
-    /// By how much a boundary recedes as rows rise; infinite where a wall turns.
+    /// By how much a boundary moves as rows rise; infinite where a wall turns, not a number where it has no tangent.
     fn slope(&self, row: &Row<N>, side: Side, boundary: Boundary) -> f64 {
         match boundary {
             Boundary::Window => 0.0,
@@ -243,7 +246,13 @@ impl<'a, const N: usize> Slice<'a, N> {
                 let u = self.place(row, side, boundary);
                 self.walls.get(usize::from(n)).map_or(f64::NAN, |wall| {
                     let [gu, gv] = wall.gradient(u, row.v);
-                    -gv / gu
+                    // Outward on its side, whatever rounding makes of it.
+                    -gv / match side {
+                        Side::High if gu > 0.0 => gu,
+                        Side::High => 0.0,
+                        Side::Low if gu < 0.0 => gu,
+                        Side::Low => -0.0,
+                    }
                 })
             }
         }
@@ -257,42 +266,48 @@ impl<'a, const N: usize> Slice<'a, N> {
     /// What all parts have in common.
     pub fn common(&self) -> Common {
         let [first, last] = self.rows;
+        let width = self.window.u[1] - self.window.u[0];
+        let rounded = |[low, high]: P2| [low - self.noise, high + self.noise];
+        let mut found = Common { area: [0.0; 2], height: rounded([last - first; 2]), length: UNKNOWN };
         if !(first < last) {
-            return Common::NoRow((last - first).min(0.0));
+            return found;
         }
         let (Some(a), Some(b)) = (self.end_row(first, 1.0), self.end_row(last, -1.0)) else {
-            return Common::Apart([0.0, self.tie.get()]);
+            found.area[1] = (last - first) * width;
+            return found;
         };
         // What the rows beside the ends may hold that were left out.
-        let room = ((a.v - first) + (last - b.v)).max(0.0) * (self.window.u[1] - self.window.u[0])
-            + self.noise * (last - first + self.window.u[1] - self.window.u[0]);
-        match self.peak(&a, &b) {
-            Err(bounds) => Common::Apart(bounds),
-            Ok(peak) => {
-                let ((a, before), (b, behind)) = (self.begin(a, peak), self.begin(b, peak));
-                let lost = before + behind;
-                let (below, above) = (self.area(a, peak), self.area(peak, b));
-                let (low, high) = (below[0] + above[0], below[1] + above[1]);
-                Common::Area([(low - room).max(0.0), high + lost + room])
+        let room = ((a.v - first) + (last - b.v)).max(0.0) * width + self.noise * (last - first + width);
+        let (peak, most) = self.peak(&a, &b, self.tie.get());
+        if peak.length() > 0.0 {
+            let ((from, before), (to, behind)) = (self.begin(a, peak), self.begin(b, peak));
+            let (below, above) = (self.area(from, peak), self.area(peak, to));
+            found.area = [(below[0] + above[0] - room).max(0.0), below[1] + above[1] + before + behind + room];
+            if found.area[0] > 0.0 {
+                return found;
             }
+            // Of all rows, those too that `begin` has left out.
+            let (peak, most) = self.peak(&a, &b, f64::INFINITY);
+            found.length = rounded([peak.length(), most]);
+        } else {
+            found.area[1] = if most > 0.0 { most * (last - first) + room } else { 0.0 };
+            found.length = rounded([peak.length(), most]);
         }
+        found
     }
 
-    /// A row with something in common. Else bounds of the greatest length in common, the upper one not negative if it was not found out.
-    fn peak(&self, a: &Row<N>, b: &Row<N>) -> Result<Row<N>, P2> {
+    /// The first row found that has more than `enough` in common; if there is none, one that has nearly as much as any. And a length that no row
+    /// exceeds.
+    fn peak(&self, a: &Row<N>, b: &Row<N>, enough: f64) -> (Row<N>, f64) {
         let (mut a, mut b) = (*a, *b);
         let mut best = if a.length() > b.length() { a } else { b };
+        let mut most = self.window.u[1] - self.window.u[0];
         for turn in 0..60 {
-            let least = best.length();
-            if least > self.tie.get() {
-                return Ok(best);
-            }
             let width = b.v - a.v;
-            let (at, most) = below_tangents([a.length(), b.length()], [self.rise(&a), self.rise(&b)], width);
-            if most < 0.0 && most - least <= -0.25 * most {
-                return Err([least, most]);
-            }
-            if !(width > self.noise) || (turn > 40 && most <= self.tie.get()) {
+            let (at, tangents) = below_tangents([a.length(), b.length()], [self.rise(&a), self.rise(&b)], width);
+            most = most.min(tangents);
+            let close = 0.25 * most.abs().max(self.tie.get());
+            if best.length() > enough || most - best.length() <= close || !(width > self.noise) {
                 break;
             }
             let at = if turn % 4 == 3 { 0.5 * width } else { at.clamp(0.02 * width, 0.98 * width) };
@@ -300,9 +315,14 @@ impl<'a, const N: usize> Slice<'a, N> {
             if row.length() > best.length() {
                 best = row;
             }
-            if self.rise(&row) > 0.0 { a = row } else { b = row }
+            let rise = self.rise(&row);
+            match rise {
+                _ if rise > 0.0 => a = row,
+                _ if rise <= 0.0 => b = row,
+                _ => break,
+            }
         }
-        if best.length() > 0.0 { Ok(best) } else { Err([best.length(), self.tie.get()]) }
+        (best, most.max(best.length()))
     }
 
     /// Closes in on where the length in common begins, from a row at the end: a row where it is not negative, and what may lie beyond that.
@@ -311,11 +331,13 @@ impl<'a, const N: usize> Slice<'a, N> {
         if outer.length() >= -self.noise {
             return (outer, 0.0);
         }
-        let mut lost = f64::INFINITY;
+        let all = self.window.u[1] - self.window.u[0];
+        let mut lost = all * (inner.v - outer.v).abs();
         for _ in 0..60 {
             let width = inner.v - outer.v;
             // Between both it is not above the inner one's tangent.
-            let most = inner.length() + (-self.rise(&inner) * width).max(0.0);
+            let more = -self.rise(&inner) * width;
+            let most = if more <= 0.0 { inner.length() } else { (inner.length() + more).min(all) };
             lost = width.abs() * most;
             if lost <= self.window.enough / 64.0 || width.abs() <= self.noise {
                 break;
@@ -334,7 +356,7 @@ impl<'a, const N: usize> Slice<'a, N> {
                 if row.length() < 0.0 { outer = row } else { inner = row }
             }
         }
-        (inner, if lost.is_finite() { lost } else { 0.0 })
+        (inner, lost)
     }
 
     /// Bounds of the area between two rows with something in common, in either order.
@@ -514,12 +536,12 @@ impl<'a, const N: usize> Slice<'a, N> {
     }
 }
 
-/// The greatest value that a concave function can have on an interval of a width, from its values and slopes at the ends, and where; infinite
-/// slopes are allowed at ends.
+/// The greatest value that a concave function can have on an interval of a width, from its values and slopes at the ends, and where; slopes
+/// may be infinite, or not a number where they are not known.
 fn below_tangents([p, q]: P2, [up, down]: P2, width: f64) -> (f64, f64) {
-    if !(up > 0.0) {
+    if up <= 0.0 {
         (0.0, p)
-    } else if !(down < 0.0) {
+    } else if down >= 0.0 {
         (width, q)
     } else if up.is_finite() && down.is_finite() {
         let at = ((q - p - down * width) / (up - down)).clamp(0.0, width);

@@ -13,7 +13,7 @@ use crate::grid::cell_range::{CellRange, RangeKind};
 use crate::grid::fields::{Fields, Layer, accumulate};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::quadric::{AsQuadric, QuadricSolid, excess};
+use crate::quadric::{AsQuadric, QuadricSolid, share_of_union};
 use crate::subdivide::{QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, TooLittleMemory, share};
 use crate::surface::OtherBodies;
 
@@ -236,18 +236,12 @@ fn by_sections<V: Vector>(
     let real = V::Scalar::from_f64;
     let [min, max] = [place.min, place.max].map(|p| p.to_array().map(Real::to_f64));
     let sides = [0, 1, 2].map(|n: usize| [min[n], max[n]]);
-    let (mut size, mut flat) = (1.0, false);
-    for [lo, hi] in sides {
-        if lo < hi { size *= hi - lo } else { flat = true }
-    }
-    // Areas are exact but for rounding.
-    let enough = if flat { 1e-13 } else { rule.tol.to_f64() };
     let near = solids.iter().filter(|s| s.bounds.touches(*place)).map(|s| &s.formula);
-    let [low, high] = excess(near, sides, enough * size)?.map(|common| common / size);
-    let (lower, upper) = (sum - real(high), sum - real(low));
     // Shares were rounded, and their sum.
     let rounded = real(8.0) * V::Scalar::EPSILON * sum;
-    let bounds = Bounds { lower: (lower - rounded).max(V::Scalar::ZERO), upper: (upper + rounded).min(V::Scalar::ONE) };
+    let sum = Bounds { lower: (sum - rounded).to_f64(), upper: (sum + rounded).to_f64() };
+    let found = share_of_union(near, sides, sum, rule.tol.to_f64())?;
+    let bounds = Bounds { lower: real(found.lower), upper: real(found.upper) };
     (bounds.upper - bounds.lower <= real(2.0) * rule.tol).then_some(bounds)
 }
 

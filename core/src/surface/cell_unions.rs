@@ -8,6 +8,7 @@ use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group, Row, cells_touched};
 use crate::surface::union::{CellFractions, CellUnion, NoProof, UnionMemory};
 use core::ops::Range;
+use heapless::Vec;
 
 /// Bodies that enter a layer by another road than their triangles: known by formula, or subdivided. Their shares of a cell or face are
 /// given as bounds of their union, and they take no part in exact unions: a cell that they share with a surface is divided.
@@ -305,7 +306,10 @@ fn union<V: Vector, O: OtherBodies<V>>(
     })
 }
 
-/// The bodies of a row that reach a cell, ready to be united.
+/// Most bodies of a cell with which the others are compared.
+const MOST_COMPARED: usize = 32;
+
+/// The bodies of a row that reach a cell, ready to be united; of those that are the same there, one.
 pub(super) fn bodies_in<'u, V: Vector>(
     memory: UnionMemory<'u, V::Scalar>,
     site: &Site<V>,
@@ -314,12 +318,28 @@ pub(super) fn bodies_in<'u, V: Vector>(
     blur: V::Scalar,
 ) -> Result<CellUnion<'u, V::Scalar>, NoProof> {
     let mut union = CellUnion::new(memory, cell, blur);
-    for group in row.groups {
-        if group.bounds.max.x() > cell.min.x() && group.bounds.min.x() < cell.max.x() {
-            union.add(cell, false, site.bins.triangles(group), row.ids(group).iter().copied())?;
+    let mut different: Vec<&Group<V>, MOST_COMPARED> = Vec::new();
+    for group in row.groups.iter() {
+        if group.bounds.max.x() <= cell.min.x() || group.bounds.min.x() >= cell.max.x() {
+            continue;
         }
+        if different.iter().any(|other| are_same(site.bins, row, [other, group])) {
+            continue;
+        }
+        union.add(cell, false, site.bins.triangles(group), row.ids(group).iter().copied())?;
+        let _ = different.push(group);
     }
     Ok(union)
+}
+
+/// Have two bodies the same triangles in a row, in the same order?
+fn are_same<V: Vector>(bins: &Bins<V>, row: &Row<V>, [a, b]: [&Group<V>; 2]) -> bool {
+    let triangles = |group: &Group<V>| {
+        let all = bins.triangles(group);
+        row.ids(group).iter().map(move |&id| all.get(id as usize))
+    };
+    let corners = |group: &Group<V>| [group.bounds.min, group.bounds.max].map(Vector::to_array);
+    corners(a) == corners(b) && triangles(a).eq(triangles(b))
 }
 
 /// Finds the parts of a cell or of a part of one; none if depth, memory or effort is spent.

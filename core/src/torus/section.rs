@@ -72,10 +72,12 @@ const WAITING: usize = 48;
 /// A panel is halved so often at most.
 const MOST_HALVINGS: u8 = 36;
 
-/// Of thousands of faces of random tori none was off by a tenth of this more than both rules differed.
+/// Error of the quadrature that is added to the difference of both rules, as a share of a face. Measured: over thousands of faces of random
+/// tori the true error never exceeded that difference by more than a tenth of this.
 const MEASURED: f64 = 1e-10;
 
-/// What both rules may differ by, as a share. The coarser one is that far off, the finer one hardly ever.
+/// A panel is accepted where Gauss' and Kronrod's rules differ by less than this share. The difference is the error of Gauss' rule; that of
+/// Kronrod's, which is used, is far smaller.
 const ERROR: f64 = 1e-12;
 
 /// Nodes and weights of Kronrod's rule, and of Gauss' in every other node; the last is the middle.

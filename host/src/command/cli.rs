@@ -2,6 +2,7 @@
 
 use crate::command::version::VERSION;
 use crate::geometry::unit::Unit;
+use crate::grid::AXES;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
 use crate::porosity::{Leaf, Method};
@@ -342,7 +343,7 @@ fn parse_spacing(text: &str) -> Result<f64, String> {
 
 fn parse_slice(text: &str) -> Result<(usize, f64), String> {
     let (axis, at) = text.split_once('=').ok_or("needs an axis and a coordinate, such as x=1.5")?;
-    let axis = ["x", "y", "z"].iter().position(|name| *name == axis.trim()).ok_or("the axis is x, y or z")?;
+    let axis = AXES.iter().position(|name| *name == axis.trim()).ok_or("the axis is x, y or z")?;
     let at = at.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or("needs a coordinate in metres")?;
     Ok((axis, at))
 }

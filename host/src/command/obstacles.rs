@@ -2,6 +2,7 @@
 
 use super::progress::Progress;
 use crate::geometry::bodies::{Bodies, Body};
+use crate::grid::AXES;
 use crate::picture::ticks::measure;
 use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use crate::porosity::resistance::{Resistance, resistance};
@@ -88,7 +89,7 @@ fn warn_of_doubt(bodies: &Bodies, found: &Resistance, progress: &mut Progress) {
 
 /// What blocks a cell between two open faces is not seen by the flow.
 fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Progress) {
-    for (axis, hidden) in ["x", "y", "z"].into_iter().zip(shadows.hidden) {
+    for (axis, hidden) in AXES.into_iter().zip(shadows.hidden) {
         let Some([i, j, k]) = hidden.first else { continue };
         progress.warn(format!(
             "{}: {} cells are blocked along {axis} by more than {:.0} % between two faces that show nothing of it, the first at cell {i}, {j}, {k} \

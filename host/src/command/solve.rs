@@ -1,16 +1,20 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`],
+//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`], [`pascals`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`], [`force_peaks`],
 //! [`table`], [`checkpoint`], [`report`], what it writes; [`refine`], the same case on half the cells; [`run`].
 
 mod arrays;
 pub mod case;
 pub mod checkpoint;
 pub mod force;
+pub mod force_peaks;
 pub mod frames;
 pub mod inlet;
+pub mod limits;
 pub mod maxima;
+pub mod pascals;
 pub mod pictures;
+pub mod places;
 pub mod refine;
 pub mod regions;
 pub mod report;
@@ -20,4 +24,5 @@ pub mod sides;
 pub mod solids;
 pub mod space;
 pub mod state;
+pub mod stepping;
 pub mod table;

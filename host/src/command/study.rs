@@ -52,13 +52,13 @@ pub fn study(args: &StudyArgs) -> Result<()> {
     let mut session = Session::new(&mut progress, dir, name, found::plan(&case), args.force);
     let found = found::measure(&case, &scenes, command_line(), &mut session)?;
     match dir {
-        Some(dir) => write(&found, dir, &mut progress),
+        Some(dir) => write(found, dir, &mut progress),
         None => print(format!("{}\n", page::markdown(&found, &[])).as_bytes()),
     }
 }
 
 /// Writes the files of a directory.
-fn write(found: &StudyFindings, dir: &Path, progress: &mut Progress) -> Result<()> {
+fn write(mut found: StudyFindings, dir: &Path, progress: &mut Progress) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| Error::io(dir, "create the directory", &e))?;
     let put = |name: &str, text: &str| atomically(&dir.join(name), |out| out.write_all(text.as_bytes()));
     let tables = [
@@ -70,8 +70,7 @@ fn write(found: &StudyFindings, dir: &Path, progress: &mut Progress) -> Result<(
     for (name, table) in tables.iter().filter(|(_, table)| !table.rows.is_empty()) {
         put(name, &table.csv())?;
     }
-    let pictures = pictures::pictures(found);
-    put("study.md", &page::markdown(found, &pictures))?;
+    let pictures = pictures::pictures(&found);
     let mut drawn = false;
     for (name, picture) in &pictures {
         if let (Some(canvas), Some(svg)) = (picture.canvas(), picture.svg()) {
@@ -83,6 +82,8 @@ fn write(found: &StudyFindings, dir: &Path, progress: &mut Progress) -> Result<(
     if !drawn {
         progress.warn("no picture: nothing in this study has an error to draw");
     }
-    put("study.html", &page::html(found, &pictures))?;
-    json::write(&dir.join("study.json"), &found.report(&progress.warnings))
+    found.warnings.clone_from(&progress.warnings);
+    put("study.md", &page::markdown(&found, &pictures))?;
+    put("study.html", &page::html(&found, &pictures))?;
+    json::write(&dir.join("study.json"), &found.report())
 }

@@ -8,8 +8,8 @@
 
 use super::{Edges, MAX_AXIS, few_enough};
 use crate::error::{Error, Result};
-use crate::keys::reader::{misfit, not_known};
-use crate::keys::value::Value;
+use crate::keys::reader::{meant, misfit, nearest, not_known};
+use crate::keys::value::{Entry, Value};
 use crate::keys::{self, PlacedValue, Source};
 use glam::DVec3;
 use serde::Deserialize;
@@ -138,7 +138,11 @@ impl GridTable {
         wrong: &dyn Fn(&str, String) -> Error,
     ) -> Result<Edges> {
         let (Some(origin), Some(spacing), Some(cells)) = (&self.origin, &self.spacing, &self.cells) else {
-            return Err(whole("a grid needs x, y, z or origin, spacing, cells"));
+            let all = [self.origin.is_some(), self.spacing.is_some(), self.cells.is_some()];
+            let absent: Vec<&str> =
+                KEYS[3..].iter().zip(all).filter(|(_, given)| !given).map(|(key, _)| *key).collect();
+            let absent = if absent.len() < 3 { format!("; {} missing", and_are(&absent)) } else { String::new() };
+            return Err(whole(&format!("a grid needs x, y, z or origin, spacing, cells{absent}")));
         };
         let (axes, least) = (cells.len(), if fewer_axes { 1 } else { 3 });
         for (key, n) in [("cells", axes), ("origin", origin.len()), ("spacing", spacing.len())] {
@@ -155,11 +159,27 @@ impl GridTable {
     }
 }
 
+/// Names, and whether one of them is or several are.
+fn and_are(names: &[&str]) -> String {
+    format!("{} {}", names.join(", "), if names.len() == 1 { "is" } else { "are" })
+}
+
 /// Why a grid does not name another file where it may not.
 const FILE_ELSEWHERE: &str = "only the grid of a case of voidage solve may stand in another file: give --grid";
 
 /// Keys that other programs write beside the edges and that say nothing new.
 const HARMLESS: [&str; 6] = ["nx", "ny", "nz", "uniform", "name", "comment"];
+
+/// A key that is not known, and the key of a grid that lacks it for which it may be a slip of the pen.
+fn slip<'a>(strange: &'a [Entry], known: &[Entry]) -> Option<(&'a Entry, &'static str)> {
+    let has = |key: &str| known.iter().any(|e| e.key == key);
+    let whole = |keys: &[&str]| keys.iter().all(|key| has(key));
+    let absent: Vec<&'static str> = match whole(&KEYS[..3]) || whole(&KEYS[3..]) {
+        true => Vec::new(),
+        false => KEYS.into_iter().filter(|key| !has(key)).collect(),
+    };
+    strange.iter().find_map(|e| nearest(&e.key, &absent).map(|key| (e, key)))
+}
 
 /// Read a grid file.
 ///
@@ -197,10 +217,17 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
             (entry.span.clone(), "this file holds a [grid] among others: a grid file is the grid alone");
         return Err(misfit(&source, (span, reason.into())));
     }
-    for entry in entries.iter().filter(|e| !KEYS.contains(&&e.key[..]) && !HARMLESS.contains(&&e.key[..])) {
-        warnings.push(format!("{}: key {}: not known, ignored", path.display(), entry.key));
+    let strange: Vec<Entry> =
+        entries.extract_if(.., |e| !KEYS.contains(&&e.key[..])).filter(|e| !HARMLESS.contains(&&e.key[..])).collect();
+    if let Some((entry, key)) = slip(&strange, &entries) {
+        let quoted = || text.find(&format!("\"{}\"", entry.key)).map(|at| at..at + entry.key.len() + 2);
+        let reason = format!("key {} is not known here; did you mean {key}?", entry.key);
+        return Err(misfit(&source, (entry.span.clone().or_else(quoted), reason)));
     }
-    entries.retain(|e| KEYS.contains(&&e.key[..]));
+    for entry in strange {
+        let meant = meant(&entry.key, &KEYS);
+        warnings.push(format!("{}: key {}: not known, ignored{meant}", path.display(), entry.key));
+    }
     let table = PlacedValue { value: Value::Table(entries), span: node.span };
     let spec: GridTable = keys::read(&source, &table, "")?;
     if spec.x.is_some() && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some()) {

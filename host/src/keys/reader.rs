@@ -66,8 +66,7 @@ impl de::Error for Wrong {
     }
 
     fn unknown_variant(word: &str, known: &'static [&'static str]) -> Self {
-        let near = nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near}?"));
-        Wrong::custom(format!("\"{word}\" is not known: {}{near}", known.join(", ")))
+        Wrong::custom(format!("\"{word}\" is not known: {}{}", known.join(", "), meant(word, known)))
     }
 
     fn missing_field(field: &'static str) -> Self {
@@ -91,12 +90,21 @@ fn kind(found: &Unexpected) -> &'static str {
 /// That a key is not known, what may be meant, and what is.
 #[must_use]
 pub fn not_known(key: &str, known: &[&str]) -> String {
-    let near = nearest(key, known).map_or_else(String::new, |near| format!("; did you mean {near}?"));
-    format!("is not known here{near} (known: {})", known.join(", "))
+    format!("is not known here{} (known: {})", meant(key, known), known.join(", "))
+}
+
+/// What may be meant by a word, as the end of a sentence; nothing, if none of those known is near.
+#[must_use]
+pub fn meant(typed: &str, known: &[&str]) -> String {
+    let velocity = ["u", "v", "w"];
+    if typed == "velocity" && velocity.iter().all(|u| known.contains(u)) {
+        return "; did you mean u, v, w, the velocities along x, y, z?".to_owned();
+    }
+    nearest(typed, known).map_or_else(String::new, |near| format!("; did you mean {near}?"))
 }
 
 /// Words that others use, and ours.
-const OTHERS_SAY: [(&str, &str); 20] = [
+const OTHERS_SAY: [(&str, &str); 24] = [
     ("pipe", "cylinder"),
     ("tube", "cylinder"),
     ("rod", "cylinder"),
@@ -117,6 +125,10 @@ const OTHERS_SAY: [(&str, &str); 20] = [
     ("slip", "wall"),
     ("symmetry", "wall"),
     ("extrapolate", "zero-gradient"),
+    ("temperature", "T"),
+    ("pressure", "p"),
+    ("density", "rho"),
+    ("centre", "center"),
 ];
 
 /// The known word that means what was typed, or differs least from it, if it differs little.
@@ -128,7 +140,8 @@ pub fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     }
     let far = |word: &str| (distance(typed, word), word.len());
     let near = known.iter().copied().min_by_key(|word| far(word))?;
-    (far(near).0 <= 1 + typed.chars().count() / 4).then_some(near)
+    let (apart, letters) = (far(near).0, typed.chars().count());
+    (apart <= 1 + letters / 4 && (apart < letters || near.eq_ignore_ascii_case(typed))).then_some(near)
 }
 
 /// Letters to insert, delete, replace or swap with their neighbour to make one word of the other (optimal string alignment).
@@ -187,6 +200,10 @@ impl Reader<'_> {
             }
             Value::Whole(n) => {
                 Err(self.place(de::Error::custom(format!("takes a whole number up to {high}, not {n}"))))
+            }
+            Value::Number(x) => {
+                let hint = if x.fract() == 0.0 { ": without a point or an exponent" } else { "" };
+                Err(self.place(de::Error::custom(format!("takes a whole number, not {x:?}{hint}"))))
             }
             _ => Err(self.takes("a whole number")),
         }

@@ -1,5 +1,6 @@
 //! The text of a file, for messages that show the place: line, column, the line itself with a mark.
 
+use super::slips::in_words;
 use super::value::{PlacedValue, Value};
 use crate::error::{Error, Result, excerpt};
 use std::ops::Range;
@@ -30,8 +31,12 @@ impl<'a> Source<'a> {
     /// It is none.
     pub fn toml(&self) -> Result<toml::Spanned<DeTable<'a>>> {
         DeTable::parse(self.text).map_err(|e| {
-            let reason = e.message().lines().collect::<Vec<_>>().join(", ");
-            e.span().map_or_else(|| Error::file(self.path, &reason), |span| self.error(span, &reason))
+            let span = e.span().unwrap_or(0..0);
+            let reason = in_words(self.text, &span, e.message());
+            match e.span() {
+                Some(span) => self.error(span, reason),
+                None => Error::file(self.path, reason),
+            }
         })
     }
 

@@ -14,6 +14,7 @@ use super::colour::ColourMap;
 use super::heatmap::{Area, EdgeAxis, Heatmap, NORMAL, SMALL, pointer, triangle};
 use super::ticks::{number, number_to, ticks};
 use crate::error::{Error, Result};
+use crate::grid::AXES;
 use layout::{BAR, Layout, Panel, Rooms};
 
 /// Marks where the other slices lie.
@@ -27,9 +28,6 @@ const HEAD: usize = 64;
 
 /// Explains the pointers.
 const LEGEND: &str = "where the other slices are";
-
-/// Names of the axes.
-const NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// What the figure shows.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +105,7 @@ impl Figure<'_> {
     }
 
     fn check(&self) -> std::result::Result<[usize; 3], String> {
-        for (edges, name) in self.edges.iter().zip(NAMES) {
+        for (edges, name) in self.edges.iter().zip(AXES) {
             let ascending = edges.windows(2).all(|w| w[0] < w[1]);
             let finite = edges.len() > 1 && (edges[edges.len() - 1] - edges[0]).is_finite();
             if !(ascending && finite) {
@@ -126,7 +124,7 @@ impl Figure<'_> {
     }
 
     fn axis(&self, axis: usize) -> EdgeAxis<'_> {
-        EdgeAxis { name: NAMES[axis], unit: self.unit, edges: self.edges[axis] }
+        EdgeAxis { name: AXES[axis], unit: self.unit, edges: self.edges[axis] }
     }
 
     /// Centre of the cells that the slice across an axis shows.
@@ -185,12 +183,12 @@ impl Figure<'_> {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         let place = format!(
             "{} = {}{unit}   [{}]",
-            NAMES[axis],
+            AXES[axis],
             number_to(self.position(axis), self.cell_size(axis) / 100.0),
             index.join(", ")
         );
         match panel.stretched {
-            Some((axis, factor)) => format!("{place}   {} drawn × {}", NAMES[axis], number(rounded(factor))),
+            Some((axis, factor)) => format!("{place}   {} drawn × {}", AXES[axis], number(rounded(factor))),
             None => place,
         }
     }

@@ -19,6 +19,8 @@ pub struct Panels {
     pub panels: Vec<Panel>,
     /// What is not larger than this lies on the floor: what the legend calls the floor.
     pub floor: Option<(f64, String)>,
+    /// Names of the tints that tell marks of one colour apart, and the share of white within them, 0 to 1.
+    pub tints: Vec<(String, f64)>,
     /// Meaning of squares, rings and bars.
     pub square: String,
     /// Of rings; empty if there are none.
@@ -66,6 +68,8 @@ pub struct Mark {
     pub square: bool,
     /// With a ring around it.
     pub ring: bool,
+    /// Its tint by its number, if it has one.
+    pub tint: Option<usize>,
 }
 
 impl Panel {
@@ -98,6 +102,10 @@ const ROW: f64 = 20.0;
 /// Height of the floor.
 const FLOOR: f64 = 20.0;
 const MARKER: f64 = 6.5;
+/// Side of a square mark.
+const SQUARE: f64 = 8.0;
+/// What the rim of a tinted mark takes of its width.
+const RIM: f64 = 2.4;
 const SMALL: Style = Style { height: 8.5, colour: GREY, along: 0.0, up: 0.5, turned: false };
 const PLAIN: Style = Style { height: 9.5, colour: INK, along: 0.0, up: 0.5, turned: false };
 
@@ -186,6 +194,7 @@ impl Panels {
     fn legend(&self) -> Vec<(Symbol, String)> {
         let mut all: Vec<(Symbol, String)> =
             self.series.iter().enumerate().map(|(n, name)| (Symbol::Disc(n), name.clone())).collect();
+        all.extend(self.tints.iter().map(|(name, white)| (Symbol::Tint(*white), name.clone())));
         let any = |of: fn(&Mark) -> bool| self.marks().any(of);
         if any(|m| m.square) {
             all.push((Symbol::Square, self.square.clone()));
@@ -208,7 +217,8 @@ impl Panels {
         let (mut places, mut at, mut right): (Vec<[f64; 2]>, _, _) = (Vec::new(), corner, 0.0_f64);
         for (n, (_, text)) in self.legend().iter().enumerate() {
             let own = text_width(text, PLAIN.height) + 46.0;
-            if at[0] > corner[0] && (at[0] + own > width || n == self.series.len()) {
+            let first = n == self.series.len() || n == self.series.len() + self.tints.len();
+            if at[0] > corner[0] && (at[0] + own > width || first) {
                 at = [corner[0], at[1] + ROW];
             }
             places.push(at);
@@ -335,14 +345,30 @@ impl Panels {
                 sheet.line([at[0], a], [at[0], b], 1.0, ink);
                 [a, b].iter().for_each(|&y| sheet.line([at[0] - 3.0, y], [at[0] + 3.0, y], 1.0, ink));
             }
-            match mark.square {
-                true => sheet.fill([at[0] - 4.0, at[1] - 4.0], [8.0, 8.0], ink),
-                false => sheet.disc(at, MARKER, ink),
-            }
+            let white = mark.tint.and_then(|n| self.tints.get(n)).map_or(0.0, |(_, white)| *white);
+            draw_mark(at, mark.square, [ink, tinted(ink, white)], sheet);
             if mark.ring {
                 sheet.ring(at, 2.0 * MARKER, 1.2, INK);
             }
         }
+    }
+}
+
+/// A colour with a share of white.
+fn tinted(colour: Colour, white: f64) -> Colour {
+    colour.map(|c| (f64::from(c) + white * (255.0 - f64::from(c))).round() as u8)
+}
+
+/// A square or a disc: its rim, and within it its tint.
+fn draw_mark(at: [f64; 2], square: bool, [rim, within]: [Colour; 2], sheet: &mut dyn Sheet) {
+    let mut centred = |size: f64, ink: Colour| match square {
+        true => sheet.fill(at.map(|x| x - 0.5 * size), [size; 2], ink),
+        false => sheet.disc(at, size, ink),
+    };
+    let size = if square { SQUARE } else { MARKER };
+    centred(size, rim);
+    if within != rim {
+        centred(size - RIM, within);
     }
 }
 
@@ -354,6 +380,7 @@ fn slope_width(text: &str) -> f64 {
 /// What stands before an entry of the legend.
 enum Symbol {
     Disc(usize),
+    Tint(f64),
     Square,
     Ring,
     Bar,
@@ -364,7 +391,8 @@ impl Symbol {
     fn draw(&self, at: [f64; 2], sheet: &mut dyn Sheet) {
         match self {
             Symbol::Disc(series) => sheet.disc(at, MARKER, colour(*series)),
-            Symbol::Square => sheet.fill([at[0] - 4.0, at[1] - 4.0], [8.0, 8.0], GREY),
+            Symbol::Tint(white) => draw_mark(at, false, [GREY, tinted(GREY, *white)], sheet),
+            Symbol::Square => draw_mark(at, true, [GREY; 2], sheet),
             Symbol::Ring => sheet.ring(at, 2.0 * MARKER, 1.2, INK),
             Symbol::Bar => {
                 sheet.line([at[0] - 6.0, at[1]], [at[0] + 6.0, at[1]], 1.0, GREY);

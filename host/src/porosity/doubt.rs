@@ -53,7 +53,7 @@ pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, f
         if cells.iter().any(Range::is_empty) {
             continue;
         }
-        // Of a cell's height along each axis, what a shift of all surface on two sides makes out.
+        // If all surface moved by the rounding on both sides, a cell would change by this share of its width.
         let share = |axis: usize| {
             let widths = grid.edges(axis)[cells[axis].start..=cells[axis].end].windows(2).map(|w| w[1] - w[0]);
             2.0 * body.rounding / widths.fold(f64::INFINITY, f64::min)

@@ -15,6 +15,7 @@ pub struct Memory<R> {
     beta: [[R; 13 * 36 + 72]; 4],
     state: [[R; COUNT]; 5],
     points: [R; 24],
+    case: Case<R>,
     /// Work of the calls.
     pub work: [u64; 32 << 10],
 }
@@ -196,7 +197,7 @@ pub fn porosity<R: Api>(memory: &mut Memory<R>) -> Hash {
     hash
 }
 
-/// Two balls that overlap, by formula, and by subdivision where they share cells.
+/// Two balls that overlap, by formula, and by sections where they share cells.
 pub fn balls<R: Api>(memory: &mut Memory<R>) -> Hash {
     let (grid, fractions) = (memory.grid(), memory.fractions());
     let solids = [1.1, 1.9].map(|x| {
@@ -214,14 +215,37 @@ pub fn balls<R: Api>(memory: &mut Memory<R>) -> Hash {
     hash
 }
 
+/// A ball by subdivision alone, by the functions of the core.
+pub fn subdivision<R: Api>(memory: &mut Memory<R>) -> Hash {
+    use voidage_core::convex::shape::Sphere;
+    use voidage_core::grid::{Grid, cell_range::CellRange, cell_range::RangeKind};
+    use voidage_core::number::real::Vector;
+    use voidage_core::subdivide::{Candidate, LeafRule, SubdivisionMemory, SubdivisionRule, subdivide};
+
+    let mut hash = Hash(0);
+    memory.grid();
+    let [x, y, z] = &memory.edges;
+    let Ok(grid) = Grid::new(x, &y[..7], &z[..7]) else { return hash };
+    let ball = Sphere { center: R::Vector::from_array([1.1, 0.7, 0.8].map(R::from_f64)), radius: R::HALF };
+    let rule = SubdivisionRule { leaf: LeafRule::Plane, depth: 3, tol: R::from_f64(1e-3) };
+    let mut lists = SubdivisionMemory { candidates: &mut [Candidate::default(); 8], facets: &mut [0; 8] };
+    for kind in [RangeKind::Cells, RangeKind::Faces(0), RangeKind::Faces(1), RangeKind::Faces(2)] {
+        let all = CellRange::all(&grid, kind);
+        let found =
+            subdivide(&grid, kind, all, &[ball], rule, &mut lists, |_, share| hash.values(&[share.lower, share.upper]));
+        hash.mix(found.map_or(0, |count| count.queries as u64));
+    }
+    hash
+}
+
 /// 100 steps of gas around the box, in three dimensions.
 pub fn flow<R: Api>(memory: &mut Memory<R>) -> Hash {
     let mut hash = porosity(memory);
     let grid = memory.grid();
-    let mut case: Case<R> = zeroed();
+    let [v, x, y, z] = memory.beta.each_ref().map(|field| field.as_ptr());
+    let case = &mut memory.case;
     case.grid = grid;
     case.gamma = R::from_f64(1.4);
-    let [v, x, y, z] = memory.beta.each_ref().map(|field| field.as_ptr());
     (case.beta_v, case.beta) = (v, [x, y, z]);
     let u = [R::HALF, R::ZERO, R::ZERO];
     case.side[0] = Boundary { kind: 3, rho: R::ONE, u, p: R::ONE, relax: R::ZERO };
@@ -231,7 +255,7 @@ pub fn flow<R: Api>(memory: &mut Memory<R>) -> Hash {
     let (work, bytes) = (memory.work.as_mut_ptr().cast(), size_of_val(&memory.work));
     let (mut handle, mut rate, mut report) = (null_mut(), R::ZERO, StepReport::default());
     unsafe {
-        hash.mix(R::flow_init(&case, work, bytes, &mut handle, null_mut()) as u64);
+        hash.mix(R::flow_init(&memory.case, work, bytes, &mut handle, null_mut()) as u64);
         hash.mix(R::flow_set(handle, one, null(), null(), null(), one, null_mut()) as u64);
         hash.mix(R::flow_rate(handle, &mut rate, null_mut()) as u64);
         for _ in 0..100 {
@@ -249,6 +273,13 @@ pub fn flow<R: Api>(memory: &mut Memory<R>) -> Hash {
 pub type Job<R> = (&'static str, fn(&mut Memory<R>) -> Hash);
 
 /// All jobs.
-pub const fn all<R: Api>() -> [Job<R>; 5] {
-    [("gjk", gjk), ("exact", exact), ("porosity", porosity), ("balls", balls), ("flow", flow)]
+pub const fn all<R: Api>() -> [Job<R>; 6] {
+    [
+        ("gjk", gjk),
+        ("exact", exact),
+        ("porosity", porosity),
+        ("balls", balls),
+        ("subdivision", subdivision),
+        ("flow", flow),
+    ]
 }

@@ -201,7 +201,8 @@ impl<R: Real, const D: usize> State<R, D> {
     /// The next field by a step of `dt`.
     fn attempt(&mut self, dt: R) -> Answer<Report<R, D>> {
         let [old, new] = &mut self.fields;
-        let problem = self.setup.problem()?;
+        let problem = self.setup.problem();
+        let problem = problem.as_ref().map_err(|&refusal| refusal)?;
         Ok(problem.step(&old.view(), &mut new.view_mut(), dt, self.flags, self.scratch)?)
     }
 
@@ -222,13 +223,11 @@ impl<R: Real, const D: usize> State<R, D> {
         Ok(relax(&mut self.setup, &self.fields[0].view(), dt)?)
     }
 
-    /// One step, whatever its stability.
-    pub fn step(&mut self, dt: R) -> Answer<StepReport<R>> {
+    /// One step, whatever its stability; `total` learns what it did.
+    pub fn step(&mut self, dt: R, total: &mut StepReport<R>) -> Answer {
         self.rate()?;
-        let report = self.attempt(dt)?;
-        let mut total = StepReport::default();
-        self.accept(dt, &report, &mut total)?;
-        Ok(total)
+        let report = self.attempt(dt);
+        self.accept(dt, report.as_ref().map_err(|&refusal| refusal)?, total)
     }
 
     /// Stable steps until `end`, or until `most` have been done; what has been done counts whatever the answer.

@@ -1,10 +1,12 @@
 //! The exact distance, rounded at the end.
 
-use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, V1, V2, cross, dot, is_zero, minus};
+use super::integer::{Degree2, Degree4, Int, Int3, V1, V2, cross, dot, is_zero, minus};
 use super::lattice::{CoordinateLattice, NotFinite, one, times_power};
 use super::search::LatticePair;
 use crate::convex::shape::Vertices;
+use crate::convex::support::ScalarOf;
 use crate::number::real::{Real, Vector};
+use crate::number::words::Words;
 
 /// An exact distance, rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,19 +30,21 @@ where
     let search = pair.search(hint, false);
     let points = search.simplex.as_slice();
     let (sq, weights) = match points {
-        [p] => (Ratio::new(dot::<_, _, DEGREE_4>(&p.w, &p.w), one()), [one(), Int::ZERO, Int::ZERO]),
+        [p] => (Ratio::new(dot::<_, _, Degree4<ScalarOf<A>>>(&p.w, &p.w), one()), [one(), Int::ZERO, Int::ZERO]),
         [p, q] => {
             let e = minus(&q.w, &p.w);
-            let area: V2 = cross(&p.w, &e);
-            let weights = [dot(&q.w, &e), dot::<_, _, DEGREE_4>(&p.w, &e).negated(), Int::ZERO];
-            (Ratio::new(dot(&area, &area), dot(&e, &e)), weights)
+            let area: V2<ScalarOf<A>> = cross(&p.w, &e);
+            let weights = [dot(&q.w, &e), dot::<_, _, Degree4<ScalarOf<A>>>(&p.w, &e).negated(), Int::ZERO];
+            (Ratio::new::<Degree4<ScalarOf<A>>>(dot(&area, &area), dot(&e, &e)), weights)
         }
         [p, q, r] => {
-            let n: V2 = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
-            let height: Int<DEGREE_3> = dot(&n, &p.w);
-            let part = |x: &V1, y: &V1| dot::<_, _, DEGREE_4>(&n, &cross::<_, _, DEGREE_2>(x, y));
+            let n: V2<ScalarOf<A>> = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
+            let height: Int3<ScalarOf<A>> = dot(&n, &p.w);
+            let part = |x: &V1<ScalarOf<A>>, y: &V1<ScalarOf<A>>| {
+                dot::<_, _, Degree4<ScalarOf<A>>>(&n, &cross::<_, _, Degree2<ScalarOf<A>>>(x, y))
+            };
             let weights = [part(&q.w, &r.w), part(&r.w, &p.w), part(&p.w, &q.w)];
-            (Ratio::square_over(height, dot(&n, &n)), weights)
+            (Ratio::square_over(height, dot::<_, _, Degree4<ScalarOf<A>>>(&n, &n)), weights)
         }
         _ => (Ratio { m: 0.0, e: 0 }, [one(), Int::ZERO, Int::ZERO]),
     };
@@ -73,12 +77,12 @@ struct Ratio {
 }
 
 impl Ratio {
-    fn new(numerator: Int<DEGREE_4>, denominator: Int<DEGREE_4>) -> Self {
+    fn new<W: Words>(numerator: Int<W>, denominator: Int<W>) -> Self {
         let ((m, e), (n, f)) = (numerator.as_float(), denominator.as_float());
         Ratio { m: m / n, e: e - f }
     }
 
-    fn square_over(root: Int<DEGREE_3>, denominator: Int<DEGREE_4>) -> Self {
+    fn square_over(root: Int<impl Words>, denominator: Int<impl Words>) -> Self {
         let ((m, e), (n, f)) = (root.as_float(), denominator.as_float());
         Ratio { m: m * m / n, e: 2 * e - f }
     }

@@ -1,50 +1,53 @@
 //! Integers of a fixed capacity, and vectors of them.
 //!
-//! Every finite `f64` is a multiple of 2⁻¹⁰⁷⁴ below 2¹⁰²⁴ in absolute value. In units of the lowest bit that occurs, a coordinate therefore
-//! has at most 2098 bits, and a difference of two differences 2100. A number of degree `k` below is a sum of at most six products of `k` such
-//! values (for the degrees 2, 3 and 4: at most 2⁴²⁰², 2⁶³⁰³, 2⁸⁴⁰⁴), and fits `33 k` words of 64 bits. Nothing overflows, and nothing
-//! underflows. The usual numbers have a few words only, and only those are worked on.
+//! The unit is the lowest bit that occurs in a query; how many words a degree needs is told where the words are, in [`crate::number::words`].
+//! Nothing overflows, and nothing underflows. The usual numbers have a few words only, and only those are worked on.
 
+use crate::number::words::{ExactWords, Words};
 use core::cmp::Ordering;
 
-/// Words of a number of degree 1.
-pub const DEGREE_1: usize = 33;
-/// Words of a number of degree 2.
-pub const DEGREE_2: usize = 2 * DEGREE_1;
-/// Words of a number of degree 3.
-pub const DEGREE_3: usize = 3 * DEGREE_1;
-/// Words of a number of degree 4.
-pub const DEGREE_4: usize = 4 * DEGREE_1;
+/// Words of degree 2.
+pub type Degree2<R> = <R as ExactWords>::Degree2;
+/// Words of degree 3.
+pub type Degree3<R> = <R as ExactWords>::Degree3;
+/// Words of degree 4.
+pub type Degree4<R> = <R as ExactWords>::Degree4;
 
-/// A signed integer of at most `N` words.
+/// An integer of degree 1.
+pub type Int1<R> = Int<<R as ExactWords>::Degree1>;
+/// An integer of degree 2.
+pub type Int2<R> = Int<Degree2<R>>;
+/// An integer of degree 3.
+pub type Int3<R> = Int<Degree3<R>>;
+/// An integer of degree 4.
+pub type Int4<R> = Int<Degree4<R>>;
+
+/// A vector of degree 1: a difference of vertices.
+pub type V1<R> = [Int1<R>; 3];
+/// A vector of degree 2: a product of differences.
+pub type V2<R> = [Int2<R>; 3];
+/// A vector of degree 3: a direction.
+pub type V3<R> = [Int3<R>; 3];
+
+/// A signed integer of a fixed capacity.
 #[derive(Clone, Copy, Debug)]
-pub struct Int<const N: usize> {
+pub struct Int<W> {
     negative: bool,
     /// Words in use; the highest of them is not zero.
     len: usize,
-    words: [u64; N],
+    words: W,
 }
 
-/// Three such integers.
-pub type Vec3<const N: usize> = [Int<N>; 3];
-
-/// A vector of degree 1: a difference of vertices.
-pub type V1 = Vec3<DEGREE_1>;
-/// A vector of degree 2: a product of differences.
-pub type V2 = Vec3<DEGREE_2>;
-/// A vector of degree 3: a direction.
-pub type V3 = Vec3<DEGREE_3>;
-
-impl<const N: usize> Int<N> {
+impl<W: Words> Int<W> {
     /// 0.
-    pub const ZERO: Self = Int { negative: false, len: 0, words: [0; N] };
+    pub const ZERO: Self = Int { negative: false, len: 0, words: W::ZERO };
 
     /// `mantissa · 2^shift`; bits above the capacity are lost.
     pub fn shifted(negative: bool, mantissa: u64, shift: u32) -> Self {
         let mut out = Self::ZERO;
         let (skip, bits) = ((shift / 64) as usize, shift % 64);
         let wide = u128::from(mantissa) << bits;
-        for (word, part) in out.words.iter_mut().skip(skip).zip([wide as u64, (wide >> 64) as u64]) {
+        for (word, part) in out.words.as_mut().iter_mut().skip(skip).zip([wide as u64, (wide >> 64) as u64]) {
             *word = part;
         }
         out.negative = negative;
@@ -54,7 +57,7 @@ impl<const N: usize> Int<N> {
     /// The same number, its length set to that of its words below `len`.
     fn trimmed(mut self, len: usize) -> Self {
         self.len = 0;
-        for (i, &word) in self.words.iter().enumerate().take(len) {
+        for (i, &word) in self.words.as_ref().iter().enumerate().take(len) {
             if word != 0 {
                 self.len = i + 1;
             }
@@ -64,12 +67,12 @@ impl<const N: usize> Int<N> {
     }
 
     /// The same number with another capacity, which must hold it.
-    pub fn resized<const K: usize>(&self) -> Int<K> {
+    pub fn resized<K: Words>(&self) -> Int<K> {
         let mut out = Int::<K>::ZERO;
-        for (to, from) in out.words.iter_mut().zip(self.words.iter().take(self.len)) {
+        for (to, from) in out.words.as_mut().iter_mut().zip(self.words.as_ref().iter().take(self.len)) {
             *to = *from;
         }
-        out.len = self.len.min(K);
+        out.len = self.len.min(out.words.as_ref().len());
         out.negative = self.negative;
         out
     }
@@ -107,7 +110,7 @@ impl<const N: usize> Int<N> {
     fn cmp_abs(&self, other: &Self) -> Ordering {
         let mut order = self.len.cmp(&other.len);
         if order == Ordering::Equal {
-            for (x, y) in self.words.iter().zip(&other.words).take(self.len) {
+            for (x, y) in self.words.as_ref().iter().zip(other.words.as_ref()).take(self.len) {
                 if x != y {
                     order = x.cmp(y);
                 }
@@ -122,7 +125,9 @@ impl<const N: usize> Int<N> {
             let mut out = Self::ZERO;
             let mut carry = false;
             let len = self.len.max(other.len) + 1;
-            for (to, (x, y)) in out.words.iter_mut().zip(self.words.iter().zip(&other.words)).take(len) {
+            for (to, (x, y)) in
+                out.words.as_mut().iter_mut().zip(self.words.as_ref().iter().zip(other.words.as_ref())).take(len)
+            {
                 let (sum, first) = x.overflowing_add(*y);
                 let (sum, second) = sum.overflowing_add(u64::from(carry));
                 *to = sum;
@@ -134,7 +139,9 @@ impl<const N: usize> Int<N> {
         let (large, small) = if self.cmp_abs(other) == Ordering::Less { (other, self) } else { (self, other) };
         let mut out = Self::ZERO;
         let mut borrow = false;
-        for (to, (x, y)) in out.words.iter_mut().zip(large.words.iter().zip(&small.words)).take(large.len) {
+        for (to, (x, y)) in
+            out.words.as_mut().iter_mut().zip(large.words.as_ref().iter().zip(small.words.as_ref())).take(large.len)
+        {
             let (difference, first) = x.overflowing_sub(*y);
             let (difference, second) = difference.overflowing_sub(u64::from(borrow));
             *to = difference;
@@ -150,12 +157,12 @@ impl<const N: usize> Int<N> {
     }
 
     /// The product; `K` words must hold it.
-    pub fn times<const M: usize, const K: usize>(&self, other: &Int<M>) -> Int<K> {
+    pub fn times<M: Words, K: Words>(&self, other: &Int<M>) -> Int<K> {
         let mut out = Int::<K>::ZERO;
-        for (i, &x) in self.words.iter().enumerate().take(self.len) {
+        for (i, &x) in self.words.as_ref().iter().enumerate().take(self.len) {
             let mut carry = 0;
-            let mut row = out.words.iter_mut().skip(i);
-            for &y in other.words.iter().take(other.len) {
+            let mut row = out.words.as_mut().iter_mut().skip(i);
+            for &y in other.words.as_ref().iter().take(other.len) {
                 let Some(to) = row.next() else { break };
                 let sum = u128::from(x) * u128::from(y) + u128::from(*to) + u128::from(carry);
                 *to = sum as u64;
@@ -172,7 +179,7 @@ impl<const N: usize> Int<N> {
     /// As `m · 2^e` with 1 ≤ |m| < 2, to a relative error of 2⁻⁵²; zero is `(0, 0)`.
     pub fn as_float(&self) -> (f64, i32) {
         let (mut high, mut low) = (0, 0);
-        for &word in self.words.iter().take(self.len) {
+        for &word in self.words.as_ref().iter().take(self.len) {
             (high, low) = (word, high);
         }
         if self.len == 0 {
@@ -188,36 +195,36 @@ impl<const N: usize> Int<N> {
 }
 
 /// The difference of two vectors.
-pub fn minus<const N: usize>(a: &Vec3<N>, b: &Vec3<N>) -> Vec3<N> {
+pub fn minus<N: Words>(a: &[Int<N>; 3], b: &[Int<N>; 3]) -> [Int<N>; 3] {
     let ([ax, ay, az], [bx, by, bz]) = (a, b);
     [ax.minus(bx), ay.minus(by), az.minus(bz)]
 }
 
 /// The opposite vector.
-pub fn negated<const N: usize>(a: &Vec3<N>) -> Vec3<N> {
+pub fn negated<N: Words>(a: &[Int<N>; 3]) -> [Int<N>; 3] {
     let [x, y, z] = a;
     [x.negated(), y.negated(), z.negated()]
 }
 
 /// The same vector with another capacity.
-pub fn resized<const N: usize, const K: usize>(a: &Vec3<N>) -> Vec3<K> {
+pub fn resized<N: Words, K: Words>(a: &[Int<N>; 3]) -> [Int<K>; 3] {
     let [x, y, z] = a;
     [x.resized(), y.resized(), z.resized()]
 }
 
 /// All components zero.
-pub fn is_zero<const N: usize>(a: &Vec3<N>) -> bool {
+pub fn is_zero<N: Words>(a: &[Int<N>; 3]) -> bool {
     a.iter().all(Int::is_zero)
 }
 
 /// The scalar product.
-pub fn dot<const N: usize, const M: usize, const K: usize>(a: &Vec3<N>, b: &Vec3<M>) -> Int<K> {
+pub fn dot<N: Words, M: Words, K: Words>(a: &[Int<N>; 3], b: &[Int<M>; 3]) -> Int<K> {
     let ([ax, ay, az], [bx, by, bz]) = (a, b);
     ax.times::<M, K>(bx).plus(&ay.times(by)).plus(&az.times(bz))
 }
 
 /// The vector product.
-pub fn cross<const N: usize, const M: usize, const K: usize>(a: &Vec3<N>, b: &Vec3<M>) -> Vec3<K> {
+pub fn cross<N: Words, M: Words, K: Words>(a: &[Int<N>; 3], b: &[Int<M>; 3]) -> [Int<K>; 3] {
     let ([ax, ay, az], [bx, by, bz]) = (a, b);
     [
         ay.times::<M, K>(bz).minus(&az.times(by)),

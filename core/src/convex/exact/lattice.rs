@@ -1,8 +1,10 @@
 //! From floating point to integers and back: the unit of a query, and directions back.
 
-use super::integer::{Int, V1, Vec3, minus};
+use super::integer::{Int, V1, minus};
 use crate::convex::shape::Vertices;
+use crate::convex::support::ScalarOf;
 use crate::number::real::{Real, Vector};
+use crate::number::words::Words;
 
 /// A vertex is NaN or infinite, or there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +69,7 @@ impl CoordinateLattice {
         Ok(lattice)
     }
 
-    pub(super) fn point<V: Vector>(&self, p: V) -> V1 {
+    pub(super) fn point<V: Vector>(&self, p: V) -> V1<V::Scalar> {
         p.to_array().map(|x| {
             let (negative, m, e) = parts(x.to_f64());
             if m == 0 { Int::ZERO } else { Int::shifted(negative, m, (e - self.unit) as u32) }
@@ -79,7 +81,7 @@ impl CoordinateLattice {
         a: &A,
         b: &B,
         pair: (u32, u32),
-    ) -> ExactDifference {
+    ) -> ExactDifference<ScalarOf<A>> {
         let w = minus(&self.point(b.vertex(pair.1 as usize)), &self.point(a.vertex(pair.0 as usize)));
         ExactDifference { pair, w }
     }
@@ -87,9 +89,9 @@ impl CoordinateLattice {
 
 /// A point `b - a` of the difference.
 #[derive(Clone, Copy)]
-pub(super) struct ExactDifference {
+pub(super) struct ExactDifference<R: Real> {
     pub(super) pair: (u32, u32),
-    pub(super) w: V1,
+    pub(super) w: V1<R>,
 }
 
 /// `m · 2^e`, rounded once at most.
@@ -106,13 +108,13 @@ pub(super) fn times_power(m: f64, e: i32) -> f64 {
 }
 
 /// Rounded to floating point, the largest component between 1 and 2; each to a relative error of 2⁻⁵², or below 2⁻⁹⁹⁹.
-pub(super) fn direction<const N: usize>(d: &Vec3<N>) -> [f64; 3] {
+pub(super) fn direction<W: Words>(d: &[Int<W>; 3]) -> [f64; 3] {
     let parts = [d[0].as_float(), d[1].as_float(), d[2].as_float()];
     let top = parts.iter().filter(|p| p.0 != 0.0).map(|p| p.1).max().unwrap_or(0);
     parts.map(|(m, e)| if e - top > -1000 { times_power(m, e - top) } else { 0.0 })
 }
 
-pub(super) fn one<const N: usize>() -> Int<N> {
+pub(super) fn one<W: Words>() -> Int<W> {
     Int::shifted(false, 1, 0)
 }
 

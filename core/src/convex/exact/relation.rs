@@ -4,9 +4,11 @@ use core::cmp::Ordering;
 
 use heapless::Vec;
 
-use super::integer::{DEGREE_1, DEGREE_3, DEGREE_4, Int, V1, V2, V3, cross, dot, is_zero};
+use super::integer::{Int3, Int4, V1, V2, V3, cross, dot, is_zero};
 use super::lattice::{CoordinateLattice, ExactDifference, NotFinite, direction};
 use crate::convex::shape::Vertices;
+use crate::convex::support::ScalarOf;
+use crate::number::real::Real;
 
 /// How two closed bodies lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,16 +23,16 @@ pub enum Contact {
 
 /// How two bodies lie, with the proof.
 #[derive(Clone, Debug)]
-pub enum Relation {
+pub enum Relation<R: Real> {
     /// No point is shared: the axis separates strictly.
-    Disjoint(ExactAxis),
+    Disjoint(ExactAxis<R>),
     /// Some point is shared: the axis separates all the rest.
-    Touching(ExactAxis),
+    Touching(ExactAxis<R>),
     /// Interiors meet: these points surround the origin.
     Overlapping(Surround),
 }
 
-impl Relation {
+impl<R: Real> Relation<R> {
     /// Without the proof.
     pub fn contact(&self) -> Contact {
         match self {
@@ -43,10 +45,10 @@ impl Relation {
 
 /// A direction from the first body to the second, exact.
 #[derive(Clone, Copy, Debug)]
-pub struct ExactAxis(V3);
+pub struct ExactAxis<R: Real>(V3<R>);
 
-impl ExactAxis {
-    pub(super) fn new(direction: V3) -> Self {
+impl<R: Real> ExactAxis<R> {
+    pub(super) fn new(direction: V3<R>) -> Self {
         ExactAxis(direction)
     }
 
@@ -59,15 +61,15 @@ impl ExactAxis {
     /// not overlap. Looks at every vertex, exactly.
     pub fn gap<A, B>(&self, a: &A, b: &B) -> Result<Ordering, NotFinite>
     where
-        A: Vertices,
-        B: Vertices<Vector = A::Vector>,
+        A: Vertices<Vector = R::Vector>,
+        B: Vertices<Vector = R::Vector>,
     {
         if is_zero(&self.0) {
             return Ok(Ordering::Less);
         }
         let lattice = CoordinateLattice::new(a, b)?;
-        let mut least: Option<(Int<DEGREE_4>, Int<DEGREE_4>)> = None;
-        let along = |p: A::Vector| dot::<DEGREE_3, DEGREE_1, DEGREE_4>(&self.0, &lattice.point(p));
+        let mut least: Option<(Int4<R>, Int4<R>)> = None;
+        let along = |p: R::Vector| -> Int4<R> { dot(&self.0, &lattice.point(p)) };
         for i in 0..a.count() {
             let p = along(a.vertex(i));
             least = Some(match least {
@@ -96,7 +98,7 @@ pub struct Surround {
 const SURROUNDING: usize = 6;
 
 impl Surround {
-    pub(super) fn of(points: &[&ExactDifference]) -> Self {
+    pub(super) fn of(points: &[&ExactDifference<impl Real>]) -> Self {
         let mut pairs = Vec::new();
         for p in points {
             let pushed = pairs.push(p.pair).is_ok();
@@ -118,7 +120,7 @@ impl Surround {
         B: Vertices<Vector = A::Vector>,
     {
         let lattice = CoordinateLattice::new(a, b)?;
-        let mut w = Vec::<V1, SURROUNDING>::new();
+        let mut w = Vec::<V1<ScalarOf<A>>, SURROUNDING>::new();
         for &pair in &self.pairs {
             // As many as there are pairs.
             let _ = w.push(lattice.difference(a, b, pair).w);
@@ -126,13 +128,13 @@ impl Surround {
         let mut spans = false;
         for (i, p) in w.iter().enumerate() {
             for q in w.iter().skip(i + 1) {
-                let normal: V2 = cross(p, q);
+                let normal: V2<ScalarOf<A>> = cross(p, q);
                 if is_zero(&normal) {
                     continue;
                 }
                 let (mut below, mut above) = (false, false);
                 for r in &w {
-                    let side: Int<DEGREE_3> = dot(&normal, r);
+                    let side: Int3<ScalarOf<A>> = dot(&normal, r);
                     below |= side.is_negative();
                     above |= side.is_positive();
                 }

@@ -2,20 +2,21 @@
 
 use core::cmp::Ordering;
 
-use super::integer::{DEGREE_4, Int, V3, dot, is_zero, minus, negated};
+use super::integer::{Degree4, Int, Int4, V3, dot, is_zero, minus, negated};
 use super::lattice::{CoordinateLattice, ExactDifference, direction, exponent, parts, times_power};
 use super::simplex::{Points, nearest};
 use crate::convex::shape::Vertices;
+use crate::convex::support::ScalarOf;
 use crate::number::real::{Real, Vector};
 
 /// Where an exact search ended.
-pub(super) struct Search {
+pub(super) struct Search<R: Real> {
     /// The smallest simplex that holds the nearest point.
-    pub(super) simplex: Points,
+    pub(super) simplex: Points<R>,
     /// Towards it from the origin; zero if it is the origin.
-    pub(super) direction: V3,
+    pub(super) direction: V3<R>,
     /// An axis along which nothing of the difference lies below the origin, if one came up.
-    pub(super) weak: Option<V3>,
+    pub(super) weak: Option<V3<R>>,
 }
 
 /// Two bodies on their lattice.
@@ -35,7 +36,7 @@ where
     B: Vertices<Vector = A::Vector>,
 {
     /// The vertex farthest along a direction; a filter in floating point leaves few to compare exactly.
-    fn farthest<S: Vertices>(&self, shape: &S, d: &V3) -> u32 {
+    fn farthest<S: Vertices<Vector = A::Vector>>(&self, shape: &S, d: &V3<ScalarOf<A>>) -> u32 {
         let rounded = direction(d);
         let norm = rounded[0].abs() + rounded[1].abs() + rounded[2].abs();
         // In units of the largest coordinate's power of two.
@@ -49,7 +50,7 @@ where
         for i in 0..shape.count() {
             highest = Real::max(highest, along(i));
         }
-        let mut best: Option<(u32, Int<DEGREE_4>)> = None;
+        let mut best: Option<(u32, Int4<ScalarOf<A>>)> = None;
         let mut single = None;
         for i in 0..shape.count() {
             if along(i) < highest - close {
@@ -73,19 +74,19 @@ where
         best.map(|b| b.0).or(single).unwrap_or(0)
     }
 
-    fn along<S: Vertices>(&self, shape: &S, d: &V3, i: u32) -> Int<DEGREE_4> {
+    fn along<S: Vertices<Vector = A::Vector>>(&self, shape: &S, d: &V3<ScalarOf<A>>, i: u32) -> Int4<ScalarOf<A>> {
         dot(d, &self.lattice.point(shape.vertex(i as usize)))
     }
 
     /// The point of the difference that lies lowest along a direction.
-    pub(super) fn lowest(&self, d: &V3) -> ExactDifference {
+    pub(super) fn lowest(&self, d: &V3<ScalarOf<A>>) -> ExactDifference<ScalarOf<A>> {
         let pair = (self.farthest(self.a, d), self.farthest(self.b, &negated(d)));
         self.lattice.difference(self.a, self.b, pair)
     }
 
     /// GJK in exact arithmetic: each round replaces the simplex by a strictly nearer one, so it ends. `hint` is a direction from the first body to
     /// the second. With `stop_when_separated` it returns at the first strictly separating axis, else at the nearest point.
-    pub(super) fn search(&self, hint: Option<A::Vector>, stop_when_separated: bool) -> Search {
+    pub(super) fn search(&self, hint: Option<A::Vector>, stop_when_separated: bool) -> Search<ScalarOf<A>> {
         let first = match hint {
             Some(hint) if hint.is_finite() => {
                 let d = hint.to_array().map(|x| {
@@ -98,7 +99,7 @@ where
             }
             _ => self.lattice.difference(self.a, self.b, (0, 0)),
         };
-        let mut simplex: Points = Points::from_array([first]);
+        let mut simplex: Points<_> = Points::from_array([first]);
         let mut weak = None;
         loop {
             let (kept, direction) = nearest(&simplex);
@@ -107,13 +108,15 @@ where
                 return Search { simplex, direction, weak };
             }
             let new = self.lowest(&direction);
-            let along: Int<DEGREE_4> = dot(&direction, &new.w);
+            let along: Int4<ScalarOf<A>> = dot(&direction, &new.w);
             match along.sign() {
                 Ordering::Greater if stop_when_separated => return Search { simplex, direction, weak },
                 Ordering::Equal => weak = Some(direction),
                 _ => {}
             }
-            let nearer = |p: &ExactDifference| dot::<_, _, DEGREE_4>(&direction, &minus(&new.w, &p.w)).is_negative();
+            let nearer = |p: &ExactDifference<_>| {
+                dot::<_, _, Degree4<ScalarOf<A>>>(&direction, &minus(&new.w, &p.w)).is_negative()
+            };
             // A simplex of four points holds the origin, so that there always is room.
             if !simplex.first().is_some_and(nearer) || simplex.push(new).is_err() {
                 return Search { simplex, direction, weak };

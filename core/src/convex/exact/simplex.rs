@@ -4,15 +4,16 @@ use core::cmp::Ordering;
 
 use heapless::Vec;
 
-use super::integer::{DEGREE_2, DEGREE_3, DEGREE_4, Int, V1, V2, V3, cross, dot, minus, negated, resized};
+use super::integer::{Degree2, Degree3, Degree4, Int, Int2, Int3, V1, V2, V3, cross, dot, minus, negated, resized};
 use super::lattice::ExactDifference;
+use crate::number::real::Real;
 
 /// Up to four points of the difference: a simplex, or the edges of a cone.
-pub(super) type Points = Vec<ExactDifference, 4>;
+pub(super) type Points<R> = Vec<ExactDifference<R>, 4>;
 
 /// Whether `q` follows `p` by less than a half turn about `e` (`Greater`), by more (`Less`), or neither.
-pub(super) fn turn(e: &V1, p: &V1, q: &V1) -> Ordering {
-    dot::<_, _, DEGREE_3>(e, &cross::<_, _, DEGREE_2>(p, q)).sign()
+pub(super) fn turn<R: Real>(e: &V1<R>, p: &V1<R>, q: &V1<R>) -> Ordering {
+    dot::<_, _, Degree3<R>>(e, &cross::<_, _, Degree2<R>>(p, q)).sign()
 }
 
 /// All subsets of four, small ones first.
@@ -36,11 +37,11 @@ const SUBSETS: [&[usize]; 15] = [
 
 /// The smallest part of a simplex that holds its point nearest to the origin, and the direction of that point: the one part with positive
 /// weights whose support plane has all other vertices on the far side.
-pub(super) fn nearest(simplex: &Points) -> (Points, V3) {
+pub(super) fn nearest<R: Real>(simplex: &Points<R>) -> (Points<R>, V3<R>) {
     for subset in SUBSETS {
         let Some(part) = chosen(simplex, subset) else { continue };
         let (Some(direction), Some(start)) = (towards(&part), part.first()) else { continue };
-        let beyond = |p: &ExactDifference| dot::<_, _, DEGREE_4>(&direction, &minus(&p.w, &start.w)).is_negative();
+        let beyond = |p: &ExactDifference<R>| dot::<_, _, Degree4<R>>(&direction, &minus(&p.w, &start.w)).is_negative();
         if !simplex.iter().any(beyond) {
             return (part, direction);
         }
@@ -51,7 +52,7 @@ pub(super) fn nearest(simplex: &Points) -> (Points, V3) {
 }
 
 /// The points of a subset, given by their positions; none if there are not so many.
-fn chosen(from: &Points, subset: &[usize]) -> Option<Points> {
+fn chosen<R: Real>(from: &Points<R>, subset: &[usize]) -> Option<Points<R>> {
     let mut part = Points::new();
     for &i in subset {
         part.push(*from.get(i)?).ok()?;
@@ -60,23 +61,24 @@ fn chosen(from: &Points, subset: &[usize]) -> Option<Points> {
 }
 
 /// From the origin to the nearest point of the hull of some points, if that lies strictly inside it.
-fn towards(points: &[ExactDifference]) -> Option<V3> {
+fn towards<R: Real>(points: &[ExactDifference<R>]) -> Option<V3<R>> {
     match points {
         [p] => Some(resized(&p.w)),
         [p, q] => {
             let e = minus(&q.w, &p.w);
-            let before: Int<DEGREE_2> = dot(&p.w, &e);
-            let after: Int<DEGREE_2> = dot(&q.w, &e);
-            let area: V2 = cross(&p.w, &e);
+            let before: Int2<R> = dot(&p.w, &e);
+            let after: Int2<R> = dot(&q.w, &e);
+            let area: V2<R> = cross(&p.w, &e);
             (before.is_negative() && after.is_positive()).then(|| cross(&e, &area))
         }
         [p, q, r] => {
-            let normal: V2 = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
-            let weight = |x: &V1, y: &V1| dot::<_, _, DEGREE_4>(&normal, &cross::<_, _, DEGREE_2>(x, y)).is_positive();
+            let normal: V2<R> = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
+            let weight =
+                |x: &V1<R>, y: &V1<R>| dot::<_, _, Degree4<R>>(&normal, &cross::<_, _, Degree2<R>>(x, y)).is_positive();
             if !(weight(&p.w, &q.w) && weight(&q.w, &r.w) && weight(&r.w, &p.w)) {
                 return None;
             }
-            let height: Int<DEGREE_3> = dot(&normal, &p.w);
+            let height: Int3<R> = dot(&normal, &p.w);
             Some(match height.sign() {
                 Ordering::Greater => resized(&normal),
                 Ordering::Less => negated(&resized(&normal)),
@@ -84,7 +86,7 @@ fn towards(points: &[ExactDifference]) -> Option<V3> {
             })
         }
         [p, q, r, s] => {
-            let volume = |x: &V1, y: &V1, z: &V1| turn(x, y, z);
+            let volume = |x: &V1<R>, y: &V1<R>, z: &V1<R>| turn::<R>(x, y, z);
             let signs = [
                 volume(&q.w, &r.w, &s.w),
                 volume(&p.w, &r.w, &s.w).reverse(),
@@ -99,8 +101,8 @@ fn towards(points: &[ExactDifference]) -> Option<V3> {
 }
 
 /// The part of a cone nearest to `target`, and what remains from there to the target.
-pub(super) fn nearest_in_cone(target: &V1, cone: &Points) -> (Points, V3) {
-    let fits = |residual: &V3| !cone.iter().any(|p| dot::<_, _, DEGREE_4>(residual, &p.w).is_positive());
+pub(super) fn nearest_in_cone<R: Real>(target: &V1<R>, cone: &Points<R>) -> (Points<R>, V3<R>) {
+    let fits = |residual: &V3<R>| !cone.iter().any(|p| dot::<_, _, Degree4<R>>(residual, &p.w).is_positive());
     let whole = resized(target);
     if fits(&whole) {
         return (Points::new(), whole);
@@ -117,19 +119,20 @@ pub(super) fn nearest_in_cone(target: &V1, cone: &Points) -> (Points, V3) {
 }
 
 /// What remains of `target` across the cone of some points, if its foot lies strictly inside that cone.
-fn beside(target: &V1, points: &[ExactDifference]) -> Option<V3> {
+fn beside<R: Real>(target: &V1<R>, points: &[ExactDifference<R>]) -> Option<V3<R>> {
     match points {
         [p] => {
-            let along: Int<DEGREE_2> = dot(target, &p.w);
-            along.is_positive().then(|| cross(&p.w, &cross::<_, _, DEGREE_2>(target, &p.w)))
+            let along: Int2<R> = dot(target, &p.w);
+            along.is_positive().then(|| cross(&p.w, &cross::<_, _, Degree2<R>>(target, &p.w)))
         }
         [p, q] => {
-            let normal: V2 = cross(&p.w, &q.w);
-            let weight = |x: &V1, y: &V1| dot::<_, _, DEGREE_4>(&normal, &cross::<_, _, DEGREE_2>(x, y)).is_positive();
+            let normal: V2<R> = cross(&p.w, &q.w);
+            let weight =
+                |x: &V1<R>, y: &V1<R>| dot::<_, _, Degree4<R>>(&normal, &cross::<_, _, Degree2<R>>(x, y)).is_positive();
             if !(weight(target, &q.w) && weight(&p.w, target)) {
                 return None;
             }
-            let height: Int<DEGREE_3> = dot(&normal, target);
+            let height: Int3<R> = dot(&normal, target);
             Some(match height.sign() {
                 Ordering::Greater => resized(&normal),
                 Ordering::Less => negated(&resized(&normal)),
@@ -137,8 +140,8 @@ fn beside(target: &V1, points: &[ExactDifference]) -> Option<V3> {
             })
         }
         [p, q, r] => {
-            let volume = turn(&p.w, &q.w, &r.w);
-            let signs = [turn(target, &q.w, &r.w), turn(&p.w, target, &r.w), turn(&p.w, &q.w, target)];
+            let volume = turn::<R>(&p.w, &q.w, &r.w);
+            let signs = [turn::<R>(target, &q.w, &r.w), turn::<R>(&p.w, target, &r.w), turn::<R>(&p.w, &q.w, target)];
             (volume != Ordering::Equal && signs.iter().all(|&s| s == volume)).then_some([Int::ZERO; 3])
         }
         _ => None,

@@ -2,12 +2,17 @@
 
 use core::cmp::Ordering;
 
-use super::integer::{DEGREE_4, Int, V1, V2, V3, cross, dot, is_zero, minus, negated, resized};
+use super::integer::{Degree4, Int, V1, V2, V3, cross, dot, is_zero, minus, negated, resized};
 use super::lattice::{ExactDifference, one};
 use super::relation::{ExactAxis, Relation, Surround};
 use super::search::LatticePair;
 use super::simplex::{Points, nearest_in_cone, turn};
 use crate::convex::shape::Vertices;
+use crate::convex::support::ScalarOf;
+use crate::number::real::Real;
+
+/// Points strictly below and above a plane.
+type Sides<R> = (ExactDifference<R>, ExactDifference<R>);
 
 impl<A, B> LatticePair<'_, A, B>
 where
@@ -15,8 +20,13 @@ where
     B: Vertices<Vector = A::Vector>,
 {
     /// The origin is inside the triangle: are there points on both sides of its plane?
-    pub(super) fn about_face(&self, p: &ExactDifference, q: &ExactDifference, r: &ExactDifference) -> Relation {
-        let normal: V2 = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
+    pub(super) fn about_face(
+        &self,
+        p: &ExactDifference<ScalarOf<A>>,
+        q: &ExactDifference<ScalarOf<A>>,
+        r: &ExactDifference<ScalarOf<A>>,
+    ) -> Relation<ScalarOf<A>> {
+        let normal: V2<ScalarOf<A>> = cross(&minus(&q.w, &p.w), &minus(&r.w, &p.w));
         match self.both_sides(&resized(&normal)) {
             Ok((low, high)) => Relation::Overlapping(Surround::of(&[p, q, r, &low, &high])),
             Err(axis) => Relation::Touching(axis),
@@ -24,34 +34,37 @@ where
     }
 
     /// Points strictly on both sides of the plane through the origin across `d`, or the axis that has none below.
-    #[expect(clippy::result_large_err, reason = "as large as the other outcome")]
-    fn both_sides(&self, d: &V3) -> Result<(ExactDifference, ExactDifference), ExactAxis> {
+    fn both_sides(&self, d: &V3<ScalarOf<A>>) -> Result<Sides<ScalarOf<A>>, ExactAxis<ScalarOf<A>>> {
         let low = self.lowest(d);
-        if !dot::<_, _, DEGREE_4>(d, &low.w).is_negative() {
+        if !dot::<_, _, Degree4<ScalarOf<A>>>(d, &low.w).is_negative() {
             return Err(ExactAxis::new(*d));
         }
         let opposite = negated(d);
         let high = self.lowest(&opposite);
-        if !dot::<_, _, DEGREE_4>(&opposite, &high.w).is_negative() {
+        if !dot::<_, _, Degree4<ScalarOf<A>>>(&opposite, &high.w).is_negative() {
             return Err(ExactAxis::new(opposite));
         }
         Ok((low, high))
     }
 
     /// The origin is between two points: seen along that edge, are there points in every half plane?
-    pub(super) fn about_edge(&self, p: &ExactDifference, q: &ExactDifference) -> Relation {
+    pub(super) fn about_edge(
+        &self,
+        p: &ExactDifference<ScalarOf<A>>,
+        q: &ExactDifference<ScalarOf<A>>,
+    ) -> Relation<ScalarOf<A>> {
         let e = minus(&q.w, &p.w);
-        let (mut first, mut last) = match self.both_sides(&across(&e)) {
+        let (mut first, mut last) = match self.both_sides(&across::<ScalarOf<A>>(&e)) {
             Ok(found) => found,
             Err(axis) => return Relation::Touching(axis),
         };
         // Turns `last` away from `first` until the sector between them is all, a half plane, or cannot grow.
-        if turn(&e, &first.w, &last.w) == Ordering::Less {
+        if turn::<ScalarOf<A>>(&e, &first.w, &last.w) == Ordering::Less {
             (first, last) = (last, first);
         }
         loop {
-            let outward: V2 = cross(&e, &last.w);
-            if turn(&e, &first.w, &last.w) == Ordering::Equal {
+            let outward: V2<ScalarOf<A>> = cross(&e, &last.w);
+            if turn::<ScalarOf<A>>(&e, &first.w, &last.w) == Ordering::Equal {
                 return match self.both_sides(&resized(&outward)) {
                     Ok((low, high)) => Relation::Overlapping(Surround::of(&[p, q, &first, &last, &low, &high])),
                     Err(axis) => Relation::Touching(axis),
@@ -59,10 +72,10 @@ where
             }
             let inward = negated(&resized(&outward));
             let new = self.lowest(&inward);
-            if !dot::<_, _, DEGREE_4>(&inward, &new.w).is_negative() {
+            if !dot::<_, _, Degree4<ScalarOf<A>>>(&inward, &new.w).is_negative() {
                 return Relation::Touching(ExactAxis::new(inward));
             }
-            if turn(&e, &first.w, &new.w) == Ordering::Less {
+            if turn::<ScalarOf<A>>(&e, &first.w, &new.w) == Ordering::Less {
                 return Relation::Overlapping(Surround::of(&[p, q, &first, &last, &new]));
             }
             last = new;
@@ -70,7 +83,7 @@ where
     }
 
     /// The origin is a vertex of the difference. Some other point is taken, and the cone of all points searched for its opposite.
-    pub(super) fn about_vertex(&self) -> Relation {
+    pub(super) fn about_vertex(&self) -> Relation<ScalarOf<A>> {
         let axis = [one(), Int::ZERO, Int::ZERO];
         let anchor = match self.both_sides(&axis) {
             Ok((low, _)) => low,
@@ -91,7 +104,7 @@ where
             }
             let down = negated(&residual);
             let new = self.lowest(&down);
-            if !dot::<_, _, DEGREE_4>(&down, &new.w).is_negative() {
+            if !dot::<_, _, Degree4<ScalarOf<A>>>(&down, &new.w).is_negative() {
                 return Relation::Touching(ExactAxis::new(down));
             }
             // The part that is kept has three edges at most, so that there always is room.
@@ -103,7 +116,7 @@ where
 }
 
 /// Some vector across `e`, not zero.
-fn across(e: &V1) -> V3 {
+fn across<R: Real>(e: &V1<R>) -> V3<R> {
     let [x, y, _] = resized(e);
     let zero = Int::ZERO;
     if x.is_zero() { [one(), zero, zero] } else { [y.negated(), x, zero] }

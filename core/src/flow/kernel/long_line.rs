@@ -8,7 +8,7 @@ use crate::flow::boundary::Boundary;
 use crate::flow::drag::Drag;
 use crate::flow::kernel::scratch::PIECE;
 use crate::flow::kernel::slab::Part;
-use crate::flow::kernel::sweep;
+use crate::flow::kernel::sweep::{self, Sweep};
 use crate::flow::porosity::fractions::{Mesh, Porosity};
 use crate::flow::problem::Problem;
 use crate::flow::state::{Fields, FieldsMut};
@@ -27,6 +27,7 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
     whole: &Part<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
+    run: Sweep<R, D>,
 ) -> Report<R, D> {
     let n = line.mesh.len();
     let periodic = line.periodic()[0];
@@ -39,7 +40,7 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
         let old = part_of(whole.old, cells.clone());
         let first_order = whole.first_order.map(|f| &f[cells.clone()]);
         let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported };
-        let mut of_piece = advance_piece(&piece(line, cells.clone()), &part, own.clone(), new, scratch);
+        let mut of_piece = advance_piece(&piece(line, cells.clone()), &part, own.clone(), new, scratch, run);
         for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
             if !outer || periodic {
                 of_piece.inflow[0][side] = Report::new().inflow[0][side];
@@ -49,7 +50,7 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
         begin = own.end;
     }
     if periodic {
-        report = report.and(&advance_seam(line, whole, new, scratch));
+        report = report.and(&advance_seam(line, whole, new, scratch, run));
     }
     report
 }
@@ -85,10 +86,11 @@ fn advance_piece<R: Real, const D: usize>(
     own: Range<usize>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
+    run: Sweep<R, D>,
 ) -> Report<R, D> {
     let inner = &part.reported;
     let (mut held, scratch) = take_field::<R, D>(scratch, piece.mesh.len(), !part.old.energy.is_empty());
-    let report = sweep::advance(piece, part, &mut held, scratch);
+    let report = sweep::advance(piece, part, &mut held, scratch, run);
     let energy = if new.energy.is_empty() { 0..0 } else { own.clone() };
     new.density[own.clone()].copy_from_slice(&held.density[inner.clone()]);
     for (new, held) in new.momentum.iter_mut().zip(&held.momentum) {
@@ -105,6 +107,7 @@ fn advance_seam<R: Real, const D: usize>(
     whole: &Part<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
+    run: Sweep<R, D>,
 ) -> Report<R, D> {
     let n = line.mesh.len();
     let half = SEAM / 2;
@@ -147,7 +150,7 @@ fn advance_seam<R: Real, const D: usize>(
     let (mut held, scratch) = take_field::<R, D>(scratch, SEAM, !old.energy.is_empty());
     let inner = BESIDE..SEAM - BESIDE;
     let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported: inner.clone() };
-    let mut report = sweep::advance(&seam, &part, &mut held, scratch);
+    let mut report = sweep::advance(&seam, &part, &mut held, scratch, run);
     for i in inner {
         new.set(place(i), &held.at(i));
     }

@@ -501,7 +501,7 @@ pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool>(
 }
 
 /// Signal rate Σ_d open_d (|u_d| + c)/dx_d of each cell of a row of new states into `rate`; tells whether any state is
-/// unphysical. `open[d]` = max face / beta_v per cell in a porous medium.
+/// unphysical. `open[d]` is what `Problem::openness` gives for the cells of the row along axis `d`.
 pub(crate) fn signal_rates<R: Real, const D: usize, const POROUS: bool>(
     gas: Gas<R>,
     new: &Fields<'_, R, D>,

@@ -14,34 +14,40 @@ use crate::flow::kernel::scratch::{Sizes, Work};
 use crate::flow::kernel::slab::{Part, RowAt, Slab};
 use crate::flow::kernel::update::{update, update_below};
 use crate::flow::problem::Problem;
-use crate::flow::riemann::{Hllc, HllcLowMach, Hlle, Riemann, Rusanov, Solver};
+use crate::flow::riemann::Solver;
 use crate::flow::state::FieldsMut;
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
 
-/// Advances a part of a problem into `new`, tile by tile. Slices and scratch must fit.
+type SweepFn<R, const D: usize> = fn(&Slab<'_, R, D>, &mut FieldsMut<'_, R, D>, &mut [R]) -> Report<R, D>;
+
+/// How a tile of a slab is advanced: [`sweep`], compiled for one solver and one kind of gas.
+#[derive(Clone, Copy)]
+pub struct Sweep<R, const D: usize>(SweepFn<R, D>);
+
+impl<R: Real, const D: usize> Sweep<R, D> {
+    /// Of a solver, for a gas with or without energy.
+    pub(in crate::flow) fn by<S: Solver, const ENERGY: bool>() -> Self {
+        Sweep(sweep::<R, D, S, ENERGY>)
+    }
+}
+
+/// Advances a part of a problem into `new`, tile by tile, each by `run`. Slices and scratch must fit.
 pub(in crate::flow) fn advance<R: Real, const D: usize>(
     problem: &Problem<'_, R, D>,
     part: &Part<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
+    run: Sweep<R, D>,
 ) -> Report<R, D> {
-    let run = match (problem.gas.has_energy(), problem.scheme.riemann) {
-        (true, Riemann::Hllc) => sweep::<R, D, Hllc, true>,
-        (true, Riemann::HllcLowMach) => sweep::<R, D, HllcLowMach, true>,
-        (true, Riemann::Hlle) => sweep::<R, D, Hlle, true>,
-        (true, Riemann::Rusanov) => sweep::<R, D, Rusanov, true>,
-        (false, Riemann::Hllc) => sweep::<R, D, Hllc, false>,
-        (false, Riemann::HllcLowMach) => sweep::<R, D, HllcLowMach, false>,
-        (false, Riemann::Hlle) => sweep::<R, D, Hlle, false>,
-        (false, Riemann::Rusanov) => sweep::<R, D, Rusanov, false>,
-    };
     let mut slab = Slab::new(problem, part);
-    Sizes::tiles(&problem.mesh).fold(Report::new(), |report, rows| {
+    let mut report = Report::new();
+    for rows in Sizes::tiles(&problem.mesh) {
         slab.rows = rows;
-        report.and(&run(&slab, new, scratch))
-    })
+        report = report.and(&run.0(&slab, new, scratch));
+    }
+    report
 }
 
 /// Advances a tile of a slab into `new`.

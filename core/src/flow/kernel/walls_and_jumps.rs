@@ -39,8 +39,9 @@ impl<R: Real> Differences<R> for Single<R> {
     }
 }
 
-/// Slopes along axis `d` of the cells of a row beside breaks, in place of those that looked across: mirrored at walls, none
-/// at jumps; as far as the gas does not flow along walls. `values` gives a variable in the cells below, here and above.
+/// Corrects the slopes along axis `d` in the cells of a row that have a wall or a jump of porosity on one side, where the usual slope took a value
+/// from beyond it: at a wall that value is mirrored, at a jump the slope is 0. Where gas flows along an inclined wall the correction fades out.
+/// `values` gives a variable in the cells below, here and above.
 pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope>(
     slab: &Slab<'_, R, D>,
     d: usize,

@@ -8,7 +8,7 @@ use crate::command::streams::{OutputFormat, check_place, check_suffix, is_device
 use crate::error::{Error, Result};
 use crate::files::npy;
 use crate::files::vtr::{CellField, NamedField, Vtr};
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use crate::keys::reader::not_known;
 use crate::picture::png;
 use crate::porosity::Porosity;
@@ -228,10 +228,8 @@ fn write_vtr(
 fn slices(args: &PorosityArgs, edges: &Edges) -> Result<[Option<f64>; 3]> {
     let mut through = [None; 3];
     for &(axis, at) in &args.slice {
-        let [lo, hi] = edges.bounds().map(|p| p[axis]);
-        if !(lo..=hi).contains(&at) {
-            let name = ["x", "y", "z"][axis];
-            return Err(Error::usage(format!("--slice {name}={at}: the grid reaches from {lo} to {hi} along {name}")));
+        if let Some(why) = edges.misses(axis, at) {
+            return Err(Error::usage(format!("--slice {}={at}: {why}", AXES[axis])));
         }
         through[axis] = Some(at);
     }

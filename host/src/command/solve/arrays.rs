@@ -28,6 +28,12 @@ pub fn index(n: usize, [nx, ny, _]: [usize; 3]) -> [usize; 3] {
     [n % nx, n / nx % ny, n / (nx * ny)]
 }
 
+/// Where the value with these indices along x, y, z stands, x fastest.
+#[must_use]
+pub fn position([i, j, k]: [usize; 3], [nx, ny, _]: [usize; 3]) -> usize {
+    (k * ny + j) * nx + i
+}
+
 /// Any finite number.
 #[must_use]
 pub fn any(_: f64) -> Option<&'static str> {

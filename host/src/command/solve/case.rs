@@ -3,10 +3,11 @@
 //! Lengths in metres, times in seconds, any consistent units. A state is `rho`, `u`, `v`, `w`, `p`: density, velocity
 //! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
+use super::places;
 use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
-use crate::grid::Edges;
 use crate::grid::file::{self, GridTable};
+use crate::grid::{AXES, Edges};
 use crate::keys::reader::misfit;
 use crate::keys::source::another;
 use crate::keys::value::Value;
@@ -17,10 +18,7 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 use std::path::{Path, PathBuf};
 
-/// Names of the axes.
-pub const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// Names of the velocities along them.
+/// Names of the velocities along x, y, z.
 pub const VELOCITIES: [&str; 3] = ["u", "v", "w"];
 
 /// A whole case.
@@ -214,8 +212,14 @@ impl SideName {
     #[must_use]
     pub fn word(self) -> String {
         let (axis, side) = self.place();
-        format!("{}_{}", AXES[axis], ["min", "max"][side])
+        side_word(axis, side)
     }
+}
+
+/// A side of the domain as a case writes it: of an axis, 0 the low and 1 the high one.
+#[must_use]
+pub fn side_word(axis: usize, side: usize) -> String {
+    format!("{}_{}", AXES[axis], ["min", "max"][side])
 }
 
 impl StateKeys {
@@ -520,11 +524,16 @@ fn parse(source: &Source) -> Result<Case> {
         if let Some((_, reason)) = another("a case", |key| of(key).is_some()) {
             return Err(Error::file(source.path, reason));
         }
+        if let Some(entry) = of("region").or_else(|| of("regions")) {
+            let reason = format!("key {}: regions stand in the table initial: [[initial.regions]]", entry.key);
+            return Err(misfit(source, (entry.span.clone(), reason)));
+        }
         if let Some(entry) = of("grid").filter(|e| matches!(e.node.value, Value::List(_))) {
             let reason = "a case has one table [grid]; tables [[grid]] belong to a study";
             return Err(misfit(source, (entry.span.clone(), reason.into())));
         }
     }
+    places::check(&node).map_err(|wrong| misfit(source, wrong))?;
     keys::read(source, &PlacedValue { span: None, ..node }, "")
 }
 

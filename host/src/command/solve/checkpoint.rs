@@ -4,6 +4,7 @@
 //! each axis of the flow, energy if there is any), the largest values over time if they are kept, CRC-32 of all before; everything little endian. The header names the
 //! case by checksums of its parts, so that a checkpoint of another case is refused with the part that differs.
 
+use super::force_peaks::ForcePeak;
 use super::inlet::Inlet;
 use super::maxima::Maxima;
 use super::setup::Setup;
@@ -18,7 +19,7 @@ use std::path::Path;
 use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primitive, Report, Riemann, Scheme};
 
 /// First bytes of the file; the last is the version of the layout.
-const MAGIC: &[u8; 8] = b"VOIDAGE\x03";
+const MAGIC: &[u8; 8] = b"VOIDAGE\x04";
 
 /// Name of the file in the output directory.
 pub const NAME: &str = "checkpoint.bin";
@@ -39,27 +40,33 @@ pub fn keep_untouched(dir: &Path) -> Result<()> {
 /// Name of the last checkpoint of an unfinished run in whose place another begins.
 pub const BEFORE: &str = "checkpoint_before.bin";
 
-/// Renames the checkpoint in `dir`, if there is one; whether there was.
+/// The tables that a checkpoint goes on with, and their names beside [`BEFORE`].
+const TABLES: [(&str, &str); 2] = [("log.csv", "log_before.csv"), ("probes.csv", "probes_before.csv")];
+
+/// Renames the checkpoint in `dir`, if there is one, and the tables that go with it; whether there was.
 ///
 /// # Errors
-/// The file cannot be renamed.
+/// A file cannot be renamed.
 pub fn put_aside(dir: &Path) -> Result<bool> {
-    let path = dir.join(NAME);
-    match std::fs::rename(&path, dir.join(BEFORE)) {
+    let rename = |from: &str, to: &str| match std::fs::rename(dir.join(from), dir.join(to)) {
         Ok(()) => Ok(true),
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(e) => Err(Error::io(&path, "rename", &e)),
+        Err(e) => Err(Error::io(&dir.join(from), "rename", &e)),
+    };
+    let was = rename(NAME, BEFORE)?;
+    if was {
+        TABLES.iter().try_for_each(|(from, to)| rename(from, to).map(drop))?;
     }
+    Ok(was)
 }
 
-/// Removes the copy that an earlier run has left in `dir`.
+/// Removes a file that an earlier run may have left.
 ///
 /// # Errors
-/// The file cannot be removed.
-pub fn forget_untouched(dir: &Path) -> Result<()> {
-    let path = dir.join(UNTOUCHED);
-    match std::fs::remove_file(&path) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Error::io(&path, "remove", &e)),
+/// It cannot be removed.
+pub fn forget(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Error::io(path, "remove", &e)),
         _ => Ok(()),
     }
 }
@@ -77,6 +84,8 @@ pub struct Journal {
     pub begin: [f64; 2],
     /// Seconds of stepping.
     pub seconds: f64,
+    /// Largest forces on solids so far.
+    pub peaks: Vec<ForcePeak>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -135,6 +144,13 @@ impl Fingerprint {
             ("scheme", of_numbers(&scheme)),
         ];
         Fingerprint(parts.map(|(name, sum)| (name.to_owned(), sum)).to_vec())
+    }
+
+    /// With the pressure that forces are counted from.
+    #[must_use]
+    pub fn with_ambient(mut self, ambient: f64) -> Self {
+        self.0.push(("output.ambient".to_owned(), crc32fast::hash(&ambient.to_le_bytes())));
+        self
     }
 
     /// With the numbers that decide which largest values are kept.

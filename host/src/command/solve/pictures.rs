@@ -3,16 +3,31 @@
 //! A frame is drawn when it is reached, with the range that the run has had so far, unless the case gives one; its planes are kept in `frames/slices`,
 //! and at the end of the run all frames are drawn again with the range of the whole run.
 
-use super::case::RangeKeys;
+use super::case::{CaseFile, RangeKeys};
 use super::frames::{SLICES, Snapshot, cell_at};
 use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::files::npy;
+use crate::grid::{AXES, Edges};
 use crate::picture::colour::ColourMap;
 use crate::picture::figure::Figure;
 use crate::picture::png;
 use crate::picture::ticks::number;
 use std::path::{Path, PathBuf};
+
+/// The point through which pictures are cut lies within the grid.
+///
+/// # Errors
+/// It does not: with the range of the grid along the axis.
+pub fn check_slice(file: &CaseFile, edges: &Edges) -> Result<()> {
+    let Some(point) = file.case.output.slice else { return Ok(()) };
+    match (0..3).find_map(|axis| Some((axis, edges.misses(axis, point[axis])?))) {
+        None => Ok(()),
+        Some((axis, why)) => {
+            Err(file.wrong(&format!("output.slice[{axis}]"), format!("{} = {}: {why}", AXES[axis], point[axis])))
+        }
+    }
+}
 
 /// Where pictures are cut, what is written over them, and their colours.
 #[derive(Debug, Clone)]

@@ -1,15 +1,18 @@
 //! `--refine-check`: the same case on half the cells along each axis that flows, and the largest values of both runs side by side.
 
+use super::arrays::position;
 use super::case::{CaseFile, MaximaKeys};
 use super::frames::cell_at;
 use super::maxima::{Maxima, Peaks};
 use super::setup::setup;
+use super::stepping::step;
 use crate::command::cli::TalkArgs;
 use crate::command::interrupt;
 use crate::command::progress::{Meter, Progress};
 use crate::error::{Error, Result};
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use serde::Serialize;
+use std::fmt::Display;
 
 /// Fewest cells along an axis that can be halved.
 const FEWEST: usize = 4;
@@ -75,7 +78,7 @@ pub fn check(file: &CaseFile, edges: &Edges, live: &[usize]) -> Result<()> {
     let cells = edges.cells();
     match live.iter().find(|&&axis| cells[axis] < FEWEST) {
         Some(&axis) => {
-            let axis = ["x", "y", "z"][axis];
+            let axis = AXES[axis];
             Err(file.wrong("grid", format!("has fewer than {FEWEST} cells along {axis}; --refine-check halves them")))
         }
         None => Ok(()),
@@ -112,32 +115,22 @@ pub fn run<const D: usize>(
     let usual = MaximaKeys::default();
     let mut maxima = Maxima::new(file.case.output.maxima.as_ref().unwrap_or(&usual), ambient, &setup.flow);
     while setup.flow.time < end {
-        let (before, steps) = (setup.flow.time, setup.flow.steps);
-        let place = |reason: &str| {
-            Error::new(format!("--refine-check, on half the cells: step {steps}, t = {before}: {reason}"))
+        let ended = |reason: &dyn Display| {
+            let kept = "the run on all cells is finished, and its results are written";
+            Error::new(format!("--refine-check, on half the cells: {reason}; {kept}"))
         };
         if interrupt::asked() {
-            return Err(place("interrupted; the run on all cells is finished, and its results are written"));
+            let (steps, time) = (setup.flow.steps, setup.flow.time);
+            return Err(ended(&format!("interrupted at step {steps}, t = {time}")));
         }
-        let stepped = setup.flow.advance(setup.cfl, end);
-        match stepped {
-            Ok(dt) if setup.flow.time > before => {
-                maxima.step(&setup.flow, dt);
-                for inlet in &setup.inlets {
-                    inlet.relax(&mut setup.flow, dt);
-                }
-            }
-            Ok(_) => return Err(place("the time step has shrunk to nothing")),
-            Err(error) => return Err(place(&error.to_string())),
-        }
+        step(&mut setup, Some(&mut maxima), end).map_err(|trouble| ended(&trouble))?;
         if line.is_due() {
             line.tell(&format!("half the cells: step {}  t = {:.4e} s", setup.flow.steps, setup.flow.time));
         }
     }
-    let [nx, ny, _] = edges.cells();
     let probes = file.case.output.probes.iter().enumerate().filter_map(|(n, probe)| {
         let at = cell_at(&edges, probe.at)?;
-        Some(maxima.peaks(probe.name(n), (at[2] * ny + at[1]) * nx + at[0]))
+        Some(maxima.peaks(probe.name(n), position(at, edges.cells())))
     });
     let coarse: Vec<Peaks> = std::iter::once(anywhere(&maxima, setup.flow.beta_v())).chain(probes).collect();
     let peaks = fine.into_iter().zip(coarse).map(|(fine, coarse)| ComparedPeaks {

@@ -45,19 +45,28 @@ impl Region {
             }
             Some(_) => Err(file.wrong(&format!("{key}.{name}"), "needs one to three numbers")),
         };
-        match (&keys.center, keys.radius) {
-            (None, None) => {
+        let of_box = ["min", "max"].into_iter().find(|k| keys.given().contains(k));
+        match (&keys.center, keys.radius, of_box) {
+            (None, None, _) => {
                 let min = point("min", &keys.min, f64::NEG_INFINITY)?;
                 Ok(Region::Box(min, point("max", &keys.max, f64::INFINITY)?))
             }
-            (Some(center), Some(radius)) if radius > 0.0 && radius < f64::INFINITY => {
+            (_, _, Some(of_box)) => {
+                let reason = "is of a box; a ball has center and radius: a region is one of them";
+                Err(file.wrong(&format!("{key}.{of_box}"), reason))
+            }
+            (Some(center), Some(radius), None) if radius > 0.0 && radius < f64::INFINITY => {
                 if center.iter().any(|x| x.is_infinite()) {
                     return Err(file.wrong(&format!("{key}.center"), "needs finite numbers"));
                 }
                 // A ball in the plane of a flow, or an interval: axes that are left out do not count.
                 Ok(Region::Ball(point("center", &keys.center, f64::NAN)?, radius))
             }
-            _ => Err(file.wrong(key, "a ball needs center and a positive radius")),
+            (None, Some(_), None) => Err(file.wrong(key, "a ball needs a center beside its radius")),
+            (Some(_), None, None) => Err(file.wrong(key, "a ball needs a radius beside its center")),
+            (Some(_), Some(radius), None) => {
+                Err(file.wrong(&format!("{key}.radius"), format!("needs a positive number, not {radius}")))
+            }
         }
     }
 

@@ -1,7 +1,8 @@
 //! `report.json` of a flow, and its few lines for the terminal.
 
-use super::case::{AXES, CaseFile, GasKeys};
+use super::case::{CaseFile, GasKeys};
 use super::checkpoint::Journal;
+use super::force_peaks::{self, ForcePeak};
 use super::maxima::{Maxima, Peaks};
 use super::refine::{Compared, RefineCheck};
 use super::regions::RegionReport;
@@ -10,6 +11,7 @@ use super::sides::PatchReport;
 use super::solids::SolidForce;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
+use crate::grid::AXES;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -37,6 +39,8 @@ pub struct Report {
     time: f64,
     /// Of stepping, over all sessions.
     seconds: f64,
+    /// Of this session from its start to this report: reading, setup, stepping, output.
+    seconds_in_all: f64,
     /// Of this session.
     cell_updates_per_second: f64,
     threads: usize,
@@ -64,9 +68,9 @@ pub struct Report {
     patches: Vec<PatchReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     maxima: Option<MaximaReport>,
-    /// Forces on solids at the end.
+    /// Forces on solids at the end, and the largest over the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    forces: Vec<SolidForce>,
+    forces: Vec<ForceReport>,
     /// The same case on half the cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     refine_check: Option<RefineCheck>,
@@ -97,6 +101,15 @@ impl GasReport {
         let GasKeys { model, gamma, sound_speed, rho, p, gas_constant } = file.case.gas;
         GasReport { model: model.word(), gamma, sound_speed, rho, p, gas_constant }
     }
+}
+
+/// Forces on the solids of a name.
+#[derive(Debug, Clone, Serialize)]
+struct ForceReport {
+    /// At the end, along x, y and z, in N.
+    force: [f64; 3],
+    #[serde(flatten)]
+    largest: ForcePeak,
 }
 
 /// Largest values over time.
@@ -148,6 +161,7 @@ impl Report {
             steps: flow.steps,
             time: flow.time,
             seconds: journal.seconds + done.seconds,
+            seconds_in_all: progress.elapsed(),
             cell_updates_per_second: (flow.len() * done.steps) as f64 / done.seconds.max(1e-9),
             threads: rayon::current_num_threads(),
             mass: content.density,
@@ -183,10 +197,16 @@ impl Report {
         Report { maxima: maxima.map(report), ..self }
     }
 
-    /// With the forces on solids, if they were asked for.
+    /// With the forces on solids at the end and the largest over the run, if they were asked for.
     #[must_use]
-    pub fn with_forces(self, forces: Vec<SolidForce>) -> Self {
-        Report { forces, ..self }
+    pub fn with_forces(self, forces: Vec<SolidForce>, peaks: &[ForcePeak]) -> Self {
+        let mut peaks = peaks.to_vec();
+        force_peaks::take(&mut peaks, &forces, self.time);
+        let of = |SolidForce { name, force }| {
+            let largest = peaks.iter().find(|p| p.name == name)?.clone();
+            Some(ForceReport { force, largest })
+        };
+        Report { forces: forces.into_iter().filter_map(of).collect(), ..self }
     }
 
     /// With what the case came to on half the cells.
@@ -227,8 +247,9 @@ impl Report {
             let momentum = format!("({x:.1e}, {y:.1e}, {z:.1e})");
             progress.say(format!("floors        changed the mass by {mass:.1e}, the momentum by {momentum}{energy}"));
         }
-        for SolidForce { name, force: [x, y, z] } in &self.forces {
-            progress.say(format!("force         ({x:.4e}, {y:.4e}, {z:.4e}) N on {name}"));
+        for ForceReport { force: [x, y, z], largest: ForcePeak { name, largest, largest_time, .. } } in &self.forces {
+            let largest = format!("largest {largest:.4e} N at t = {largest_time:.4e} s");
+            progress.say(format!("force         ({x:.4e}, {y:.4e}, {z:.4e}) N on {name}; {largest}"));
         }
         if let Some(RefineCheck { cells: [nx, ny, nz], peaks, .. }) = &self.refine_check {
             progress.say(format!("refine check  peaks here, on {nx} × {ny} × {nz} cells, and the change between both"));
@@ -242,9 +263,10 @@ impl Report {
             }
         }
         progress.say(format!(
-            "time          {:.3} s, {:.2} million cell updates/s",
+            "time          {:.3} s of stepping, {:.2} million cell updates/s; {:.3} s in all",
             self.seconds,
-            self.cell_updates_per_second / 1e6
+            self.cell_updates_per_second / 1e6,
+            self.seconds_in_all
         ));
     }
 }

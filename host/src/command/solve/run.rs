@@ -1,15 +1,19 @@
 //! `voidage solve`: case → setup → steps → files.
 
-use super::case::{CaseFile, Format, OutputKeys, VELOCITIES};
+use super::arrays::position;
+use super::case::{CaseFile, Format, OutputKeys};
 use super::checkpoint::{self, Fingerprint, Journal};
 use super::force::force;
+use super::force_peaks;
 use super::frames::{self, Snapshot, cell_at, create};
+use super::limits::Limits;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
-use super::pictures::Pictures;
+use super::pictures::{Pictures, check_slice};
 use super::refine;
 use super::report::{Done, Report};
 use super::setup::{Setup, live_axes, setup};
 use super::solids::{SolidForce, SolidShares};
+use super::stepping::{Trouble, step, unphysical};
 use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
@@ -19,12 +23,10 @@ use crate::command::streams::is_stream;
 use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
-use crate::flow::Flow;
 use crate::grid::Edges;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use voidage_core::flow::Primitive;
 
 /// `voidage solve`.
 ///
@@ -39,7 +41,6 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
     if args.refine_check {
         file.case.output.maxima.get_or_insert_default();
     }
-    let file = file;
     let mut remarks = Vec::new();
     let edges = file.edges(&mut remarks)?;
     remarks.into_iter().for_each(|r| progress.warn(r));
@@ -48,12 +49,13 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
         (None, Some(stem)) => PathBuf::from(stem),
         (None, None) => return Err(Error::usage("give an output directory with -o")),
     };
+    check_slice(&file, &edges)?;
     keep_inputs(&file, &dir)?;
     let live = live_axes(&edges);
     if args.refine_check {
         refine::check(&file, &edges, &live)?;
     }
-    keep_results(&dir, args, &mut progress)?;
+    keep_results(&dir, args)?;
     threads(args.threads)?.install(|| match live[..] {
         [a] => run(&file, &edges, [a], dir, args, progress),
         [a, b] => run(&file, &edges, [a, b], dir, args, progress),
@@ -65,25 +67,27 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
 /// Name of the report, which a run writes last: where it is, the run is finished.
 const REPORT: &str = "report.json";
 
-/// A finished run is not replaced unless that is asked for; of an unfinished one the last state is kept.
-fn keep_results(dir: &Path, args: &SolveArgs, progress: &mut Progress) -> Result<()> {
-    let report = dir.join(REPORT);
-    if args.resume {
+/// A finished run is not replaced unless that is asked for.
+fn keep_results(dir: &Path, args: &SolveArgs) -> Result<()> {
+    if args.resume || args.force || !dir.join(REPORT).exists() {
         return Ok(());
-    }
-    if !report.exists() {
-        if checkpoint::put_aside(dir)? {
-            let (dir, kept) = (dir.display(), checkpoint::BEFORE);
-            progress.warn(format!("{dir}: held a run that had not ended; its last state is kept in {kept}"));
-        }
-        return Ok(());
-    }
-    if args.force {
-        return frames::remove_old(dir)
-            .and_then(|()| std::fs::remove_file(&report).map_err(|e| Error::io(&report, "remove", &e)));
     }
     let reason = "holds a finished run: --force replaces it, --resume goes on from its end, -o DIR takes another place";
     Err(Error::file(dir, reason))
+}
+
+/// Makes way for a run whose case is right: what a finished one left is removed, of an unfinished one the last state is kept.
+fn make_way(dir: &Path, progress: &mut Progress) -> Result<()> {
+    let report = dir.join(REPORT);
+    if report.exists() {
+        frames::remove_old(dir)?;
+        return checkpoint::forget(&report);
+    }
+    if checkpoint::put_aside(dir)? {
+        let (dir, kept) = (dir.display(), checkpoint::BEFORE);
+        progress.warn(format!("{dir}: held a run that had not ended; its last state is kept in {kept}"));
+    }
+    Ok(())
 }
 
 /// The last state must not replace the first one.
@@ -117,7 +121,7 @@ fn run<const D: usize>(
     progress.stage("output", |_| run.last())?;
     let report = |run: &Run<D>, progress: &Progress| {
         let report = Report::new(file, &run.setup, &run.journal, run.done, progress);
-        report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_forces(run.forces())
+        report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_forces(run.forces(), &run.journal.peaks)
     };
     let mut summary = report(&run, &progress);
     json::write(&run.dir.join(REPORT), &summary)?;
@@ -134,78 +138,9 @@ fn run<const D: usize>(
     Ok(())
 }
 
-/// When to do what.
-#[derive(Debug, Clone, Copy)]
-struct Limits {
-    end: f64,
-    max_steps: usize,
-    every: f64,
-    log_every: usize,
-    checkpoint_every: Duration,
-}
-
-/// Seconds between checkpoints of a case that does not say.
-const USUAL_PAUSE: f64 = 60.0;
-
-impl Limits {
-    fn new(file: &CaseFile) -> Result<Self> {
-        let (time, output) = (&file.case.time, &file.case.output);
-        let positive = |v: f64| v > 0.0 && v.is_finite();
-        file.demand("time.end", time.end, positive, "needs a positive time")?;
-        file.demand("output.every", output.every, positive, "needs a positive time")?;
-        let pause = |v: f64| (0.0..1e9).contains(&v);
-        file.demand("output.checkpoint_every", output.checkpoint_every, pause, "needs seconds, not below 0")?;
-        if time.end.is_none() && time.max_steps.is_none() {
-            return Err(file.wrong("time", "needs end or max_steps"));
-        }
-        if output.log_every == Some(0) {
-            return Err(file.wrong("output.log_every", "is at least 1"));
-        }
-        if matches!((time.end, output.every), (Some(end), Some(every)) if end / every > MOST_FRAMES) {
-            return Err(file.wrong("output.every", format!("makes more than {MOST_FRAMES} frames")));
-        }
-        Ok(Limits {
-            end: time.end.unwrap_or(f64::INFINITY),
-            max_steps: time.max_steps.unwrap_or(usize::MAX),
-            every: output.every.unwrap_or(f64::INFINITY),
-            log_every: output.log_every.unwrap_or(1),
-            checkpoint_every: Duration::from_secs_f64(output.checkpoint_every.unwrap_or(USUAL_PAUSE)),
-        })
-    }
-
-    /// The next moment that a step must not pass. Depends on the time alone, so that a resumed run meets the same.
-    fn next_stop(&self, time: f64) -> f64 {
-        if self.every == f64::INFINITY {
-            return self.end;
-        }
-        let mut n = (time / self.every).floor() + 1.0;
-        if n * self.every <= time {
-            n += 1.0;
-        }
-        (n * self.every).min(self.end)
-    }
-}
-
-/// Frames of a run: more is a slip of the pen.
-const MOST_FRAMES: f64 = 1e6;
-
 /// Columns of `log.csv`. Of floors: what they have changed so far, as sums of sizes; the momentum over all axes. Of forces: on all solids, now.
 const LOG_HEAD: &str =
     "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy,force_x,force_y,force_z";
-
-/// Share of the mass, momentum or energy in the domain that floors may change before a run stops.
-const MOST_FLOORED: f64 = 1e-6;
-
-/// The speed by which mass becomes the momentum that changes of momentum are measured against: sqrt(E/rho), and in a barotropic gas
-/// that of sound at the mean density.
-fn typical_speed<const D: usize>(flow: &Flow<f64, D>, mass: f64, energy: f64) -> f64 {
-    let gas = flow.gas();
-    if gas.has_energy() {
-        return (energy / mass).sqrt();
-    }
-    let density = mass / (0..flow.len()).map(|cell| flow.open_volume(cell)).sum::<f64>();
-    gas.sound_speed(&Primitive { density, velocity: [0.0; D], pressure: gas.pressure(density, 0.0) })
-}
 
 /// A run in progress.
 struct Run<'a, const D: usize> {
@@ -238,30 +173,15 @@ impl<'a, const D: usize> Run<'a, D> {
         let output = &file.case.output;
         let ambient = ambient(file, &setup)?;
         let mut maxima = maxima(file, &setup, ambient)?;
-        let fingerprint = Fingerprint::new(&setup);
-        let fingerprint = match &maxima {
-            Some(maxima) => fingerprint.with_maxima(maxima),
-            None => fingerprint,
-        };
+        let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let cells = probe_cells(file, &setup, progress)?;
-        let title =
-            file.case.title.clone().unwrap_or_else(|| {
-                file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
-            });
-        let wants = |format: Format| formats(output).contains(&format);
-        let pictures = match wants(Format::Png) {
-            true => Some(pictures(file, &setup, &title, ambient)?),
-            false => None,
-        };
-        let journal = match resume {
-            true => checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup, maxima.as_mut())?,
-            false => {
-                if let Err(error) = setup.flow.rate() {
-                    return Err(Error::at(&file.path, "initial", trouble(&mut setup, Some(error))));
-                }
-                let content = setup.flow.content();
-                Journal { begin: [content.density, content.energy], ..Journal::default() }
-            }
+        let pictures = pictures(file, &setup, ambient)?;
+        let journal = if resume {
+            checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup, maxima.as_mut())?
+        } else {
+            let journal = first_journal(file, &mut setup)?;
+            make_way(&dir, progress)?;
+            journal
         };
         create(&dir)?;
         if !formats(output).is_empty() {
@@ -294,8 +214,12 @@ impl<'a, const D: usize> Run<'a, D> {
             done,
             untouched,
         };
+        if resume && run.goes_on() {
+            // A report tells that a run is finished.
+            checkpoint::forget(&run.dir.join(REPORT))?;
+        }
         if !begun {
-            checkpoint::forget_untouched(&run.dir)?;
+            checkpoint::forget(&run.dir.join(checkpoint::UNTOUCHED))?;
             run.record(0.0)?;
             run.frame()?;
             run.checkpoint()?;
@@ -303,14 +227,19 @@ impl<'a, const D: usize> Run<'a, D> {
         Ok(run)
     }
 
+    /// Has it steps to do?
+    fn goes_on(&self) -> bool {
+        self.setup.flow.time < self.limits.end && self.setup.flow.steps < self.limits.max_steps
+    }
+
     /// Steps until the end, or an interrupt.
     fn steps(&mut self, line: &Meter) -> Result<()> {
         let (begun, start) = (Instant::now(), (self.setup.flow.time, self.setup.flow.steps));
         let mut saved = begun;
-        while self.setup.flow.time < self.limits.end && self.setup.flow.steps < self.limits.max_steps {
+        while self.goes_on() {
             let stop = self.limits.next_stop(self.setup.flow.time);
             let clock = Instant::now();
-            let dt = self.step(stop)?;
+            let dt = step(&mut self.setup, self.maxima.as_mut(), stop).map_err(|trouble| self.stopped(trouble))?;
             self.done.seconds += clock.elapsed().as_secs_f64();
             self.done.steps += 1;
             self.record(dt)?;
@@ -338,62 +267,17 @@ impl<'a, const D: usize> Run<'a, D> {
         Ok(())
     }
 
-    /// One step that does not pass `stop`; refuses a state that no gas has.
-    fn step(&mut self, stop: f64) -> Result<f64> {
-        let (before, floors) = (self.setup.flow.time, self.setup.flow.total.floored);
-        let stepped = self.setup.flow.advance(self.setup.cfl, stop);
-        let flow = &self.setup.flow;
-        let sound = flow.total.rate.is_finite() && flow.time > before && flow.time.is_finite();
-        match stepped {
-            Ok(dt) if sound => {
-                if let Some(maxima) = &mut self.maxima {
-                    maxima.step(flow, dt);
-                }
-                for inlet in &self.setup.inlets {
-                    inlet.relax(&mut self.setup.flow, dt);
-                }
-                match self.floors_matter(floors) {
-                    Some(reason) => Err(Error::new(reason)),
-                    None => Ok(dt),
-                }
-            }
-            other => {
-                let place = format!("step {}, t = {}", self.setup.flow.steps, self.setup.flow.time);
-                let reason = trouble(&mut self.setup, other.err());
-                let last = self.dir.join(checkpoint::NAME);
-                Err(Error::new(format!("{place}: {reason}; the last good state is in {}", last.display())))
-            }
-        }
-    }
-
-    /// Why a run whose last step added to so many `floors` must not go on: floors have changed too much of what the domain holds.
-    fn floors_matter(&self, floors: usize) -> Option<String> {
-        let flow = &self.setup.flow;
-        let cell = flow.total.floored_cell.filter(|_| flow.total.floored > floors)?;
-        let (change, content) = (flow.total.floor_change, flow.content());
-        let momentum = content.density * typical_speed(flow, content.density, content.energy);
-        let mut shares = vec![("mass", change.density / content.density)];
-        shares.push(("momentum", change.momentum.iter().fold(0.0, |sum, m| sum + m) / momentum));
-        if flow.gas().has_energy() {
-            shares.push(("energy", change.energy / content.energy));
-        }
-        if shares.iter().all(|(_, share)| *share <= MOST_FLOORED) {
-            return None;
-        }
-        let shares: Vec<String> = shares.iter().map(|(name, share)| format!("{share:.1e} of its {name}")).collect();
-        let last = self.dir.join(if self.untouched { checkpoint::NAME } else { checkpoint::UNTOUCHED });
-        Some(format!(
-            "step {}, t = {}: floors have changed what the domain holds by {}, the last in {}; the last good state is in {}",
-            flow.steps,
-            flow.time,
-            shares.join(", "),
-            state_of(&self.setup, cell),
-            last.display()
-        ))
+    /// A run that must not go on, and where its last good state is.
+    fn stopped(&self, trouble: Trouble) -> Error {
+        let floored = matches!(trouble, Trouble::Floors(_)) && !self.untouched;
+        let last = self.dir.join(if floored { checkpoint::UNTOUCHED } else { checkpoint::NAME });
+        Error::new(format!("{trouble}; the last good state is in {}", last.display()))
     }
 
     /// Lines of the log and of the probes.
     fn record(&mut self, dt: f64) -> Result<()> {
+        let forces = self.forces();
+        force_peaks::take(&mut self.journal.peaks, &forces, self.setup.flow.time);
         let flow = &self.setup.flow;
         if flow.steps.is_multiple_of(self.limits.log_every) {
             let content = flow.content();
@@ -407,7 +291,7 @@ impl<'a, const D: usize> Run<'a, D> {
                 "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
                 change.density
             );
-            for SolidForce { force: [x, y, z], .. } in self.forces() {
+            for SolidForce { force: [x, y, z], .. } in forces {
                 let _ = write!(line, ",{x},{y},{z}"); // a String takes anything
             }
             self.log.line(&line)?;
@@ -492,7 +376,7 @@ impl<'a, const D: usize> Run<'a, D> {
         let journal = Journal { seconds: self.journal.seconds + self.done.seconds, ..self.journal.clone() };
         let clock = match self.setup.flow.clock() {
             Ok(clock) => clock,
-            Err(error) => return Err(Error::new(trouble(&mut self.setup, Some(error)))),
+            Err(error) => return Err(Error::new(unphysical(&self.setup, Some(error)))),
         };
         if self.untouched && clock.total.floored > 0 {
             checkpoint::keep_untouched(&self.dir)?;
@@ -527,45 +411,6 @@ fn formats(output: &OutputKeys) -> &[Format] {
     output.formats.as_deref().unwrap_or(&[Format::Vtr])
 }
 
-/// What is the matter with a flow that cannot go on: the cell, and its values.
-fn trouble<const D: usize>(setup: &mut Setup<D>, error: Option<voidage_core::flow::Error>) -> String {
-    use voidage_core::flow::Error::Unphysical;
-    let (flow, gas) = (&setup.flow, setup.flow.gas());
-    let physical = |cell: usize| {
-        let w = flow.get(cell);
-        let finite = w.velocity.iter().all(|u| u.is_finite()) && w.density.is_finite() && w.pressure.is_finite();
-        finite && w.density > 0.0 && w.pressure > 0.0
-    };
-    let fastest = || {
-        let speed = |c: usize| {
-            let w = flow.get(c);
-            w.velocity.iter().fold(gas.sound_speed(&w), |s, u| s + u.abs())
-        };
-        (0..flow.len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b))).unwrap_or(0)
-    };
-    let (cell, what) = match error {
-        Some(Unphysical { cell }) => (cell, "no gas has this state".to_owned()),
-        Some(other) => return other.to_string(),
-        None => match (0..flow.len()).find(|&c| !physical(c)) {
-            Some(cell) => (cell, "no gas has this state".to_owned()),
-            None => (fastest(), "the time step has shrunk to nothing, here is the fastest signal".to_owned()),
-        },
-    };
-    format!("{}: {what}", state_of(setup, cell))
-}
-
-/// A cell, where it is, and its state.
-fn state_of<const D: usize>(setup: &Setup<D>, cell: usize) -> String {
-    let w = setup.flow.get(cell);
-    let at = super::arrays::index(cell, setup.edges.cells());
-    let x = super::state::centre(&setup.edges, cell);
-    let mut text = format!("cell {at:?} at {x:?}: rho = {:?}, ", w.density);
-    for (axis, u) in setup.live.iter().zip(w.velocity) {
-        let _ = write!(text, "{} = {u:?}, ", VELOCITIES[*axis]); // a String takes anything
-    }
-    format!("{text}p = {:?}", w.pressure)
-}
-
 /// The pressure that overpressures are counted from.
 fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> Result<f64> {
     let given = file.case.output.ambient;
@@ -573,15 +418,39 @@ fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> Result<f64> {
     Ok(given.unwrap_or_else(|| lowest_pressure(&setup.flow)))
 }
 
-/// How frames are drawn.
-fn pictures<const D: usize>(file: &CaseFile, setup: &Setup<D>, title: &str, ambient: f64) -> Result<Pictures> {
+/// What the checkpoint of a run must share with it: what decides its flow, and what its largest values are counted from.
+fn fingerprint<const D: usize>(setup: &Setup<D>, maxima: Option<&Maxima>, ambient: f64) -> Fingerprint {
+    let of_flow = Fingerprint::new(setup);
+    let with_forces = if setup.solids.is_some() { of_flow.with_ambient(ambient) } else { of_flow };
+    match maxima {
+        Some(maxima) => with_forces.with_maxima(maxima),
+        None => with_forces,
+    }
+}
+
+/// The journal of a run that has not stepped yet; refuses a state that no gas has.
+fn first_journal<const D: usize>(file: &CaseFile, setup: &mut Setup<D>) -> Result<Journal> {
+    if let Err(error) = setup.flow.rate() {
+        return Err(Error::at(&file.path, "initial", unphysical(setup, Some(error))));
+    }
+    let content = setup.flow.content();
+    Ok(Journal { begin: [content.density, content.energy], ..Journal::default() })
+}
+
+/// How frames are drawn, if they are.
+fn pictures<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> Result<Option<Pictures>> {
+    if !formats(&file.case.output).contains(&Format::Png) {
+        return Ok(None);
+    }
+    let of_file = || file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let title = file.case.title.clone().unwrap_or_else(of_file);
     let OutputKeys { slice, range, .. } = &file.case.output;
     for (name, ends) in [("speed", range.speed), ("overpressure", range.overpressure)] {
         if ends.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
             return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
         }
     }
-    Ok(Pictures::new(setup, title, *slice, ambient, range))
+    Ok(Some(Pictures::new(setup, &title, *slice, ambient, range)))
 }
 
 /// Largest values over time of a flow at its beginning, if the case asks for them.
@@ -608,8 +477,7 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
         let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
             file.wrong(&format!("{key}.at"), format!("{:?} of \"{name}\" is outside the grid", probe.at))
         })?;
-        let [nx, ny, _] = setup.edges.cells();
-        let cell = (at[2] * ny + at[1]) * nx + at[0];
+        let cell = position(at, setup.edges.cells());
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
             progress.warn(format!("{}: probe {name}: its cell {at:?} is solid", file.path.display()));
         }

@@ -1,8 +1,9 @@
 //! From a case to a flow that is ready to step: every value checked, nothing made that the case does not need.
 
 use super::arrays;
-use super::case::{AXES, CaseFile, GasKeys, LimiterName, Model, Pressure, RiemannName};
+use super::case::{CaseFile, GasKeys, LimiterName, Model, Pressure, RiemannName};
 use super::inlet::Inlet;
+use super::pascals;
 use super::regions::RegionReport;
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
@@ -11,7 +12,7 @@ use super::state::States;
 use crate::command::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flow::{Flow, Tidied, Treatment};
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use serde::Serialize;
 use std::path::Path;
 use voidage_core::flow::{Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
@@ -89,6 +90,8 @@ pub fn setup<const D: usize>(
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
     let (cells, regions) = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
 
+    let lowest = cells.iter().map(|w| w.pressure).fold(f64::INFINITY, f64::min);
+    pascals::doubts(file, lowest).into_iter().for_each(|doubt| progress.warn(doubt));
     let widths = live.map(|d| edges.widths(d));
     let Sides { boundaries, patches, mut inlets } = sides::sides(file, &states, edges, &cells)?;
     let mut flow = Flow::new(widths, gas, boundaries);
@@ -98,12 +101,12 @@ pub fn setup<const D: usize>(
 
     let (keys, usual) = (&case.porosity, Treatment::default());
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
-    let (mut report, mut by_law, mut measured) = (None, None, Vec::new());
-    match space::load(file, edges, live, progress)? {
+    let (mut report, mut by_law) = (None, None);
+    let (space, measured) = space::load(file, edges, live, progress)?;
+    match space {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
             by_law = space.drag;
-            measured = space.solids;
             let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
             let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
             if matched_faces > 0 {

@@ -1,14 +1,15 @@
 //! The sides of the domain, and patches on them: from the keys of a case to what stands there.
 
 use super::arrays;
-use super::case::{AXES, CaseFile, Kind, SideName, StateKeys};
+use super::case::{CaseFile, Kind, SideName, StateKeys, side_word};
 use super::inlet::Inlet;
+use super::places::STATE;
 use super::regions::Region;
 use super::state::States;
 use crate::command::progress::Progress;
 use crate::error::Result;
 use crate::flow::Flow;
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use serde::Serialize;
 use voidage_core::flow::{Boundary, Patch, Primitive};
 
@@ -60,7 +61,7 @@ pub fn sides<const D: usize>(
     let mut sides = Sides { boundaries: [[Boundary::Wall; 2]; D], patches: Vec::new(), inlets: Vec::new() };
     for axis in 0..3 {
         for side in 0..2 {
-            let key = format!("boundary.{}_{}", AXES[axis], ["min", "max"][side]);
+            let key = format!("boundary.{}", side_word(axis, side));
             let Some(d) = states.live.iter().position(|&a| a == axis) else {
                 no_flow_through(file, &key, given[axis][side])?;
                 continue;
@@ -71,7 +72,7 @@ pub fn sides<const D: usize>(
         }
         let periodic = [0, 1].map(|s| given[axis][s].and_then(|k| k.kind) == Some(Kind::Periodic));
         if periodic[0] != periodic[1] {
-            let key = format!("boundary.{}_{}", AXES[axis], ["min", "max"][usize::from(periodic[1])]);
+            let key = format!("boundary.{}", side_word(axis, usize::from(periodic[1])));
             return Err(file.wrong(&key, "an axis is periodic on both sides or on none"));
         }
     }
@@ -176,7 +177,7 @@ fn no_flow_through(file: &CaseFile, key: &str, keys: Option<&StateKeys>) -> Resu
 fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
     let of_kind: &[&str] = match kind {
         Kind::Inlet => &["rho", "T", "u", "v", "w", "p", "relax"],
-        Kind::FarField => &["rho", "T", "u", "v", "w", "p"],
+        Kind::FarField => &STATE,
         Kind::Outlet => &["p"],
         Kind::Wall | Kind::ZeroGradient | Kind::Periodic => &[],
     };

@@ -4,6 +4,7 @@
 //! what the walls of all together have besides (where solids share a cell or hide each other, and at faces lowered to a throat) goes by
 //! how much of the cell and of its faces each takes, and so does the drag. So the forces on all solids add up to the force on all.
 
+use super::arrays::position;
 use super::force::Solids;
 use crate::error::Result;
 use crate::flow::Flow;
@@ -25,6 +26,14 @@ pub struct Measured<const D: usize> {
     cells: Vec<Part<D>>,
 }
 
+impl<const D: usize> Measured<D> {
+    /// The name in a sentence, if none of these solids has a part in the grid; none for the others, which need not be there.
+    #[must_use]
+    pub fn absent(&self) -> Option<String> {
+        (self.cells.is_empty() && self.name != OTHERS).then(|| format!("solid \"{}\"", self.name))
+    }
+}
+
 /// What solids have in a cell.
 #[derive(Debug, Clone, Copy)]
 struct Part<const D: usize> {
@@ -44,30 +53,42 @@ pub struct SolidForce {
     pub force: [f64; 3],
 }
 
-/// Measures the solids of each name alone, and at last all others.
+/// The names that each body answers to: its own, and that of the solid of a scene that it is a copy or a part of (its own again, if there is none).
+#[must_use]
+pub fn names(bodies: &Bodies) -> Vec<[&str; 2]> {
+    let mut names: Vec<[&str; 2]> = bodies.bodies.iter().map(|b| [&b.name[..]; 2]).collect();
+    for solid in &bodies.solids {
+        names[solid.bodies.clone()].iter_mut().for_each(|of_body| of_body[1] = &solid.name);
+    }
+    names
+}
+
+/// Measures the solids of each name alone, and at last all others. A body counts to its own name before that of its solid.
 ///
 /// # Errors
 /// The edges are no grid.
 pub fn measure<const D: usize>(
     bodies: &Bodies,
-    names: &[String],
+    wanted: &[String],
     edges: &Edges,
     live: [usize; D],
     options: Options,
 ) -> Result<Vec<Measured<D>>> {
-    let of = |name: &str, wanted: &dyn Fn(&str) -> bool| {
-        let some = part_of(bodies, wanted);
+    let at = |name: &str| wanted.iter().position(|w| w == name);
+    let group = |[own, solid]: &[&str; 2]| at(own).or_else(|| at(solid)).unwrap_or(wanted.len());
+    let groups: Vec<usize> = names(bodies).iter().map(group).collect();
+    let all = wanted.iter().map(String::as_str).chain([OTHERS]).enumerate();
+    all.map(|(n, name)| {
+        let some = part_of(bodies, &groups, n);
         Ok(Measured { name: name.to_owned(), cells: alone(&some, edges, live, options)? })
-    };
-    let mut all = names.iter().map(|name| of(name, &|n| n == name)).collect::<Result<Vec<_>>>()?;
-    all.push(of(OTHERS, &|n| !names.iter().any(|name| name == n))?);
-    Ok(all)
+    })
+    .collect()
 }
 
-/// The bodies of some names.
-fn part_of(bodies: &Bodies, wanted: &dyn Fn(&str) -> bool) -> Bodies {
+/// The bodies of the `n`-th group.
+fn part_of(bodies: &Bodies, groups: &[usize], n: usize) -> Bodies {
     let mut part = Bodies::default();
-    for body in bodies.bodies.iter().filter(|b| wanted(&b.name)) {
+    for (body, _) in bodies.bodies.iter().zip(groups).filter(|(_, group)| **group == n) {
         let first = part.triangles.len();
         part.triangles.extend_from_slice(&bodies.triangles[body.triangles.clone()]);
         let mut body = body.clone();
@@ -97,7 +118,7 @@ fn alone<const D: usize>(bodies: &Bodies, edges: &Edges, live: [usize; D], optio
         let taken = (1.0 - open) + faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
         if taken > 0.0 {
             let [i, j, k]: [usize; 3] = std::array::from_fn(|a| ranges[a].start + at[a]);
-            parts.push(Part { cell: (k * shape[1] + j) * shape[0] + i, faces, taken });
+            parts.push(Part { cell: position([i, j, k], shape), faces, taken });
         }
     }
     Ok(parts)
@@ -171,8 +192,11 @@ impl<const D: usize> SolidShares<D> {
     /// The present forces.
     #[must_use]
     pub fn forces(&self, flow: &Flow<f64, D>, live: [usize; D], ambient: f64) -> Vec<SolidForce> {
-        let Some(solids) = Solids::of(flow) else { return Vec::new() };
         let named = self.names.iter().zip(&self.shares);
+        let Some(solids) = Solids::of(flow) else {
+            // All of the space is open: there is nothing to push.
+            return named.map(|(name, _)| SolidForce { name: name.clone(), force: [0.0; 3] }).collect();
+        };
         named
             .map(|(name, cells)| {
                 let mut force = [0.0; 3];

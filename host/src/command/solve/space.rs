@@ -10,7 +10,7 @@ use crate::command::stages;
 use crate::command::streams::is_stream;
 use crate::error::Result;
 use crate::geometry::bodies::Bodies;
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
@@ -25,11 +25,9 @@ pub struct Space<const D: usize> {
     pub faces: [Vec<f64>; D],
     /// `cr` of the axes that flow, by the law of the case.
     pub drag: Option<[Vec<f64>; D]>,
-    /// What the solids whose forces are asked for have alone.
-    pub solids: Vec<Measured<D>>,
 }
 
-/// The open fractions of a case; none where all of the space is open.
+/// The open fractions of a case, none where all of the space is open; and what the solids whose forces are asked for have alone.
 ///
 /// # Errors
 /// The scene cannot be measured, or an array is missing or wrong.
@@ -38,10 +36,10 @@ pub fn load<const D: usize>(
     edges: &Edges,
     live: [usize; D],
     progress: &mut Progress,
-) -> Result<Option<Space<D>>> {
+) -> Result<(Option<Space<D>>, Vec<Measured<D>>)> {
     let keys = &file.case.porosity;
     check(file, keys)?;
-    let space = match (&keys.scene, &keys.from) {
+    let (space, solids) = match (&keys.scene, &keys.from) {
         (Some(scene), None) => from_scene(file, scene, edges, live, progress)?,
         (None, Some(dir)) => {
             let dir = file.resolve(dir);
@@ -49,18 +47,18 @@ pub fn load<const D: usize>(
             let cells = edges.cells();
             let faces: Vec<Vec<f64>> = live
                 .iter()
-                .map(|&d| read(["x", "y", "z"][d], std::array::from_fn(|a| cells[a] + usize::from(a == d))))
+                .map(|&d| read(AXES[d], std::array::from_fn(|a| cells[a] + usize::from(a == d))))
                 .collect::<Result<_>>()?;
             let mut faces = faces.into_iter();
             let faces = std::array::from_fn(|_| faces.next().unwrap_or_default());
-            Space { volume: read("v", cells)?, faces, drag: None, solids: Vec::new() }
+            (Space { volume: read("v", cells)?, faces, drag: None }, Vec::new())
         }
-        (None, None) => return Ok(None),
+        (None, None) => return Ok((None, Vec::new())),
         (Some(_), Some(_)) => return Err(file.wrong("porosity", "takes scene or from, not both")),
     };
     let resists = space.drag.iter().flatten().flatten().any(|&cr| cr > 0.0);
     let open = !resists && space.volume.iter().chain(space.faces.iter().flatten()).all(|&b| b == 1.0);
-    Ok(if open { None } else { Some(space) })
+    Ok((if open { None } else { Some(space) }, solids))
 }
 
 /// The one place where a scene becomes open fractions.
@@ -70,7 +68,7 @@ fn from_scene<const D: usize>(
     edges: &Edges,
     live: [usize; D],
     progress: &mut Progress,
-) -> Result<Space<D>> {
+) -> Result<(Space<D>, Vec<Measured<D>>)> {
     let keys = &file.case.porosity;
     let Paths(paths) = scene;
     if paths.is_empty() {
@@ -92,6 +90,14 @@ fn from_scene<const D: usize>(
         true => Vec::new(),
         false => progress.stage("solids", |_| solids::measure(&bodies, &wanted, edges, live, options))?,
     };
+    let absent: Vec<String> = solids.iter().filter_map(Measured::absent).collect();
+    if !absent.is_empty() {
+        let names = absent.join(", ");
+        progress.warn(format!(
+            "{}: {names}: without a part in the grid that no other name has: all forces on them are 0",
+            file.path.display()
+        ));
+    }
     let (grid, law) = (edges.grid(None)?, law(file)?);
     let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);
     let wanted = Wanted {
@@ -110,17 +116,18 @@ fn from_scene<const D: usize>(
     let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));
     let FieldSet { v, x, y, z } = result.beta;
     let faces = [x, y, z];
-    Ok(Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()), drag, solids })
+    Ok((Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()), drag }, solids))
 }
 
 /// Names of the solids whose forces are asked for; `*` stands for all.
 fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
     let mut names: Vec<String> = Vec::new();
-    let known = |name: &str| bodies.bodies.iter().any(|b| b.name == name);
+    let all = solids::names(bodies);
+    let known = |name: &str| all.iter().any(|own| own.contains(&name));
     for (n, name) in file.case.output.forces.iter().enumerate() {
-        let more: Vec<&String> = match &name[..] {
-            "*" => bodies.bodies.iter().map(|b| &b.name).filter(|b| !b.is_empty()).collect(),
-            name if known(name) => vec![&file.case.output.forces[n]],
+        let more: Vec<&str> = match &name[..] {
+            "*" => all.iter().map(|[_, solid]| *solid).filter(|name| !name.is_empty()).collect(),
+            name if known(name) => vec![name],
             name => return Err(file.wrong(&format!("output.forces[{n}]"), format!("no solid is called \"{name}\""))),
         };
         for name in more {
@@ -129,8 +136,8 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
                     format!("\"{name}\" cannot head a column: no commas, quotes, line ends, and not \"{OTHERS}\"");
                 return Err(file.wrong(&format!("output.forces[{n}]"), reason));
             }
-            if !names.contains(name) {
-                names.push(name.clone());
+            if !names.iter().any(|known| known == name) {
+                names.push(name.to_owned());
             }
         }
     }

@@ -1,11 +1,12 @@
 //! States of a case: from the keys of a table, and of all cells at the beginning.
 
 use super::arrays;
-use super::case::{AXES, CaseFile, StateKeys, VELOCITIES};
+use super::case::{CaseFile, StateKeys, VELOCITIES};
+use super::places::STATE;
 use super::regions::{Region, RegionReport};
 use crate::command::stages;
 use crate::error::Result;
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use std::path::Path;
 use voidage_core::flow::{Conserved, Gas, Primitive};
 
@@ -37,14 +38,15 @@ impl<const D: usize> States<'_, D> {
         let missing = |name: &str| self.file.wrong(key, format!("{name} is missing"));
         for (name, value) in [("p", keys.p), ("T", keys.temperature), ("rho", keys.rho)] {
             if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
-                return Err(self.file.wrong(key, format!("{name} = {value} is not a positive number")));
+                let reason = format!("needs a positive number, not {value}");
+                return Err(self.file.wrong(&format!("{key}.{name}"), reason));
             }
         }
         let velocity = self.velocity(key, keys, base.map(|b| b.velocity))?;
         let (density, pressure) = if self.gas.has_energy() {
             let pressure = keys.p.or(base.map(|b| b.pressure)).ok_or_else(|| missing("p"))?;
             let density = self.given_density(key, keys, pressure)?.or(base.map(|b| b.density));
-            (density.ok_or_else(|| missing("rho"))?, pressure)
+            (density.ok_or_else(|| missing("rho or T"))?, pressure)
         } else {
             let given = keys.p.and_then(|p| self.gas.density(p));
             let density = self.given_density(key, keys, f64::NAN)?.or(given).or(base.map(|b| b.density));
@@ -106,7 +108,6 @@ impl<const D: usize> States<'_, D> {
         let mut cells = match (&keys.uniform, &keys.from) {
             (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
             (Some(state), None) => {
-                self.no_other_keys("initial.uniform", state, &[])?;
                 vec![whole(self.state("initial.uniform", state, None)?); count]
             }
             (None, Some(dir)) => self.read(&self.file.resolve(dir), edges)?.into_iter().map(whole).collect(),
@@ -136,8 +137,10 @@ impl<const D: usize> States<'_, D> {
         warn: &mut dyn FnMut(String),
     ) -> Result<RegionReport> {
         let (key, keys) = (format!("initial.regions[{n}]"), &self.file.case.initial.regions[n]);
-        let own: &[&str] = if keys.center.is_some() { &["center", "radius"] } else { &["min", "max"] };
-        self.no_other_keys(&key, keys, own)?;
+        if !keys.given().iter().any(|k| STATE.contains(k)) {
+            let all = STATE.join(", ");
+            return Err(self.file.wrong(&key, format!("has no state and would change nothing: it needs any of {all}")));
+        }
         let region = Region::new(self.file, &key, keys)?;
         let shares = region.shares(edges)?;
         for &(cell, share) in &shares {
@@ -155,12 +158,6 @@ impl<const D: usize> States<'_, D> {
         };
         warn(format!("{}: {key} {trouble}", self.file.path.display()));
         Ok(report)
-    }
-
-    fn no_other_keys(&self, key: &str, keys: &StateKeys, more: &[&str]) -> Result<()> {
-        let known = |k: &&str| ["rho", "T", "u", "v", "w", "p"].contains(k) || more.contains(k);
-        let other = if keys.kind.is_some() { Some("type") } else { keys.given().into_iter().find(|k| !known(k)) };
-        other.map_or(Ok(()), |other| Err(self.file.wrong(&format!("{key}.{other}"), "is not a key of this table")))
     }
 
     /// `rho.npy`, `u.npy`, … of a directory. Velocities along axes of one cell may be missing, else must be 0; a

@@ -39,6 +39,8 @@ pub struct StudyFindings {
     pub scalings: Vec<ScalingRow>,
     /// What is left out.
     pub left_out: Vec<LeftOutRow>,
+    /// As printed.
+    pub warnings: Vec<String>,
 }
 
 /// What programs read.
@@ -61,7 +63,7 @@ pub struct StudyReport<'a> {
 impl StudyFindings {
     /// For programs.
     #[must_use]
-    pub fn report<'a>(&'a self, warnings: &'a [String]) -> StudyReport<'a> {
+    pub fn report(&self) -> StudyReport<'_> {
         StudyReport {
             title: &self.title,
             build: BUILD,
@@ -74,7 +76,7 @@ impl StudyFindings {
             scalings: &self.scalings,
             exponents: scaling::exponents(&self.scalings),
             left_out: &self.left_out,
-            warnings,
+            warnings: &self.warnings,
         }
     }
 }
@@ -115,5 +117,6 @@ pub fn measure(case: &StudyCase, scenes: &[Bodies], command: String, session: &m
         flows: runs::all(&case.flows, case.repeats, session)?,
         scalings: scaling::all(&case.scalings, case.repeats, session)?,
         left_out: left_out::all(case, scenes, session)?,
+        warnings: session.progress.warnings.clone(),
     })
 }

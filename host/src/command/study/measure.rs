@@ -83,7 +83,11 @@ fn on_grid(
     for recipe in &case.recipes {
         let cost = cost(edges, recipe, case.repeats);
         if let Err(why) = possible(bodies, recipe) {
-            session.progress.warn(format!("method \"{}\" is left out: {why}", recipe.name));
+            // The reason is that of the scene, on whatever grid.
+            let said = format!("{}: method \"{}\" is left out: {why}", subject.name, recipe.name);
+            if !session.progress.warnings.contains(&said) {
+                session.progress.warn(said);
+            }
             session.leave_out(case.threads.len(), cost * case.threads.len() as f64);
             continue;
         }

@@ -179,6 +179,10 @@ pub fn parts(found: &StudyFindings) -> Vec<(&'static str, Vec<String>, Listing)>
         let words = "What a run leaves out where nobody asks for it, and the share of time that this saves: measured by switching it on.";
         parts.push(("Left out", vec![words.to_owned()], left_out::table(&found.left_out)));
     }
+    let absent = absent(found);
+    if !absent.is_empty() {
+        parts.push(("What is not here", absent, Listing::default()));
+    }
     if !found.rows.is_empty() {
         let words = format!(
             "Errors of cells and faces are counted from the method under “cells from”; volumes below {ROUNDING:e} are exact to rounding."
@@ -187,6 +191,31 @@ pub fn parts(found: &StudyFindings) -> Vec<(&'static str, Vec<String>, Listing)>
     }
     parts
 }
+
+/// What the tables and pictures lack, and why: points without an error, what a quick look does not measure, all warnings.
+fn absent(found: &StudyFindings) -> Vec<String> {
+    let mut words = Vec::new();
+    let count = found.rows.len();
+    for (of, missing) in [
+        ("volume", found.rows.iter().filter(|r| r.error.is_none()).count()),
+        ("cells", found.rows.iter().filter(|r| r.cell.is_none()).count()),
+    ] {
+        if missing > 0 {
+            words.push(format!("{missing} of {count} points have no error of the {of} and stand in no picture of it: nothing is known to count it from."));
+        }
+    }
+    if found.quick {
+        words.push(
+            "A quick look takes the two smallest grids, one number of threads and a single run of each; the rest is left out."
+                .to_owned(),
+        );
+    }
+    words.extend(unique(found.warnings.iter().cloned()));
+    if words.is_empty() { words } else { [vec![LACKING.to_owned()], words].concat() }
+}
+
+/// Above the list of what is not there.
+const LACKING: &str = "What the tables and pictures do not show, and what was said on the way.";
 
 /// What follows from the orders.
 fn flow_sentences(found: &StudyFindings, orders: &[FlowOrder]) -> Vec<String> {
@@ -230,7 +259,9 @@ pub fn html(found: &StudyFindings, pictures: &[(String, Panels)]) -> String {
                 let _ = writeln!(text, "<p>{}</p>\n<ul>\n{items}</ul>", escape(first));
             }
         }
-        let _ = writeln!(text, "<div class=\"wide\">{}</div>", table.html());
+        if !table.columns.is_empty() {
+            let _ = writeln!(text, "<div class=\"wide\">{}</div>", table.html());
+        }
         if n == 0 {
             pictures.iter().filter_map(|(_, p)| p.svg()).for_each(|svg| text.push_str(&svg));
         }
@@ -252,7 +283,8 @@ pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String 
             let _ = writeln!(text, "- {sentence}");
         }
         let gap = if words.is_empty() { "" } else { "\n" };
-        let _ = writeln!(text, "{gap}{}", table.markdown());
+        let table = if table.columns.is_empty() { String::new() } else { table.markdown() };
+        let _ = writeln!(text, "{gap}{table}");
         for (name, picture) in shown.drain(..) {
             let _ = writeln!(text, "![{}]({name}.svg)\n", picture.title);
         }

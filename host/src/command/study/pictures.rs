@@ -60,17 +60,43 @@ fn of_points(title: &str, rows: &[Row]) -> Vec<(String, Panels)> {
     ]
 }
 
-/// A colour for each family of methods, a line for each grid, or for each depth and tolerance, whatever varies.
+/// What varies within a family of methods: the depth, the tolerance, or both; nothing, if the method is alone.
+fn step(row: &Row) -> &str {
+    row.method.strip_prefix(&row.family).unwrap_or("").trim_start_matches(", ")
+}
+
+/// Share of white within the marks of the coarsest depth or tolerance; the finest have none.
+const LIGHTEST: f64 = 1.0;
+
+/// A tint for each depth and tolerance by which the methods of a family differ, from coarse to fine.
+fn tints(rows: &[Row]) -> Vec<(String, f64)> {
+    let mut steps: Vec<(&str, u32, f64)> = rows.iter().map(|r| (step(r), r.depth, r.tol)).collect();
+    steps.retain(|(name, ..)| !name.is_empty());
+    steps.sort_by(|a, b| a.1.cmp(&b.1).then(b.2.total_cmp(&a.2)));
+    let kind = |name: &str| (name.contains("depth"), name.contains("tol"));
+    let names = unique(steps.iter().map(|(name, ..)| (*name).to_owned()));
+    let white = |name: &String| {
+        let alike: Vec<&String> = names.iter().filter(|other| kind(other) == kind(name)).collect();
+        let place = alike.iter().position(|other| *other == name).unwrap_or(0);
+        LIGHTEST * (1.0 - place as f64 / (alike.len().max(2) - 1) as f64)
+    };
+    names.iter().map(|name| (name.clone(), white(name))).collect()
+}
+
+/// A colour for each family of methods, a tint for each depth and tolerance; a line for each method from grid to grid, or on a single grid for
+/// each family.
 fn errors(rows: &[Row], error: Error, fronts: bool) -> Panels {
     let series = unique(rows.iter().map(|r| r.family.clone()));
+    let tints = tints(rows);
     let panels = unique(rows.iter().map(|r| r.scene.clone())).into_iter().map(|scene| {
         let of_scene: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
-        panel(&scene, &of_scene, &series, error, fronts)
+        panel(&scene, &of_scene, (&series, &tints), error, fronts)
     });
     Panels {
         x: "run time, s".into(),
         panels: panels.collect(),
         series,
+        tints: tints.clone(),
         floor: Some((ROUNDING, format!("exact to rounding: at most {ROUNDING:e}").replace('-', "−"))),
         square: "the paper's leaf and point: what is touched at depth 3 is solid".into(),
         ring: "Pareto front of its grid: no other point takes less time and errs less".into(),
@@ -80,7 +106,13 @@ fn errors(rows: &[Row], error: Error, fronts: bool) -> Panels {
     }
 }
 
-fn panel(scene: &str, rows: &[&Row], series: &[String], error: Error, fronts: bool) -> Panel {
+fn panel(
+    scene: &str,
+    rows: &[&Row],
+    (series, tints): (&[String], &[(String, f64)]),
+    error: Error,
+    fronts: bool,
+) -> Panel {
     let grids = unique(rows.iter().map(|r| r.cells)).len();
     let mut lines: BTreeMap<(usize, String), Vec<Mark>> = BTreeMap::new();
     for row in rows {
@@ -93,6 +125,7 @@ fn panel(scene: &str, rows: &[&Row], series: &[String], error: Error, fronts: bo
             y_ends: None,
             square: row.paper,
             ring: fronts && row.front,
+            tint: tints.iter().position(|(name, _)| name == step(row)),
         });
     }
     let mut slopes: Vec<(usize, String)> = Vec::new();

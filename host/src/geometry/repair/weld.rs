@@ -10,12 +10,13 @@ pub struct Indexed {
     pub points: Vec<DVec3>,
     /// Corners of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Of the last triangles, the parts of others: whose part each one is.
+    /// Triangles that were cut into parts have them at the end of the list: for each of these parts, the number of the triangle that it
+    /// was cut from.
     pub sources: Vec<u32>,
 }
 
 impl Indexed {
-    /// The number of a triangle in the file: its own, or that of the one which it is a part of.
+    /// The number in the file of a triangle, or of the triangle that it was cut from.
     #[must_use]
     pub fn source(&self, n: u32) -> u32 {
         let whole = self.triangles.len() - self.sources.len();
@@ -48,10 +49,11 @@ pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
     Indexed { points, triangles: indexed, sources: Vec::new() }
 }
 
-/// Of an edge, how wide a crack at its end may be. Below a half: then no edge has both its ends merged into one point.
+/// A crack is closed if it is narrower than this share of the edges that end at it. Below a half, no edge can lose both its ends to one point.
 const OF_AN_EDGE: f64 = 0.25;
 
-/// Points in buckets by place, for reaches of many sizes: of each size so many buckets as the points there reach or more.
+/// Points in cubic buckets, for searches within distances ("reaches") of very different sizes: one set of buckets for each binary order of
+/// the reach, as wide as the reach or wider.
 struct Buckets {
     origin: DVec3,
     points: HashMap<(i32, [i64; 3]), Vec<u32>>,

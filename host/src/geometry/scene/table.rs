@@ -79,7 +79,10 @@ impl<'a> StrictTable<'a> {
     pub fn get<T>(&mut self, key: &'static str, read: impl FnOnce(&DeValue) -> Wanted<T>) -> Result<Option<T>> {
         self.known.push(key);
         let Some(value) = self.table.get(key) else { return Ok(None) };
-        read(value.get_ref()).map(Some).map_err(|reason| self.wrong(key, reason))
+        read(value.get_ref()).map(Some).map_err(|reason| match item(value.get_ref(), &reason) {
+            Some(span) => self.error_at(span, format!("{key}{reason}")),
+            None => self.wrong(key, reason),
+        })
     }
 
     /// The value of a key that must be there.
@@ -228,6 +231,12 @@ fn kind(value: &DeValue) -> &'static str {
     }
 }
 
+/// Where the item of a list stands whose place a reason begins with: `[2] takes a number`.
+fn item(value: &DeValue, reason: &str) -> Option<Range<usize>> {
+    let (n, _) = reason.strip_prefix('[')?.split_once(']')?;
+    value.as_array()?.get(n.parse::<usize>().ok()?).map(toml::Spanned::span)
+}
+
 /// Larger coordinates overflow when multiplied, and are no geometry.
 const LARGEST: f64 = 1e60;
 
@@ -279,9 +288,15 @@ pub fn fraction(value: &DeValue) -> Wanted<f64> {
 /// # Errors
 /// What it should be.
 pub fn index(value: &DeValue) -> Wanted<usize> {
-    let DeValue::Integer(i) = value else { return Err(format!("takes a whole number, not {}", kind(value))) };
-    usize::from_str_radix(i.as_str(), i.radix())
-        .map_err(|_| format!("takes a whole number that can be counted, not {i}"))
+    let i = match value {
+        DeValue::Integer(i) => i,
+        DeValue::Float(x) => return Err(format!("takes a whole number, not {x}")),
+        other => return Err(format!("takes a whole number, not {}", kind(other))),
+    };
+    usize::from_str_radix(i.as_str(), i.radix()).map_err(|_| match i.as_str().starts_with('-') {
+        true => format!("takes a whole number from 0 on, not {i}"),
+        false => format!("takes a whole number, not one as large as {i}"),
+    })
 }
 
 /// A whole number of at least one.
@@ -317,7 +332,8 @@ pub fn list<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) ->
     move |value| {
         let items = value.as_array().ok_or_else(|| format!("takes a list, not {}", kind(value)))?;
         let read = |(n, item): (usize, &toml::Spanned<DeValue>)| {
-            read(item.get_ref()).map_err(|reason| format!("[{n}] {reason}"))
+            let deeper = |reason: &str| if reason.starts_with('[') { "" } else { " " };
+            read(item.get_ref()).map_err(|reason| format!("[{n}]{}{reason}", deeper(&reason)))
         };
         items.iter().enumerate().map(read).collect()
     }
@@ -329,6 +345,9 @@ pub fn list<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) ->
 /// What it should be.
 pub fn three<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<[T; 3]> {
     move |value| {
+        if !value.is_array() {
+            return Err(format!("takes a list of three values, not {}", kind(value)));
+        }
         let found = list(read)(value)?;
         <[T; 3]>::try_from(found).map_err(|all| format!("takes three values, not {}", all.len()))
     }

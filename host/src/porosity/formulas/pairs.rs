@@ -1,0 +1,95 @@
+//! Which solids by formula meet: asked of GJK once for each two whose boxes overlap.
+
+use super::round::Round;
+use super::solid::{FormulaSolid, Kind, Pair};
+use glam::DVec3;
+use rayon::prelude::*;
+use voidage_core::convex::gjk::{Intersection, intersect};
+use voidage_core::convex::support::{Support, SupportPoint, Transformed};
+use voidage_core::torus::TorusSolid;
+
+/// Solids that overlap by less than this share of their size are taken to touch.
+pub(super) const TOUCHING: f64 = 1e-9;
+
+/// The convex hull of a piece of a torus.
+#[derive(Clone, Copy)]
+struct Hull<'a>(&'a TorusSolid);
+
+impl Support for Hull<'_> {
+    type Vector = DVec3;
+    const ROUNDED: bool = true;
+    fn support(&self, direction: DVec3, _: u32) -> SupportPoint<DVec3> {
+        SupportPoint { point: DVec3::from_array(self.0.outermost(direction.to_array())), index: 0 }
+    }
+    fn center(&self) -> DVec3 {
+        DVec3::from_array(self.0.middle())
+    }
+    fn extent(&self) -> f64 {
+        let far = |axis: usize| self.0.extent(axis).map(f64::abs).into_iter().fold(0.0, f64::max);
+        far(0).max(far(1)).max(far(2)) + self.0.size()
+    }
+    fn slack(&self) -> f64 {
+        // As of a cylinder: a handful of roundings in the frame, in the direction across the ring and in the sums.
+        48.0 * f64::EPSILON * self.extent()
+    }
+}
+
+/// How two convex bodies lie to each other; none if they are apart.
+fn pair(a: impl Support<Vector = DVec3> + Copy, b: impl Support<Vector = DVec3> + Copy) -> Option<Pair> {
+    if matches!(intersect(&a, &b, None), Intersection::Apart { .. }) {
+        return None;
+    }
+    match intersect(&smaller(a), &smaller(b), None) {
+        Intersection::Apart { .. } => Some(Pair::Touching),
+        _ => Some(Pair::Meeting),
+    }
+}
+
+/// A body, shrunk about its centre.
+fn smaller<S: Support<Vector = DVec3>>(s: S) -> Transformed<S> {
+    let shift = Support::center(&s) * TOUCHING;
+    Transformed::new(s, DVec3::AXES, DVec3::splat(1.0 - TOUCHING), shift)
+}
+
+/// How two solids lie to each other; of tori, their pieces.
+fn pair_of_solids(a: &Kind, b: &Kind) -> Option<Pair> {
+    let worse = |a: Option<Pair>, b: Option<Pair>| match (a, b) {
+        (Some(Pair::Meeting), _) | (_, Some(Pair::Meeting)) => Some(Pair::Meeting),
+        (Some(Pair::Touching), _) | (_, Some(Pair::Touching)) => Some(Pair::Touching),
+        (None, None) => None,
+    };
+    match (a, b) {
+        (Kind::Quadric(_, a), Kind::Quadric(_, b)) => pair(Round(a), Round(b)),
+        (Kind::Quadric(_, a), Kind::Torus(_, pieces)) | (Kind::Torus(_, pieces), Kind::Quadric(_, a)) => {
+            pieces.iter().map(|piece| pair(Round(a), Hull(piece))).fold(None, worse)
+        }
+        (Kind::Torus(_, some), Kind::Torus(_, pieces)) => {
+            some.iter().flat_map(|one| pieces.iter().map(move |piece| pair(Hull(one), Hull(piece)))).fold(None, worse)
+        }
+    }
+}
+
+/// Finds the partners of all solids, which are in the order of their numbers.
+pub fn find_partners(solids: &mut [FormulaSolid]) {
+    let mut order: Vec<usize> = (0..solids.len()).collect();
+    order.sort_by(|&a, &b| solids[a].bounds.min.x.total_cmp(&solids[b].bounds.min.x));
+    let found: Vec<(usize, usize, Pair)> = order
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(n, &a)| {
+            let (solids, end) = (&*solids, solids[a].bounds.max.x);
+            let later = order[n + 1..].iter().take_while(move |&&b| solids[b].bounds.min.x <= end);
+            later.filter_map(move |&b| {
+                let (one, other) = (&solids[a], &solids[b]);
+                let pair = one.bounds.touches(other.bounds).then(|| pair_of_solids(&one.kind, &other.kind))?;
+                pair.map(|pair| (a, b, pair))
+            })
+        })
+        .collect();
+    for (a, b, pair) in found {
+        let (one, other) = (solids[a].body, solids[b].body);
+        solids[a].partners.push((other, pair));
+        solids[b].partners.push((one, pair));
+    }
+    solids.iter_mut().for_each(|s| s.partners.sort_unstable_by_key(|p| p.0));
+}

@@ -1,0 +1,140 @@
+//! One solid by formula: its shares of cells and faces, and those that it meets.
+
+use super::round::closed_form;
+use crate::porosity::convex::Convex;
+use glam::DVec3;
+use voidage_core::grid::Grid;
+use voidage_core::grid::bounds::Bounds;
+use voidage_core::grid::cell_range::RangeKind;
+use voidage_core::number::aabb::Aabb;
+use voidage_core::quadric::QuadricSolid;
+use voidage_core::torus::{TorusShape, TorusSolid};
+
+/// Shares that leave 0 to 1 by more than this are not believed: the solid is subdivided in that layer.
+pub(super) const BELIEVED: f64 = 1e-9;
+
+/// Pieces of a torus are this long at most, in degrees.
+const PIECE: f64 = 12.0;
+
+/// How two solids lie to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pair {
+    /// They share no inner point, but may share a wall.
+    Touching,
+    /// They may share inner points.
+    Meeting,
+}
+
+/// A solid by formula, and those that it meets.
+#[derive(Debug, Clone)]
+pub struct FormulaSolid {
+    /// Its number among all bodies.
+    pub body: usize,
+    /// A box around it.
+    pub bounds: Aabb<DVec3>,
+    pub(super) kind: Kind,
+    /// Numbers of the bodies that it meets or touches, ascending.
+    pub(super) partners: Vec<(usize, Pair)>,
+}
+
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "there are few tori")]
+pub(super) enum Kind {
+    /// By closed forms; as GJK sees it.
+    Quadric(QuadricSolid, Convex<'static>),
+    /// A torus, by quadrature, and the pieces of it whose hulls GJK sees in its place.
+    Torus(TorusSolid, Vec<TorusSolid>),
+}
+
+impl FormulaSolid {
+    /// A body that has a closed form.
+    #[must_use]
+    pub fn new(body: usize, bounds: Aabb<DVec3>, convex: Convex<'static>) -> Option<Self> {
+        let kind = Kind::Quadric(closed_form(&convex)?, convex);
+        Some(FormulaSolid { body, bounds, kind, partners: Vec::new() })
+    }
+
+    /// A torus; none if it has no size with which one can compute.
+    #[must_use]
+    pub fn torus(body: usize, shape: &TorusShape<DVec3>) -> Option<Self> {
+        let solid = TorusSolid::new(shape)?;
+        let extents = [0, 1, 2].map(|axis| solid.extent(axis));
+        let [min, max] = [0, 1].map(|end| DVec3::from_array(extents.map(|e| e[end])));
+        let pieces = solid.pieces((shape.angle / PIECE).ceil() as u32).collect();
+        Some(FormulaSolid { body, bounds: Aabb { min, max }, kind: Kind::Torus(solid, pieces), partners: Vec::new() })
+    }
+
+    /// As GJK sees it, if it is convex.
+    #[must_use]
+    pub fn convex(&self) -> Option<Convex<'static>> {
+        match &self.kind {
+            Kind::Quadric(_, convex) => Some(*convex),
+            Kind::Torus(..) => None,
+        }
+    }
+
+    /// May it reach a box, if it is not convex? Of a convex one GJK tells.
+    #[must_use]
+    pub fn torus_may_reach(&self, cell: Aabb<DVec3>) -> bool {
+        matches!(&self.kind, Kind::Torus(solid, _) if solid.may_reach(cell.min.to_array(), cell.max.to_array()))
+    }
+
+    /// Its share of one cell or face, and what that may be off by.
+    #[must_use]
+    pub fn share(&self, kind: RangeKind, cell: Aabb<DVec3>) -> Bounds<f64> {
+        let (share, error) = match &self.kind {
+            Kind::Torus(solid, _) => solid.share(kind, cell.min.to_array(), cell.max.to_array()),
+            Kind::Quadric(solid, _) => share_of_quadric(solid, kind, cell),
+        };
+        Bounds { lower: (share - error).max(0.0), upper: (share + error).min(1.0) }
+    }
+
+    /// Centres of the flat ends that lie in a plane, and their radii.
+    pub(super) fn ends_in_plane(&self, axis: usize, plane: f64) -> Vec<(DVec3, f64)> {
+        match &self.kind {
+            Kind::Quadric(solid, _) => {
+                solid.ends_in_plane(axis, plane).map(|(center, radius)| (DVec3::from_array(center), radius)).collect()
+            }
+            Kind::Torus(solid, _) => {
+                let lies = |(center, inward, radius): ([f64; 3], [f64; 3], f64)| {
+                    let center = DVec3::from_array(center);
+                    (inward[axis].abs() == 1.0 && center[axis] == plane).then_some((center, radius))
+                };
+                solid.ends().filter_map(lies).collect()
+            }
+        }
+    }
+
+    /// The same solid once more.
+    pub(super) fn is_same(&self, other: &FormulaSolid) -> bool {
+        matches!((&self.kind, &other.kind), (Kind::Quadric(one, _), Kind::Quadric(another, _)) if one == another)
+    }
+
+    pub(super) fn pair_with(&self, body: usize) -> Option<Pair> {
+        let at = self.partners.binary_search_by_key(&body, |p| p.0).ok()?;
+        Some(self.partners[at].1)
+    }
+}
+
+/// What a quadric has of one cell or face.
+fn share_of_quadric(solid: &QuadricSolid, kind: RangeKind, cell: Aabb<DVec3>) -> (f64, f64) {
+    let [mut x, mut y, mut z] = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
+    if let RangeKind::Faces(axis) = kind {
+        // Of a face the cell above.
+        let size = (cell.max - cell.min).max_element();
+        let side = [&mut x, &mut y, &mut z];
+        for (n, side) in side.into_iter().enumerate() {
+            if n == axis.min(2) {
+                side[1] = side[0] + size;
+            }
+        }
+    }
+    let Ok(grid) = Grid::new(&x, &y, &z) else { return (0.0, 1.0) };
+    let mut found = 0.0;
+    let worst = solid.layer(&grid, 0, kind != RangeKind::Cells, &mut |told, at, share| {
+        if told == kind && at == 0 {
+            found += share;
+        }
+    });
+    (f64::min(found, 1.0), if worst <= BELIEVED { BELIEVED * 1e-3 } else { 1.0 })
+}

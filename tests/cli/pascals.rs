@@ -1,0 +1,64 @@
+//! Pressures that look as if they were meant in kPa are doubted; cases without units are not.
+
+use crate::kit::{Scratch, solved, stderr, stdout, voidage};
+use std::fs;
+use std::path::Path;
+
+/// What is said of a tube of gas with a state, a side and more.
+fn said(gas: &str, state: &str, side: &str, output: &str) -> String {
+    let at = Scratch::new();
+    let case = format!(
+        "[grid]\nx = {{ points = [0, 1], cells = [8] }}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n{gas}\n[initial]\nuniform = {{ {state} }}\n\
+         [boundary]\nx_min = \"wall\"\nx_max = {side}\n[time]\nmax_steps = 1\n[output]\n{output}\n"
+    );
+    stderr(&solved(&at, &case, "out", &[]))
+}
+
+const AIR: &str = "gas_constant = 287";
+
+#[test]
+fn kilopascals_in_a_case_with_temperatures_are_doubted() {
+    let wall = "\"wall\"";
+    let text = said(AIR, "T = 288, p = 101.325", wall, "");
+    assert!(text.contains("case.toml: key initial.uniform.p: 101.325 Pa is less than a hundredth of"), "{text}");
+    assert!(text.contains("not in kPa or bar"), "{text}");
+    let text = said(AIR, "T = 288, p = 101325", "{ type = \"outlet\", p = 1.013 }", "");
+    assert!(text.contains("key boundary.x_max.p: 1.013 Pa"), "{text}");
+    let text = said("", "rho = 1.2, p = 101325", wall, "ambient = 101.325");
+    assert!(text.contains("key output.ambient: 101.325 is less than a hundredth of the lowest pressure"), "{text}");
+}
+
+#[test]
+fn pressures_of_their_own_units_are_not() {
+    let wall = "\"wall\"";
+    for (gas, state) in [
+        ("", "rho = 1, p = 1"),
+        ("", "rho = 1, p = 0.01"),
+        ("", "rho = 1.2, p = 100"),
+        ("gas_constant = 1", "T = 1, p = 1"),
+        ("gas_constant = 1", "T = 300, p = 300"),
+        (AIR, "T = 288, p = 101325"),
+        (AIR, "T = 220, p = 1197"),
+    ] {
+        let text = said(gas, state, wall, "");
+        assert!(!text.contains("Pa"), "{gas} {state}: {text}");
+    }
+    let text = said("", "rho = 1, p = 1", wall, "ambient = 0.02");
+    assert!(!text.contains("ambient"), "{text}");
+}
+
+/// Nothing is said of the cases that ship, nor of the template.
+#[test]
+fn the_examples_are_not_doubted() {
+    let at = Scratch::new();
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    fs::copy(examples.join("channel/cube.stl"), at.file("cube.stl")).expect("a copy");
+    let read = |name: &str| fs::read_to_string(examples.join(name)).expect("an example");
+    let template = stdout(&voidage(&[&"solve", &"--template"]));
+    for (n, case) in [read("channel/channel.toml"), read("sod.toml"), template].into_iter().enumerate() {
+        assert!(case.contains("\n[time]\n"));
+        let short = case.replace("\n[time]\n", "\n[time]\nmax_steps = 0\n");
+        let text = stderr(&solved(&at, &short, &format!("out{n}"), &[]));
+        assert!(!text.contains("pressures are in Pa") && !text.contains("output.ambient"), "{text}");
+    }
+}
