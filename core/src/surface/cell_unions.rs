@@ -58,7 +58,7 @@ pub(super) struct Shared<'s, V: Vector, O> {
 /// So many triangles may be sorted for the parts of one cell, or so many times those of its first part, if these are more. Where so much
 /// surface meets in one place that halving does not thin it, a cell would take longer with each level of division; beyond this it keeps the
 /// bounds that it has. Where it does, six levels sort each triangle some thirty times, which is some sixty times those of a part.
-const MOST_EFFORT: usize = 1 << 20;
+const MOST_EFFORT: usize = 1 << 17;
 const MOST_TIMES: usize = 64;
 
 /// What the division of a cell has cost.

@@ -115,6 +115,12 @@ impl<'a, V: Vector> Layers<'a, V> {
         self.bins.groups(k).len()
     }
 
+    /// The most bodies of triangles that reach one layer.
+    #[must_use]
+    pub fn most_bodies(&self) -> usize {
+        (0..self.grid.cells()[2]).map(|k| self.bodies_in(k)).max().unwrap_or(0)
+    }
+
     /// Open fractions of layer `k`: 1 open, 0 blocked, the value between its bounds as the options say. `bounds` are those of the same
     /// fractions, lower and upper, if wanted.
     ///

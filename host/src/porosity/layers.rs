@@ -125,6 +125,8 @@ pub struct Worker {
 /// What a thread needs for sums over surfaces and for unions.
 struct SumVecs {
     needed: MemoryNeeded,
+    /// Pieces of surface that one cell may hold before it is divided.
+    most_pieces: usize,
     reals: Vec<f64>,
     flags: Vec<u8>,
     numbers: Vec<u32>,
@@ -138,7 +140,7 @@ impl SumVecs {
         if shared && self.union.is_none() {
             self.numbers = vec![0; self.needed.numbers];
             self.groups = vec![Group::default(); self.needed.groups];
-            self.union = Some(UnionVecs::new());
+            self.union = Some(UnionVecs::new(self.most_pieces));
         }
         let SumVecs { reals, flags, numbers, groups, union, .. } = self;
         let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
@@ -151,6 +153,7 @@ impl Worker {
         let needed = layers.memory_needed();
         let sums = SumVecs {
             needed,
+            most_pieces: if layers.most_bodies() > FEW_BODIES { MANY_PIECES } else { PIECES },
             reals: vec![0.0; needed.reals],
             flags: vec![0; needed.flags],
             numbers: Vec::new(),
@@ -184,8 +187,11 @@ impl Worker {
     }
 }
 
-/// Pieces of surface that one cell may hold before it is divided: beyond, trees cost more than smaller cells.
-const MAX_PIECES: usize = 1024;
+/// Pieces of surface that one cell may hold before it is divided, where no layer holds more than a few bodies, and where some layer does: more memory
+/// takes time to make, and the same for all threads, lest results depend on their number.
+const PIECES: usize = 1024;
+const MANY_PIECES: usize = 4 * PIECES;
+const FEW_BODIES: usize = PIECES / 4;
 
 /// Memory for unions.
 struct UnionVecs {
@@ -199,15 +205,15 @@ struct UnionVecs {
 }
 
 impl UnionVecs {
-    fn new() -> Self {
+    fn new(most_pieces: usize) -> Self {
         UnionVecs {
-            pieces: vec![Piece::default(); MAX_PIECES],
-            split_pieces: vec![Piece::default(); 4 * MAX_PIECES],
-            order: vec![0; 4 * MAX_PIECES],
-            nodes: vec![Node::default(); 4 * MAX_PIECES],
-            parts: vec![Part::default(); MAX_PIECES / 4],
-            fragments: vec![Fragment::default(); MAX_PIECES],
-            pending: vec![PendingNode::default(); MAX_PIECES],
+            pieces: vec![Piece::default(); most_pieces],
+            split_pieces: vec![Piece::default(); 4 * most_pieces],
+            order: vec![0; 4 * most_pieces],
+            nodes: vec![Node::default(); 4 * most_pieces],
+            parts: vec![Part::default(); most_pieces / 4],
+            fragments: vec![Fragment::default(); most_pieces],
+            pending: vec![PendingNode::default(); most_pieces],
         }
     }
 

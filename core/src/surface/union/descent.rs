@@ -30,6 +30,8 @@ pub struct Fragment<R: Real> {
     inward: bool,
     /// It met a coincident plane of the same orientation.
     twin: bool,
+    /// It, or what it is a part of, reaches solid of the body whose tree it goes down.
+    meets: bool,
 }
 
 /// How a polygon goes down.
@@ -65,7 +67,7 @@ impl<R: Real> Descent<'_, R> {
         let enter = |f: &mut Fragment<R>, part: usize| {
             f.part = if Some(part) == rule.own { part + 1 } else { part };
             f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
-            (f.inward, f.twin) = (false, false);
+            (f.inward, f.twin, f.meets) = (false, false, false);
         };
         let first = self.fragments.first_mut().ok_or(Full)?;
         first.polygon.assign(polygon);
@@ -103,6 +105,8 @@ impl<R: Real> Descent<'_, R> {
                     let positive = along != (f.inward || (rule.both_sides && part.below));
                     f.branch = if positive { node.positive } else { node.negative };
                 }
+                // Cuts between one open part and another would make work for all trees that follow.
+                Place::Across if !f.meets && self.ends_open(top) => {}
                 Place::Across => {
                     self.cut(top, node)?;
                     waiting += 1;
@@ -112,11 +116,53 @@ impl<R: Real> Descent<'_, R> {
         Ok(())
     }
 
+    /// Let the fragment at `top` end in the open if no part of it reaches solid below its branch. Without that, or where it cannot be told,
+    /// false, and it is marked as one that meets the body.
+    fn ends_open(&mut self, top: usize) -> bool {
+        let open = self.reaches_no_solid(top) == Some(true);
+        if let Some(f) = self.fragments.get_mut(top) {
+            f.meets = !open;
+            f.branch = if open { Branch::Open } else { f.branch };
+        }
+        open
+    }
+
+    /// Send a copy of the fragment at `top` down the rest of the tree; none where a plane coincides or memory is spent.
+    fn reaches_no_solid(&mut self, top: usize) -> Option<bool> {
+        let [f, copy] = self.fragments.get_mut(top..)?.first_chunk_mut()?;
+        copy.polygon.assign(&f.polygon);
+        (copy.ball, copy.branch) = (f.ball, f.branch);
+        let mut waiting = top + 2;
+        while waiting > top + 1 {
+            let last = waiting - 1;
+            let part = self.fragments.get_mut(last)?;
+            let node = match part.branch {
+                Branch::Solid => return Some(false),
+                Branch::Open => {
+                    waiting = last;
+                    continue;
+                }
+                Branch::Node(n) => self.nodes.get(n as usize)?,
+            };
+            match part.place(node, self.thickness).ok()? {
+                Place::Positive => part.branch = node.positive,
+                Place::Negative => part.branch = node.negative,
+                Place::On => return None,
+                Place::Across => {
+                    self.cut(last, node).ok()?;
+                    waiting += 1;
+                }
+            }
+        }
+        Some(true)
+    }
+
     /// Replace the fragment at `top` by its two parts, what lies behind the plane of a node on top; a full one by its halves.
     fn cut(&mut self, top: usize, node: &Node<R>) -> Result<(), NoProof> {
         let [f, next] = self.fragments.get_mut(top..).and_then(|f| f.first_chunk_mut()).ok_or(Full)?;
-        let Fragment { polygon: _, ball, part, branch, inward, twin } = *f;
-        (next.ball, next.part, next.branch, next.inward, next.twin) = (ball, part, branch, inward, twin);
+        let Fragment { polygon: _, ball, part, branch, inward, twin, meets } = *f;
+        (next.ball, next.part, next.branch) = (ball, part, branch);
+        (next.inward, next.twin, next.meets) = (inward, twin, meets);
         if f.polygon.is_full() {
             [next.polygon, f.polygon] = f.polygon.halves();
         } else {
