@@ -3,10 +3,12 @@
 //! - [`real`]: `f32` and `f64`, and the vectors of glam over them, from one text
 //! - [`aabb`]: axis-aligned boxes
 //! - [`words`]: words for exact integers of their values
+//! - `axis`: the coordinate axes, as indices that need no check
 //! - `plane`: points of planes across an axis
 //! - `root`: the square root where there is no std
 
 pub mod aabb;
+pub(crate) mod axis;
 pub(crate) mod plane;
 pub mod real;
 #[cfg(not(feature = "std"))]

@@ -6,7 +6,9 @@ cd "$(dirname "$0")"
 target="${CARGO_TARGET_DIR:-target}"
 cargo rustc --quiet --release -- -C link-arg=-nostartfiles -C link-arg=-Wl,--gc-sections
 object="$target/release/libvoidage_nopanic.so"
-nm -D "$object" | grep -q ' T nopanic_f64' && nm -D "$object" | grep -q ' T nopanic_layers_f64' || { echo "no queries in $object"; exit 1; }
+for query in nopanic_f64 nopanic_layers_f64 nopanic_round_f64; do
+    nm -D "$object" | grep -q " T $query\$" || { echo "no $query in $object"; exit 1; }
+done
 if nm -C "$object" | grep -iE 'panic(ked|king|_fmt|_bounds|_const|_nounwind|_impl)|rust_begin_unwind|unwrap_failed|expect_failed|slice_.*_fail|len_mismatch|__rust_alloc|malloc'; then
     echo "a panic or an allocation is reachable from a query"
     exit 1

@@ -338,7 +338,35 @@ fn never_panics<V: Vector>(random: &mut Random) -> bool {
         assert!(!solid.layer(&grid, k, true, &mut told).is_nan());
         solid.plane(&grid, k, &mut told);
     }
+    let [lo, hi] = [0; 2].map(|_| [0; 3].map(|_| number(random)));
+    tells_of_box(&solid, lo, hi);
     true
+}
+
+/// Any box, and faces across axes that there are not: shares from 0 to 1, an error that is a number.
+fn tells_of_box(solid: &TorusSolid, lo: [f64; 3], hi: [f64; 3]) {
+    let kinds = [0, 1, 2, 3, usize::MAX].map(RangeKind::Faces).into_iter().chain([RangeKind::Cells]);
+    for kind in kinds {
+        let (share, error) = solid.share(kind, lo, hi);
+        assert!((0.0..=1.0).contains(&share) && !error.is_nan(), "{share} {error} of {kind:?} from {lo:?} to {hi:?}");
+    }
+    let _ = (solid.may_reach(lo, hi), solid.outermost(lo), solid.extent(3));
+}
+
+/// Limits of a run without end are not numbers; `f64::clamp` panics of such.
+#[test]
+fn a_box_without_end_has_an_answer() {
+    let center = DVec3::ONE;
+    for angle in [110.0, 250.0, 360.0] {
+        let (axis, start) = (DVec3::new(0.4, 0.2, 0.9), DVec3::X);
+        let solid =
+            TorusSolid::new(&TorusShape { center, axis, start, radius: 0.6, tube: 0.2, angle }).expect("a bend");
+        for (n, side) in [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1)] {
+            let mut sides = [[0.3; 3], [1.9; 3]];
+            sides[side][n] = [f64::NEG_INFINITY, f64::INFINITY][side];
+            tells_of_box(&solid, sides[0], sides[1]);
+        }
+    }
 }
 
 #[test]

@@ -3,16 +3,16 @@
 /// A point or vector in a plane.
 pub(crate) type P2 = [f64; 2];
 
-/// The two axes after one, so that all three turn to the right.
-#[inline(always)]
-pub(crate) const fn others(axis: usize) -> [usize; 2] {
-    [[1, 2], [2, 0], [0, 1]][axis]
-}
-
 /// `a - b`.
 #[inline(always)]
 pub(crate) fn sub(a: P2, b: P2) -> P2 {
     [a[0] - b[0], a[1] - b[1]]
+}
+
+/// The point a share of the way from one to another.
+#[inline(always)]
+pub(crate) fn on_way(from: P2, to: P2, part: f64) -> P2 {
+    [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])]
 }
 
 /// The vector product, positive if `b` lies to the left of `a`.

@@ -101,6 +101,17 @@ pub trait Real:
     fn smaller(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
+    /// The limit beyond which this value lies, or itself; limits in the wrong order or NaN are no error, as they are for std's `clamp`.
+    #[inline(always)]
+    fn limited(self, lo: Self, hi: Self) -> Self {
+        if self < lo {
+            lo
+        } else if self > hi {
+            hi
+        } else {
+            self
+        }
+    }
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// The largest power of two not above the absolute value of a normal number; 0 for subnormal numbers.

@@ -74,7 +74,7 @@ pub(super) fn lens(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Moments {
         Lens::Nothing => Moments::default(),
         Lens::Triangle(corner, area) => {
             let d = sub(q, p);
-            Moments { area, first: [0, 1].map(|n: usize| (d[n] + corner[n]) / 3.0 * area) }
+            Moments { area, first: [(d[0] + corner[0]) / 3.0 * area, (d[1] + corner[1]) / 3.0 * area] }
         }
         Lens::Bow(Bow { chord: d, tangent: t, size, ratio, w }) => {
             let bend = bend(w);

@@ -9,7 +9,8 @@
 use super::arc::{Bow, Lens, bends, lens_of};
 use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
 use super::wall::{Curved, Ellipse};
-use crate::number::plane::{P2, cross, others, sub};
+use crate::number::axis::Axis;
+use crate::number::plane::{P2, cross, sub};
 use crate::number::real::Real;
 
 /// A plane across axis `n` at height `h` from the origin of a cone.
@@ -19,7 +20,7 @@ pub(super) struct PlaneOfCone<'a> {
     pub radius: f64,
     /// By which it grows along the axis.
     pub slope: f64,
-    pub n: usize,
+    pub n: Axis,
     pub h: f64,
 }
 
@@ -51,7 +52,7 @@ impl PlaneOfCone<'_> {
 
     /// The height of a face's middle.
     pub fn reference(&self, rectangle: &Rectangle) -> Reference {
-        let ([u, v], [x, y], a) = (others(self.n), rectangle.middle(), &self.curved.axis);
+        let ([u, v], [x, y], a) = (self.n.others(), rectangle.middle(), &self.curved.axis);
         let height = a[self.n] * self.h + (a[u] * x + a[v] * y);
         Reference { height, radius: self.radius + self.slope * height }
     }
@@ -75,7 +76,7 @@ impl PlaneOfCone<'_> {
         if !reference.is_far(self.slope, size, 3.0) {
             return 0.0;
         }
-        let ([u, v], a) = (others(self.n), &self.curved.axis);
+        let ([u, v], a) = (self.n.others(), &self.curved.axis);
         let region_of = RegionOfCone {
             plane: self,
             section,

@@ -5,7 +5,8 @@ use super::end_line::EndLine;
 use super::outline::{Rectangle, Section, Side, cut};
 use super::twofold::{Twofold, difference, difference_of_squares};
 use super::wall::{Ellipse, Span, hypotenuse};
-use crate::number::plane::{P2, cross, others, sub};
+use crate::number::axis::Axis;
+use crate::number::plane::{P2, cross, sub};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 
@@ -25,8 +26,8 @@ pub(super) struct End {
 
 impl End {
     /// Its line in the plane across axis `n` at a coordinate.
-    pub fn line(&self, n: usize, coordinate: f64) -> EndLine {
-        let [u, v] = others(n);
+    pub fn line(&self, n: Axis, coordinate: f64) -> EndLine {
+        let [u, v] = n.others();
         let a = self.inward;
         let height = difference(coordinate, self.center[n]);
         let (slope, shift) = ([a[u], a[v]], [self.shift[u], self.shift[v]]);
@@ -51,8 +52,8 @@ impl End {
     }
 
     /// What a line along axis `m` has inside, by its other two coordinates from the part's origin.
-    pub fn span(&self, m: usize, q: P2) -> Span {
-        let [u, v] = others(m);
+    pub fn span(&self, m: Axis, q: P2) -> Span {
+        let [u, v] = m.others();
         let a = self.inward;
         let aside = a[u] * (q[0] - self.shift[u]) + a[v] * (q[1] - self.shift[v]);
         let all = Span::ALL;
@@ -65,7 +66,7 @@ impl End {
 
     /// The disc, seen along axis `xi`: area and first moments, in the other two axes and about the rectangle's middle, of what lies over
     /// a rectangle and between two planes across `xi`, given by their lines.
-    pub fn projected(&self, xi: usize, rectangle: &Rectangle, planes: [&EndLine; 2]) -> Moments {
+    pub fn projected(&self, xi: Axis, rectangle: &Rectangle, planes: [&EndLine; 2]) -> Moments {
         let mut corners = rectangle.corners();
         // The lower plane's line is positive where that plane is inside; whether the end is above it depends on where inside is.
         let up = self.inward[xi] > 0.0;
@@ -83,8 +84,8 @@ impl End {
     }
 
     /// The disc's outline, seen along axis `xi`.
-    fn seen_along(&self, xi: usize) -> Section {
-        let [u, v] = others(xi);
+    fn seen_along(&self, xi: Axis) -> Section {
+        let [u, v] = xi.others();
         let a = self.inward;
         let s = [-a[u] / a[xi], -a[v] / a[xi]];
         let quadratic = [1.0 + s[0] * s[0], s[0] * s[1], 1.0 + s[1] * s[1]];
@@ -95,8 +96,8 @@ impl End {
     }
 
     /// What the disc, seen along axis `xi`, has of a segment.
-    fn piece(&self, xi: usize, from: P2, to: P2) -> Option<Side> {
-        let [u, v] = others(xi);
+    fn piece(&self, xi: Axis, from: P2, to: P2) -> Option<Side> {
+        let [u, v] = xi.others();
         let a = self.inward;
         let s = [-a[u] / a[xi], -a[v] / a[xi]];
         let quadratic = [1.0 + s[0] * s[0], s[0] * s[1], 1.0 + s[1] * s[1]];

@@ -3,7 +3,7 @@
 use super::arc::{Moments, lens, times};
 use super::end_line::EndLine;
 use super::wall::{Ellipse, Span};
-use crate::number::plane::{P2, cross, sub};
+use crate::number::plane::{P2, cross, on_way, sub};
 use heapless::Vec;
 
 /// A rectangle in a plane; coordinates are relative to the part's origin.
@@ -77,7 +77,7 @@ pub(super) fn cut(corners: &Corners, line: &EndLine, side: u8) -> Corners {
 /// Where a side meets a line, `part` of the way along it. On a side along an axis the line itself tells: beside a ball's centre, where line and
 /// side may meet far closer to it than the side's ends lie, all digits of that distance count.
 fn crossing(from: P2, to: P2, line: &EndLine, part: f64) -> P2 {
-    let mut at = [0, 1].map(|k| from[k] + part * (to[k] - from[k]));
+    let mut at = on_way(from, to, part);
     for (across, along) in [(0, 1), (1, 0)] {
         if from[across] == to[across] {
             let aside = line.constant + line.slope[across] * (from[across] - line.shift[across]);
@@ -143,7 +143,7 @@ impl Section {
         let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
         let mut corners = None;
         let mut chords = [None; 2];
-        for (n, end) in ends.iter().enumerate() {
+        for ((number, end), chord) in (4..).zip(ends).zip(&mut chords) {
             let Some(line) = end else { continue };
             let values = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|p| line.at(p));
             if values.iter().all(|&l| l >= 0.0) {
@@ -153,8 +153,8 @@ impl Section {
                 return Region::Empty;
             }
             let before = corners.take().unwrap_or_else(|| rectangle.corners());
-            corners = Some(cut(&before, line, 4 + n as u8));
-            chords[n] = line.chord;
+            corners = Some(cut(&before, line, number));
+            *chord = line.chord;
         }
         if corners.is_none() {
             let whole = spans[0].covers(u0, u1)
@@ -190,7 +190,7 @@ impl Section {
         }
         let mut pieces = Vec::new();
         let mut before = sides.last().and_then(|s| s.1);
-        for (side, found) in sides {
+        for &(side, found) in &sides {
             if let Some(found) = found {
                 let joined = found.from_corner && before.is_some_and(|b| b.to_corner);
                 let _ = pieces.push(Piece { from: found.from, to: found.to, joined, side });

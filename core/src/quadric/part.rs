@@ -12,7 +12,7 @@ use super::outline::{Rectangle, Region, Section};
 use super::solid_angle::PlaneOfUnitBall;
 use super::twofold::{Twofold, difference, difference_of_squares};
 use super::wall::{Curved, Span, Wall, hypotenuse};
-use crate::number::plane::others;
+use crate::number::axis::Axis;
 use crate::number::real::Real;
 use core::f64::consts::PI;
 
@@ -23,13 +23,13 @@ pub(super) struct Part {
     pub curved: Curved,
     pub ends: [Option<End>; 2],
     /// The axis along which `Curved::axis` is longest.
-    pub xi: usize,
+    pub xi: Axis,
 }
 
 /// A grid plane as a part sees it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
-    n: usize,
+    n: Axis,
     /// Coordinate from the part's origin.
     pub h: Twofold,
     section: Section,
@@ -64,18 +64,18 @@ impl Part {
     pub fn new(origin: [f64; 3], curved: Curved, ends: [Option<End>; 2]) -> Self {
         let [x, y, z] = curved.axis.map(f64::abs);
         let xi = if x >= y && x >= z {
-            0
+            Axis::X
         } else if y >= z {
-            1
+            Axis::Y
         } else {
-            2
+            Axis::Z
         };
         Part { origin, curved, ends, xi }
     }
 
     /// A plane across axis `n`.
     #[inline]
-    pub fn plane(&self, n: usize, coordinate: f64) -> Plane {
+    pub fn plane(&self, n: Axis, coordinate: f64) -> Plane {
         let h = difference(coordinate, self.origin[n]);
         let (quadratic, linear) = self.curved.conic(n, h.value);
         let section = Section { quadratic, linear, ellipse: self.curved.ellipse(n, h) };
@@ -83,14 +83,14 @@ impl Part {
         Plane { n, h, section, lines }
     }
 
-    /// What the line where two planes meet has inside the curved surface; it runs along axis `m`, the planes in the order of [`others`].
+    /// What the line where two planes meet has inside the curved surface; it runs along axis `m`, the planes in the order of [`Axis::others`].
     #[inline]
-    pub fn span(&self, m: usize, planes: [&Plane; 2]) -> Span {
+    pub fn span(&self, m: Axis, planes: [&Plane; 2]) -> Span {
         self.curved.span(m, planes.map(|p| p.h))
     }
 
     /// The same inside the ends too.
-    pub fn span_between_ends(&self, m: usize, planes: [&Plane; 2]) -> Span {
+    pub fn span_between_ends(&self, m: Axis, planes: [&Plane; 2]) -> Span {
         let inside = |end: &End| end.span(m, planes.map(|p| p.h.value));
         self.ends.iter().flatten().map(inside).fold(self.span(m, planes), Span::intersection)
     }
@@ -108,7 +108,7 @@ impl Part {
         let flux = match &self.curved.wall {
             Wall::Cylinder { .. } if n == self.xi => 0.0,
             Wall::Cylinder { .. } => {
-                let along = usize::from(others(n)[0] != self.xi);
+                let along = usize::from(n.others()[0] != self.xi);
                 moments.first[along] * (self.curved.axis[n] / self.curved.axis[self.xi])
             }
             Wall::Cone { radius, slope } => {
@@ -129,7 +129,7 @@ impl Part {
     #[inline]
     fn solid_angle(&self, plane: &Plane, region: &Region, rectangle: &Rectangle) -> f64 {
         let n = plane.n;
-        let [u, v] = others(n);
+        let [u, v] = n.others();
         let h = plane.h.value;
         let (du, dv) = (rectangle.u[1] - rectangle.u[0], rectangle.v[1] - rectangle.v[0]);
         let place = |p: [f64; 2], height: f64| {
@@ -172,9 +172,9 @@ impl Part {
 
     /// Volume in a cell between planes, from the fluxes through its faces: low and high along each axis.
     pub fn volume(&self, sides: &Sides, faces: &[[FaceFlux; 2]; 3]) -> f64 {
-        let through = |n: usize| faces[n][1].flux - faces[n][0].flux;
-        let fluxes = through(0) + through(1) + through(2);
-        let width = |n: usize| sides[n][1].h.value - sides[n][0].h.value;
+        let through = |n: Axis| faces[n][1].flux - faces[n][0].flux;
+        let fluxes = through(Axis::X) + through(Axis::Y) + through(Axis::Z);
+        let width = |n: Axis| sides[n][1].h.value - sides[n][0].h.value;
         match &self.curved.wall {
             Wall::Cylinder { .. } => {
                 let along = width(self.xi) * 0.5 * (faces[self.xi][0].area + faces[self.xi][1].area);
@@ -190,18 +190,18 @@ impl Part {
     fn volume_of_cone(&self, radius: f64, slope: f64, sides: &Sides, faces: &[[FaceFlux; 2]; 3]) -> f64 {
         let (mut height, mut size) = (0.0, 0.0);
         let middle = sides.map(|[low, high]| (low.h.value + high.h.value) * 0.5);
-        for (n, [low, high]) in sides.iter().enumerate() {
+        for (n, [low, high]) in Axis::ALL.into_iter().zip(sides) {
             height += middle[n] * self.curved.axis[n];
             size += high.h.value - low.h.value;
         }
         let reference = Reference { height, radius: radius + slope * height };
         let far = reference.is_far(slope, size, 4.0);
         let mut volume = 0.0;
-        for n in 0..3 {
-            let [u, v] = others(n);
+        for n in Axis::ALL {
+            let [u, v] = n.others();
             let rectangle = Rectangle { u: sides[u].map(|p| p.h.value), v: sides[v].map(|p| p.h.value) };
-            for (side, sign) in [(0, -1.0), (1, 1.0)] {
-                let (face, h) = (&faces[n][side], sides[n][side].h.value);
+            for ((face, plane), sign) in faces[n].iter().zip(sides[n]).zip([-1.0, 1.0]) {
+                let h = plane.h.value;
                 if face.area == 0.0 {
                     continue;
                 }
@@ -221,26 +221,27 @@ impl Part {
 
     /// What a cell has of the flat ends, each seen along `xi` over the cell's rectangle.
     fn discs<'a>(&'a self, sides: &'a Sides) -> impl Iterator<Item = (&'a End, Rectangle, Moments)> {
-        let [u, v] = others(self.xi);
+        let [u, v] = self.xi.others();
         let rectangle = Rectangle { u: sides[u].map(|p| p.h.value), v: sides[v].map(|p| p.h.value) };
-        self.ends.iter().enumerate().filter_map(move |(number, end)| {
-            let end = end.as_ref()?;
-            let reach = |n: usize| end.radius * self.curved.across[n] * (1.0 + MARGIN) + end.shift[n].abs() * MARGIN;
-            let near = |n: usize| {
+        // The planes across `xi` hold a line for each end.
+        let [low, high] = sides[self.xi].map(|plane| plane.lines.iter());
+        self.ends.iter().zip(low.zip(high)).filter_map(move |(end, (low, high))| {
+            let (end, low, high) = (end.as_ref()?, low.as_ref()?, high.as_ref()?);
+            let reach = |n: Axis| end.radius * self.curved.across[n] * (1.0 + MARGIN) + end.shift[n].abs() * MARGIN;
+            let near = |n: Axis| {
                 sides[n][0].h.value <= end.shift[n] + reach(n) && sides[n][1].h.value >= end.shift[n] - reach(n)
             };
-            let [Some(low), Some(high)] = sides[self.xi].map(|side| side.lines[number]) else { return None };
-            if !(near(0) && near(1) && near(2)) {
+            if !(near(Axis::X) && near(Axis::Y) && near(Axis::Z)) {
                 return None;
             }
-            let disc = end.projected(self.xi, &rectangle, [&low, &high]);
+            let disc = end.projected(self.xi, &rectangle, [low, high]);
             (disc.area != 0.0).then_some((end, rectangle, disc))
         })
     }
 
     /// Flux of the field through what a cell has of the flat ends of a cylinder.
     fn flux_through_ends(&self, sides: &Sides) -> f64 {
-        let [u, v] = others(self.xi);
+        let [u, v] = self.xi.others();
         let mut flux = 0.0;
         for (end, rectangle, disc) in self.discs(sides) {
             let (inward, middle) = (end.inward[self.xi], rectangle.middle());
@@ -263,7 +264,7 @@ impl Part {
         for (end, _, disc) in self.discs(sides) {
             let field = match &middle {
                 Some((place, reference)) => {
-                    let above = dot([0, 1, 2].map(|n| end.shift[n] - place[n]), axis);
+                    let above = dot(Axis::ALL.map(|n| end.shift[n] - place[n]), axis);
                     along_axis(above, reference, end.radius)
                 }
                 None => (dot(end.shift, axis) - apex) / 3.0,
@@ -276,7 +277,7 @@ impl Part {
     /// The solid angle that the part of a cell between the ends takes up at the centre, which may lie on its sides or corners.
     fn angle_at_center(&self, sides: &Sides) -> f64 {
         let mut normals = heapless::Vec::<[f64; 3], 3>::new();
-        for n in 0..3 {
+        for n in Axis::ALL {
             let (low, high) = (sides[n][0].h.value, sides[n][1].h.value);
             if !(low <= 0.0 && high >= 0.0) {
                 return 0.0;
@@ -292,7 +293,7 @@ impl Part {
     }
 
     /// Normal to the planes across axis `n`, where the ball is the unit ball.
-    fn normal_of_ball(&self, n: usize) -> [f64; 3] {
+    fn normal_of_ball(&self, n: Axis) -> [f64; 3] {
         match &self.curved.wall {
             Wall::Ellipsoid(map) => map.map(map.outermost[n]).map(|x| x * map.reach[n]),
             _ => {
@@ -342,12 +343,12 @@ fn angle_of_half_space(normals: &[[f64; 3]], inward: [f64; 3]) -> f64 {
         all => {
             let cosines = [0, 1, 2].map(|n| all.get(n).map_or(1.0, cosine));
             // A corner of the octant beyond the plane is cut off, and a corner alone before it is left.
-            let corner = |n: usize, sign: f64| {
-                let [u, v] = others(n);
+            let corner = |n: Axis, sign: f64| {
+                let [u, v] = n.others();
                 (PI * 0.5 + dihedral(sign * cosines[u]) + dihedral(sign * cosines[v]) - PI).max(0.0)
             };
             let behind = cosines.iter().filter(|&&c| c < 0.0).count();
-            let place = |wanted: bool| cosines.iter().position(|&c| (c < 0.0) == wanted).unwrap_or(0);
+            let place = |wanted: bool| Axis::ALL.into_iter().find(|&n| (cosines[n] < 0.0) == wanted).unwrap_or(Axis::X);
             match behind {
                 0 => PI * 0.5,
                 1 => PI * 0.5 - corner(place(true), -1.0),

@@ -8,7 +8,8 @@ use super::part::Part;
 use super::slice::{MOST_PARTS, Slice, Window};
 use super::solid::QuadricSolid;
 use crate::grid::bounds::Bounds;
-use crate::number::plane::{P2, others};
+use crate::number::axis::Axis;
+use crate::number::plane::P2;
 use crate::number::real::Real;
 use heapless::Vec;
 
@@ -38,7 +39,7 @@ struct OnePart<'a> {
 
 /// What both boxes hold.
 fn meet(a: &[P2; 3], b: &[P2; 3]) -> [P2; 3] {
-    [0, 1, 2].map(|n: usize| [a[n][0].max(b[n][0]), a[n][1].min(b[n][1])])
+    Axis::ALL.map(|n| [a[n][0].max(b[n][0]), a[n][1].min(b[n][1])])
 }
 
 /// Bounds of the share of a cell or face that the union of some solids has, from bounds of the sum of their shares; of cells about `tol` apart, of
@@ -63,11 +64,11 @@ pub fn share_of_union<'a>(
 /// more in the cell than this is made for, or they are so large that rounding leaves nothing to rely on.
 #[must_use]
 pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2; 3], enough: f64) -> Option<P2> {
-    let flat = cell.iter().position(|[lo, hi]| lo == hi);
+    let flat = Axis::ALL.into_iter().find(|&n| cell[n][0] == cell[n][1]);
     let mut parts: Vec<OnePart, MOST_AT_HAND> = Vec::new();
     for (solid, body) in solids.into_iter().enumerate() {
         for part in body.parts() {
-            let extent = meet(&cell, &[0, 1, 2].map(|n| part.extent(n)));
+            let extent = meet(&cell, &Axis::ALL.map(|n| part.extent(n)));
             if reaches(&extent, flat) {
                 parts.push(OnePart { solid, part, extent }).ok()?;
             }
@@ -136,15 +137,15 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
 }
 
 /// Has a box an inside, or if it is flat along an axis, an area?
-fn reaches(extent: &[P2; 3], flat: Option<usize>) -> bool {
-    extent.iter().enumerate().all(|(n, [lo, hi])| lo < hi || (flat == Some(n) && lo == hi))
+fn reaches(extent: &[P2; 3], flat: Option<Axis>) -> bool {
+    Axis::ALL.into_iter().zip(extent).all(|(n, [lo, hi])| lo < hi || (flat == Some(n) && lo == hi))
 }
 
 /// Bounds of the volume that up to `N` parts have in common in a box, or of the area in a plane across an axis at a coordinate.
 fn common<'a, const N: usize>(
     parts: impl Iterator<Item = &'a Part> + Clone,
     extent: &[P2; 3],
-    plane: Option<(usize, f64)>,
+    plane: Option<(Axis, f64)>,
     enough: f64,
 ) -> P2 {
     let Some((n, coordinate)) = plane else { return volume::<N>(parts, extent, enough) };
@@ -152,8 +153,8 @@ fn common<'a, const N: usize>(
     Slice::<N>::new(parts, window, coordinate).common().area
 }
 
-fn window(extent: &[P2; 3], n: usize, enough: f64) -> Window {
-    let [u, v] = others(n);
+fn window(extent: &[P2; 3], n: Axis, enough: f64) -> Window {
+    let [u, v] = n.others();
     Window { n, u: extent[u], v: extent[v], enough }
 }
 
@@ -188,7 +189,7 @@ impl Sample {
 fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, extent: &[P2; 3], enough: f64) -> P2 {
     let n = across(parts.clone(), extent);
     let [first, last] = extent[n];
-    let [u, v] = others(n);
+    let [u, v] = n.others();
     let all = (extent[u][1] - extent[u][0]) * (extent[v][1] - extent[v][0]);
     if all * (last - first) <= enough {
         return [0.0, all * (last - first)];
@@ -239,24 +240,25 @@ fn in_range(slice: &impl Fn(f64) -> Sample, [first, last]: P2, [all, rows]: P2, 
         // From the last to the first, so that those before keep their places.
         for at in (0..steps).rev().filter(|at| wide.get(*at) == Some(&true)) {
             if let (Some(low), Some(high)) = (samples.get(at), samples.get(at + 1)) {
-                let middle = slice(0.5 * (low.at + high.at));
-                let _ = samples.insert(at + 1, middle);
+                let mut moved = slice(0.5 * (low.at + high.at));
+                samples.iter_mut().skip(at + 1).for_each(|later| core::mem::swap(later, &mut moved));
+                let _ = samples.push(moved);
             }
         }
     }
 }
 
 /// The axis across which sections change least suddenly: that along which the parts' axes are shortest.
-fn across<'a>(parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3]) -> usize {
+fn across<'a>(parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3]) -> Axis {
     let mut along = [0.0; 3];
     for part in parts {
         for (sum, a) in along.iter_mut().zip(part.curved.axis) {
             *sum += a.abs();
         }
     }
-    let size = |n: usize| extent[n][1] - extent[n][0];
-    let better = |a: usize, b: usize| (along[b], -size(b)) < (along[a], -size(a));
-    (1..3).fold(0, |best, n| if better(best, n) { n } else { best })
+    let size = |n: Axis| extent[n][1] - extent[n][0];
+    let better = |a: Axis, b: Axis| (along[b], -size(b)) < (along[a], -size(a));
+    [Axis::Y, Axis::Z].into_iter().fold(Axis::X, |best, n| if better(best, n) { n } else { best })
 }
 
 /// Bounds of the volume between two slices, from them and those beside; `all` is the area of the window, `rows` its height.
@@ -270,7 +272,7 @@ fn between(samples: &[Sample], at: usize, [all, rows]: P2) -> P2 {
         (None, None) => {
             // What is common lies between two planes: nothing beyond a plane in which there is nothing.
             let some = |mut samples: core::slice::Iter<'_, Sample>| samples.any(|s| s.root().is_some());
-            let (before, after) = samples.split_at(at + 1);
+            let [before, after] = [samples.get(..=at), samples.get(at + 1..)].map(Option::unwrap_or_default);
             if (from.is_empty() && some(before.iter())) || (to.is_empty() && some(after.iter())) {
                 return [0.0; 2];
             }

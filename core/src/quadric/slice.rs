@@ -14,7 +14,8 @@ use super::outline::Section;
 use super::part::{Part, Plane};
 use super::twofold::difference;
 use super::wall::Span;
-use crate::number::plane::{P2, others};
+use crate::number::axis::Axis;
+use crate::number::plane::P2;
 use crate::number::real::Real;
 use core::cell::Cell;
 use heapless::Vec;
@@ -32,7 +33,7 @@ pub(super) const MOST_PARTS: usize = 6;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
     /// The axis that it is across.
-    pub n: usize,
+    pub n: Axis,
     pub u: P2,
     pub v: P2,
     /// Bounds of the area this close will do.
@@ -122,7 +123,7 @@ impl WallInPlane<'_> {
     }
 
     #[inline]
-    fn span(&self, u_axis: usize, v: f64) -> Span {
+    fn span(&self, u_axis: Axis, v: f64) -> Span {
         let span = self.part.curved.span(u_axis, [difference(v, self.origin[1]), self.plane.h]);
         Span { lo: span.lo + self.origin[0], hi: span.hi + self.origin[0] }
     }
@@ -136,7 +137,7 @@ impl WallInPlane<'_> {
 impl<'a, const N: usize> Slice<'a, N> {
     /// Of a plane at a coordinate.
     pub fn new(parts: impl Iterator<Item = &'a Part>, window: Window, coordinate: f64) -> Self {
-        let [u, v] = others(window.n);
+        let [u, v] = window.n.others();
         let size = |x: P2| x[0].abs().max(x[1].abs());
         let far = size(window.u).max(size(window.v)).max(coordinate.abs());
         let mut slice =
@@ -145,7 +146,7 @@ impl<'a, const N: usize> Slice<'a, N> {
         for part in parts {
             let plane = part.plane(window.n, coordinate);
             let origin = [part.origin[u], part.origin[v]];
-            reach = reach.max(size(origin)).max(part.origin.get(window.n).map_or(0.0, |x| x.abs()));
+            reach = reach.max(size(origin)).max(part.origin[window.n].abs());
             for line in plane.lines().iter().flatten() {
                 slice.add_end(line, origin);
             }
@@ -183,7 +184,7 @@ impl<'a, const N: usize> Slice<'a, N> {
     /// The row at a height; none where rounding lets a span vanish.
     fn row(&self, v: f64) -> Option<Row<N>> {
         let Window { n, u: [u0, u1], .. } = self.window;
-        let [u_axis, _] = others(n);
+        let [u_axis, _] = n.others();
         let beyond = 4.0 * (u1 - u0);
         let mut row =
             Row { v, spans: [Span::ALL; N], low: u0, high: u1, left: Boundary::Window, right: Boundary::Window };
@@ -310,7 +311,7 @@ impl<'a, const N: usize> Slice<'a, N> {
             if best.length() > enough || most - best.length() <= close || !(width > self.noise) {
                 break;
             }
-            let at = if turn % 4 == 3 { 0.5 * width } else { at.clamp(0.02 * width, 0.98 * width) };
+            let at = if turn % 4 == 3 { 0.5 * width } else { at.limited(0.02 * width, 0.98 * width) };
             let Some(row) = self.row(a.v + at) else { break };
             if row.length() > best.length() {
                 best = row;
@@ -464,7 +465,7 @@ impl<'a, const N: usize> Slice<'a, N> {
         let walls = (0..self.walls.len()).map(|n| Boundary::Wall(n as u8));
         let ends = self.ends.iter().enumerate().filter(|(_, e)| e.side == side).map(|(n, _)| Boundary::End(n as u8));
         let proved = walls.chain(ends).chain([Boundary::Window]).all(within);
-        ([chosen; 2], (!proved).then(|| a.v + at.clamp(0.2 * width, 0.8 * width)))
+        ([chosen; 2], (!proved).then(|| a.v + at.limited(0.2 * width, 0.8 * width)))
     }
 
     /// By how much rounding may move a boundary in a row: as if the row were a little higher or lower.
@@ -544,7 +545,7 @@ fn below_tangents([p, q]: P2, [up, down]: P2, width: f64) -> (f64, f64) {
     } else if down >= 0.0 {
         (width, q)
     } else if up.is_finite() && down.is_finite() {
-        let at = ((q - p - down * width) / (up - down)).clamp(0.0, width);
+        let at = ((q - p - down * width) / (up - down)).limited(0.0, width);
         (at, (p + up * at).min(q + down * (at - width)))
     } else if down.is_finite() {
         (0.0, q - down * width)

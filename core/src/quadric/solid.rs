@@ -6,6 +6,7 @@ use super::spread;
 use super::wall::{Curved, UnitMap, Wall};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
+use crate::number::axis::Axis;
 use crate::number::real::{Real, Vector};
 
 /// A solid by formula: convex, of one to three parts that share no volume.
@@ -24,7 +25,7 @@ fn wide<V: Vector>(v: V) -> Option<[f64; 3]> {
 
 /// Length and direction between two points; none if they are too close or too far.
 fn direction(from: [f64; 3], to: [f64; 3]) -> Option<(f64, [f64; 3])> {
-    let d = [0, 1, 2].map(|n| to[n] - from[n]);
+    let d = Axis::ALL.map(|n| to[n] - from[n]);
     let largest = d.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     if !SIZES.contains(&largest) {
         return None;
@@ -101,7 +102,7 @@ impl QuadricSolid {
         let origin = if radii[1] == 0.0 { narrow } else { wide_end };
         let end = |center: [f64; 3], sign: f64, radius: f64| End {
             center,
-            shift: [0, 1, 2].map(|n| center[n] - origin[n]),
+            shift: Axis::ALL.map(|n| center[n] - origin[n]),
             inward: axis.map(|a| a * sign),
             radius,
             closed: true,
@@ -163,7 +164,7 @@ fn tube(from: [f64; 3], to: [f64; 3], radius: f64) -> Option<Part> {
     let (_, axis) = direction(from, to)?;
     let end = |center: [f64; 3], sign: f64| End {
         center,
-        shift: [0, 1, 2].map(|n| center[n] - from[n]),
+        shift: Axis::ALL.map(|n| center[n] - from[n]),
         inward: axis.map(|a| a * sign),
         radius,
         closed: true,

@@ -5,6 +5,7 @@ use super::wall::Span;
 use super::window::Extent;
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
+use crate::number::axis::Axis;
 use crate::number::real::Real;
 use core::ops::Range;
 
@@ -39,7 +40,7 @@ struct CellShares {
 
 impl<'a> Row<'a> {
     fn new(part: &'a Part, y: &'a [Plane; 2], z: &'a [Plane; 2]) -> Self {
-        let x_lines = [0, 1].map(|j: usize| [0, 1].map(|k: usize| part.span(0, [&y[j], &z[k]])));
+        let x_lines = y.each_ref().map(|y| z.each_ref().map(|z| part.span(Axis::X, [y, z])));
         Row { part, y, z, x_lines }
     }
 
@@ -48,7 +49,7 @@ impl<'a> Row<'a> {
         let mut run = Span::ALL;
         for j in 0..2 {
             for k in 0..2 {
-                run = run.intersection(self.part.span_between_ends(0, [&self.y[j], &self.z[k]]));
+                run = run.intersection(self.part.span_between_ends(Axis::X, [&self.y[j], &self.z[k]]));
             }
         }
         run
@@ -57,9 +58,9 @@ impl<'a> Row<'a> {
     #[inline]
     fn column(&self, x: f64) -> Column {
         let (part, [y0, y1], [z0, z1]) = (self.part, self.y, self.z);
-        let plane = part.plane(0, x);
-        let y_lines = [z0, z1].map(|z| part.span(1, [z, &plane]));
-        let z_lines = [y0, y1].map(|y| part.span(2, [&plane, y]));
+        let plane = part.plane(Axis::X, x);
+        let y_lines = [z0, z1].map(|z| part.span(Axis::Y, [z, &plane]));
+        let z_lines = [y0, y1].map(|y| part.span(Axis::Z, [&plane, y]));
         let spans = [y_lines[0], z_lines[1], y_lines[1], z_lines[0]];
         let face = part.face(&plane, [y0, y1], [z0, z1], &spans);
         Column { plane, y_lines, z_lines, face }
@@ -100,18 +101,18 @@ pub(super) fn layer<R: Real>(
     let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
     let (Some(&[z0, z1]), [nx, ny, _]) = (zs.get(k..).and_then(|e| e.first_chunk()), grid.cells()) else { return 0.0 };
     let zs = [z0.to_f64(), z1.to_f64()];
-    let [lowest, highest] = part.extent(2);
+    let [lowest, highest] = part.extent(Axis::Z);
     if lowest > zs[1] || highest < zs[0] {
         return 0.0;
     }
-    let z = zs.map(|z| part.plane(2, z));
-    let rows = reached(ys, part.extent(1));
+    let z = zs.map(|z| part.plane(Axis::Z, z));
+    let rows = reached(ys, part.extent(Axis::Y));
     let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, visit };
     let Some(first) = ys.get(rows.start) else { return 0.0 };
-    let mut below = part.plane(1, first.to_f64());
+    let mut below = part.plane(Axis::Y, first.to_f64());
     for j in rows.clone() {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
-        let y = [below, part.plane(1, y1.to_f64())];
+        let y = [below, part.plane(Axis::Y, y1.to_f64())];
         below = y[1];
         let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
         let last_row = j + 1 == rows.end;
@@ -198,22 +199,22 @@ impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
 pub(super) fn plane<R: Real>(part: &Part, grid: &Grid<R>, plane: usize, visit: &mut impl FnMut(RangeKind, usize, f64)) {
     let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
     let Some(z) = zs.get(plane).map(|z| z.to_f64()) else { return };
-    let [lowest, highest] = part.extent(2);
+    let [lowest, highest] = part.extent(Axis::Z);
     if lowest > z || highest < z {
         return;
     }
     let nx = grid.cells()[0];
-    let level = part.plane(2, z);
-    for j in reached(ys, part.extent(1)) {
+    let level = part.plane(Axis::Z, z);
+    for j in reached(ys, part.extent(Axis::Y)) {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
         let ys = [y0.to_f64(), y1.to_f64()];
-        let y = ys.map(|y| part.plane(1, y));
+        let y = ys.map(|y| part.plane(Axis::Y, y));
         let Some(run) = part.run(ys, [z, z]) else { continue };
-        let x_lines = [0, 1].map(|j: usize| part.span(0, [&y[j], &level]));
+        let x_lines = y.each_ref().map(|y| part.span(Axis::X, [y, &level]));
         for i in reached(xs, run) {
             let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
-            let x = [x0.to_f64(), x1.to_f64()].map(|x| part.plane(0, x));
-            let y_lines = [0, 1].map(|i: usize| part.span(1, [&level, &x[i]]));
+            let x = [x0.to_f64(), x1.to_f64()].map(|x| part.plane(Axis::X, x));
+            let y_lines = x.each_ref().map(|x| part.span(Axis::Y, [&level, x]));
             let face =
                 part.face(&level, [&x[0], &x[1]], [&y[0], &y[1]], &[x_lines[0], y_lines[1], x_lines[1], y_lines[0]]);
             let [width, depth] = [&x, &y].map(|[lo, hi]| hi.h.value - lo.h.value);

@@ -4,7 +4,8 @@
 //! the axis. Discriminants are kept as products, so that a line that touches a surface is told from one that misses it by its distance.
 
 use super::twofold::{Twofold, difference, difference_of_squares, dot};
-use crate::number::plane::{P2, others};
+use crate::number::axis::Axis;
+use crate::number::plane::P2;
 use crate::number::real::Real;
 use core::f64::consts::PI;
 
@@ -83,16 +84,16 @@ pub(super) struct Curved {
 
 impl Curved {
     pub fn new(wall: Wall, axis: [f64; 3]) -> Self {
-        let across = [0, 1, 2].map(|m| {
-            let [u, v] = others(m);
+        let across = Axis::ALL.map(|m| {
+            let [u, v] = m.others();
             hypotenuse(axis[u], axis[v])
         });
         Curved { wall, axis, across }
     }
 
-    /// What a line along axis `m` has inside, by its other two coordinates in the order of [`others`].
+    /// What a line along axis `m` has inside, by its other two coordinates in the order of [`Axis::others`].
     #[inline]
-    pub fn span(&self, m: usize, q: [Twofold; 2]) -> Span {
+    pub fn span(&self, m: Axis, q: [Twofold; 2]) -> Span {
         match &self.wall {
             Wall::Cylinder { radius } => self.span_of_cylinder(*radius, m, q),
             Wall::Cone { radius, slope } => self.span_of_cone([*radius, *slope], m, q),
@@ -106,8 +107,8 @@ impl Curved {
     }
 
     #[inline]
-    fn span_of_cylinder(&self, radius: f64, m: usize, q: [Twofold; 2]) -> Span {
-        let [u, v] = others(m);
+    fn span_of_cylinder(&self, radius: f64, m: Axis, q: [Twofold; 2]) -> Span {
+        let [u, v] = m.others();
         let (au, av, across) = (self.axis[u], self.axis[v], self.across[m]);
         if !(across > 0.0) {
             let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
@@ -126,8 +127,8 @@ impl Curved {
     /// With f and d the line's distances from the origin along and beside the axis, as seen along the line, and σ² = 1 − (slope cot)², the
     /// line is inside where t² σ² c² − 2 b t + C < 0, and b² − σ² c² C = c² ((R + slope f / c)² − σ² d²): for every slope a product.
     #[inline]
-    fn span_of_cone(&self, [radius, slope]: [f64; 2], m: usize, q: [Twofold; 2]) -> Span {
-        let [u, v] = others(m);
+    fn span_of_cone(&self, [radius, slope]: [f64; 2], m: Axis, q: [Twofold; 2]) -> Span {
+        let [u, v] = m.others();
         let (am, au, av, across) = (self.axis[m], self.axis[u], self.axis[v], self.across[m]);
         let growth = slope * am;
         if !(across > 0.0) {
@@ -182,10 +183,10 @@ impl Curved {
         Span { lo, hi }
     }
 
-    /// In a plane across axis `n`, the second coordinates (in the order of [`others`]) between which lines along the first one meet the inside;
+    /// In a plane across axis `n`, the second coordinates (in the order of [`Axis::others`]) between which lines along the first one meet the inside;
     /// infinite where there is no end.
-    pub fn rows(&self, n: usize, h: Twofold) -> P2 {
-        let [u, v] = others(n);
+    pub fn rows(&self, n: Axis, h: Twofold) -> P2 {
+        let [u, v] = n.others();
         let (a, across) = (&self.axis, self.across[u]);
         let all = [f64::NEG_INFINITY, f64::INFINITY];
         let none = [f64::INFINITY, f64::NEG_INFINITY];
@@ -243,8 +244,8 @@ impl Curved {
 
     /// The conic in a plane across axis `n` at a height: quadratic part `[uu, uv, vv]`, and the linear part.
     #[inline(always)]
-    pub fn conic(&self, n: usize, h: f64) -> ([f64; 3], P2) {
-        let [u, v] = others(n);
+    pub fn conic(&self, n: Axis, h: f64) -> ([f64; 3], P2) {
+        let [u, v] = n.others();
         let a = &self.axis;
         match &self.wall {
             Wall::Cylinder { .. } => {
@@ -268,8 +269,8 @@ impl Curved {
 
     /// The conic in a plane across axis `n`, if it is an ellipse with an inside.
     #[inline]
-    pub fn ellipse(&self, n: usize, h: Twofold) -> Option<Ellipse> {
-        let [u, v] = others(n);
+    pub fn ellipse(&self, n: Axis, h: Twofold) -> Option<Ellipse> {
+        let [u, v] = n.others();
         let a = &self.axis;
         let positive = |area: f64| area > 0.0;
         match &self.wall {
@@ -337,12 +338,12 @@ impl UnitMap {
     /// From the inverse map, which makes the unit ball the ellipsoid: the images of the three axes; orthogonal, none of them zero.
     pub fn new(axes: [[f64; 3]; 3]) -> Self {
         let squares = axes.map(|a| a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-        let columns = [0, 1, 2].map(|m| [0, 1, 2].map(|r: usize| axes[r][m] / squares[r]));
+        let columns = Axis::ALL.map(|m| Axis::ALL.map(|r| axes[r][m] / squares[r]));
         let product = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let form = [0, 1, 2].map(|m: usize| [0, 1, 2].map(|n: usize| product(columns[m], columns[n])));
-        let row = |n: usize| [axes[0][n], axes[1][n], axes[2][n]];
-        let reach = [0, 1, 2].map(|n| hypotenuse(hypotenuse(axes[0][n], axes[1][n]), axes[2][n]));
-        let outermost = [0, 1, 2].map(|n| [0, 1, 2].map(|m| product(row(n), row(m)) / (reach[n] * reach[n])));
+        let form = Axis::ALL.map(|m| Axis::ALL.map(|n| product(columns[m], columns[n])));
+        let row = |n: Axis| [axes[0][n], axes[1][n], axes[2][n]];
+        let reach = Axis::ALL.map(|n| hypotenuse(hypotenuse(axes[0][n], axes[1][n]), axes[2][n]));
+        let outermost = Axis::ALL.map(|n| Axis::ALL.map(|m| product(row(n), row(m)) / (reach[n] * reach[n])));
         let lengths = squares.map(Real::sqrt);
         UnitMap { columns, form, reach, outermost, scale: lengths[0] * lengths[1] * lengths[2] }
     }
@@ -350,18 +351,18 @@ impl UnitMap {
     /// Where a point lies.
     #[inline(always)]
     pub fn map(&self, p: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|r| self.columns[0][r] * p[0] + self.columns[1][r] * p[1] + self.columns[2][r] * p[2])
+        Axis::ALL.map(|r| self.columns[0][r] * p[0] + self.columns[1][r] * p[1] + self.columns[2][r] * p[2])
     }
 
     #[inline]
-    fn span(&self, m: usize, q: P2) -> Span {
-        let [u, v] = others(m);
+    fn span(&self, m: Axis, q: P2) -> Span {
+        let [u, v] = m.others();
         let direction = self.columns[m];
-        let at = [0, 1, 2].map(|r: usize| self.columns[u][r] * q[0] + self.columns[v][r] * q[1]);
+        let at = Axis::ALL.map(|r| self.columns[u][r] * q[0] + self.columns[v][r] * q[1]);
         let leading = self.form[m][m];
         let half = direction[0] * at[0] + direction[1] * at[1] + direction[2] * at[2];
-        let aside = [0, 1, 2].map(|r| {
-            let [s, t] = others(r);
+        let aside = Axis::ALL.map(|r| {
+            let [s, t] = r.others();
             direction[s] * at[t] - direction[t] * at[s]
         });
         let aside = Real::sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);

@@ -2,6 +2,7 @@
 
 use super::part::Part;
 use super::wall::Wall;
+use crate::number::axis::Axis;
 use crate::number::real::Real;
 
 /// Lowest and highest coordinate.
@@ -17,7 +18,7 @@ fn widened([lo, hi]: Extent) -> Extent {
 
 impl Part {
     /// Along an axis.
-    pub fn extent(&self, axis: usize) -> Extent {
+    pub fn extent(&self, axis: Axis) -> Extent {
         let around = |reach: f64| widened([self.origin[axis] - reach, self.origin[axis] + reach]);
         match &self.curved.wall {
             Wall::Ball { radius } => around(*radius),
@@ -41,13 +42,13 @@ impl Part {
     /// Along x, of what lies between two planes across y and two across z; none if nothing does.
     pub fn run(&self, y: Extent, z: Extent) -> Option<Extent> {
         match &self.curved.wall {
-            Wall::Ellipsoid(_) => Some(self.extent(0)),
+            Wall::Ellipsoid(_) => Some(self.extent(Axis::X)),
             Wall::Ball { radius } => {
-                let off = |axis: usize, [lo, hi]: Extent| {
+                let off = |axis: Axis, [lo, hi]: Extent| {
                     let [lo, hi] = widened([lo - self.origin[axis], hi - self.origin[axis]]);
                     if lo > 0.0 { lo } else { hi.min(0.0) }
                 };
-                let (a, b) = (off(1, y), off(2, z));
+                let (a, b) = (off(Axis::Y, y), off(Axis::Z, z));
                 let square = radius * radius * (1.0 + ROOM) - a * a - b * b;
                 let reach = Real::sqrt(square.max(0.0));
                 (square >= 0.0).then(|| widened([self.origin[0] - reach, self.origin[0] + reach]))
@@ -55,7 +56,7 @@ impl Part {
             Wall::Cylinder { .. } | Wall::Cone { .. } => {
                 let ([a, b], radius) = self.segment();
                 let (mut first, mut last) = (0.0_f64, 1.0_f64);
-                for (axis, extent) in [(1, y), (2, z)] {
+                for (axis, extent) in [(Axis::Y, y), (Axis::Z, z)] {
                     let reach = radius * self.curved.across[axis];
                     let [lo, hi] = widened([extent[0] - reach, extent[1] + reach]);
                     let along = b[axis] - a[axis];

@@ -12,6 +12,7 @@ use crate::grid::bounds::Bounds;
 use crate::grid::cell_range::{CellRange, RangeKind};
 use crate::grid::fields::{Fields, Layer, accumulate};
 use crate::number::aabb::Aabb;
+use crate::number::axis::Axis;
 use crate::number::real::{Real, Vector};
 use crate::quadric::{AsQuadric, QuadricSolid, share_of_union};
 use crate::subdivide::{QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, TooLittleMemory, share};
@@ -235,7 +236,7 @@ fn by_sections<V: Vector>(
 ) -> Option<Bounds<V::Scalar>> {
     let real = V::Scalar::from_f64;
     let [min, max] = [place.min, place.max].map(|p| p.to_array().map(Real::to_f64));
-    let sides = [0, 1, 2].map(|n: usize| [min[n], max[n]]);
+    let sides = Axis::ALL.map(|n| [min[n], max[n]]);
     let near = solids.iter().filter(|s| s.bounds.touches(*place)).map(|s| &s.formula);
     // Shares were rounded, and their sum.
     let rounded = real(8.0) * V::Scalar::EPSILON * sum;

@@ -19,7 +19,7 @@ pub(super) fn cut(polygon: &Polygon, constant: f64, slope: P2) -> Polygon {
         }
         if (here >= 0.0) != (there >= 0.0) {
             let part = here / (here - there);
-            let _ = kept.push([0, 1].map(|k: usize| p[k] + part * (q[k] - p[k])));
+            let _ = kept.push(plane::on_way(p, q, part));
         }
     }
     kept
@@ -60,7 +60,7 @@ pub(super) fn moments(radius: f64, polygon: &Polygon) -> (f64, P2) {
 /// The triangle of the origin and two points.
 fn triangle(a: P2, b: P2) -> (f64, P2) {
     let area = plane::cross(a, b) * 0.5;
-    (area, [0, 1].map(|k: usize| area * (a[k] + b[k]) / 3.0))
+    (area, [area * (a[0] + b[0]) / 3.0, area * (a[1] + b[1]) / 3.0])
 }
 
 /// The sector of the disc between the directions of two points.

@@ -5,6 +5,7 @@
 //! square term, it has one root at most, and between those of the cubic's derivative so has the cubic.
 
 use super::roots::root;
+use crate::number::axis::Axis;
 use crate::number::plane::{self, P2};
 use crate::number::real::Real;
 use heapless::Vec;
@@ -64,7 +65,7 @@ pub(super) struct Line {
 impl Line {
     #[inline(always)]
     pub fn point(&self, t: f64) -> P3 {
-        [0, 1, 2].map(|n| self.at[n] + t * self.along[n])
+        Axis::ALL.map(|n| self.at[n] + t * self.along[n])
     }
 }
 
@@ -79,13 +80,13 @@ impl Ring {
 
     /// A coordinate axis in the ring's frame.
     #[inline(always)]
-    pub fn axis(&self, m: usize) -> P3 {
+    pub fn axis(&self, m: Axis) -> P3 {
         self.frame.map(|axis| axis[m])
     }
 
     /// The line along axis `m` through a point, whose coordinate along it does not matter.
     #[inline(always)]
-    pub fn line(&self, m: usize, mut p: P3) -> Line {
+    pub fn line(&self, m: Axis, mut p: P3) -> Line {
         p[m] = 0.0;
         Line { at: self.local(p), along: self.axis(m) }
     }
@@ -120,7 +121,7 @@ impl Ring {
         let (mut at, mut value) = (lo, f(lo));
         let mut start = (value <= 0.0).then_some(lo);
         let turns = self.turns(line, lo, hi);
-        for next in turns.into_iter().chain([hi]) {
+        for next in turns.iter().copied().chain([hi]) {
             let there = f(next);
             if (there <= 0.0) != start.is_some() {
                 let found = root(f, [at, next], [value, there]);
@@ -159,7 +160,7 @@ impl Ring {
             }
             let there = cubic(next);
             if (value > 0.0) != (there > 0.0) {
-                let _ = turns.push((root(cubic, [before, next], [value, there]) + shift).clamp(lo, hi));
+                let _ = turns.push((root(cubic, [before, next], [value, there]) + shift).limited(lo, hi));
             }
             (before, value) = (next, there);
         }
@@ -169,9 +170,8 @@ impl Ring {
     /// What of some pieces lies between the ends. Points in the planes of the ends belong to the solid.
     fn between_ends(&self, ends: &Ends, line: &Line, runs: &Runs) -> Runs {
         // Signed distances from the planes of both ends, along the line.
-        let forms = [0, 1].map(|n: usize| {
-            let [x, y] = ends.toward[n];
-            let normal = if n == 0 { [-y, x] } else { [y, -x] };
+        let [start, end] = ends.toward;
+        let forms = [[-start[1], start[0]], [end[1], -end[0]]].map(|normal| {
             let of = |p: P3| normal[0] * p[0] + normal[1] * p[1];
             [of(line.at), of(line.along)]
         });
@@ -234,7 +234,7 @@ impl Ring {
         let scale = if size > 0.0 { self.tube / size } else { 0.0 };
         let (rho, height) = (self.radius + out * scale, up * scale);
         let [e, f, a] = self.frame;
-        [0, 1, 2].map(|n| rho * (toward[0] * e[n] + toward[1] * f[n]) + height * a[n])
+        Axis::ALL.map(|n| rho * (toward[0] * e[n] + toward[1] * f[n]) + height * a[n])
     }
 }
 

@@ -11,15 +11,16 @@
 use super::disc::{self, Polygon};
 use super::ring::{P3, Ring, ahead, length2};
 use super::touching::{Events, Lines, azimuths, chord};
-use crate::number::plane::{self, P2, others};
+use crate::number::axis::Axis;
+use crate::number::plane::{self, P2};
 use crate::number::real::Real;
 use core::f64::consts::PI;
 use heapless::Vec;
 
-/// A rectangle in a plane across axis `n`, from the centre, in the order of [`others`].
+/// A rectangle in a plane across axis `n`, from the centre, in the order of [`Axis::others`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rectangle {
-    pub n: usize,
+    pub n: Axis,
     pub h: f64,
     pub u: P2,
     pub v: P2,
@@ -28,7 +29,7 @@ pub(super) struct Rectangle {
 impl Rectangle {
     pub fn place(&self, u: f64, v: f64) -> P3 {
         let mut p = [0.0; 3];
-        let [iu, iv] = others(self.n);
+        let [iu, iv] = self.n.others();
         (p[self.n], p[iu], p[iv]) = (self.h, u, v);
         p
     }
@@ -99,7 +100,7 @@ const NODES: [[f64; 3]; 8] = [
 type Sums = [f64; 3];
 
 fn plus(a: Sums, b: Sums, factor: f64) -> Sums {
-    [0, 1, 2].map(|n: usize| a[n] + b[n] * factor)
+    [a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor]
 }
 
 impl Ring {
@@ -131,8 +132,8 @@ impl Ring {
     }
 
     /// Components of the axis along u and v.
-    fn axis_across(&self, n: usize) -> P2 {
-        others(n).map(|m| self.frame[2][m])
+    fn axis_across(&self, n: Axis) -> P2 {
+        n.others().map(|m| self.frame[2][m])
     }
 
     /// The plane of a rectangle is that of an end, and the solid lies on one side.
@@ -149,7 +150,7 @@ impl Ring {
         let half = Real::sqrt(square);
         let mut rectangle = Polygon::new();
         for corner in face.corners() {
-            let [u, v] = others(face.n);
+            let [u, v] = face.n.others();
             let _ = rectangle.push([corner[u], corner[v]]);
         }
         let ring = |polygon: &Polygon| {
@@ -158,7 +159,7 @@ impl Ring {
         let area = match &self.ends {
             None => ring(&rectangle),
             Some(ends) => {
-                let [u, v] = others(face.n);
+                let [u, v] = face.n.others();
                 let sign = if ends.wide { -1.0 } else { 1.0 };
                 let mut polygon = rectangle.clone();
                 for inward in &ends.inward {
@@ -192,8 +193,22 @@ impl Ring {
 }
 
 /// A vector has no component but one.
-fn is_along(v: &P3, n: usize) -> bool {
-    others(n).into_iter().all(|m| v[m] == 0.0)
+fn is_along(v: &P3, n: Axis) -> bool {
+    n.others().into_iter().all(|m| v[m] == 0.0)
+}
+
+/// Sorted by insertion, for there are few.
+fn ascending(values: impl Iterator<Item = f64>) -> Events {
+    let mut sorted = Events::new();
+    for mut moved in values {
+        for other in &mut sorted {
+            if moved.total_cmp(other).is_lt() {
+                core::mem::swap(&mut moved, other);
+            }
+        }
+        let _ = sorted.push(moved);
+    }
+    sorted
 }
 
 /// What rounding takes of a closed form, as a share.
@@ -211,11 +226,11 @@ impl LinesOfFace<'_> {
     /// Where along v the runs of the lines change their kind.
     fn events(&self) -> Events {
         let Rectangle { n, h, u: [u0, u1], v: [v0, v1] } = *self.face;
-        let (ring, [iu, iv]) = (self.ring, others(n));
+        let (ring, [iu, iv]) = (self.ring, n.others());
         let mut found = Events::new();
         for u in [u0, u1] {
             let line = ring.line(iv, self.face.place(u, 0.0));
-            for run in ring.runs(&line, v0, v1) {
+            for run in &ring.runs(&line, v0, v1) {
                 let _ = found.push(run[0]);
                 let _ = found.push(run[1]);
             }
@@ -229,16 +244,14 @@ impl LinesOfFace<'_> {
         } else if self.reference.cut {
             self.events_of_disc(self.reference.toward.map(|x| -x), &mut found);
         }
-        found.retain(|v| *v > v0 && *v < v1);
-        found.sort_unstable_by(f64::total_cmp);
-        found
+        ascending(found.iter().copied().filter(|v| *v > v0 && *v < v1))
     }
 
     /// Where the disc of an end meets the plane: the ends of the chord, and where it crosses the rectangle's sides.
     fn events_of_disc(&self, toward: P2, found: &mut Events) {
         let Rectangle { n, h, u, .. } = *self.face;
-        let (ring, [iu, iv]) = (self.ring, others(n));
-        let along = |m: usize| {
+        let (ring, [iu, iv]) = (self.ring, n.others());
+        let along = |m: Axis| {
             let axis = ring.axis(m);
             [plane::dot([axis[0], axis[1]], toward), axis[2]]
         };
@@ -266,7 +279,7 @@ impl LinesOfFace<'_> {
             // Slivers that rounding makes of one event have no area.
             if next - before > 4.0 * f64::EPSILON * (v1 - v0) {
                 let mut from = before;
-                for to in self.overlooked(before, next).into_iter().chain([next]) {
+                for to in self.overlooked(before, next).iter().copied().chain([next]) {
                     let (sums, worst) = self.panel(from, to);
                     total = plus(total, sums, 1.0);
                     error += worst;
@@ -302,7 +315,7 @@ impl LinesOfFace<'_> {
     /// How many runs a line has, and which of them begin or end at the rectangle's sides.
     fn kind(&self, v: f64) -> (usize, u32) {
         let Rectangle { n, u: [u0, u1], .. } = *self.face;
-        let line = self.ring.line(others(n)[0], self.face.place(0.0, v));
+        let line = self.ring.line(n.others()[0], self.face.place(0.0, v));
         let runs = self.ring.runs(&line, u0, u1);
         let ends = runs.iter().map(|[a, b]| u32::from(*a == u0) + 2 * u32::from(*b == u1));
         (runs.len(), ends.fold(0, |all, end| all * 4 + end))
@@ -354,11 +367,11 @@ impl LinesOfFace<'_> {
     /// Over the runs of the line at a coordinate.
     fn over_line(&self, v: f64) -> Sums {
         let Rectangle { n, u: [u0, u1], .. } = *self.face;
-        let line = self.ring.line(others(n)[0], self.face.place(0.0, v));
+        let line = self.ring.line(n.others()[0], self.face.place(0.0, v));
         let (constant, slope) = (self.axis[0] * v, -self.axis[1]);
         let mut sums = [0.0; 3];
         let (alpha, beta) = ([line.at[0], line.at[1]], [line.along[0], line.along[1]]);
-        for [from, to] in self.ring.runs(&line, u0, u1) {
+        for &[from, to] in &self.ring.runs(&line, u0, u1) {
             for [from, to] in self.pieces(alpha, beta, from, to).into_iter().flatten() {
                 let (m, w) = ((from + to) * 0.5, (to - from) * 0.5);
                 sums[0] += 2.0 * w;
@@ -390,7 +403,7 @@ impl LinesOfFace<'_> {
         let near = |t: f64| length2([alpha[0] + t * beta[0], alpha[1] + t * beta[1]]);
         let size = length2(beta) * w;
         let foot = -plane::dot(alpha, beta) / plane::dot(beta, beta);
-        let least = if size > 0.0 { near(foot.clamp(m - w, m + w)) } else { 1.0 };
+        let least = if size > 0.0 { near(foot.limited(m - w, m + w)) } else { 1.0 };
         if size > 2.0 * least {
             return self.past_axis(alpha, beta, foot, [constant, slope], [m, w]);
         }

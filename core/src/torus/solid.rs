@@ -4,7 +4,8 @@ use super::ring::{Ends, P3, Ring, ahead, dot, length2};
 use super::section::{Rectangle, Reference, Section};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
-use crate::number::plane::{P2, others};
+use crate::number::axis::Axis;
+use crate::number::plane::P2;
 use crate::number::real::{Real, Vector};
 use core::f64::consts::PI;
 use core::ops::Range;
@@ -94,19 +95,19 @@ impl TorusSolid {
             return None;
         }
         let along = dot(start, axis);
-        let across = [0, 1, 2].map(|n: usize| start[n] - along * axis[n]);
+        let across = Axis::ALL.map(|n| start[n] - along * axis[n]);
         if !(dot(across, across) > 1e-12) {
             return None;
         }
         let across = unit(across)?;
-        let beside = [0, 1, 2].map(|n| {
-            let [u, v] = others(n);
+        let beside = Axis::ALL.map(|n| {
+            let [u, v] = n.others();
             axis[u] * across[v] - axis[v] * across[u]
         });
         let frame = [across, beside, axis];
         let ends = (shape.angle < 360.0).then(|| {
             let [c, s] = turned(shape.angle);
-            let global = |p: P2| [0, 1, 2].map(|n: usize| p[0] * across[n] + p[1] * beside[n]);
+            let global = |p: P2| Axis::ALL.map(|n| p[0] * across[n] + p[1] * beside[n]);
             let inward = [global([0.0, 1.0]), global([s, -c])];
             let toward = [[1.0, 0.0], [c, s]];
             Ends { inward, toward, wide: shape.angle > 180.0, middle: turned(shape.angle * 0.5) }
@@ -115,31 +116,31 @@ impl TorusSolid {
     }
 
     /// Its share of one cell, or of the face normal to an axis, and what that may be off by: of a box from `lo` to `hi`, which for a face is flat.
+    /// Where no numbers come out, as of a box without end, 0 that may be off by 1.
     #[must_use]
     pub fn share(&self, kind: RangeKind, lo: P3, hi: P3) -> (f64, f64) {
         let ring = &self.ring;
-        let sides = [0, 1, 2].map(|n| [lo[n] - ring.center[n], hi[n] - ring.center[n]]);
-        if let RangeKind::Faces(axis) = kind {
-            let axis = axis.min(2);
-            let rectangle = ring.rectangle(axis, 0, &sides);
+        let sides = Axis::ALL.map(|n| [lo[n] - ring.center[n], hi[n] - ring.center[n]]);
+        let (share, error) = if let RangeKind::Faces(axis) = kind {
+            let axis = Axis::new(axis).unwrap_or(Axis::Z);
+            let rectangle = rectangle(axis, sides[axis][0], &sides);
             let section = ring.section(&rectangle, None);
             let area = (rectangle.u[1] - rectangle.u[0]) * (rectangle.v[1] - rectangle.v[0]);
-            return (fraction(&section, area), section.error);
-        }
-        match ring.cell(&sides, None) {
-            Cell::Open => (0.0, 0.0),
-            Cell::Closed => (1.0, 0.0),
-            Cell::Cut { share, error, .. } => {
-                let beyond = (share - 1.0).max(-share).max(0.0);
-                if share.is_nan() { (0.0, 1.0) } else { (share.clamp(0.0, 1.0), error + beyond) }
+            (fraction(&section, area), section.error)
+        } else {
+            match ring.cell(&sides, None) {
+                Cell::Open => (0.0, 0.0),
+                Cell::Closed => (1.0, 0.0),
+                Cell::Cut { share, error, .. } => (share.clamp(0.0, 1.0), error + (share - 1.0).max(-share).max(0.0)),
             }
-        }
+        };
+        if (share + error).is_nan() { (0.0, 1.0) } else { (share, error) }
     }
 
     /// May the solid reach a box? False is certain.
     #[must_use]
     pub fn may_reach(&self, lo: P3, hi: P3) -> bool {
-        let sides = [0, 1, 2].map(|n| [lo[n] - self.ring.center[n], hi[n] - self.ring.center[n]]);
+        let sides = Axis::ALL.map(|n| [lo[n] - self.ring.center[n], hi[n] - self.ring.center[n]]);
         let size = sides.map(|[lo, hi]| hi - lo);
         let half = Real::sqrt(dot(size, size)) * 0.5;
         let (_, missed) = self.ring.beside_ends(corners(&sides));
@@ -150,12 +151,13 @@ impl TorusSolid {
     pub fn ends(&self) -> impl Iterator<Item = (P3, P3, f64)> {
         let ring = self.ring;
         let [e, f, _] = ring.frame;
-        let end = move |n: usize, ends: &Ends| {
-            let [x, y] = ends.toward[n];
-            let center = [0, 1, 2].map(|k: usize| ring.center[k] + ring.radius * (x * e[k] + y * f[k]));
-            (center, ends.inward[n], ring.tube)
+        let end = move |[x, y]: P2, inward: P3| {
+            let center = Axis::ALL.map(|k| ring.center[k] + ring.radius * (x * e[k] + y * f[k]));
+            (center, inward, ring.tube)
         };
-        ring.ends.into_iter().flat_map(move |ends| [end(0, &ends), end(1, &ends)])
+        ring.ends.into_iter().flat_map(move |ends| {
+            ends.toward.into_iter().zip(ends.inward).map(move |(toward, inward)| end(toward, inward))
+        })
     }
 
     /// Equal parts of it along the ring.
@@ -177,7 +179,7 @@ impl TorusSolid {
             let (from, to) = (at(n), at(n + 1));
             let middle = turn * (f64::from(n) + 0.5) / parts;
             let [e, f, _] = ring.frame;
-            let global = |p: P2| [0, 1, 2].map(|k: usize| p[0] * e[k] + p[1] * f[k]);
+            let global = |p: P2| Axis::ALL.map(|k| p[0] * e[k] + p[1] * f[k]);
             let inward = [global([-from[1], from[0]]), global([to[1], -to[0]])];
             let middle = [libm::cos(middle), libm::sin(middle)];
             let ends = Ends { inward, toward: [from, to], wide: turn / parts > PI, middle };
@@ -191,7 +193,7 @@ impl TorusSolid {
         let ring = &self.ring;
         let [x, y] = ring.ends.map_or([1.0, 0.0], |ends| ends.middle);
         let [e, f, _] = ring.frame;
-        [0, 1, 2].map(|n| ring.center[n] + ring.radius * (x * e[n] + y * f[n]))
+        Axis::ALL.map(|n| ring.center[n] + ring.radius * (x * e[n] + y * f[n]))
     }
 
     /// Radii of ring and tube together.
@@ -204,18 +206,20 @@ impl TorusSolid {
     #[must_use]
     pub fn outermost(&self, direction: P3) -> P3 {
         let p = self.ring.outermost(direction);
-        [0, 1, 2].map(|n| self.ring.center[n] + p[n])
+        Axis::ALL.map(|n| self.ring.center[n] + p[n])
     }
 
-    /// Lowest and highest coordinate along an axis, with room for rounding.
+    /// Lowest and highest coordinate along an axis, with room for rounding; NaN along axes beyond 2.
     #[must_use]
     pub fn extent(&self, axis: usize) -> P2 {
+        Axis::new(axis).map_or([f64::NAN; 2], |axis| self.extent_along(axis))
+    }
+
+    fn extent_along(&self, axis: Axis) -> P2 {
         let toward = |sign: f64| {
             let mut direction = [0.0; 3];
-            if let Some(along) = direction.get_mut(axis) {
-                *along = sign;
-            }
-            self.outermost(direction).get(axis).copied().unwrap_or(f64::NAN)
+            direction[axis] = sign;
+            self.outermost(direction)[axis]
         };
         let [lo, hi] = [toward(-1.0), toward(1.0)];
         let room = (lo.abs().max(hi.abs()) + self.ring.radius + self.ring.tube) * ROOM;
@@ -234,14 +238,14 @@ impl TorusSolid {
         let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
         let Some(&[z0, z1]) = zs.get(k..).and_then(|e| e.first_chunk()) else { return 0.0 };
         let z = [z0, z1].map(|z| z.to_f64());
-        let [lowest, highest] = self.extent(2);
+        let [lowest, highest] = self.extent_along(Axis::Z);
         if lowest > z[1] || highest < z[0] {
             return 0.0;
         }
         let z = z.map(|z| z - self.ring.center[2]);
         let [nx, ny, _] = grid.cells();
-        let rows = reached(ys, self.extent(1));
-        let cells = reached(xs, self.extent(0));
+        let rows = reached(ys, self.extent_along(Axis::Y));
+        let cells = reached(xs, self.extent_along(Axis::X));
         let mut told = Teller { ring: &self.ring, cells: [nx, ny], areas, worst: 0.0, visit };
         for j in rows.clone() {
             let Some(y) = side(ys, j, self.ring.center[1]) else { break };
@@ -258,16 +262,16 @@ impl TorusSolid {
     pub fn plane<R: Real>(&self, grid: &Grid<R>, plane: usize, visit: &mut impl FnMut(RangeKind, usize, f64, f64)) {
         let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.edges(axis));
         let Some(z) = zs.get(plane).map(|z| z.to_f64()) else { return };
-        let [lowest, highest] = self.extent(2);
+        let [lowest, highest] = self.extent_along(Axis::Z);
         if lowest > z || highest < z {
             return;
         }
         let h = z - self.ring.center[2];
-        for j in reached(ys, self.extent(1)) {
+        for j in reached(ys, self.extent_along(Axis::Y)) {
             let Some(v) = side(ys, j, self.ring.center[1]) else { break };
-            for i in reached(xs, self.extent(0)) {
+            for i in reached(xs, self.extent_along(Axis::X)) {
                 let Some(u) = side(xs, i, self.ring.center[0]) else { break };
-                let section = self.ring.section(&Rectangle { n: 2, h, u, v }, None);
+                let section = self.ring.section(&Rectangle { n: Axis::Z, h, u, v }, None);
                 let share = fraction(&section, (u[1] - u[0]) * (v[1] - v[0]));
                 if share > 0.0 {
                     visit(RangeKind::Faces(2), j * grid.cells()[0] + i, share, section.error);
@@ -314,14 +318,15 @@ impl<F: FnMut(RangeKind, usize, f64, f64)> Teller<'_, F> {
         let size = sides.map(|[lo, hi]| hi - lo);
         let places = [[c + j, c + j + 1], [c, c + nx], [c, c]];
         let areas = self.areas;
-        let shown = |axis: usize, high: usize| areas && (high == 0 || (axis == 0 && last[0]) || (axis == 1 && last[1]));
+        let last = [last[0], last[1], false];
+        let shown = |axis: Axis, high: usize| areas && (high == 0 || last[axis]);
         match self.ring.cell(sides, before.take()) {
             Cell::Open => {}
             Cell::Closed => {
                 self.tell(RangeKind::Cells, c, 1.0, 0.0);
-                for axis in 0..3 {
+                for axis in Axis::ALL {
                     for high in (0..2).filter(|&high| shown(axis, high)) {
-                        self.tell(RangeKind::Faces(axis), places[axis][high], 1.0, 0.0);
+                        self.tell(RangeKind::Faces(axis as usize), places[axis][high], 1.0, 0.0);
                     }
                 }
             }
@@ -330,17 +335,23 @@ impl<F: FnMut(RangeKind, usize, f64, f64)> Teller<'_, F> {
                 let beyond = (share - 1.0).max(-share) - error;
                 self.worst = if share.is_nan() { f64::INFINITY } else { self.worst.max(beyond) };
                 self.tell(RangeKind::Cells, c, share.min(1.0), error);
-                for axis in 0..3 {
-                    let [u, v] = others(axis);
+                for axis in Axis::ALL {
+                    let [u, v] = axis.others();
                     for high in (0..2).filter(|&high| shown(axis, high)) {
                         let section = faces[axis][high].section;
                         let share = fraction(&section, size[u] * size[v]);
-                        self.tell(RangeKind::Faces(axis), places[axis][high], share, section.error);
+                        self.tell(RangeKind::Faces(axis as usize), places[axis][high], share, section.error);
                     }
                 }
             }
         }
     }
+}
+
+/// The section of a cell with the plane across an axis at a coordinate.
+fn rectangle(n: Axis, h: f64, sides: &Sides) -> Rectangle {
+    let [u, v] = n.others().map(|m| sides[m]);
+    Rectangle { n, h, u, v }
 }
 
 /// What a solid has of a cell.
@@ -369,9 +380,10 @@ impl Ring {
         if held && outside < -half * (1.0 + 1e-9) {
             return Cell::Closed;
         }
-        let face = |n: usize, high: usize| self.face(n, high, sides);
-        let first = low.unwrap_or_else(|| face(0, 0));
-        let faces = [[first, face(0, 1)], [face(1, 0), face(1, 1)], [face(2, 0), face(2, 1)]];
+        let face = |n: Axis, h: f64| self.face(&rectangle(n, h, sides));
+        let [[x0, x1], y, z] = *sides;
+        let first = low.unwrap_or_else(|| face(Axis::X, x0));
+        let faces = [[first, face(Axis::X, x1)], y.map(|h| face(Axis::Y, h)), z.map(|h| face(Axis::Z, h))];
         let (mut share, mut error) = (0.0, 0.0);
         if !missed {
             (share, error) = self.volume(sides, &faces);
@@ -381,25 +393,19 @@ impl Ring {
     }
 
     /// A side of a cell.
-    fn face(&self, n: usize, high: usize, sides: &Sides) -> Face {
-        let rectangle = self.rectangle(n, high, sides);
+    fn face(&self, rectangle: &Rectangle) -> Face {
         let [x, y, _] = self.local(rectangle.middle());
-        Face { section: self.section(&rectangle, None), toward: [x, y] }
-    }
-
-    fn rectangle(&self, n: usize, high: usize, sides: &Sides) -> Rectangle {
-        let [u, v] = others(n).map(|m| sides[m]);
-        Rectangle { n, h: sides[n][high & 1], u, v }
+        Face { section: self.section(rectangle, None), toward: [x, y] }
     }
 
     /// Volume in a cell from the fluxes through its sides and the ends in it, and what its share may be off by.
     fn volume(&self, sides: &Sides, faces: &[[Face; 2]; 3]) -> (f64, f64) {
-        let width = |n: usize| sides[n][1] - sides[n][0];
+        let width = |n: Axis| sides[n][1] - sides[n][0];
         let around_axis = self.axis_meets(sides);
         let reference = if around_axis {
             // The cut of a whole torus lies opposite the cell's middle, so that no side of the cell lies in it.
             let [x, y, _] = self.local(sides.map(|[lo, hi]| (lo + hi) * 0.5));
-            let off = length2([x, y]) > 1e-3 * (width(0) + width(1) + width(2));
+            let off = length2([x, y]) > 1e-3 * (width(Axis::X) + width(Axis::Y) + width(Axis::Z));
             let toward = self.ends.as_ref().map_or(if off { [x, y] } else { [0.6, 0.8] }, |ends| ends.middle);
             let toward = toward.map(|c| c / length2(toward));
             Reference { toward, cut: self.ends.is_none() }
@@ -408,17 +414,17 @@ impl Ring {
             Reference { toward: [x, y], cut: false }
         };
         let (mut volume, mut error) = (0.0, 0.0);
-        let mean = (width(0) + width(1) + width(2)) / 3.0;
-        for n in 0..3 {
-            for (high, sign) in [(0, -1.0), (1, 1.0)] {
-                let mut section = faces[n][high].section;
+        let mean = (width(Axis::X) + width(Axis::Y) + width(Axis::Z)) / 3.0;
+        for n in Axis::ALL {
+            for ((face, h), sign) in faces[n].iter().zip(sides[n]).zip([-1.0, 1.0]) {
+                let mut section = face.section;
                 if section.area == 0.0 {
                     continue;
                 }
                 if around_axis {
-                    section = self.section(&self.rectangle(n, high, sides), Some(reference));
+                    section = self.section(&rectangle(n, h, sides), Some(reference));
                 } else {
-                    section.flux += ahead(faces[n][high].toward, reference.toward) * section.moment;
+                    section.flux += ahead(face.toward, reference.toward) * section.moment;
                 }
                 volume += sign * section.flux;
                 error += section.error * mean / width(n);
@@ -428,16 +434,15 @@ impl Ring {
             volume += 2.0 * PI * self.moment_of_disc(reference.toward.map(|x| -x), sides);
         }
         if let Some(ends) = &self.ends {
-            for (n, sign) in [(0, -1.0), (1, 1.0)] {
-                let heights = corners(sides).map(|p| dot(ends.inward[n], p));
+            for ((inward, toward), sign) in ends.inward.into_iter().zip(ends.toward).zip([-1.0, 1.0]) {
+                let heights = corners(sides).map(|p| dot(inward, p));
                 // A cell before the end: if its side lies in the end's plane, the section there has been counted.
                 if heights.fold(f64::INFINITY, f64::min) < 0.0 {
-                    let toward = ends.toward[n];
                     volume += sign * ahead(toward, reference.toward) * self.moment_of_disc(toward, sides);
                 }
             }
         }
-        let least = width(0).min(width(1)).min(width(2));
+        let least = width(Axis::X).min(width(Axis::Y)).min(width(Axis::Z));
         (volume, error + ROUNDING * (1.0 + (self.radius + self.tube) / least))
     }
 

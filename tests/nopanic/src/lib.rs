@@ -2,6 +2,7 @@
 #![no_std]
 
 mod layers;
+mod round;
 
 use glam::{DVec3, Vec3};
 use voidage_core::number::aabb::Aabb;
