@@ -13,3 +13,5 @@ pub mod panels;
 pub mod png;
 pub mod svg;
 pub mod ticks;
+
+pub use font::not_drawn;

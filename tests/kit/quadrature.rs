@@ -1,6 +1,20 @@
 //! Shares of cells and faces of solids by formula, by nested adaptive quadrature of chords: slow, and sharing nothing with closed forms.
 
 use glam::DVec3;
+use std::cell::Cell;
+
+thread_local! {
+    /// Chords that may still be drawn.
+    static CHORDS: Cell<u64> = const { Cell::new(u64::MAX) };
+}
+
+/// What a quadrature finds with at most so many chords; none if it needs more: where chords are rough by rounding, halving ends nowhere.
+pub fn with_chords<T>(most: u64, work: impl FnOnce() -> T) -> Option<T> {
+    CHORDS.set(most);
+    let found = work();
+    let left = CHORDS.replace(u64::MAX);
+    (left > 0).then_some(found)
+}
 
 /// A solid, by what a line has inside it.
 #[derive(Debug, Clone, Copy)]
@@ -153,6 +167,7 @@ pub fn area_by_chords(
         p
     };
     let chord = |y: f64| {
+        CHORDS.set(CHORDS.get().saturating_sub(1));
         let common = solids.iter().try_fold(u, |common, s| meet(common, chord_of(s, place(u[0], y), iu)?));
         common.map_or(0.0, |c| c[1] - c[0])
     };
@@ -372,7 +387,7 @@ fn refined(f: &dyn Fn(f64) -> f64, [a, b]: [f64; 2], whole: f64, tolerance: f64,
     let middle = (a + b) * 0.5;
     let (left, right) = (gauss(f, a, middle), gauss(f, middle, b));
     let least = if a == 0.0 || b == 1.0 { ends } else { 2 };
-    if depth > 30 || (depth >= least && (left + right - whole).abs() <= tolerance) {
+    if depth > 30 || CHORDS.get() == 0 || (depth >= least && (left + right - whole).abs() <= tolerance) {
         return left + right;
     }
     refined(f, [a, middle], left, tolerance, ends, depth + 1)

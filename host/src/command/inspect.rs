@@ -3,7 +3,7 @@
 use crate::command::cli::InspectArgs;
 use crate::command::progress::{Progress, print};
 use crate::command::stages::load;
-use crate::command::streams::{check_place, check_suffix, is_stream, write_json};
+use crate::command::streams::{check_place, check_suffix, is_stream, replaces, write_json};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
 use crate::picture::ticks::{measure, plain_to};
@@ -37,6 +37,10 @@ struct Thin {
 pub fn inspect(args: &InspectArgs) -> Result<()> {
     let mut progress = Progress::new(&args.talk);
     args.report.iter().try_for_each(|path| check_suffix("--report", path, "json").and_then(|()| check_place(path)))?;
+    let replaced = args.report.iter().find(|report| args.scene.scene.iter().any(|input| replaces(report, input)));
+    if let Some(report) = replaced {
+        return Err(Error::usage(format!("{}: the report would replace a file of the scene", report.display())));
+    }
     progress.stdout_is_taken(args.report.as_deref().is_some_and(is_stream));
     let (bodies, _) = load(&args.scene, &mut progress)?;
     let inspection = Inspection {

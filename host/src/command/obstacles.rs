@@ -93,7 +93,7 @@ fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Pr
         let Some([i, j, k]) = hidden.first else { continue };
         progress.warn(format!(
             "{}: {} cells are blocked along {axis} by more than {:.0} % between two faces that show nothing of it, the first at cell {i}, {j}, {k} \
-             (counted from 0): gas passes through; faces \"throat\" makes such walls tight",
+             (counted from 0): gas passes through; with throat faces such walls are tight",
             bodies.files(),
             hidden.cells,
             HIDDEN * 100.0

@@ -2,6 +2,7 @@
 
 use crate::command::cli::TalkArgs;
 use crate::error::{Error, Result};
+use crate::picture::not_drawn;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -117,6 +118,14 @@ impl Progress {
             eprintln!("warning: {}", visible(&sentence));
         }
         self.warnings.push(sentence);
+    }
+
+    /// Say which letters of a picture's title are boxes in it.
+    pub fn warn_of_title(&mut self, title: &str) {
+        let letters = not_drawn(title);
+        if !letters.is_empty() {
+            self.warn(format!("the letters {letters} of the title \"{title}\" are boxes in pictures"));
+        }
     }
 
     /// A file of the run goes to the standard output: what else is said goes beside it.

@@ -1,7 +1,7 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`], [`pascals`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`], [`force_peaks`],
-//! [`table`], [`checkpoint`], [`report`], what it writes; [`refine`], the same case on half the cells; [`run`].
+//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`], [`units`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`], [`force_peaks`],
+//! [`table`], [`checkpoint`], [`lock`], [`report`], what it writes; [`refine`], the same case on half the cells; [`run`].
 
 mod arrays;
 pub mod case;
@@ -11,8 +11,8 @@ pub mod force_peaks;
 pub mod frames;
 pub mod inlet;
 pub mod limits;
+pub mod lock;
 pub mod maxima;
-pub mod pascals;
 pub mod pictures;
 pub mod places;
 pub mod refine;
@@ -26,3 +26,4 @@ pub mod space;
 pub mod state;
 pub mod stepping;
 pub mod table;
+pub mod units;

@@ -24,13 +24,16 @@ use voidage_core::grid::Grid;
 pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option<Edges>)> {
     let scale = args.unit.unwrap_or(Unit::M).metres();
     let (mut bodies, mut grid) = (Bodies::default(), None);
+    if args.scene.iter().filter(|path| is_stream(path)).count() > 1 {
+        return Err(Error::usage("the standard input can be read once: - stands for one file of a scene"));
+    }
     for path in &args.scene {
         let (path, piped) = match is_stream(path) {
             true => (Path::new(INPUT), Some(read_input()?)),
             false => (path.as_path(), None),
         };
         let text = piped.as_deref().and_then(|bytes| std::str::from_utf8(bytes).ok());
-        let text = text.filter(|text| text.contains("[[solid]]"));
+        let text = text.filter(|text| text.contains("[[solid"));
         if scene::is_scene(path) || text.is_some() {
             let found =
                 progress.stage("read", |_| text.map_or_else(|| scene::read(path), |text| scene::parse(path, text)))?;
@@ -120,7 +123,7 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
     }
     if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
         progress.warn(format!(
-            "the bounds of some values remain {:.1e} apart, more than --tol {:.1e}; a larger --depth narrows them",
+            "the bounds of some values remain {:.1e} apart, more than tol, {:.1e}; a larger depth narrows them",
             result.max_gap, options.tol
         ));
     }

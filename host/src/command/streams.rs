@@ -78,6 +78,30 @@ pub fn check_place(path: &Path) -> Result<()> {
     check_target(&above.join("voidage")).map_err(|e| Error { path: Some(path.to_owned()), ..e })
 }
 
+/// Files can go into a directory at `path`: there is nothing else of that name. `option` is what asked for it.
+///
+/// # Errors
+/// A stream, with exit code 2; a file.
+pub fn check_directory(option: &str, path: &Path) -> Result<()> {
+    if is_stream(path) {
+        return Err(Error::usage(format!("{option} takes a directory, not the standard output")));
+    }
+    if path.exists() && !path.is_dir() {
+        return Err(Error::file(
+            path,
+            format!("cannot create the directory of {option}: there is a file of that name"),
+        ));
+    }
+    Ok(())
+}
+
+/// `output` would replace `input`.
+#[must_use]
+pub fn replaces(output: &Path, input: &Path) -> bool {
+    let same = || matches!((output.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    !is_stream(input) && !is_device(output) && (output == input || same())
+}
+
 /// Makes the directory of an output.
 ///
 /// # Errors

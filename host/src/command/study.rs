@@ -23,7 +23,7 @@ pub mod values;
 use crate::command::cli::StudyArgs;
 use crate::command::progress::{Progress, print};
 use crate::command::stages::command_line;
-use crate::command::streams::{INPUT, text_of};
+use crate::command::streams::{INPUT, check_directory, text_of};
 use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::{atomically, json};
@@ -47,6 +47,7 @@ pub fn study(args: &StudyArgs) -> Result<()> {
     let case = if args.quick { case.quick() } else { case };
     let name = session::fingerprint(&text, case.files(), args.quick);
     let dir = args.output.as_deref();
+    dir.iter().try_for_each(|dir| check_directory("-o", dir))?;
     // Before anything is measured all scenes must be there.
     let scenes = measure::scenes(path, &case, &mut progress)?;
     let mut session = Session::new(&mut progress, dir, name, found::plan(&case), args.force);

@@ -28,6 +28,19 @@ pub(super) fn strokes(text: &str) -> Vec<Stroke> {
     all
 }
 
+/// The letters of a text that are drawn as a box, each once.
+#[must_use]
+pub fn not_drawn(text: &str) -> String {
+    let mut all = String::new();
+    for letter in text.chars().filter(|&letter| letter != ' ') {
+        let plain = split(letter).map_or(letter, |(plain, _)| plain);
+        if path(plain) == UNKNOWN && !all.contains(letter) {
+            all.push(letter);
+        }
+    }
+    all
+}
+
 fn layout(text: &str, mut place: impl FnMut(f64, &[Stroke])) -> f64 {
     let mut x = 0.0;
     let mut end: f64 = 0.0;
@@ -110,7 +123,10 @@ fn stroke(out: &mut Vec<Stroke>, from: [f64; 2], control: Option<[f64; 2]>, to: 
     }
 }
 
-/// The pen path of a letter; a box for one that is not drawn.
+/// A box.
+const UNKNOWN: &str = "0,0 0,10 5,10 5,0 0,0";
+
+/// The pen path of a letter; [`UNKNOWN`] for one that is not drawn.
 #[rustfmt::skip]
 fn path(letter: char) -> &'static str {
     match letter {
@@ -245,7 +261,7 @@ fn path(letter: char) -> &'static str {
         '→' => "0,4 6,4 | 4,6 6,4 4,2",
         '„' | '“' | '”' => "0,10 0.3,7.6 | 2,10 2.3,7.6",
         'ρ' => "0,-3.2 0,3.5 ~0,7 2.8,7 ~5.6,7 5.6,3.5 ~5.6,0 2.8,0 ~0.4,0 0,2.4",
-        _ => "0,0 0,10 5,10 5,0 0,0",
+        _ => UNKNOWN,
     }
 }
 

@@ -23,7 +23,7 @@ const HATCH: usize = 6;
 /// Sum of red, green and blue below which lines are white rather than of ink.
 const DARK: u32 = 330;
 /// Solid fraction from which a cell is hatched.
-const LEAST_HATCHED: f64 = 0.01;
+const LEAST_HATCHED: f64 = 5e-4;
 /// Share of ink in the outlines.
 const OUTLINE: f64 = 0.13;
 

@@ -4,7 +4,9 @@ use super::report::Report;
 use crate::command::cli::PorosityArgs;
 use crate::command::obstacles::Obstacles;
 use crate::command::progress::{Progress, print};
-use crate::command::streams::{OutputFormat, check_place, check_suffix, is_device, is_stream, make_place};
+use crate::command::streams::{
+    OutputFormat, check_directory, check_place, check_suffix, is_stream, make_place, replaces,
+};
 use crate::error::{Error, Result};
 use crate::files::npy;
 use crate::files::vtr::{CellField, NamedField, Vtr};
@@ -39,13 +41,10 @@ pub(super) fn by_suffix(args: &PorosityArgs) -> Result<PorosityArgs> {
 /// # Errors
 /// The first that has none, or would.
 pub(super) fn check(args: &PorosityArgs) -> Result<()> {
-    let same = |a: &Path, b: &Path| a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
     let arrays = arrays(args);
     let files = [&args.output, &args.png, &args.report].into_iter().flatten();
     let outputs: Vec<&Path> = arrays.iter().chain(files).map(|p| p.as_path()).collect();
-    if let Some(dir) = args.npy.as_deref().filter(|dir| dir.exists() && !dir.is_dir()) {
-        return Err(Error::file(dir, "cannot create the directory: there is a file of that name"));
-    }
+    args.npy.iter().try_for_each(|dir| check_directory("--npy", dir))?;
     if args.png.is_none() && !args.slice.is_empty() {
         return Err(Error::usage("--slice cuts a picture: give --png FILE.png"));
     }
@@ -54,9 +53,8 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     args.report.iter().try_for_each(|path| check_suffix("--report", path, "json"))?;
     for (n, output) in outputs.iter().enumerate() {
         check_place(output)?;
-        let device = is_device(output);
-        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path()).filter(|p| !is_stream(p));
-        if !device && inputs.chain(outputs[..n].iter().copied()).any(|other| same(other, output)) {
+        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
+        if inputs.chain(outputs[..n].iter().copied()).any(|other| replaces(output, other)) {
             return Err(Error::usage(format!(
                 "{}: an output would replace another file of this run",
                 output.display()
@@ -121,6 +119,7 @@ pub(super) fn write(
     if let Some(dir) = &args.npy {
         let all = [fields(edges, result), obstacle_fields(edges, obstacles)].concat();
         progress.stage("npy", |_| npy::write_all(dir, &all))?;
+        warn_of_older(dir, &all, progress);
     }
     if let Some(path) = &args.output {
         progress.stage("vtr", |_| write_vtr(path, args.compress, edges, (result, obstacles), about))?;
@@ -128,6 +127,7 @@ pub(super) fn write(
     if let Some(path) = &args.png {
         let name = |p: &PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
+        progress.warn_of_title(&title);
         let through = slices(args, edges)?;
         let (grid, edges) = (edges, edges.0.each_ref().map(|e| &e[..]));
         progress.stage("png", |_| {
@@ -149,6 +149,21 @@ pub(super) fn write(
         })?;
     }
     Ok(())
+}
+
+/// Fields that an earlier run has left beside those of this one may be of another grid.
+fn warn_of_older(dir: &Path, written: &[(String, [usize; 3], &[f64])], progress: &mut Progress) {
+    let faces =
+        ["v", "x", "y", "z"].iter().flat_map(|field| ["", "_lower", "_upper"].map(|s| format!("beta_{field}{s}")));
+    let all = faces.chain(OBSTACLES.iter().chain(&DRAG).map(|name| (*name).to_owned()));
+    let older: Vec<String> = all
+        .filter(|name| !written.iter().any(|(other, ..)| other == name))
+        .map(|name| format!("{name}.npy"))
+        .filter(|name| dir.join(name).exists())
+        .collect();
+    if !older.is_empty() {
+        progress.warn(format!("{}: {} of an earlier run are still there", dir.display(), older.join(", ")));
+    }
 }
 
 /// The fields of a result with names: base name, shape, values.

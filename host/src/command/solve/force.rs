@@ -8,28 +8,53 @@
 use crate::flow::Flow;
 use rayon::prelude::*;
 
-/// Force on all solids along x, y and z; per metre of the axes that do not flow. The same bits for any number of threads.
-pub fn force<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], ambient: f64) -> [f64; 3] {
-    let Some(solids) = Solids::of(flow) else { return [0.0; 3] };
-    let n = flow.cells()[0];
-    let rows: Vec<[f64; D]> = (0..flow.len() / n)
-        .into_par_iter()
-        .map(|row| {
-            let mut sum = [0.0; D];
-            (row * n..(row + 1) * n).for_each(|cell| solids.add(flow, cell, ambient, &mut sum));
-            sum
-        })
-        .collect();
-    let mut force = [0.0; 3];
-    for (d, axis) in live.into_iter().enumerate() {
-        force[axis] = rows.iter().fold(0.0, |sum, row| sum + row[d]);
+/// Cells are summed in portions of this size, whatever the number of threads.
+const PORTION: usize = 4096;
+
+/// The cells in which there is something to push; a flow keeps its space, so they are found once.
+#[derive(Debug)]
+pub struct Walls<const D: usize> {
+    /// Cell, vector area of its walls, and whether something in it drags.
+    cells: Vec<(usize, [f64; D], bool)>,
+}
+
+impl<const D: usize> Walls<D> {
+    /// Of a flow.
+    #[must_use]
+    pub fn of(flow: &Flow<f64, D>) -> Self {
+        let Some(solids) = Solids::of(flow) else { return Walls { cells: Vec::new() } };
+        let pushed = |cell: usize| {
+            let (at, drags) = (flow.coordinates(cell), solids.drags(cell));
+            let walls = std::array::from_fn(|d| solids.wall(flow, d, at));
+            (flow.open_volume(cell) > 0.0 && (drags || walls != [0.0; D])).then_some((cell, walls, drags))
+        };
+        Walls { cells: (0..flow.len()).into_par_iter().filter_map(pushed).collect() }
     }
-    force
+
+    /// Force on all solids along x, y and z; per metre of the axes that do not flow. The same bits for any number of threads.
+    #[must_use]
+    pub fn force(&self, flow: &Flow<f64, D>, live: [usize; D], ambient: f64) -> [f64; 3] {
+        let Some(solids) = Solids::of(flow) else { return [0.0; 3] };
+        let of_portion = |cells: &[(usize, [f64; D], bool)]| {
+            let mut sum = [0.0; D];
+            for (cell, walls, drags) in cells {
+                let over = flow.get(*cell).pressure - ambient;
+                let drag = if *drags { solids.drag(flow, *cell) } else { [0.0; D] };
+                (0..D).for_each(|d| sum[d] += over * walls[d] + drag[d]);
+            }
+            sum
+        };
+        let portions: Vec<[f64; D]> = self.cells.par_chunks(PORTION).map(of_portion).collect();
+        let mut force = [0.0; 3];
+        for (d, axis) in live.into_iter().enumerate() {
+            force[axis] = portions.iter().fold(0.0, |sum, portion| sum + portion[d]);
+        }
+        force
+    }
 }
 
 /// What the gas pushes.
 pub(super) struct Solids<'a, const D: usize> {
-    beta_v: Option<&'a [f64]>,
     faces: [Option<&'a [f64]>; D],
     /// Quadratic and linear coefficients; empty where zero.
     drag: [[&'a [f64]; D]; 2],
@@ -41,23 +66,8 @@ impl<'a, const D: usize> Solids<'a, D> {
         let (mut faces, mut drag) = ([None; D], [[&[][..]; D]; 2]);
         faces.iter_mut().zip(flow.faces()).for_each(|(to, from)| *to = Some(from));
         drag.iter_mut().flatten().zip(flow.drag()).for_each(|(to, from)| *to = from);
-        let beta_v = flow.beta_v();
-        let nothing = beta_v.is_none() && drag.iter().flatten().all(|c| c.is_empty());
-        (!nothing).then_some(Solids { beta_v, faces, drag })
-    }
-
-    /// Adds the force on what is in a cell and in its faces.
-    fn add(&self, flow: &Flow<f64, D>, cell: usize, ambient: f64, sum: &mut [f64; D]) {
-        let open = self.beta_v.map_or(1.0, |b| b[cell]);
-        if open == 0.0 {
-            return;
-        }
-        let at = flow.coordinates(cell);
-        let (over, drag) = (flow.get(cell).pressure - ambient, self.drag(flow, cell));
-        for d in 0..D {
-            sum[d] += over * self.wall(flow, d, at);
-            sum[d] += drag[d];
-        }
+        let nothing = flow.beta_v().is_none() && drag.iter().flatten().all(|c| c.is_empty());
+        (!nothing).then_some(Solids { faces, drag })
     }
 
     /// Vector area of the walls in a cell and in its faces along an axis.

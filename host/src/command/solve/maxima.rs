@@ -40,7 +40,7 @@ pub struct Maxima {
 pub struct Peaks {
     /// Name of the probe.
     pub name: String,
-    /// Of p − p₀.
+    /// Of p − p₀; NaN in a solid, as the others are.
     pub overpressure: f64,
     /// Of its integral over time.
     pub impulse: f64,
@@ -156,13 +156,15 @@ impl Maxima {
 
     /// The largest values in a cell, for a probe of that name.
     #[must_use]
-    pub fn peaks(&self, name: String, cell: usize) -> Peaks {
+    pub fn peaks(&self, name: String, cell: usize, beta_v: Option<&[f64]>) -> Peaks {
+        let is_open = beta_v.is_none_or(|b| b[cell] > 0.0);
+        let value = |field: &HugeVec| if is_open { field[cell] } else { f64::NAN };
         Peaks {
             name,
-            overpressure: self.overpressure[cell],
-            impulse: self.impulse[cell],
-            arrival: Some(self.arrival[cell]).filter(|t| !t.is_nan()),
-            dynamic_pressure: self.dynamic[cell],
+            overpressure: value(&self.overpressure),
+            impulse: value(&self.impulse),
+            arrival: Some(value(&self.arrival)).filter(|t| !t.is_nan()),
+            dynamic_pressure: value(&self.dynamic),
         }
     }
 }

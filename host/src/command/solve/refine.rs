@@ -130,7 +130,7 @@ pub fn run<const D: usize>(
     }
     let probes = file.case.output.probes.iter().enumerate().filter_map(|(n, probe)| {
         let at = cell_at(&edges, probe.at)?;
-        Some(maxima.peaks(probe.name(n), position(at, edges.cells())))
+        Some(maxima.peaks(probe.name(n), position(at, edges.cells()), setup.flow.beta_v()))
     });
     let coarse: Vec<Peaks> = std::iter::once(anywhere(&maxima, setup.flow.beta_v())).chain(probes).collect();
     let peaks = fine.into_iter().zip(coarse).map(|(fine, coarse)| ComparedPeaks {

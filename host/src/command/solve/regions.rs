@@ -2,8 +2,10 @@
 
 use super::arrays::index;
 use super::case::{CaseFile, StateKeys};
+use crate::command::progress::Progress;
 use crate::error::Result;
-use crate::grid::Edges;
+use crate::flow::Flow;
+use crate::grid::{AXES, Edges};
 use glam::DVec3;
 use serde::Serialize;
 use std::path::Path;
@@ -27,7 +29,12 @@ pub struct RegionReport {
     pub cells_per_radius: Option<f64>,
     /// Volume of the region within the grid, in m³.
     pub volume: f64,
+    /// What of it is no solid, in m³.
+    pub open_volume: f64,
 }
+
+/// Of a region that is less open than this, it is said how much is.
+const MOSTLY_SOLID: f64 = 0.5;
 
 /// A share this close to none or all is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -49,7 +56,15 @@ impl Region {
         match (&keys.center, keys.radius, of_box) {
             (None, None, _) => {
                 let min = point("min", &keys.min, f64::NEG_INFINITY)?;
-                Ok(Region::Box(min, point("max", &keys.max, f64::INFINITY)?))
+                let max = point("max", &keys.max, f64::INFINITY)?;
+                match (0..3).find(|&a| min[a] > max[a]) {
+                    None => Ok(Region::Box(min, max)),
+                    Some(a) => {
+                        let (axis, min, max) = (AXES[a], min[a], max[a]);
+                        let reason = format!("must not lie below min: along {axis} it is {max}, and min is {min}");
+                        Err(file.wrong(&format!("{key}.max"), reason))
+                    }
+                }
             }
             (_, _, Some(of_box)) => {
                 let reason = "is of a box; a ball has center and radius: a region is one of them";
@@ -138,9 +153,9 @@ impl Region {
         all
     }
 
-    /// How well a grid, of which the axes `live` flow, resolves the region that takes these `shares` of its cells.
-    #[must_use]
-    pub fn report(&self, edges: &Edges, live: &[usize], shares: &[(usize, f64)]) -> RegionReport {
+    /// How well a grid, of which the axes `live` flow and the cells are as `open` as this, resolves the region that takes these `shares` of
+    /// its cells.
+    fn report(&self, edges: &Edges, live: &[usize], open: Option<&[f64]>, shares: &[(usize, f64)]) -> RegionReport {
         let mut per_radius = f64::INFINITY;
         for &a in live {
             let [from, to] = self.extent(a);
@@ -156,8 +171,48 @@ impl Region {
         RegionReport {
             cells_per_radius: per_radius.is_finite().then_some(per_radius),
             volume: shares.iter().map(|&(cell, share)| share * volume(cell)).sum(),
+            open_volume: shares.iter().map(|&(cell, share)| share * volume(cell) * open.map_or(1.0, |b| b[cell])).sum(),
         }
     }
+}
+
+/// What the regions of a case came to in a flow; those that change nothing, or less than they say, are told.
+///
+/// # Errors
+/// The grid has too many cells.
+pub fn report<const D: usize>(
+    file: &CaseFile,
+    flow: &Flow<f64, D>,
+    edges: &Edges,
+    live: [usize; D],
+    progress: &mut Progress,
+) -> Result<Vec<RegionReport>> {
+    let mut all = Vec::new();
+    for (n, keys) in file.case.initial.regions.iter().enumerate() {
+        let key = format!("initial.regions[{n}]");
+        let region = Region::new(file, &key, keys)?;
+        let shares = region.shares(edges)?;
+        let report = region.report(edges, &live, flow.beta_v(), &shares);
+        let open = report.open_volume / report.volume;
+        let trouble = match report.cells_per_radius {
+            _ if region.is_outside(edges) => "lies outside the grid: it has no effect".to_owned(),
+            _ if shares.is_empty() => "holds nothing of any cell: it has no effect".to_owned(),
+            _ if report.open_volume == 0.0 => "lies wholly in solid: it has no effect".to_owned(),
+            _ if open < MOSTLY_SOLID => {
+                let percent = 100.0 * open;
+                format!("is {percent:.2} % open, the rest is solid: its mass and energy are those of the open part")
+            }
+            Some(cells) if cells < 0.5 => {
+                "is smaller than a cell: its mass and energy are spread over the cells that hold it".to_owned()
+            }
+            _ => String::new(),
+        };
+        if !trouble.is_empty() {
+            progress.warn(format!("{}: {key} {trouble}", file.path.display()));
+        }
+        all.push(report);
+    }
+    Ok(all)
 }
 
 /// Shares of a round solid.

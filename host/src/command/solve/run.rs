@@ -3,10 +3,11 @@
 use super::arrays::position;
 use super::case::{CaseFile, Format, OutputKeys};
 use super::checkpoint::{self, Fingerprint, Journal};
-use super::force::force;
+use super::force::Walls;
 use super::force_peaks;
 use super::frames::{self, Snapshot, cell_at, create};
 use super::limits::Limits;
+use super::lock::Lock;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
 use super::pictures::{Pictures, check_slice};
 use super::refine;
@@ -19,7 +20,7 @@ use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
 use crate::command::progress::{Meter, Progress, print};
 use crate::command::stages::threads;
-use crate::command::streams::is_stream;
+use crate::command::streams::{check_directory, is_stream};
 use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
@@ -49,6 +50,10 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
         (None, Some(stem)) => PathBuf::from(stem),
         (None, None) => return Err(Error::usage("give an output directory with -o")),
     };
+    if args.output.is_none() && dir.as_path() == path {
+        return Err(Error::file(path, "results would go into a directory of the name of the case itself: give -o DIR"));
+    }
+    check_directory("-o", &dir)?;
     check_slice(&file, &edges)?;
     keep_inputs(&file, &dir)?;
     let live = live_axes(&edges);
@@ -154,11 +159,14 @@ struct Run<'a, const D: usize> {
     probes: Option<(Table, Vec<usize>)>,
     pictures: Option<Pictures>,
     maxima: Option<Maxima>,
+    /// What forces act on.
+    walls: Walls<D>,
     /// Pressure that overpressures are counted from.
     ambient: f64,
     done: Done,
     /// The checkpoint on disk is from before the first floor.
     untouched: bool,
+    _lock: Option<Lock>,
 }
 
 impl<'a, const D: usize> Run<'a, D> {
@@ -175,7 +183,8 @@ impl<'a, const D: usize> Run<'a, D> {
         let mut maxima = maxima(file, &setup, ambient)?;
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let cells = probe_cells(file, &setup, progress)?;
-        let pictures = pictures(file, &setup, ambient)?;
+        let pictures = pictures(file, &setup, ambient, progress)?;
+        let lock = Lock::take(&dir)?;
         let journal = if resume {
             checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup, maxima.as_mut())?
         } else {
@@ -184,6 +193,7 @@ impl<'a, const D: usize> Run<'a, D> {
             journal
         };
         create(&dir)?;
+        let lock = lock.map_or_else(|| Lock::take(&dir), |lock| Ok(Some(lock)))?;
         if !formats(output).is_empty() {
             create(&dir.join("frames"))?;
         }
@@ -198,6 +208,7 @@ impl<'a, const D: usize> Run<'a, D> {
             false => Some((table("probes.csv", &probe_head(output), journal.probes)?, cells)),
         };
         let begun = journal.log > 0;
+        let walls = Walls::of(&setup.flow);
         let (done, untouched) = (Done::default(), setup.flow.total.floored == 0);
         let mut run = Run {
             setup,
@@ -210,9 +221,11 @@ impl<'a, const D: usize> Run<'a, D> {
             probes,
             pictures,
             maxima,
+            walls,
             ambient,
             done,
             untouched,
+            _lock: lock,
         };
         if resume && run.goes_on() {
             // A report tells that a run is finished.
@@ -286,7 +299,7 @@ impl<'a, const D: usize> Run<'a, D> {
             let (floors, change) = (flow.total.floored, flow.total.floor_change);
             let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
             let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
-            let [x, y, z] = force(flow, self.setup.live, self.ambient);
+            let [x, y, z] = self.walls.force(flow, self.setup.live, self.ambient);
             let mut line = format!(
                 "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
                 change.density
@@ -299,6 +312,10 @@ impl<'a, const D: usize> Run<'a, D> {
         if let Some((table, cells)) = &mut self.probes {
             let mut line = format!("{},{}", flow.steps, flow.time);
             for &cell in cells.iter() {
+                if flow.open_volume(cell) == 0.0 {
+                    line.push_str(",,,,,");
+                    continue;
+                }
                 let w = flow.get(cell);
                 let _ = write!(line, ",{}", w.density); // a String takes anything
                 for axis in 0..3 {
@@ -332,7 +349,8 @@ impl<'a, const D: usize> Run<'a, D> {
     fn peaks(&self, file: &CaseFile) -> Vec<Peaks> {
         let cells = self.probes.iter().flat_map(|(_, cells)| cells);
         let named = file.case.output.probes.iter().enumerate().map(|(n, probe)| probe.name(n)).zip(cells);
-        let of = |maxima: &Maxima| named.map(|(name, &cell)| maxima.peaks(name, cell)).collect();
+        let of =
+            |maxima: &Maxima| named.map(|(name, &cell)| maxima.peaks(name, cell, self.setup.flow.beta_v())).collect();
         self.maxima.as_ref().map_or_else(Vec::new, of)
     }
 
@@ -438,10 +456,12 @@ fn first_journal<const D: usize>(file: &CaseFile, setup: &mut Setup<D>) -> Resul
 }
 
 /// How frames are drawn, if they are.
-fn pictures<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> Result<Option<Pictures>> {
-    if !formats(&file.case.output).contains(&Format::Png) {
-        return Ok(None);
-    }
+fn pictures<const D: usize>(
+    file: &CaseFile,
+    setup: &Setup<D>,
+    ambient: f64,
+    progress: &mut Progress,
+) -> Result<Option<Pictures>> {
     let of_file = || file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let title = file.case.title.clone().unwrap_or_else(of_file);
     let OutputKeys { slice, range, .. } = &file.case.output;
@@ -450,6 +470,10 @@ fn pictures<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> 
             return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
         }
     }
+    if !formats(&file.case.output).contains(&Format::Png) {
+        return Ok(None);
+    }
+    progress.warn_of_title(&title);
     Ok(Some(Pictures::new(setup, &title, *slice, ambient, range)))
 }
 
@@ -479,7 +503,9 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
         })?;
         let cell = position(at, setup.edges.cells());
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
-            progress.warn(format!("{}: probe {name}: its cell {at:?} is solid", file.path.display()));
+            let (path, point) = (file.path.display(), probe.at);
+            progress
+                .warn(format!("{path}: {key} \"{name}\": the cell of its point {point:?} is solid: it has no values"));
         }
         cells.push(cell);
     }

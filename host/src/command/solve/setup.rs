@@ -3,12 +3,12 @@
 use super::arrays;
 use super::case::{CaseFile, GasKeys, LimiterName, Model, Pressure, RiemannName};
 use super::inlet::Inlet;
-use super::pascals;
-use super::regions::RegionReport;
+use super::regions::{self, RegionReport};
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
 use super::space;
 use super::state::States;
+use super::units;
 use crate::command::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flow::{Flow, Tidied, Treatment};
@@ -88,10 +88,10 @@ pub fn setup<const D: usize>(
     let mut skipped: Vec<String> =
         (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
-    let (cells, regions) = progress.stage("initial", |p| states.initial(edges, &mut |w| p.warn(w)))?;
+    let cells = progress.stage("initial", |_| states.initial(edges))?;
 
     let lowest = cells.iter().map(|w| w.pressure).fold(f64::INFINITY, f64::min);
-    pascals::doubts(file, lowest).into_iter().for_each(|doubt| progress.warn(doubt));
+    units::doubts(file, lowest).into_iter().for_each(|doubt| progress.warn(doubt));
     let widths = live.map(|d| edges.widths(d));
     let Sides { boundaries, patches, mut inlets } = sides::sides(file, &states, edges, &cells)?;
     let mut flow = Flow::new(widths, gas, boundaries);
@@ -150,6 +150,7 @@ pub fn setup<const D: usize>(
     let (edges, cfl) = (edges.clone(), cfl(file)?);
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
     let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow));
+    let regions = regions::report(file, &flow, &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress);
     Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, solids, skipped })
 }

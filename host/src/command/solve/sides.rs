@@ -203,17 +203,20 @@ pub fn report<const D: usize>(
     let mut all = Vec::new();
     for (n, (patch, keys)) in flow.patches.iter().zip(&file.case.boundary.patch).enumerate() {
         let faces = flow.side(patch.axis, usize::from(patch.high), Some(n));
-        if faces.is_empty() {
-            progress.warn(format!(
-                "{}: boundary.patch[{n}] covers the middle of no face of its side that is not another patch's: it has no effect",
-                file.path.display()
-            ));
+        let area = across * faces.iter().map(|(_, area)| area).sum::<f64>();
+        let trouble = match (faces.is_empty(), area > 0.0) {
+            (true, _) => "covers the middle of no face of its side that is not another patch's: it has no effect",
+            (false, false) => "covers faces that solids close: it has no effect",
+            (false, true) => "",
+        };
+        if !trouble.is_empty() {
+            progress.warn(format!("{}: boundary.patch[{n}] {trouble}", file.path.display()));
         }
         all.push(PatchReport {
             side: keys.side.map_or_else(String::new, SideName::word),
             kind: keys.kind.map_or("", Kind::word),
             faces: faces.len(),
-            area: across * faces.iter().map(|(_, area)| area).sum::<f64>(),
+            area,
         });
     }
     all

@@ -3,7 +3,7 @@
 use super::arrays;
 use super::case::{CaseFile, StateKeys, VELOCITIES};
 use super::places::STATE;
-use super::regions::{Region, RegionReport};
+use super::regions::Region;
 use crate::command::stages;
 use crate::error::Result;
 use crate::grid::{AXES, Edges};
@@ -92,15 +92,11 @@ impl<const D: usize> States<'_, D> {
         Ok(std::array::from_fn(|d| given[self.live[d]].unwrap_or(base.map_or(0.0, |b| b[d]))))
     }
 
-    /// All cells at the beginning, x fastest, and how well the grid resolves each region; `warn` is told of regions that it does not.
+    /// All cells at the beginning, x fastest.
     ///
     /// # Errors
     /// As [`States::state`]; an array that cannot be read or holds no states; cells without a state.
-    pub fn initial(
-        &self,
-        edges: &Edges,
-        warn: &mut dyn FnMut(String),
-    ) -> Result<(Vec<Primitive<f64, D>>, Vec<RegionReport>)> {
+    pub fn initial(&self, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
         stages::room_for(count.saturating_mul(BYTES_A_CELL))?;
@@ -113,13 +109,12 @@ impl<const D: usize> States<'_, D> {
             (None, Some(dir)) => self.read(&self.file.resolve(dir), edges)?.into_iter().map(whole).collect(),
             (None, None) => vec![None; count],
         };
-        let regions: Result<Vec<_>> = (0..keys.regions.len()).map(|n| self.fill(n, edges, &mut cells, warn)).collect();
+        (0..keys.regions.len()).try_for_each(|n| self.fill(n, edges, &mut cells))?;
         // Regions that fill half of a cell or more speak for all of it.
         let missing = |c: &Option<Filled<D>>| c.is_none_or(|c| c.share < 0.5 - 1e-9);
         match cells.iter().position(missing) {
-            None => Ok((cells.into_iter().flatten().map(|c| c.state).collect(), regions?)),
+            None => Ok(cells.into_iter().flatten().map(|c| c.state).collect()),
             Some(cell) => {
-                regions?;
                 let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
                 Err(self
                     .file
@@ -129,35 +124,18 @@ impl<const D: usize> States<'_, D> {
     }
 
     /// Gives the cells of the `n`-th region its state, each as far as the region holds it.
-    fn fill(
-        &self,
-        n: usize,
-        edges: &Edges,
-        cells: &mut [Option<Filled<D>>],
-        warn: &mut dyn FnMut(String),
-    ) -> Result<RegionReport> {
+    fn fill(&self, n: usize, edges: &Edges, cells: &mut [Option<Filled<D>>]) -> Result<()> {
         let (key, keys) = (format!("initial.regions[{n}]"), &self.file.case.initial.regions[n]);
         if !keys.given().iter().any(|k| STATE.contains(k)) {
             let all = STATE.join(", ");
             return Err(self.file.wrong(&key, format!("has no state and would change nothing: it needs any of {all}")));
         }
         let region = Region::new(self.file, &key, keys)?;
-        let shares = region.shares(edges)?;
-        for &(cell, share) in &shares {
+        for (cell, share) in region.shares(edges)? {
             let state = self.state(&key, keys, cells[cell].map(|c| c.state))?;
             cells[cell] = Some(Filled { state, share }.over(cells[cell], self.gas));
         }
-        let report = region.report(edges, &self.live, &shares);
-        let trouble = match report.cells_per_radius {
-            _ if region.is_outside(edges) => "lies outside the grid: it has no effect",
-            _ if shares.is_empty() => "holds nothing of any cell: it has no effect",
-            Some(cells) if cells < 0.5 => {
-                "is smaller than a cell: its mass and energy are spread over the cells that hold it"
-            }
-            _ => return Ok(report),
-        };
-        warn(format!("{}: {key} {trouble}", self.file.path.display()));
-        Ok(report)
+        Ok(())
     }
 
     /// `rho.npy`, `u.npy`, … of a directory. Velocities along axes of one cell may be missing, else must be 0; a

@@ -143,6 +143,11 @@ fn has_vertex(head: &[u8]) -> bool {
     })
 }
 
+/// Whether a line begins as a table of a scene does: `[[solid]]`.
+fn is_scene(text: &[u8]) -> bool {
+    text.split(|byte| matches!(byte, b'\n' | b'\r')).any(|line| line.trim_ascii().starts_with(b"[[solid"))
+}
+
 /// Last resort for what bears no mark: its extension, or the message that helps most.
 fn by_extension(path: &Path, head: &[u8], len: u64) -> Result<FileKind> {
     let text = text::without_bom(head);
@@ -151,6 +156,9 @@ fn by_extension(path: &Path, head: &[u8], len: u64) -> Result<FileKind> {
     }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) && !looks_binary(head) {
         return Ok(FileKind::Obj);
+    }
+    if is_scene(text) {
+        return Err(Error::file(path, "is a scene: the name of a scene file ends in .toml"));
     }
     if len < binary::DATA as u64 {
         let reason = format!("is neither ASCII STL nor OBJ, and truncated as a binary STL: {len} of at least 84 bytes");

@@ -1,4 +1,4 @@
-//! Pressures that look as if they were meant in kPa are doubted; cases without units are not.
+//! Pressures in kPa, temperatures in °C, gas constants in kJ are doubted; cases without units are not.
 
 use crate::kit::{Scratch, solved, stderr, stdout, voidage};
 use std::fs;
@@ -26,6 +26,20 @@ fn kilopascals_in_a_case_with_temperatures_are_doubted() {
     assert!(text.contains("key boundary.x_max.p: 1.013 Pa"), "{text}");
     let text = said("", "rho = 1.2, p = 101325", wall, "ambient = 101.325");
     assert!(text.contains("key output.ambient: 101.325 is less than a hundredth of the lowest pressure"), "{text}");
+}
+
+#[test]
+fn temperatures_in_celsius_are_doubted() {
+    let text = said(AIR, "T = 15, p = 101325", "\"wall\"", "");
+    assert!(text.contains("key initial.uniform.T: 15 K is -258.15 °C; temperatures are in K, not in °C"), "{text}");
+    let text = said(AIR, "T = 15, p = 1.01325", "\"wall\"", "");
+    assert!(text.contains("not in °C") && text.contains("not in kPa or bar"), "{text}");
+}
+
+#[test]
+fn a_gas_constant_in_kilojoules_is_doubted() {
+    let text = said("gas_constant = 0.287", "T = 288, p = 101325", "\"wall\"", "");
+    assert!(text.contains("key gas.gas_constant: 0.287 beside initial.uniform.T") && text.contains("kJ"), "{text}");
 }
 
 #[test]

@@ -1,0 +1,74 @@
+//! Numbers that look as if they were meant in another unit: pressures in kPa or bar, temperatures in °C, a gas constant in kJ.
+//!
+//! Units need only be consistent, and shock tubes without units have pressures from 0.01 to 1000. So a pressure or a temperature is doubted
+//! only where the case itself says that it is in SI units, by a gas constant in J/(kg K) beside a temperature; and the ambient pressure
+//! where it is at odds with every pressure of the beginning, in whatever unit.
+
+use super::case::{CaseFile, StateKeys, side_word};
+
+/// Gas constants in J/(kg K): from heavy refrigerants to hydrogen, with room on both sides.
+const SI_GASES: [f64; 2] = [40.0, 6000.0];
+
+/// Gas constants in J/(kg K) are a thousand times those in kJ/(kg K).
+const KILO: f64 = 1000.0;
+
+/// Temperatures below this many K are doubted: the air of a hot day has 50 °C.
+const COLD: f64 = 60.0;
+
+/// A pressure above this is none without a unit.
+const HIGH: f64 = 1e4;
+
+/// A pressure below this many Pa, a hundredth of the atmosphere, is doubted.
+const LEAST: f64 = 1000.0;
+
+/// An ambient pressure below the lowest pressure of the beginning by this factor is doubted.
+const FAR_BELOW: f64 = 100.0;
+
+/// What is to be said about the pressures of a case, of whose states at the beginning `lowest` has the least.
+#[must_use]
+pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
+    let (states, path) = (states(file), file.path.display());
+    let within = |x: f64, [low, high]: [f64; 2]| low <= x && x <= high;
+    let mut said = Vec::new();
+    let warm = states.iter().find_map(|(key, keys)| Some((key, keys.temperature?)));
+    if let (Some(r), Some((key, _))) = (file.case.gas.gas_constant, warm) {
+        let si = within(r, SI_GASES);
+        let cold = states.iter().find_map(|(key, keys)| Some((key, keys.temperature.filter(|t| *t < COLD)?)));
+        if let Some((key, t)) = cold.filter(|_| si) {
+            let celsius = t - 273.15;
+            said.push(format!("{path}: key {key}.T: {t} K is {celsius:.2} °C; temperatures are in K, not in °C"));
+        }
+        let low = states.iter().find_map(|(key, keys)| Some((key, keys.p.filter(|p| *p < LEAST)?)));
+        if let Some((key, p)) = low.filter(|_| si) {
+            said.push(format!(
+                "{path}: key {key}.p: {p} Pa is less than a hundredth of the atmosphere's 101325 Pa; pressures are in Pa, not in kPa or bar"
+            ));
+        }
+        if within(KILO * r, SI_GASES) && states.iter().any(|(_, keys)| keys.p.is_some_and(|p| p > HIGH)) {
+            said.push(format!(
+                "{path}: key gas.gas_constant: {r} beside {key}.T makes a gas a thousand times too dense, if pressures are in Pa; \
+                 it is in J/(kg K), not in kJ/(kg K)"
+            ));
+        }
+    }
+    if let Some(p) = file.case.output.ambient.filter(|p| *p > 0.0 && FAR_BELOW * p < lowest) {
+        said.push(format!(
+            "{path}: key output.ambient: {p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"
+        ));
+    }
+    said
+}
+
+/// All tables of a case that may give a pressure, by their keys.
+fn states(file: &CaseFile) -> Vec<(String, &StateKeys)> {
+    let (initial, boundary) = (&file.case.initial, &file.case.boundary);
+    let mut all: Vec<(String, &StateKeys)> = Vec::new();
+    all.extend(initial.uniform.iter().map(|keys| ("initial.uniform".to_owned(), keys)));
+    all.extend(initial.regions.iter().enumerate().map(|(n, keys)| (format!("initial.regions[{n}]"), keys)));
+    for (axis, sides) in boundary.by_axis().into_iter().enumerate() {
+        let sides = sides.into_iter().enumerate();
+        all.extend(sides.filter_map(|(side, keys)| Some((format!("boundary.{}", side_word(axis, side)), keys?))));
+    }
+    all.extend(boundary.patch.iter().enumerate().map(|(n, keys)| (format!("boundary.patch[{n}]"), keys)));
+    all
+}

@@ -1,0 +1,88 @@
+//! What a case asks for in solids changes nothing, and is told.
+
+use crate::kit::{Scratch, json, solve, solved, stderr};
+use std::fs;
+
+/// A box from 0.2 to 0.6 on a grid of 10 x 10 cells, with a key of `[initial]`, sides and more.
+fn case(region: &str, patch: &str, output: &str) -> String {
+    format!(
+        "[grid]\nx = {{ points = [0, 1], cells = [10] }}\ny = {{ points = [0, 1], cells = [10] }}\n[porosity]\nscene = \"box.toml\"\n\
+         [gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = {{ rho = 1, p = 1 }}\nregions = [{region}]\n\
+         [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\n{patch}[time]\nmax_steps = 2\n[output]\n{output}\n"
+    )
+}
+
+const BOX: &str = "[[solid]]\nshape = \"box\"\nmin = [0, 0.2, -1]\nmax = [0.6, 0.6, 2]\n";
+
+#[test]
+fn regions_in_solids_are_named() {
+    for (region, words) in [
+        (
+            "{ min = [0.3, 0.3], max = [0.5, 0.5], p = 2 }",
+            Some("initial.regions[0] lies wholly in solid: it has no effect"),
+        ),
+        (
+            "{ center = [0.4, 0.4], radius = 0.03, p = 2 }",
+            Some("initial.regions[0] lies wholly in solid: it has no effect"),
+        ),
+        (
+            "{ min = [0.4, 0.3], max = [0.7, 0.5], p = 2 }",
+            Some("initial.regions[0] is 33.33 % open, the rest is solid"),
+        ),
+        ("{ min = [0.7, 0.3], max = [0.9, 0.5], p = 2 }", None),
+    ] {
+        let at = Scratch::new();
+        fs::write(at.file("box.toml"), BOX).expect("a file");
+        let text = stderr(&solved(&at, &case(region, "", ""), "out", &[]));
+        match words {
+            Some(words) => assert!(text.contains(words) && !text.contains("smaller than a cell"), "{region}: {text}"),
+            None => assert!(!text.contains("regions"), "{region}: {text}"),
+        }
+        let report = json(&at.file("out/report.json"));
+        let [volume, open] = ["volume", "open_volume"].map(|key| report["regions"][0][key].as_f64().expect("a number"));
+        let share = match words {
+            None => 1.0,
+            Some(words) if words.contains("33.33") => 1.0 / 3.0,
+            Some(_) => 0.0,
+        };
+        assert!((open - share * volume).abs() <= 1e-12 && volume > 0.0, "{region}: {open} of {volume}");
+    }
+}
+
+#[test]
+fn patches_behind_solids_are_named() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a file");
+    let patch = "[[boundary.patch]]\nside = \"x_min\"\nmin = [0, 0.3]\nmax = [0, 0.5]\ntype = \"outlet\"\np = 1\n";
+    let text = stderr(&solved(&at, &case("", patch, ""), "out", &[]));
+    assert!(text.contains("boundary.patch[0] covers faces that solids close: it has no effect"), "{text}");
+}
+
+#[test]
+fn probes_in_solids_have_no_values() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a file");
+    let output =
+        "maxima = {}\nprobes = [{ name = \"in\", at = [0.45, 0.45, 0] }, { name = \"beside\", at = [0.85, 0.85, 0] }]";
+    let text = stderr(&solved(&at, &case("", "", output), "out", &[]));
+    let words = "output.probes[0] \"in\": the cell of its point [0.45, 0.45, 0.0] is solid: it has no values";
+    assert!(text.contains(words) && !text.contains("beside"), "{text}");
+    let report = json(&at.file("out/report.json"));
+    let probes = &report["maxima"]["probes"];
+    assert!(probes[0]["overpressure"].is_null() && probes[1]["overpressure"].is_number(), "{probes}");
+    let table = fs::read_to_string(at.file("out/probes.csv")).expect("a table");
+    let last = table.lines().last().expect("a line");
+    assert!(last.contains(",,,,,,1,"), "{last}");
+    assert_eq!(last.split(',').count(), table.lines().next().expect("a head").split(',').count());
+}
+
+#[test]
+fn ends_of_a_box_in_the_wrong_order_are_refused() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a file");
+    let text = stderr(&solve(&at, &case("{ min = [0.5, 0.5], max = [0.2, 0.6], p = 2 }", "", ""), "out", &[]));
+    assert!(
+        text.contains("key initial.regions[0].max: must not lie below min: along x it is 0.2, and min is 0.5"),
+        "{text}"
+    );
+}
