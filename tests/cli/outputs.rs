@@ -103,7 +103,7 @@ fn reports_and_tables_of_solve() {
     )
     .expect("written");
     let ideal = "model = \"ideal\"\ngamma = 1.4\ngas_constant = 287";
-    let more = "[porosity]\nscene = \"scene.toml\"\n[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\nmaxima = {}\nforces = [\"*\"]\n";
+    let more = "[porosity]\nscene = \"scene.toml\"\n[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\nmonitors = [{ name = \"NAME\", x = 0.3 }]\nmaxima = {}\nforces = [\"*\"]\n";
     let isentropic = "model = \"isentropic\"\ngamma = 1.4\nrho = 1.2\np = 1e5";
     let cases = [
         ("ideal", tube(ideal, "T = 300, p = 1e5", more)),
@@ -134,6 +134,7 @@ fn reports_and_tables_of_solve() {
     }
     assert_eq!(columns(&at.file("ideal/log.csv")), documented("log"));
     assert_eq!(columns(&at.file("ideal/probes.csv")), documented("probes"));
+    assert_eq!(columns(&at.file("ideal/monitors.csv")), documented("monitors"));
 }
 
 #[test]

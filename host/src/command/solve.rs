@@ -1,7 +1,7 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`], [`units`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`force`], [`solids`], [`force_peaks`],
-//! [`table`], [`checkpoint`], [`lock`], [`report`], what it writes; [`refine`], the same case on half the cells; [`run`].
+//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`], [`units`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`], [`force_peaks`],
+//! [`table`], [`series`], [`checkpoint`], [`lock`], [`report`], what it writes; [`refine`], the same case on half the cells; [`run`].
 
 mod arrays;
 pub mod case;
@@ -13,12 +13,14 @@ pub mod inlet;
 pub mod limits;
 pub mod lock;
 pub mod maxima;
+pub mod monitors;
 pub mod pictures;
 pub mod places;
 pub mod refine;
 pub mod regions;
 pub mod report;
 pub mod run;
+pub mod series;
 pub mod setup;
 pub mod sides;
 pub mod solids;

@@ -246,7 +246,10 @@ fn slices(args: &PorosityArgs, edges: &Edges) -> Result<[Option<f64>; 3]> {
         if let Some(why) = edges.misses(axis, at) {
             return Err(Error::usage(format!("--slice {}={at}: {why}", AXES[axis])));
         }
-        through[axis] = Some(at);
+        if let Some(other) = through[axis].replace(at) {
+            let axis = AXES[axis];
+            return Err(Error::usage(format!("--slice {axis}={other} and {axis}={at}: one plane across each axis")));
+        }
     }
     Ok(through)
 }

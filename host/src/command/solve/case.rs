@@ -439,6 +439,9 @@ pub struct OutputKeys {
     /// Points whose state is kept at every step.
     #[serde(default)]
     pub probes: Vec<Probe>,
+    /// Planes whose flow is kept at every step.
+    #[serde(default)]
+    pub monitors: Vec<MonitorKeys>,
     /// Solids whose forces are kept, by name; `*` stands for all.
     #[serde(default)]
     pub forces: Vec<String>,
@@ -495,6 +498,24 @@ pub struct Probe {
     pub name: Option<String>,
     /// The point.
     pub at: [f64; 3],
+}
+
+/// A plane of the grid whose flow is kept: one of `x`, `y`, `z` tells its place.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MonitorKeys {
+    /// Name in the file; its number, if left out.
+    pub name: Option<String>,
+    /// Place along x of a plane across x.
+    pub x: Option<f64>,
+    /// Place along y of a plane across y.
+    pub y: Option<f64>,
+    /// Place along z of a plane across z.
+    pub z: Option<f64>,
+    /// Lowest corner of a box that the plane ends at; missing axes reach to infinity.
+    pub min: Option<Vec<f64>>,
+    /// Highest corner.
+    pub max: Option<Vec<f64>>,
 }
 
 impl Probe {
@@ -576,6 +597,20 @@ impl CaseFile {
         match value {
             Some(v) if !holds(v) => Err(self.wrong(key, format!("{reason}, not {v}"))),
             _ => Ok(()),
+        }
+    }
+
+    /// `name` heads columns of a table, and is none of the `others`.
+    ///
+    /// # Errors
+    /// It is one, or cannot head a column.
+    pub fn column_name<'a>(&self, key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
+        if name.is_empty() || name.contains([',', '"', '\n', '\r']) {
+            return Err(self.wrong(key, "needs a name without commas, quotes and line ends"));
+        }
+        match others.any(|other| other == name) {
+            true => Err(self.wrong(key, format!("\"{name}\" is the name of another"))),
+            false => Ok(()),
         }
     }
 

@@ -41,7 +41,8 @@ pub fn keep_untouched(dir: &Path) -> Result<()> {
 pub const BEFORE: &str = "checkpoint_before.bin";
 
 /// The tables that a checkpoint goes on with, and their names beside [`BEFORE`].
-const TABLES: [(&str, &str); 2] = [("log.csv", "log_before.csv"), ("probes.csv", "probes_before.csv")];
+const TABLES: [(&str, &str); 3] =
+    [("log.csv", "log_before.csv"), ("probes.csv", "probes_before.csv"), ("monitors.csv", "monitors_before.csv")];
 
 /// Renames the checkpoint in `dir`, if there is one, and the tables that go with it; whether there was.
 ///
@@ -80,6 +81,9 @@ pub struct Journal {
     pub log: u64,
     /// Bytes of `probes.csv`.
     pub probes: u64,
+    /// Bytes of `monitors.csv`.
+    #[serde(default)]
+    pub monitors: u64,
     /// Mass and energy at the beginning.
     pub begin: [f64; 2],
     /// Seconds of stepping.

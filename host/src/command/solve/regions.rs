@@ -45,27 +45,9 @@ impl Region {
     /// # Errors
     /// Its keys are those of neither a box nor a ball.
     pub fn new(file: &CaseFile, key: &str, keys: &StateKeys) -> Result<Self> {
-        let point = |name: &str, p: &Option<Vec<f64>>, missing: f64| match p {
-            None => Ok([missing; 3]),
-            Some(p) if (1..=3).contains(&p.len()) && p.iter().all(|x| !x.is_nan()) => {
-                Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing)))
-            }
-            Some(_) => Err(file.wrong(&format!("{key}.{name}"), "needs one to three numbers")),
-        };
         let of_box = ["min", "max"].into_iter().find(|k| keys.given().contains(k));
         match (&keys.center, keys.radius, of_box) {
-            (None, None, _) => {
-                let min = point("min", &keys.min, f64::NEG_INFINITY)?;
-                let max = point("max", &keys.max, f64::INFINITY)?;
-                match (0..3).find(|&a| min[a] > max[a]) {
-                    None => Ok(Region::Box(min, max)),
-                    Some(a) => {
-                        let (axis, min, max) = (AXES[a], min[a], max[a]);
-                        let reason = format!("must not lie below min: along {axis} it is {max}, and min is {min}");
-                        Err(file.wrong(&format!("{key}.max"), reason))
-                    }
-                }
-            }
+            (None, None, _) => Region::of_box(file, key, &keys.min, &keys.max),
             (_, _, Some(of_box)) => {
                 let reason = "is of a box; a ball has center and radius: a region is one of them";
                 Err(file.wrong(&format!("{key}.{of_box}"), reason))
@@ -75,12 +57,29 @@ impl Region {
                     return Err(file.wrong(&format!("{key}.center"), "needs finite numbers"));
                 }
                 // A ball in the plane of a flow, or an interval: axes that are left out do not count.
-                Ok(Region::Ball(point("center", &keys.center, f64::NAN)?, radius))
+                Ok(Region::Ball(point(file, &format!("{key}.center"), &keys.center, f64::NAN)?, radius))
             }
             (None, Some(_), None) => Err(file.wrong(key, "a ball needs a center beside its radius")),
             (Some(_), None, None) => Err(file.wrong(key, "a ball needs a radius beside its center")),
             (Some(_), Some(radius), None) => {
                 Err(file.wrong(&format!("{key}.radius"), format!("needs a positive number, not {radius}")))
+            }
+        }
+    }
+
+    /// A box between two corners; axes that these leave out reach to infinity.
+    ///
+    /// # Errors
+    /// Corners of no numbers or too many, or in the wrong order.
+    pub fn of_box(file: &CaseFile, key: &str, min: &Option<Vec<f64>>, max: &Option<Vec<f64>>) -> Result<Self> {
+        let (lower, upper) = (format!("{key}.min"), format!("{key}.max"));
+        let min = point(file, &lower, min, f64::NEG_INFINITY)?;
+        let max = point(file, &upper, max, f64::INFINITY)?;
+        match (0..3).find(|&a| min[a] > max[a]) {
+            None => Ok(Region::Box(min, max)),
+            Some(a) => {
+                let (axis, min, max) = (AXES[a], min[a], max[a]);
+                Err(file.wrong(&upper, format!("must not lie below min: along {axis} it is {max}, and min is {min}")))
             }
         }
     }
@@ -173,6 +172,17 @@ impl Region {
             volume: shares.iter().map(|&(cell, share)| share * volume(cell)).sum(),
             open_volume: shares.iter().map(|&(cell, share)| share * volume(cell) * open.map_or(1.0, |b| b[cell])).sum(),
         }
+    }
+}
+
+/// A point of one to three numbers; the others are `missing`.
+fn point(file: &CaseFile, key: &str, p: &Option<Vec<f64>>, missing: f64) -> Result<[f64; 3]> {
+    match p {
+        None => Ok([missing; 3]),
+        Some(p) if (1..=3).contains(&p.len()) && p.iter().all(|x| !x.is_nan()) => {
+            Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing)))
+        }
+        Some(_) => Err(file.wrong(key, "needs one to three numbers")),
     }
 }
 

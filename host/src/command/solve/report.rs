@@ -4,6 +4,7 @@ use super::case::{CaseFile, GasKeys};
 use super::checkpoint::Journal;
 use super::force_peaks::{self, ForcePeak};
 use super::maxima::{Maxima, Peaks};
+use super::monitors::MonitorReport;
 use super::refine::{Compared, RefineCheck};
 use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
@@ -68,6 +69,9 @@ pub struct Report {
     patches: Vec<PatchReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     maxima: Option<MaximaReport>,
+    /// Planes whose flow was kept.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    monitors: Vec<MonitorReport>,
     /// Forces on solids at the end, and the largest over the run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     forces: Vec<ForceReport>,
@@ -182,6 +186,7 @@ impl Report {
             regions: setup.regions.clone(),
             patches: setup.patches.clone(),
             maxima: None,
+            monitors: Vec::new(),
             forces: Vec::new(),
             refine_check: None,
             skipped: setup.skipped.clone(),
@@ -195,6 +200,12 @@ impl Report {
     pub fn with_maxima(self, maxima: Option<&Maxima>, probes: Vec<Peaks>) -> Self {
         let report = |m: &Maxima| MaximaReport { ambient: m.ambient, threshold: m.threshold, probes };
         Report { maxima: maxima.map(report), ..self }
+    }
+
+    /// With the planes whose flow was kept.
+    #[must_use]
+    pub fn with_monitors(self, monitors: Vec<MonitorReport>) -> Self {
+        Report { monitors, ..self }
     }
 
     /// With the forces on solids at the end and the largest over the run, if they were asked for.

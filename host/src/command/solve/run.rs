@@ -1,21 +1,19 @@
 //! `voidage solve`: case → setup → steps → files.
 
-use super::arrays::position;
 use super::case::{CaseFile, Format, OutputKeys};
 use super::checkpoint::{self, Fingerprint, Journal};
-use super::force::Walls;
 use super::force_peaks;
-use super::frames::{self, Snapshot, cell_at, create};
+use super::frames::{self, Snapshot, create};
 use super::limits::Limits;
 use super::lock::Lock;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
 use super::pictures::{Pictures, check_slice};
 use super::refine;
 use super::report::{Done, Report};
+use super::series::{Series, Watched};
 use super::setup::{Setup, live_axes, setup};
-use super::solids::{SolidForce, SolidShares};
+use super::solids::SolidForce;
 use super::stepping::{Trouble, step, unphysical};
-use super::table::Table;
 use crate::command::cli::SolveArgs;
 use crate::command::interrupt;
 use crate::command::progress::{Meter, Progress, print};
@@ -25,7 +23,6 @@ use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
 use crate::grid::Edges;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -126,7 +123,8 @@ fn run<const D: usize>(
     progress.stage("output", |_| run.last())?;
     let report = |run: &Run<D>, progress: &Progress| {
         let report = Report::new(file, &run.setup, &run.journal, run.done, progress);
-        report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_forces(run.forces(), &run.journal.peaks)
+        let report = report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_monitors(run.series.monitors());
+        report.with_forces(run.forces(), &run.journal.peaks)
     };
     let mut summary = report(&run, &progress);
     json::write(&run.dir.join(REPORT), &summary)?;
@@ -143,10 +141,6 @@ fn run<const D: usize>(
     Ok(())
 }
 
-/// Columns of `log.csv`. Of floors: what they have changed so far, as sums of sizes; the momentum over all axes. Of forces: on all solids, now.
-const LOG_HEAD: &str =
-    "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy,force_x,force_y,force_z";
-
 /// A run in progress.
 struct Run<'a, const D: usize> {
     setup: Setup<D>,
@@ -155,12 +149,10 @@ struct Run<'a, const D: usize> {
     output: &'a OutputKeys,
     fingerprint: Fingerprint,
     journal: Journal,
-    log: Table,
-    probes: Option<(Table, Vec<usize>)>,
+    /// Its tables.
+    series: Series<D>,
     pictures: Option<Pictures>,
     maxima: Option<Maxima>,
-    /// What forces act on.
-    walls: Walls<D>,
     /// Pressure that overpressures are counted from.
     ambient: f64,
     done: Done,
@@ -182,7 +174,7 @@ impl<'a, const D: usize> Run<'a, D> {
         let ambient = ambient(file, &setup)?;
         let mut maxima = maxima(file, &setup, ambient)?;
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
-        let cells = probe_cells(file, &setup, progress)?;
+        let watched = Watched::new(file, &setup, progress)?;
         let pictures = pictures(file, &setup, ambient, progress)?;
         let lock = Lock::take(&dir)?;
         let journal = if resume {
@@ -197,18 +189,8 @@ impl<'a, const D: usize> Run<'a, D> {
         if !formats(output).is_empty() {
             create(&dir.join("frames"))?;
         }
-        let table = |name: &str, head: &str, bytes: u64| match bytes {
-            0 => Table::new(&dir.join(name), head),
-            bytes => Table::resume(&dir.join(name), head, bytes),
-        };
-        let of_solids = setup.solids.as_ref().map_or_else(String::new, SolidShares::head);
-        let log = table("log.csv", &format!("{LOG_HEAD}{of_solids}"), journal.log)?;
-        let probes = match cells.is_empty() {
-            true => None,
-            false => Some((table("probes.csv", &probe_head(output), journal.probes)?, cells)),
-        };
+        let series = Series::begin(&dir, file, &setup, watched, &journal, (limits.log_every, ambient))?;
         let begun = journal.log > 0;
-        let walls = Walls::of(&setup.flow);
         let (done, untouched) = (Done::default(), setup.flow.total.floored == 0);
         let mut run = Run {
             setup,
@@ -217,11 +199,9 @@ impl<'a, const D: usize> Run<'a, D> {
             output,
             fingerprint,
             journal,
-            log,
-            probes,
+            series,
             pictures,
             maxima,
-            walls,
             ambient,
             done,
             untouched,
@@ -287,46 +267,11 @@ impl<'a, const D: usize> Run<'a, D> {
         Error::new(format!("{trouble}; the last good state is in {}", last.display()))
     }
 
-    /// Lines of the log and of the probes.
+    /// Lines of this moment in the tables.
     fn record(&mut self, dt: f64) -> Result<()> {
         let forces = self.forces();
         force_peaks::take(&mut self.journal.peaks, &forces, self.setup.flow.time);
-        let flow = &self.setup.flow;
-        if flow.steps.is_multiple_of(self.limits.log_every) {
-            let content = flow.content();
-            let energy = if flow.gas().has_energy() { content.energy.to_string() } else { String::new() };
-            let (steps, time, mass, mach) = (flow.steps, flow.time, content.density, flow.max_mach());
-            let (floors, change) = (flow.total.floored, flow.total.floor_change);
-            let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
-            let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
-            let [x, y, z] = self.walls.force(flow, self.setup.live, self.ambient);
-            let mut line = format!(
-                "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
-                change.density
-            );
-            for SolidForce { force: [x, y, z], .. } in forces {
-                let _ = write!(line, ",{x},{y},{z}"); // a String takes anything
-            }
-            self.log.line(&line)?;
-        }
-        if let Some((table, cells)) = &mut self.probes {
-            let mut line = format!("{},{}", flow.steps, flow.time);
-            for &cell in cells.iter() {
-                if flow.open_volume(cell) == 0.0 {
-                    line.push_str(",,,,,");
-                    continue;
-                }
-                let w = flow.get(cell);
-                let _ = write!(line, ",{}", w.density); // a String takes anything
-                for axis in 0..3 {
-                    let u = self.setup.live.iter().position(|&a| a == axis).map_or(0.0, |d| w.velocity[d]);
-                    let _ = write!(line, ",{u}");
-                }
-                let _ = write!(line, ",{}", w.pressure);
-            }
-            table.line(&line)?;
-        }
-        Ok(())
+        self.series.record(&self.setup, dt, &forces)
     }
 
     /// The present forces on the solids that are asked for.
@@ -347,7 +292,7 @@ impl<'a, const D: usize> Run<'a, D> {
 
     /// The largest values over time at the probes.
     fn peaks(&self, file: &CaseFile) -> Vec<Peaks> {
-        let cells = self.probes.iter().flat_map(|(_, cells)| cells);
+        let cells = self.series.probes();
         let named = file.case.output.probes.iter().enumerate().map(|(n, probe)| probe.name(n)).zip(cells);
         let of =
             |maxima: &Maxima| named.map(|(name, &cell)| maxima.peaks(name, cell, self.setup.flow.beta_v())).collect();
@@ -385,12 +330,7 @@ impl<'a, const D: usize> Run<'a, D> {
     }
 
     fn checkpoint(&mut self) -> Result<()> {
-        self.log.flush()?;
-        self.journal.log = self.log.bytes();
-        if let Some((table, _)) = &mut self.probes {
-            table.flush()?;
-            self.journal.probes = table.bytes();
-        }
+        self.series.flush(&mut self.journal)?;
         let journal = Journal { seconds: self.journal.seconds + self.done.seconds, ..self.journal.clone() };
         let clock = match self.setup.flow.clock() {
             Ok(clock) => clock,
@@ -483,37 +423,4 @@ fn maxima<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> Re
     let positive = |v: f64| v > 0.0 && v.is_finite();
     file.demand("output.maxima.threshold", keys.threshold, positive, "needs a positive overpressure")?;
     Ok(Some(Maxima::new(keys, ambient, &setup.flow)))
-}
-
-/// The cells of the probes.
-fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<usize>> {
-    let probes = &file.case.output.probes;
-    let mut cells = Vec::with_capacity(probes.len());
-    for (n, probe) in probes.iter().enumerate() {
-        let key = format!("output.probes[{n}]");
-        let name = probe.name(n);
-        if name.is_empty() || name.contains([',', '"', '\n', '\r']) {
-            return Err(file.wrong(&format!("{key}.name"), "needs a name without commas, quotes and line ends"));
-        }
-        if probes[..n].iter().enumerate().any(|(m, other)| other.name(m) == name) {
-            return Err(file.wrong(&format!("{key}.name"), format!("\"{name}\" is the name of another")));
-        }
-        let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
-            file.wrong(&format!("{key}.at"), format!("{:?} of \"{name}\" is outside the grid", probe.at))
-        })?;
-        let cell = position(at, setup.edges.cells());
-        if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
-            let (path, point) = (file.path.display(), probe.at);
-            progress
-                .warn(format!("{path}: {key} \"{name}\": the cell of its point {point:?} is solid: it has no values"));
-        }
-        cells.push(cell);
-    }
-    Ok(cells)
-}
-
-fn probe_head(output: &OutputKeys) -> String {
-    let of_probe = |name: &str| ["rho", "u", "v", "w", "p"].map(|q| format!("{name} {q}")).join(",");
-    let all = output.probes.iter().enumerate().map(|(n, p)| of_probe(&p.name(n)));
-    ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")
 }

@@ -1,0 +1,158 @@
+//! Planes across the flow: how much passes them, and the overpressure there.
+//!
+//! A plane consists of faces of the grid. What passes an open face is its open area times the mean of both cells beside it; on a side of the
+//! domain there is one cell. The fluxes of a step are not kept, so that sums over time agree with the drift of contents to first order of the step.
+
+use super::arrays::position;
+use super::case::{CaseFile, MonitorKeys};
+use super::regions::Region;
+use super::setup::Setup;
+use crate::command::progress::Progress;
+use crate::error::Result;
+use crate::flow::Flow;
+use crate::grid::{AXES, Edges};
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// A plane whose flow is kept.
+#[derive(Debug)]
+pub struct Monitor<const D: usize> {
+    report: MonitorReport,
+    /// Axis among those that flow.
+    d: usize,
+    /// The cells beside each open face, the same twice at a side of the domain, and the open area.
+    faces: Vec<([usize; 2], f64)>,
+}
+
+/// What a plane came to.
+#[derive(Debug, Clone, Serialize)]
+pub struct MonitorReport {
+    /// Its name.
+    pub name: String,
+    /// The axis across it.
+    pub axis: &'static str,
+    /// Its place along that axis, in m.
+    pub at: f64,
+    /// Open faces.
+    pub faces: usize,
+    /// Their open area, in m².
+    pub area: f64,
+}
+
+/// Quantities of a plane: names of columns after its own.
+const QUANTITIES: [&str; 4] = ["mass_flow", "volume_flow", "overpressure", "largest_overpressure"];
+
+/// Names of the columns of `monitors.csv`.
+#[must_use]
+pub fn head<const D: usize>(monitors: &[Monitor<D>]) -> String {
+    let of = |m: &Monitor<D>| QUANTITIES.map(|q| format!(",{} {q}", m.report.name)).concat();
+    format!("step,time{}", monitors.iter().map(of).collect::<String>())
+}
+
+/// The planes of a case in a flow; one through solids alone is told.
+///
+/// # Errors
+/// A plane that is none, lies outside the grid or across an axis of one cell, or has the name of another.
+pub fn monitors<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<Monitor<D>>> {
+    let mut all: Vec<Monitor<D>> = Vec::new();
+    for (n, keys) in file.case.output.monitors.iter().enumerate() {
+        let key = format!("output.monitors[{n}]");
+        let name = keys.name.clone().unwrap_or_else(|| format!("monitor {}", n + 1));
+        file.column_name(&format!("{key}.name"), &name, all.iter().map(|m| &m.report.name[..]))?;
+        let monitor = Monitor::new(file, &key, name, keys, setup)?;
+        if monitor.faces.is_empty() {
+            let (path, name) = (file.path.display(), &monitor.report.name);
+            progress.warn(format!("{path}: {key} \"{name}\" has no open face: nothing passes it"));
+        }
+        all.push(monitor);
+    }
+    Ok(all)
+}
+
+impl<const D: usize> Monitor<D> {
+    fn new(file: &CaseFile, key: &str, name: String, keys: &MonitorKeys, setup: &Setup<D>) -> Result<Self> {
+        let Setup { flow, edges, live, .. } = setup;
+        let given: Vec<(usize, f64)> =
+            [keys.x, keys.y, keys.z].into_iter().enumerate().filter_map(|(a, at)| Some((a, at?))).collect();
+        let [(axis, at)] = given[..] else {
+            return Err(file.wrong(key, "needs one of x, y and z: the place of the plane along that axis"));
+        };
+        let wrong = |reason: String| Err(file.wrong(&format!("{key}.{}", AXES[axis]), reason));
+        let Some(d) = live.iter().position(|&a| a == axis) else {
+            return wrong("the axis has one cell: nothing flows along it".into());
+        };
+        if let Some(reason) = edges.misses(axis, at) {
+            return wrong(reason);
+        }
+        let plane = nearest(&edges.0[axis], at);
+        let window = Region::of_box(file, key, &keys.min, &keys.max)?;
+        let faces = faces(flow, edges, (axis, d, plane), *live, &window);
+        let area = faces.iter().map(|(_, area)| area).sum();
+        let report = MonitorReport { name, axis: AXES[axis], at: edges.0[axis][plane], faces: faces.len(), area };
+        Ok(Monitor { report, d, faces })
+    }
+
+    /// What it came to.
+    #[must_use]
+    pub fn report(&self) -> MonitorReport {
+        self.report.clone()
+    }
+
+    /// The columns of a moment, each after a comma: mass and volume that pass upwards along the axis in a second, mean overpressure over the
+    /// open area, largest overpressure.
+    pub fn line(&self, flow: &Flow<f64, D>, ambient: f64, line: &mut String) {
+        let (mut mass, mut volume, mut force, mut largest) = (0.0, 0.0, 0.0, f64::NEG_INFINITY);
+        for (cells, area) in &self.faces {
+            let states = cells.map(|cell| flow.get(cell));
+            let mean = |of: &dyn Fn(usize) -> f64| 0.5 * (of(0) + of(1));
+            mass += area * mean(&|n| states[n].density * states[n].velocity[self.d]);
+            volume += area * mean(&|n| states[n].velocity[self.d]);
+            let over = mean(&|n| states[n].pressure) - ambient;
+            force += area * over;
+            largest = over.max(largest);
+        }
+        if self.faces.is_empty() {
+            line.push_str(",0,0,,");
+        } else {
+            let _ = write!(line, ",{mass},{volume},{},{largest}", force / self.report.area); // a String takes anything
+        }
+    }
+}
+
+/// The plane of the grid next to a place.
+fn nearest(edges: &[f64], at: f64) -> usize {
+    let above = edges.partition_point(|e| *e < at).min(edges.len() - 1);
+    if above > 0 && at - edges[above - 1] <= edges[above] - at { above - 1 } else { above }
+}
+
+/// The open faces of a plane of the grid whose middles lie in a window: cells beside them, and open areas.
+fn faces<const D: usize>(
+    flow: &Flow<f64, D>,
+    edges: &Edges,
+    (axis, d, plane): (usize, usize, usize),
+    live: [usize; D],
+    window: &Region,
+) -> Vec<([usize; 2], f64)> {
+    let shape = edges.cells();
+    let across: f64 = (0..3).filter(|a| !live.contains(a)).map(|a| edges.widths(a).iter().sum::<f64>()).product();
+    let open = flow.faces().nth(d);
+    let (low, high) = (plane.saturating_sub(1), plane.min(shape[axis] - 1));
+    let mut all = Vec::new();
+    let within = |a: usize, i: usize| {
+        let middle = f64::midpoint(edges.0[a][i], edges.0[a][i + 1]);
+        a == axis || (window.extent(a)[0] <= middle && middle <= window.extent(a)[1])
+    };
+    for cell in (0..flow.len()).filter(|&cell| super::arrays::index(cell, shape)[axis] == high) {
+        let at = super::arrays::index(cell, shape);
+        if !(0..3).all(|a| within(a, at[a])) {
+            continue;
+        }
+        let (here, mut below) = (live.map(|a| at[a]), at);
+        below[axis] = low;
+        let share = open.map_or(1.0, |open| open[flow.face(d, here, usize::from(plane > high))]);
+        if share > 0.0 {
+            all.push(([position(below, shape), cell], share * flow.area(d, here) * across));
+        }
+    }
+    all
+}

@@ -1,0 +1,200 @@
+//! What a run keeps of its steps: lines of `log.csv`, `probes.csv` and `monitors.csv`.
+
+use super::arrays::position;
+use super::case::{CaseFile, OutputKeys};
+use super::checkpoint::Journal;
+use super::force::Walls;
+use super::frames::cell_at;
+use super::monitors::{Monitor, MonitorReport, head, monitors};
+use super::setup::Setup;
+use super::solids::{SolidForce, SolidShares};
+use super::table::Table;
+use crate::command::progress::Progress;
+use crate::error::Result;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Columns of `log.csv`. Of floors: what they have changed so far, as sums of sizes; the momentum over all axes. Of forces: on all solids, now.
+const LOG_HEAD: &str =
+    "step,time,dt,mass,energy,max_mach,floors,floor_mass,floor_momentum,floor_energy,force_x,force_y,force_z";
+
+/// Where a run looks at every step: known before anything is written.
+#[derive(Debug)]
+pub struct Watched<const D: usize> {
+    /// The cells of the probes.
+    probes: Vec<usize>,
+    planes: Vec<Monitor<D>>,
+}
+
+impl<const D: usize> Watched<D> {
+    /// Of a case; what lies in solids is told.
+    ///
+    /// # Errors
+    /// A probe or a plane outside the grid, a name that is no name.
+    pub fn new(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Self> {
+        Ok(Watched { probes: probe_cells(file, setup, progress)?, planes: monitors(file, setup, progress)? })
+    }
+}
+
+/// The tables of a run.
+#[derive(Debug)]
+pub struct Series<const D: usize> {
+    log: Table,
+    /// With the cells of the probes.
+    probes: Option<(Table, Vec<usize>)>,
+    monitors: Option<(Table, Vec<Monitor<D>>)>,
+    /// What the force on all solids acts on.
+    walls: Walls<D>,
+    /// Steps between lines of the log.
+    log_every: usize,
+    /// Pressure that overpressures are counted from.
+    ambient: f64,
+}
+
+impl<const D: usize> Series<D> {
+    /// Of a run into a directory, new, or cut back to where a journal left them.
+    ///
+    /// # Errors
+    /// A table cannot be written, or is shorter than the journal says.
+    pub fn begin(
+        dir: &Path,
+        file: &CaseFile,
+        setup: &Setup<D>,
+        watched: Watched<D>,
+        journal: &Journal,
+        (log_every, ambient): (usize, f64),
+    ) -> Result<Self> {
+        let table = |name: &str, head: &str, bytes: u64| match bytes {
+            0 => Table::new(&dir.join(name), head),
+            bytes => Table::resume(&dir.join(name), head, bytes),
+        };
+        let of_solids = setup.solids.as_ref().map_or_else(String::new, SolidShares::head);
+        let log = table("log.csv", &format!("{LOG_HEAD}{of_solids}"), journal.log)?;
+        let Watched { probes, planes } = watched;
+        let probes = match probes.is_empty() {
+            true => None,
+            false => Some((table("probes.csv", &probe_head(&file.case.output), journal.probes)?, probes)),
+        };
+        let monitors = match planes.is_empty() {
+            true => None,
+            false => Some((table("monitors.csv", &head(&planes), journal.monitors)?, planes)),
+        };
+        Ok(Series { log, probes, monitors, walls: Walls::of(&setup.flow), log_every, ambient })
+    }
+
+    /// Lines of a moment, reached by a step of `dt`; `forces` are those on the solids that are asked for.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn record(&mut self, setup: &Setup<D>, dt: f64, forces: &[SolidForce]) -> Result<()> {
+        let flow = &setup.flow;
+        if flow.steps.is_multiple_of(self.log_every) {
+            let line = self.log_line(setup, dt, forces);
+            self.log.line(&line)?;
+        }
+        let begin = || format!("{},{}", flow.steps, flow.time);
+        if let Some((table, cells)) = &mut self.probes {
+            let mut line = begin();
+            cells.iter().for_each(|&cell| probe_columns(setup, cell, &mut line));
+            table.line(&line)?;
+        }
+        if let Some((table, planes)) = &mut self.monitors {
+            let mut line = begin();
+            planes.iter().for_each(|plane| plane.line(flow, self.ambient, &mut line));
+            table.line(&line)?;
+        }
+        Ok(())
+    }
+
+    fn log_line(&self, setup: &Setup<D>, dt: f64, forces: &[SolidForce]) -> String {
+        let flow = &setup.flow;
+        let content = flow.content();
+        let energy = if flow.gas().has_energy() { content.energy.to_string() } else { String::new() };
+        let (steps, time, mass, mach) = (flow.steps, flow.time, content.density, flow.max_mach());
+        let (floors, change) = (flow.total.floored, flow.total.floor_change);
+        let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
+        let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
+        let [x, y, z] = self.walls.force(flow, setup.live, self.ambient);
+        let mut line = format!(
+            "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
+            change.density
+        );
+        for SolidForce { force: [x, y, z], .. } in forces {
+            let _ = write!(line, ",{x},{y},{z}"); // a String takes anything
+        }
+        line
+    }
+
+    /// Puts all lines into the files, and their lengths into a journal.
+    ///
+    /// # Errors
+    /// A table cannot be written.
+    pub fn flush(&mut self, journal: &mut Journal) -> Result<()> {
+        self.log.flush()?;
+        journal.log = self.log.bytes();
+        if let Some((table, _)) = &mut self.probes {
+            table.flush()?;
+            journal.probes = table.bytes();
+        }
+        if let Some((table, _)) = &mut self.monitors {
+            table.flush()?;
+            journal.monitors = table.bytes();
+        }
+        Ok(())
+    }
+
+    /// The cells of the probes.
+    pub fn probes(&self) -> impl Iterator<Item = &usize> {
+        self.probes.iter().flat_map(|(_, cells)| cells)
+    }
+
+    /// What the planes came to.
+    #[must_use]
+    pub fn monitors(&self) -> Vec<MonitorReport> {
+        self.monitors.iter().flat_map(|(_, planes)| planes).map(Monitor::report).collect()
+    }
+}
+
+/// The columns of a probe, each after a comma; empty in a solid.
+fn probe_columns<const D: usize>(setup: &Setup<D>, cell: usize, line: &mut String) {
+    if setup.flow.open_volume(cell) == 0.0 {
+        line.push_str(",,,,,");
+        return;
+    }
+    let w = setup.flow.get(cell);
+    let _ = write!(line, ",{}", w.density); // a String takes anything
+    for axis in 0..3 {
+        let u = setup.live.iter().position(|&a| a == axis).map_or(0.0, |d| w.velocity[d]);
+        let _ = write!(line, ",{u}");
+    }
+    let _ = write!(line, ",{}", w.pressure);
+}
+
+/// The cells of the probes.
+fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<usize>> {
+    let probes = &file.case.output.probes;
+    let mut cells = Vec::with_capacity(probes.len());
+    for (n, probe) in probes.iter().enumerate() {
+        let key = format!("output.probes[{n}]");
+        let name = probe.name(n);
+        let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
+        file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
+        let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
+            file.wrong(&format!("{key}.at"), format!("{:?} of \"{name}\" is outside the grid", probe.at))
+        })?;
+        let cell = position(at, setup.edges.cells());
+        if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
+            let (path, point) = (file.path.display(), probe.at);
+            progress
+                .warn(format!("{path}: {key} \"{name}\": the cell of its point {point:?} is solid: it has no values"));
+        }
+        cells.push(cell);
+    }
+    Ok(cells)
+}
+
+fn probe_head(output: &OutputKeys) -> String {
+    let of_probe = |name: &str| ["rho", "u", "v", "w", "p"].map(|q| format!("{name} {q}")).join(",");
+    let all = output.probes.iter().enumerate().map(|(n, p)| of_probe(&p.name(n)));
+    ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")
+}

@@ -1,0 +1,97 @@
+//! Planes whose flow is kept.
+
+use crate::kit::{Scratch, json, solve, solved, stderr};
+use std::fs;
+
+/// A stream along x through a channel of 2 x 1 x 1, with a box in it or without, and planes.
+fn case(scene: &str, monitors: &str) -> String {
+    format!(
+        "[grid]\nx = {{ points = [0, 2], cells = [20] }}\ny = {{ points = [0, 1], cells = [8] }}\nz = {{ points = [0, 1], cells = [1] }}\n{scene}\
+         [gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = {{ rho = 1.2, u = 10, p = 1e5 }}\n\
+         [boundary]\nx_min = {{ type = \"inlet\", rho = 1.2, u = 10 }}\nx_max = {{ type = \"outlet\", p = 1e5 }}\n\
+         y_min = \"wall\"\ny_max = \"wall\"\n[time]\nmax_steps = 4\n[output]\nformats = []\nambient = 9e4\nmonitors = [{monitors}]\n"
+    )
+}
+
+/// The last line of the table by columns.
+fn last(at: &Scratch) -> impl Fn(&str) -> f64 {
+    let text = fs::read_to_string(at.file("out/monitors.csv")).expect("a table");
+    let head: Vec<String> = text.lines().next().expect("a head").split(',').map(str::to_owned).collect();
+    let line: Vec<String> = text.lines().last().expect("a line").split(',').map(str::to_owned).collect();
+    move |column| line[head.iter().position(|h| h == column).expect(column)].parse().expect("a number")
+}
+
+#[test]
+fn a_stream_passes_every_plane() {
+    let at = Scratch::new();
+    let planes = "{ x = 0 }, { name = \"middle\", x = 1.04 }, { name = \"out\", x = 2 }, \
+                  { name = \"part\", x = 0.5, min = [9, 0.25], max = [9, 0.75] }, { name = \"across\", y = 0.5 }";
+    solved(&at, &case("", planes), "out", &[]);
+    let value = last(&at);
+    for name in ["monitor 1", "middle", "out"] {
+        let near = |column: &str, truth: f64| {
+            let found = value(&format!("{name} {column}"));
+            assert!((found - truth).abs() < 1e-9 * truth, "{name} {column}: {found}");
+        };
+        near("mass_flow", 12.0);
+        near("volume_flow", 10.0);
+        near("overpressure", 1e4);
+        near("largest_overpressure", 1e4);
+    }
+    assert!((value("part mass_flow") - 6.0).abs() < 1e-8 && value("across mass_flow").abs() < 1e-9);
+    let report = json(&at.file("out/report.json"));
+    let of = |n: usize, key: &str| report["monitors"][n][key].as_f64().expect("a number");
+    assert_eq!([of(1, "at"), of(1, "area"), of(3, "area"), of(4, "area")], [1.0, 1.0, 0.5, 2.0]);
+    assert_eq!(report["monitors"][4]["axis"], "y");
+    assert_eq!(of(3, "faces"), 4.0);
+    assert_eq!(fs::read_to_string(at.file("out/monitors.csv")).expect("a table").lines().count(), 1 + 5);
+}
+
+/// Solids narrow a plane; one that they close altogether is told.
+#[test]
+fn solids_close_faces() {
+    let at = Scratch::new();
+    let solid = "[[solid]]\nshape = \"box\"\nmin = [0.9, -1, -1]\nmax = [1.2, 0.5, 2]\n";
+    fs::write(at.file("box.toml"), solid).expect("a file");
+    let planes = "{ name = \"gap\", x = 1 }, { name = \"wall\", x = 1, max = [9, 0.5] }";
+    let text = stderr(&solved(&at, &case("[porosity]\nscene = \"box.toml\"\n", planes), "out", &[]));
+    assert!(text.contains("output.monitors[1] \"wall\" has no open face: nothing passes it"), "{text}");
+    let report = json(&at.file("out/report.json"));
+    assert_eq!(report["monitors"][0]["area"].as_f64(), Some(0.5));
+    assert_eq!(report["monitors"][1]["faces"].as_u64(), Some(0));
+    let table = fs::read_to_string(at.file("out/monitors.csv")).expect("a table");
+    assert!(table.lines().skip(1).all(|line| line.ends_with(",0,0,,")), "{table}");
+}
+
+/// The table of a run that was resumed is that of the whole run.
+#[test]
+fn a_resumed_run_goes_on_with_its_table() {
+    let (at, planes) = (Scratch::new(), "{ x = 1 }");
+    let short = case("", planes).replace("max_steps = 4", "max_steps = 2");
+    solved(&at, &case("", planes), "whole", &[]);
+    solved(&at, &short, "out", &[]);
+    solved(&at, &case("", planes), "out", &["--resume"]);
+    let read = |dir: &str| fs::read(at.file(&format!("{dir}/monitors.csv"))).expect("a table");
+    assert!(read("whole") == read("out"));
+}
+
+#[test]
+fn planes_that_are_none_are_refused() {
+    for (planes, words) in [
+        ("{ x = 3 }", "key output.monitors[0].x: "),
+        ("{ z = 0.5 }", "key output.monitors[0].z: the axis has one cell"),
+        ("{ x = 1, y = 0.5 }", "key output.monitors[0]: needs one of x, y and z"),
+        ("{ name = \"a\" }", "key output.monitors[0]: needs one of x, y and z"),
+        (
+            "{ name = \"a\", x = 1 }, { name = \"a\", x = 1 }",
+            "key output.monitors[1].name: \"a\" is the name of another",
+        ),
+        ("{ name = \"a,b\", x = 1 }", "key output.monitors[0].name: needs a name without commas"),
+        ("{ x = 1, min = [0, 1], max = [0, 0] }", "key output.monitors[0].max: must not lie below min: along y"),
+    ] {
+        let at = Scratch::new();
+        let output = solve(&at, &case("", planes), "out", &[]);
+        let text = stderr(&output);
+        assert!(!output.status.success() && text.contains(words), "{planes}: {text}");
+    }
+}
