@@ -22,7 +22,7 @@
 //! 5. [`problem`]: what stays the same during a step, and its contracts; [`step_report`]: what a step did; [`fallback`]: what happens
 //!    to unphysical states
 //! 6. `kernel`: one slab of one step, row by row
-//! 7. [`step`]: one slab of one step, and the whole step
+//! 7. [`step`]: the calls: a slab, merging, the whole step with its fallbacks
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.

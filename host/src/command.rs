@@ -1,6 +1,7 @@
 //! The command `voidage`: what the user typed, and what is done about it.
 //!
-//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`]; [`riemann`] and [`triangulated`], which the last two share; [`porosity`], [`inspect`], [`solve`], [`study`], [`stress`].
+//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`], [`obstacles`]; [`riemann`] and [`triangulated`],
+//! which `study` and `stress` share; [`porosity`], [`inspect`], [`solve`], [`study`], [`stress`].
 
 pub mod cli;
 pub mod inspect;

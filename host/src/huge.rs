@@ -16,7 +16,7 @@ fn deserves_pages<T>(count: usize) -> bool {
     count.saturating_mul(size_of::<T>()) >= HUGE_PAGE / 2
 }
 
-/// HugeVec in one run of memory; a slice in all but its memory.
+/// Numbers in one run of memory; a slice in all but its memory.
 pub struct HugeVec<T = f64>(Memory<T>);
 
 enum Memory<T> {

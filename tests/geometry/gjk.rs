@@ -149,7 +149,7 @@ proptest! {
 }
 
 #[test]
-fn thirteen_directions_rarely_give_up() {
+fn thirteen_directions_did_not_give_up_here() {
     let mut random = Random::new(3);
     let mut counts = [0; 3];
     for _ in 0..20_000 {

@@ -1,4 +1,5 @@
-//! What happens where a new state leaves the physical set: first order around it, at last a floor.
+//! What happens where a new state leaves the physical set: first order around it, then fluxes that keep any state physical, at last a floor. A
+//! shorter step is the caller's.
 
 use crate::flow::error::{Error, fits};
 use crate::flow::problem::Problem;

@@ -7,7 +7,7 @@
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
 //! - `sweep`: the rows of a slab in order, in tiles that stay in a core's cache
-//! - `flux_choice`: which solvers and gases of it a program links
+//! - `flux_choice`: which solvers and gases of the sweep a program links
 //! - `long_line`: a long line of cells in pieces
 
 pub(crate) mod flux_choice;

@@ -1,6 +1,6 @@
 //! Fluxes of the Euler equations through one face of unit area.
 //!
-//! The face normal is the first velocity component; the caller rotates. All three solvers are written so that exchanging
+//! The face normal is the first velocity component; the caller rotates. All solvers are written so that exchanging
 //! left and right and reversing the normal reverses the flux to the bit, and so that two states at rest with one pressure
 //! give exactly that pressure.
 //!

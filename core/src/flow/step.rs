@@ -28,8 +28,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
 
     /// Advances the layers `slab` (along the last axis; all of them in 1D) by `dt`.
     ///
-    /// `new` holds those layers only. `first_order`, if given, is one byte per cell of the whole mesh: cells with a non-zero
-    /// byte are reconstructed to first order. Small cells are not yet merged: see [`Problem::merge`].
+    /// `new` holds those layers only. `first_order`, if given, is one byte per cell of the whole mesh, as [`crate::flow::fallback`] marks them: cells
+    /// with a non-zero byte are reconstructed to first order, those with the second mark get positive fluxes besides. Small cells are not yet merged: see [`Problem::merge`].
     pub fn advance_slab(
         &self,
         old: &Fields<'_, R, D>,
@@ -116,8 +116,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         Ok(())
     }
 
-    /// One step on one thread: slab, merging, and, if a state came out unphysical, again with first order around it, at last
-    /// with floors. `marks` is one byte per cell of scratch. A caller with threads does the same with its own slabs.
+    /// One step on one thread: slab, merging, and, if a state came out unphysical, again with first order around it, then with positive
+    /// fluxes, at last with floors. `marks` is one byte per cell of scratch. A caller with threads does the same with its own slabs.
     ///
     /// `old` must be physical; it is untouched, so a caller may repeat a step that had to be floored with a smaller `dt`.
     pub fn step(

@@ -49,7 +49,7 @@ pub(super) struct Shared<'s, V: Vector, O> {
     pub others: &'s mut O,
     /// Memory for one exact union at a time.
     pub union: UnionMemory<'s, V::Scalar>,
-    /// How the parts of a cell are found: a function of [`crate::surface::layer`], passed because that room uses this file.
+    /// How the parts of a cell are found: a function of [`crate::surface::layer`], passed because `layer` imports this file.
     pub parts: FindParts<V, O>,
     /// What the division of one cell has cost so far.
     pub effort: Effort,
@@ -57,14 +57,16 @@ pub(super) struct Shared<'s, V: Vector, O> {
 
 /// So many triangles may be sorted for the parts of one cell, or so many times those of its first part, if these are more. Where so much
 /// surface meets in one place that halving does not thin it, a cell would take longer with each level of division; beyond this it keeps the
-/// bounds that it has. Where it does, six levels sort each triangle some thirty times, which is some sixty times those of a part.
+/// bounds that it has.
 const MOST_EFFORT: usize = 1 << 17;
+
+/// Where halving thins a cell, six levels sort each triangle some thirty times, which is some sixty times those of its first part.
 const MOST_TIMES: usize = 64;
 
 /// What the division of a cell has cost.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
-    /// How often the part at hand has been divided out of a cell.
+    /// Depth of the part at hand; 0 for a whole cell.
     level: u32,
     /// Triangles sorted for parts of this cell.
     triangles: usize,

@@ -122,7 +122,7 @@ impl ValueEnum for Leaf {
     }
 }
 
-/// The scene, shared by all commands.
+/// The scene, of `porosity` and `inspect`.
 #[derive(Debug, Clone, Args)]
 pub struct SceneArgs {
     /// STL, OBJ or scene (TOML) files; their bodies form one scene; - is the standard input

@@ -53,7 +53,7 @@ pub fn obstacles(
     let alone = (found.resistance.is_none() && (wanted.warning || wanted.faces == Faces::Throat))
         .then(|| progress.stage("shadows", |_| shadows(grid, bodies, result, options)));
     let Some(shadows) = found.resistance.as_ref().map(|r| &r.shadows).or(alone.as_ref()) else { return found };
-    // ObstacleDrag is that of the cell's own surface: it asks for faces as they are.
+    // The drag is that of the cell's own surface: it asks for faces as they are.
     if let (Some(law), Some(obstacles)) = (wanted.drag, &found.resistance) {
         let drag = progress.stage("drag", |_| drag(grid, bodies, (result, obstacles), options, law));
         if drag.capped > 0 {

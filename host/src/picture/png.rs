@@ -1,4 +1,4 @@
-//! `--png`: slices of `beta_v` to look at before anything is computed with it.
+//! Slices of a field, three to a picture, as PNG.
 
 use std::path::Path;
 

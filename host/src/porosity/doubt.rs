@@ -1,7 +1,8 @@
 //! Bodies of which it cannot be told where they are solid.
 //!
-//! What is either solid or open counts as solid; the bounds are those with it and those without. Of other bodies not even that is known: their cells and faces keep the fractions that their surfaces give as they wind; but such a body may as well be a cavity of another, or
-//! count a part twice, so all that is certain within its box is that fractions lie between closed and open.
+//! What is either solid or open counts as solid; the bounds are those with it and those without. Of other bodies not even that is known: their cells
+//! and faces keep the fractions that their surfaces give as they wind. But such a body may as well be a cavity of another, or count a part
+//! twice, so all that is certain within its box is that fractions lie between closed and open.
 
 use super::{FieldSet, Options, Porosity};
 use crate::geometry::bodies::{Bodies, Body, Doubt};

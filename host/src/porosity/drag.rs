@@ -96,7 +96,10 @@ pub fn drag(
         ..ObstacleDrag::default()
     };
     for axis in 0..3 {
-        let rows = (law == DragLaw::Pdr).then(|| Rows::new(grid, axis, &resistance.shadows.tau[axis]));
+        let rows = match law {
+            DragLaw::Bluff => None,
+            DragLaw::Pdr => Some(Rows::new(grid, axis, &resistance.shadows.tau[axis])),
+        };
         found.capped += rows.as_ref().map_or(0, |rows| rows.capped);
         for (n, at) in cells(grid).enumerate() {
             let [all, round, sharp] = sums[n].map(|sum| sum[axis]);

@@ -8,10 +8,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::grid::{Grid, Located};
 
-/// Corners within this share of the grid's length are in the plane: far below the digits of any `f32` file, …
+/// Corners within this share of the grid's length are in the plane: far below the digits of any `f32` file.
 const NEAR: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// … and so are those within so many units in the last place of its largest coordinate.
+/// Corners within so many units in the last place of the grid's largest coordinate are in the plane.
 const NEAR_ULPS: f64 = 2.0;
 
 /// A copy of the bodies' triangles with such corners moved; none if there are no such corners.

@@ -97,7 +97,7 @@ pub struct State<R: Real, const D: usize> {
 /// How often a step that needed floors is repeated with half the time before the floors stand.
 const REPEATS: u32 = 4;
 
-/// Two lists of one number each, and nothing: the length of every array by cells.
+/// A copy of a slice in the caller's memory.
 fn copied<R: Real, M: Memory<'static>>(memory: &mut M, from: &[R]) -> Block<R> {
     memory.take(from.len(), |n| from.get(n).copied().unwrap_or(R::ZERO))
 }

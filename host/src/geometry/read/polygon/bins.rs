@@ -6,9 +6,9 @@ use glam::DVec2;
 #[derive(Default)]
 pub struct EarBins {
     low: DVec2,
-    /// EarBins per length, on both axes.
+    /// Bins per length, on both axes.
     density: DVec2,
-    /// EarBins on a side; 0 if there are none.
+    /// Bins on a side; 0 if there are none.
     side: usize,
     /// End of each bin in `items`; the next begins there.
     ends: Vec<usize>,
