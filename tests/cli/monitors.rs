@@ -41,7 +41,8 @@ fn a_stream_passes_every_plane() {
     assert!((value("part mass_flow") - 6.0).abs() < 1e-8 && value("across mass_flow").abs() < 1e-9);
     let report = json(&at.file("out/report.json"));
     let of = |n: usize, key: &str| report["monitors"][n][key].as_f64().expect("a number");
-    assert_eq!([of(1, "at"), of(1, "area"), of(3, "area"), of(4, "area")], [1.0, 1.0, 0.5, 2.0]);
+    assert_eq!([of(1, "at"), of(1, "area"), of(3, "area")], [1.0, 1.0, 0.5]);
+    assert!((of(4, "area") - 2.0).abs() < 1e-14);
     assert_eq!(report["monitors"][4]["axis"], "y");
     assert_eq!(of(3, "faces"), 4.0);
     assert_eq!(fs::read_to_string(at.file("out/monitors.csv")).expect("a table").lines().count(), 1 + 5);

@@ -9,6 +9,9 @@ use crate::surface::clip::{Polygon, dot};
 /// Fragments smaller than this, in faces of the cell, cannot do harm.
 const SLIVER: f64 = 1e-9;
 
+/// Where no more bodies than this meet in a cell, to ask whether a polygon meets a body before it is cut costs more than the cuts.
+const FEW: usize = 8;
+
 /// A body in the cell: its pieces, its tree, and the side from which walls of a face see it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Part {
@@ -106,7 +109,7 @@ impl<R: Real> Descent<'_, R> {
                     f.branch = if positive { node.positive } else { node.negative };
                 }
                 // Cuts between one open part and another would make work for all trees that follow.
-                Place::Across if !f.meets && self.ends_open(top) => {}
+                Place::Across if parts.len() > FEW && !f.meets && self.ends_open(top) => {}
                 Place::Across => {
                     self.cut(top, node)?;
                     waiting += 1;

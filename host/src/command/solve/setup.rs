@@ -6,7 +6,7 @@ use super::inlet::Inlet;
 use super::regions::{self, RegionReport};
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
-use super::space;
+use super::space::{self, Space};
 use super::state::States;
 use super::units;
 use crate::command::progress::Progress;
@@ -106,25 +106,9 @@ pub fn setup<const D: usize>(
     match space {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
-            by_law = space.drag;
-            let tidied = flow.set_porosity(space.volume, space.faces, treatment).map_err(|e| refused(file, e))?;
-            let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
-            if matched_faces > 0 {
-                progress.warn(format!(
-                    "{}: {matched_faces} faces of periodic sides are more open than the side opposite: both let pass what the less open one does",
-                    file.path.display()
-                ));
-            }
-            report = Some(SpaceReport {
-                closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
-                jump_faces: flow.jump_faces(),
-                merged_cells: flow.merged_cells(),
-                dust_cells,
-                dust_faces,
-                closed_faces,
-                matched_faces,
-                step_share: 1.0,
-            });
+            let Space { volume, faces, drag } = space;
+            by_law = drag;
+            report = Some(fill(file, &mut flow, (volume, faces), treatment, progress)?);
         }
     }
     match drag(file, edges, live, by_law)? {
@@ -138,12 +122,7 @@ pub fn setup<const D: usize>(
         skipped.push("energy equation: the gas is barotropic".into());
     }
 
-    for (cell, w) in cells.iter().enumerate() {
-        let closed = flow.beta_v().is_some_and(|b| b[cell] == 0.0);
-        // Nothing flows in solid.
-        let velocity = if closed { [0.0; D] } else { w.velocity };
-        flow.set(cell, &Primitive { velocity, ..*w });
-    }
+    set_states(&mut flow, &cells);
     if let Some(report) = &mut report {
         report.step_share = step_share(&mut flow);
     }
@@ -153,6 +132,43 @@ pub fn setup<const D: usize>(
     let regions = regions::report(file, &flow, &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress);
     Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, solids, skipped })
+}
+
+/// Gives a flow its porosity, and tells what the solver makes of it.
+fn fill<const D: usize>(
+    file: &CaseFile,
+    flow: &mut Flow<f64, D>,
+    (volume, faces): (Vec<f64>, [Vec<f64>; D]),
+    treatment: Treatment<f64>,
+    progress: &mut Progress,
+) -> Result<SpaceReport> {
+    let tidied = flow.set_porosity(volume, faces, treatment).map_err(|e| refused(file, e))?;
+    let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
+    if matched_faces > 0 {
+        progress.warn(format!(
+            "{}: {matched_faces} faces of periodic sides are more open than the side opposite: both let pass what the less open one does",
+            file.path.display()
+        ));
+    }
+    Ok(SpaceReport {
+        closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
+        jump_faces: flow.jump_faces(),
+        merged_cells: flow.merged_cells(),
+        dust_cells,
+        dust_faces,
+        closed_faces,
+        matched_faces,
+        step_share: 1.0,
+    })
+}
+
+/// Gives all cells their states; nothing flows in solid.
+fn set_states<const D: usize>(flow: &mut Flow<f64, D>, cells: &[Primitive<f64, D>]) {
+    for (cell, w) in cells.iter().enumerate() {
+        let closed = flow.beta_v().is_some_and(|b| b[cell] == 0.0);
+        let velocity = if closed { [0.0; D] } else { w.velocity };
+        flow.set(cell, &Primitive { velocity, ..*w });
+    }
 }
 
 /// The stable step over that of the same gas in open space; 1 where there is none.
