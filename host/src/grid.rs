@@ -78,6 +78,12 @@ impl Edges {
         Edges(self.0.each_ref().map(cut))
     }
 
+    /// How much space the axes span that are not `live`, in m to the power of their number; 1 if all are.
+    #[must_use]
+    pub fn across(&self, live: &[usize]) -> f64 {
+        (0..3).filter(|a| !live.contains(a)).map(|a| self.widths(a).iter().sum::<f64>()).product()
+    }
+
     /// Widths of the cells along an axis. Where they differ by no more than edges are rounded, all are one: a flow that is mirrored
     /// stays so.
     #[must_use]

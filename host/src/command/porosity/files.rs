@@ -94,15 +94,25 @@ fn unit_of(field: &str) -> &'static str {
     }
 }
 
+/// Names of the arrays of open fractions, by fields and ends of their names.
+fn fractions<'a>(fields: &'a [&str], suffixes: &'a [&str]) -> impl Iterator<Item = String> + 'a {
+    suffixes.iter().flat_map(move |suffix| fields.iter().map(move |field| format!("beta_{field}{suffix}")))
+}
+
+/// Ends of names: of a value, and of its bounds.
+const SUFFIXES: [&str; 3] = ["", "_lower", "_upper"];
+
+/// Cells, and faces across each axis.
+const FRACTIONS: [&str; 4] = ["v", "x", "y", "z"];
+
 /// The arrays that `--npy` writes.
 fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
-    let suffixes: &[&str] = if args.bounds_fields { &["", "_lower", "_upper"] } else { &[""] };
-    let fields: &[&str] = if args.no_areas { &["v"] } else { &["v", "x", "y", "z"] };
-    let names = suffixes.iter().flat_map(|suffix| fields.iter().map(move |field| format!("beta_{field}{suffix}.npy")));
+    let suffixes = if args.bounds_fields { &SUFFIXES[..] } else { &SUFFIXES[..1] };
+    let fields = if args.no_areas { &FRACTIONS[..1] } else { &FRACTIONS[..] };
     let wants = args.resistance || args.drag.is_some();
     let obstacles = OBSTACLES.iter().filter(|_| wants).chain(DRAG.iter().filter(|_| args.drag.is_some()));
-    let names: Vec<String> = names.chain(obstacles.map(|name| format!("{name}.npy"))).collect();
-    args.npy.iter().flat_map(|dir| names.iter().map(move |name| dir.join(name))).collect()
+    let names: Vec<String> = fractions(fields, suffixes).chain(obstacles.map(|name| (*name).to_owned())).collect();
+    args.npy.iter().flat_map(|dir| names.iter().map(move |name| dir.join(format!("{name}.npy")))).collect()
 }
 
 /// Write all that was asked for.
@@ -153,9 +163,8 @@ pub(super) fn write(
 
 /// Fields that an earlier run has left beside those of this one may be of another grid.
 fn warn_of_older(dir: &Path, written: &[(String, [usize; 3], &[f64])], progress: &mut Progress) {
-    let faces =
-        ["v", "x", "y", "z"].iter().flat_map(|field| ["", "_lower", "_upper"].map(|s| format!("beta_{field}{s}")));
-    let all = faces.chain(OBSTACLES.iter().chain(&DRAG).map(|name| (*name).to_owned()));
+    let obstacles = OBSTACLES.iter().chain(&DRAG).map(|name| (*name).to_owned());
+    let all = FRACTIONS.iter().flat_map(|field| fractions(std::slice::from_ref(field), &SUFFIXES)).chain(obstacles);
     let older: Vec<String> = all
         .filter(|name| !written.iter().any(|(other, ..)| other == name))
         .map(|name| format!("{name}.npy"))

@@ -6,6 +6,7 @@
 use super::places;
 use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
+use crate::files::csv::needs_quotes;
 use crate::grid::file::{self, GridTable};
 use crate::grid::{AXES, Edges};
 use crate::keys::reader::misfit;
@@ -605,7 +606,7 @@ impl CaseFile {
     /// # Errors
     /// It is one, or cannot head a column.
     pub fn column_name<'a>(&self, key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
-        if name.is_empty() || name.contains([',', '"', '\n', '\r']) {
+        if name.is_empty() || needs_quotes(name) {
             return Err(self.wrong(key, "needs a name without commas, quotes and line ends"));
         }
         match others.any(|other| other == name) {

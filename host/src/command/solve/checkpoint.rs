@@ -82,7 +82,6 @@ pub struct Journal {
     /// Bytes of `probes.csv`.
     pub probes: u64,
     /// Bytes of `monitors.csv`.
-    #[serde(default)]
     pub monitors: u64,
     /// Mass and energy at the beginning.
     pub begin: [f64; 2],

@@ -3,7 +3,7 @@
 //! A plane consists of faces of the grid. What passes an open face is its open area times the mean of both cells beside it; on a side of the
 //! domain there is one cell. The fluxes of a step are not kept, so that sums over time agree with the drift of contents to first order of the step.
 
-use super::arrays::position;
+use super::arrays::{index, position};
 use super::case::{CaseFile, MonitorKeys};
 use super::regions::Region;
 use super::setup::Setup;
@@ -134,7 +134,7 @@ fn faces<const D: usize>(
     window: &Region,
 ) -> Vec<([usize; 2], f64)> {
     let shape = edges.cells();
-    let across: f64 = (0..3).filter(|a| !live.contains(a)).map(|a| edges.widths(a).iter().sum::<f64>()).product();
+    let across = edges.across(&live);
     let open = flow.faces().nth(d);
     let (low, high) = (plane.saturating_sub(1), plane.min(shape[axis] - 1));
     let mut all = Vec::new();
@@ -142,8 +142,8 @@ fn faces<const D: usize>(
         let middle = f64::midpoint(edges.0[a][i], edges.0[a][i + 1]);
         a == axis || (window.extent(a)[0] <= middle && middle <= window.extent(a)[1])
     };
-    for cell in (0..flow.len()).filter(|&cell| super::arrays::index(cell, shape)[axis] == high) {
-        let at = super::arrays::index(cell, shape);
+    for cell in (0..flow.len()).filter(|&cell| index(cell, shape)[axis] == high) {
+        let at = index(cell, shape);
         if !(0..3).all(|a| within(a, at[a])) {
             continue;
         }

@@ -199,7 +199,7 @@ pub fn report<const D: usize>(
     live: [usize; D],
     progress: &mut Progress,
 ) -> Vec<PatchReport> {
-    let across: f64 = (0..3).filter(|a| !live.contains(a)).map(|a| edges.widths(a).iter().sum::<f64>()).product();
+    let across = edges.across(&live);
     let mut all = Vec::new();
     for (n, (patch, keys)) in flow.patches.iter().zip(&file.case.boundary.patch).enumerate() {
         let faces = flow.side(patch.axis, usize::from(patch.high), Some(n));

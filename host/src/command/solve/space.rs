@@ -9,6 +9,7 @@ use crate::command::progress::Progress;
 use crate::command::stages;
 use crate::command::streams::is_stream;
 use crate::error::Result;
+use crate::files::csv::needs_quotes;
 use crate::geometry::bodies::Bodies;
 use crate::grid::{AXES, Edges};
 use crate::porosity::drag::{DragCoefficients, DragLaw};
@@ -131,7 +132,7 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
             name => return Err(file.wrong(&format!("output.forces[{n}]"), format!("no solid is called \"{name}\""))),
         };
         for name in more {
-            if name.contains([',', '"', '\n', '\r']) || name == OTHERS {
+            if needs_quotes(name) || name == OTHERS {
                 let reason =
                     format!("\"{name}\" cannot head a column: no commas, quotes, line ends, and not \"{OTHERS}\"");
                 return Err(file.wrong(&format!("output.forces[{n}]"), reason));

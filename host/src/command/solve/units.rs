@@ -30,21 +30,19 @@ pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
     let (states, path) = (states(file), file.path.display());
     let within = |x: f64, [low, high]: [f64; 2]| low <= x && x <= high;
     let mut said = Vec::new();
-    let warm = states.iter().find_map(|(key, keys)| Some((key, keys.temperature?)));
-    if let (Some(r), Some((key, _))) = (file.case.gas.gas_constant, warm) {
+    let first = |of: &dyn Fn(&StateKeys) -> Option<f64>| states.iter().find_map(|(key, keys)| Some((key, of(keys)?)));
+    if let (Some(r), Some((key, _))) = (file.case.gas.gas_constant, first(&|keys| keys.temperature)) {
         let si = within(r, SI_GASES);
-        let cold = states.iter().find_map(|(key, keys)| Some((key, keys.temperature.filter(|t| *t < COLD)?)));
-        if let Some((key, t)) = cold.filter(|_| si) {
+        if let Some((key, t)) = first(&|keys| keys.temperature.filter(|t| si && *t < COLD)) {
             let celsius = t - 273.15;
             said.push(format!("{path}: key {key}.T: {t} K is {celsius:.2} °C; temperatures are in K, not in °C"));
         }
-        let low = states.iter().find_map(|(key, keys)| Some((key, keys.p.filter(|p| *p < LEAST)?)));
-        if let Some((key, p)) = low.filter(|_| si) {
+        if let Some((key, p)) = first(&|keys| keys.p.filter(|p| si && *p < LEAST)) {
             said.push(format!(
                 "{path}: key {key}.p: {p} Pa is less than a hundredth of the atmosphere's 101325 Pa; pressures are in Pa, not in kPa or bar"
             ));
         }
-        if within(KILO * r, SI_GASES) && states.iter().any(|(_, keys)| keys.p.is_some_and(|p| p > HIGH)) {
+        if within(KILO * r, SI_GASES) && first(&|keys| keys.p.filter(|p| *p > HIGH)).is_some() {
             said.push(format!(
                 "{path}: key gas.gas_constant: {r} beside {key}.T makes a gas a thousand times too dense, if pressures are in Pa; \
                  it is in J/(kg K), not in kJ/(kg K)"

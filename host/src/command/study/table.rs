@@ -1,5 +1,6 @@
 //! Tables as CSV for programs, every digit, and as Markdown and HTML for people.
 
+use crate::files::csv::needs_quotes;
 use std::fmt::Write;
 
 /// A value in a table.
@@ -103,7 +104,7 @@ impl Listing {
         let names: Vec<&str> = self.columns.iter().map(|c| c.0).collect();
         let mut text = names.join(",") + "\n";
         for row in &self.rows {
-            let cells = row.iter().map(Cell::exact).map(|cell| match cell.contains([',', '"', '\n', '\r']) {
+            let cells = row.iter().map(Cell::exact).map(|cell| match needs_quotes(&cell) {
                 false => cell,
                 true => format!("\"{}\"", cell.replace('"', "\"\"")),
             });
