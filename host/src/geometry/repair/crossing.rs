@@ -5,13 +5,13 @@
 //! number in the middle of a part, without the triangles that lie there, is the mean of those on both sides, and the triangles that
 //! lie there are the difference: no point beside the surface needs to be chosen.
 //!
-//! **Proof.** The new surface must be closed: its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
+//! **Proof.** The new surface must be closed: its areas cancel and its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
-use crate::geometry::repair::face::{Crossing, Face, beside, cut, meeting, push_parts};
+use crate::geometry::repair::face::{Crossing, Face, beside, cut, meeting, push_parts, sides_on};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 /// Points closer to a plane or line than this share of the shell's size are on it: some hundred roundings, …
 const ON: f64 = 1e-13;
@@ -88,6 +88,8 @@ pub struct Meetings<'a> {
     pub faces: Vec<Face>,
     /// For each triangle that others meet, these others.
     met: HashMap<u32, Vec<(u32, Crossing)>>,
+    /// Triangles and their sides that lie on others: there the surface on both sides of an edge may be in different regions.
+    resting: HashSet<(u32, usize)>,
     on: f64,
 }
 
@@ -116,6 +118,7 @@ impl<'a> Meetings<'a> {
     pub fn new(triangles: &'a [[DVec3; 3]], on: f64) -> Self {
         let faces: Vec<Face> = triangles.iter().map(|&t| Face::new(t)).collect();
         let mut met: HashMap<u32, Vec<(u32, Crossing)>> = HashMap::default();
+        let mut resting = HashSet::default();
         Tree::new(triangles).touching_pairs(|m, n| {
             let (a, b) = (&faces[m as usize], &faces[n as usize]);
             if beside(a, b, on) || beside(b, a, on) {
@@ -126,23 +129,27 @@ impl<'a> Meetings<'a> {
                 if found != Crossing::None {
                     met.entry(m).or_default().push((n, found));
                 }
+                let sides = sides_on(a, b, on);
+                resting.extend((0..3).filter(|&side| sides[side]).map(|side| (n, side)));
             }
         });
-        Meetings { triangles, faces, met, on }
+        Meetings { triangles, faces, met, resting, on }
     }
 
-    /// The triangles that no other meets, in groups connected by edges that only two triangles use.
+    /// Pairs of triangles that no other meets, across edges that they alone use and that lie on no other.
+    pub fn neighbours(&self, edges: &[([u32; 2], u32, usize)]) -> Vec<[u32; 2]> {
+        let free = |&(_, n, side): &([u32; 2], u32, usize)| !self.meets(n) && !self.resting.contains(&(n, side));
+        let pair = |uses: &[([u32; 2], u32, usize)]| match uses {
+            [a, b] if free(a) && free(b) => Some([a.1, b.1]),
+            _ => None,
+        };
+        edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair).collect()
+    }
+
+    /// The triangles that no other meets, in groups of [neighbours](Self::neighbours).
     fn patches(&self) -> Vec<Vec<u32>> {
-        let edges = self.edges();
         let mut sets = Sets::new(self.triangles.len());
-        for uses in edges.chunk_by(|a, b| a.0 == b.0) {
-            if let [(_, a), (_, b)] = uses
-                && !self.met.contains_key(a)
-                && !self.met.contains_key(b)
-            {
-                sets.join(*a as usize, *b as usize);
-            }
-        }
+        self.neighbours(&self.edges()).into_iter().for_each(|[a, b]| sets.join(a as usize, b as usize));
         let mut at: HashMap<usize, usize> = HashMap::default();
         let mut patches: Vec<Vec<u32>> = Vec::new();
         for n in (0..self.triangles.len()).filter(|&n| !self.met.contains_key(&(n as u32))) {
@@ -167,9 +174,9 @@ impl<'a> Meetings<'a> {
         met.filter(|(_, found)| *found == Crossing::Cover).map(|(m, _)| *m)
     }
 
-    /// The uses of all edges, sorted: lower and higher point, and triangle.
+    /// The uses of all edges, sorted: lower and higher point, triangle, and which of its sides.
     #[must_use]
-    pub fn edges(&self) -> Vec<([u32; 2], u32)> {
+    pub fn edges(&self) -> Vec<([u32; 2], u32, usize)> {
         let mut numbers: HashMap<[u64; 3], u32> = HashMap::default();
         let mut number = |p: DVec3| {
             let next = numbers.len() as u32;
@@ -178,7 +185,8 @@ impl<'a> Meetings<'a> {
         let mut edges = Vec::with_capacity(3 * self.triangles.len());
         for (n, t) in self.triangles.iter().enumerate() {
             let [a, b, c] = t.map(&mut number);
-            edges.extend([[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], n as u32)));
+            let sides = [[a, b], [b, c], [c, a]].into_iter().enumerate();
+            edges.extend(sides.map(|(side, [p, q])| ([p.min(q), p.max(q)], n as u32, side)));
         }
         edges.sort_unstable();
         edges
@@ -295,7 +303,7 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let inverted = volumes(triangles, origin).x < 0.0;
     match shell.resolved(inverted) {
         Some(made) if !made.differs => Found::Simple,
-        Some(made) if is_closed(&made.surface, origin, (hi - lo).element_product()) => {
+        Some(made) if is_closed(&made.surface, [lo, hi]) => {
             let Made { surface, forward, backward, walls, .. } = made;
             Found::Resolved(Resolved {
                 surface,
@@ -309,9 +317,14 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     }
 }
 
-/// Do the volumes of some triangles along the axes agree, to a share of that of their box?
+/// Do the areas of some triangles within the box `lo..hi` cancel, and their volumes along the axes agree, to a share of the box?
 #[must_use]
-pub fn is_closed(triangles: &[[DVec3; 3]], origin: DVec3, box_volume: f64) -> bool {
-    let along = volumes(triangles, origin);
-    !triangles.is_empty() && along.max_element() - along.min_element() <= SPREAD * box_volume
+pub fn is_closed(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> bool {
+    let (size, least) = (hi - lo, SPREAD * (hi - lo).element_product());
+    let area: DVec3 = triangles.iter().map(|[a, b, c]| (b - a).cross(c - a) * 0.5).sum();
+    // Seen from no plane in which a surface is likely to lie: there it would have no volume.
+    let along = volumes(triangles, lo + size * DVec3::new(0.433, 0.571, 0.397));
+    !triangles.is_empty()
+        && (area * size).abs().max_element() <= least
+        && along.max_element() - along.min_element() <= least
 }

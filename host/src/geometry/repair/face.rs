@@ -96,6 +96,37 @@ pub fn meeting(face: &Face, other: &Face, on: f64) -> Crossing {
     if (hi - lo) * ends[0].distance(ends[1]) > on { Crossing::Cut(ends) } else { Crossing::None }
 }
 
+/// A side that lies on another triangle for no more than so many tolerances touches it in a point.
+const TOUCH: f64 = 16.0;
+
+/// The sides of `other`, from each of its corners to the next, that lie on `face` for some length and are not sides of it.
+#[must_use]
+pub fn sides_on(face: &Face, other: &Face, on: f64) -> [bool; 3] {
+    let shared = other.corners.map(|p| face.corners.contains(&p));
+    let in_plane = [0, 1, 2].map(|i| shared[i] || face.height(other.corners[i]).abs() <= on);
+    [0, 1, 2].map(|i| {
+        let j = (i + 1) % 3;
+        if !in_plane[i] || !in_plane[j] || (shared[i] && shared[j]) {
+            return false;
+        }
+        let (p, q) = (other.corners[i], other.corners[j]);
+        let (from, to) = (face.inward(p), face.inward(q));
+        let (mut lo, mut hi) = (0.0_f64, 1.0_f64);
+        for side in 0..3 {
+            let (a, b) = (from[side] + on, to[side] + on);
+            if a < 0.0 && b < 0.0 {
+                return false;
+            }
+            if a < 0.0 {
+                lo = lo.max(a / (a - b));
+            } else if b < 0.0 {
+                hi = hi.min(a / (a - b));
+            }
+        }
+        (hi - lo) * p.distance(q) > TOUCH * on
+    })
+}
+
 /// Do two triangles in one plane share more than their sides?
 fn covers(a: &Face, b: &Face, on: f64) -> bool {
     let apart = |a: &Face, b: &Face| {

@@ -9,7 +9,7 @@
 //! into several here, of which less is known; it is never joined to another. Regions after Q. Zhou, E. Grinspun, D. Zorin, A. Jacobson,
 //! *Mesh Arrangements for Solid Geometry*, ACM Trans. Graph. 35 (2016), sec. 3.
 //!
-//! **Proof.** The surfaces found must be closed: their volumes along x, y and z agree, else there is no answer.
+//! **Proof.** The surfaces found must be closed: their areas cancel and their volumes along x, y and z agree, else there is no answer.
 
 use crate::geometry::repair::crossing::{Meetings, is_closed, tolerance};
 use crate::geometry::repair::face::{Face, push_parts};
@@ -129,17 +129,12 @@ impl<'a> Complex<'a> {
 
     /// Join the sides of whole triangles across edges that only two of them use. False if an edge has only one.
     fn join_neighbours(&mut self) -> bool {
-        for uses in self.meetings.edges().chunk_by(|a, b| a.0 == b.0) {
-            let [(_, a), (_, b)] = uses else {
-                if uses.len() == 1 {
-                    return false;
-                }
-                continue;
-            };
-            let (a, b) = (*a as usize, *b as usize);
-            if self.meetings.meets(a as u32) || self.meetings.meets(b as u32) {
-                continue;
-            }
+        let edges = self.meetings.edges();
+        if edges.chunk_by(|a, b| a.0 == b.0).any(|uses| uses.len() == 1) {
+            return false;
+        }
+        for [a, b] in self.meetings.neighbours(&edges) {
+            let (a, b) = (a as usize, b as usize);
             let (p, q) = (self.sided[a].corners, self.sided[b].corners);
             let runs = |t: [DVec3; 3], from: DVec3, to: DVec3| (0..3).any(|i| t[i] == from && t[(i + 1) % 3] == to);
             let same = (0..3).any(|i| runs(q, p[i], p[(i + 1) % 3]));
@@ -426,9 +421,9 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]])
     let (kinds, inverted) = if two_sided { (complex.by_sides(&looks)?, false) } else { complex.by_winding()? };
     let mut of = |kind: Kind| complex.surface(|region| kinds[region] == kind);
     let (solid, perhaps) = (of(Kind::Solid), of(Kind::Perhaps));
-    let (middle, volume) = ((lo + hi) * 0.5, (hi - lo).element_product());
+    let middle = (lo + hi) * 0.5;
     let closed = |surface: &[[DVec3; 3]]| {
-        surface.is_empty() || (is_closed(surface, middle, volume) && signed_volume(surface, middle) > 0.0)
+        surface.is_empty() || (is_closed(surface, [lo, hi]) && signed_volume(surface, middle) > 0.0)
     };
     if solid.is_empty() || !closed(&solid) || !closed(&perhaps) {
         return None;
