@@ -273,7 +273,7 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
         match group.len() {
             1 => whole,
             _ => match crossing::look(&whole.triangles, whole.bounds) {
-                Found::Simple => whole,
+                Found::Simple { .. } => whole,
                 Found::Resolved(made) => Closed::of_parts(made.surface),
                 Found::Doubtful(_) => {
                     clear = false;

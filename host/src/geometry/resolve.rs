@@ -4,8 +4,10 @@ use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::nesting::{Closed, Doubt};
 use crate::geometry::repair::regions::{self, Regions};
+use crate::geometry::repair::sets::Sets;
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashSet as HashSet;
 use std::collections::BTreeMap;
 
 /// A closed shell on its way to a body.
@@ -25,9 +27,13 @@ impl Part {
         &self.shell.triangles[..self.own]
     }
 
-    /// It winds once around what it holds, and looks outward.
+    fn is_capped(&self) -> bool {
+        self.own < self.shell.triangles.len()
+    }
+
+    /// It winds once around what it holds, forward or backward.
     fn is_simple(&self, seen: &Seen) -> bool {
-        matches!(seen, Seen::As(Found::Simple)) && self.shell.volume > 0.0 && !self.shell.is_sheet()
+        matches!(seen, Seen::As(Found::Simple { .. })) && self.shell.volume != 0.0 && !self.shell.is_sheet()
     }
 }
 
@@ -39,39 +45,161 @@ enum Seen {
     Divided(Regions),
 }
 
-fn look(shell: &Closed) -> Found {
-    if shell.is_sheet() { Found::Simple } else { crossing::look(&shell.triangles, shell.bounds) }
+/// For each triangle: is its exact reverse there, too?
+fn have_backs(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = bool> {
+    let key = |t: &[DVec3; 3]| {
+        let t = t.map(|p| (p + 0.0).to_array().map(f64::to_bits));
+        let lowest = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+        [t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]]
+    };
+    let all: HashSet<_> = triangles.iter().map(key).collect();
+    triangles.iter().map(move |&[a, b, c]| all.contains(&key(&[a, c, b])))
 }
 
-/// The regions of a surface.
-fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], file: &[[DVec3; 3]]) -> Option<Seen> {
-    regions::look(own, bounds, file).map(Seen::Divided)
+fn look(shell: &Closed) -> Found {
+    if !shell.is_sheet() {
+        return crossing::look(&shell.triangles, shell.bounds);
+    }
+    // What winds forward in one place and backward in another may have no volume, either.
+    match have_backs(&shell.triangles).all(|back| back) {
+        true => Found::Simple { walls: true },
+        false => match crossing::look(&shell.triangles, shell.bounds) {
+            Found::Resolved(made) if made.both_ways => Found::Resolved(made),
+            _ => Found::Simple { walls: true },
+        },
+    }
+}
+
+/// The regions of a surface of which all parts look the same way, or not.
+fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], file: &[[DVec3; 3]], mixed: bool) -> Option<Seen> {
+    regions::look(own, bounds, file, mixed).map(Seen::Divided)
 }
 
 fn look_at_one(part: &Part, file: &[[DVec3; 3]]) -> Seen {
     match look(&part.shell) {
         // Which of several parts that were joined is turned cannot be told.
         Found::Resolved(made) if made.touches && !part.guessed => {
-            divided(part.own(), part.shell.bounds, file).unwrap_or(Seen::As(Found::Doubtful(made.place)))
+            divided(part.own(), part.shell.bounds, file, made.both_ways)
+                .unwrap_or(Seen::As(Found::Doubtful(made.place)))
         }
         Found::Doubtful(place) if !part.guessed => {
-            divided(part.own(), part.shell.bounds, file).unwrap_or(Seen::As(Found::Doubtful(place)))
+            divided(part.own(), part.shell.bounds, file, false).unwrap_or(Seen::As(Found::Doubtful(place)))
         }
         seen => Seen::As(seen),
     }
 }
 
-/// What parts are together that overlap where they share edges; and all their triangles. None if each by itself is simple.
-fn look_at_all(members: &[usize], parts: &[Part], seen: &[Seen], file: &[[DVec3; 3]]) -> Option<(Closed, Seen)> {
-    let capped = members.iter().any(|&n| parts[n].own < parts[n].shell.triangles.len());
-    if !capped && members.iter().all(|&n| parts[n].is_simple(&seen[n])) {
+/// Parts to be looked at together.
+#[derive(Default)]
+struct Group {
+    members: Vec<usize>,
+    /// Of these it is not known whose triangles are whose; of the others, what they are to these.
+    doubtful: Vec<usize>,
+}
+
+/// Parts that must be looked at together, by three signs that triangles were joined to the wrong shells:
+///
+/// - parts whose edges do not tell whose they are; if some look inward, with all that overlap them;
+/// - a part that is folded, with those in its box that look the other way; one that winds both ways, with all in its box;
+/// - a part that had to be capped in a mesh that had backs, with those beside it.
+fn groups(parts: &[Part], seen: &[Seen], file: &[[DVec3; 3]]) -> Vec<Group> {
+    let has_backs = parts.iter().any(Part::is_capped) && have_backs(file).any(|back| back);
+    let mut sets = Sets::new(parts.len());
+    let mut grouped = vec![false; parts.len()];
+    let mut doubtful = vec![false; parts.len()];
+    let mut join = |a: usize, b: usize, grouped: &mut Vec<bool>| {
+        (grouped[a], grouped[b]) = (true, true);
+        sets.join(a, b);
+    };
+    let volume = |n: usize| parts[n].shell.volume;
+    let bounds = |n: usize| parts[n].shell.bounds;
+    let mut clusters: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for n in (0..parts.len()).filter(|&n| parts[n].guessed) {
+        clusters.entry(parts[n].cluster).or_default().push(n);
+    }
+    let overlapping = |n: usize| (0..parts.len()).filter(move |&m| m != n && parts[m].shell.overlaps(&parts[n].shell));
+    for members in clusters.values() {
+        let mixed = members.iter().any(|&n| volume(n) > 0.0) && members.iter().any(|&n| !(volume(n) > 0.0));
+        for &n in members {
+            doubtful[n] = true;
+            join(members[0], n, &mut grouped);
+            overlapping(n).filter(|_| mixed).for_each(|m| join(n, m, &mut grouped));
+        }
+    }
+    for n in 0..parts.len() {
+        let against = |m: usize| match &seen[n] {
+            Seen::As(Found::Simple { walls }) => *walls && !parts[n].shell.is_sheet() && volume(m) * volume(n) < 0.0,
+            Seen::As(Found::Resolved(made)) => made.both_ways,
+            Seen::As(Found::Doubtful(_)) => false,
+            Seen::Divided(_) => true,
+        };
+        let holds = |m: usize| (0..3).all(|a| bounds(n)[0][a] <= bounds(m)[0][a] && bounds(m)[1][a] <= bounds(n)[1][a]);
+        for m in overlapping(n).filter(|&m| against(m) && holds(m) && !parts[m].shell.is_sheet()) {
+            (doubtful[n], doubtful[m]) = (true, true);
+            join(n, m, &mut grouped);
+        }
+        if has_backs && parts[n].is_capped() {
+            overlapping(n).for_each(|m| join(n, m, &mut grouped));
+        }
+    }
+    let mut at: BTreeMap<usize, Group> = BTreeMap::new();
+    for n in (0..parts.len()).filter(|&n| grouped[n]) {
+        let group = at.entry(sets.find(n)).or_default();
+        group.members.push(n);
+        if doubtful[n] {
+            group.doubtful.push(n);
+        }
+    }
+    at.into_values().collect()
+}
+
+/// What parts are together, all their triangles, and which they are. None if each by itself is simple and all look the same way, or
+/// nothing better can be told and none is doubtful.
+fn look_together(
+    group: &Group,
+    parts: &[Part],
+    seen: &[Seen],
+    file: &[[DVec3; 3]],
+) -> Option<(Vec<usize>, Closed, Seen)> {
+    let positive = |&n: &usize| parts[n].shell.volume > 0.0;
+    let simple = |members: &[usize]| {
+        let alike = members.iter().all(positive) || !members.iter().any(positive);
+        alike && members.iter().all(|&n| !parts[n].is_capped() && parts[n].is_simple(&seen[n]))
+    };
+    let whole = |members: &[usize]| {
+        Closed::new(members.iter().flat_map(|&n| parts[n].shell.triangles.iter().copied()).collect())
+    };
+    // Winding numbers alone do not tell a cavity from a part that another covers.
+    let by_regions = |members: &[usize]| {
+        let own: Vec<[DVec3; 3]> = members.iter().flat_map(|&n| parts[n].own().iter().copied()).collect();
+        let (whole, mixed) = (whole(members), !members.iter().all(positive));
+        let mixed = mixed && members.iter().any(positive);
+        let in_box = |t: &&[DVec3; 3]| {
+            t.iter().all(|p| p.cmpge(whole.bounds[0]).all() && p.cmple(whole.bounds[1]).all())
+        };
+        let seen = divided(&own, whole.bounds, file, mixed).or_else(|| {
+            // What is missing may have been dropped as a back.
+            let capped = members.iter().any(|&n| parts[n].is_capped());
+            let all: Vec<[DVec3; 3]> = file.iter().filter(|t| capped && in_box(t)).copied().collect();
+            divided(&all, whole.bounds, file, mixed)
+        })?;
+        Some((members.to_vec(), whole, seen))
+    };
+    if simple(&group.members) {
         return None;
     }
-    let whole = Closed::new(members.iter().flat_map(|&n| parts[n].shell.triangles.iter().copied()).collect());
-    let own: Vec<[DVec3; 3]> = members.iter().flat_map(|&n| parts[n].own().iter().copied()).collect();
-    // Winding numbers alone do not tell a cavity from a part that another covers.
-    let seen = divided(&own, whole.bounds, file).unwrap_or(Seen::As(Found::Doubtful(whole.bounds[0])));
-    Some((whole, seen))
+    by_regions(&group.members).or_else(|| {
+        if group.doubtful.is_empty() || simple(&group.doubtful) {
+            return None;
+        }
+        let doubtful = || {
+            let whole = whole(&group.doubtful);
+            let seen = Seen::As(Found::Doubtful(whole.bounds[0]));
+            (group.doubtful.clone(), whole, seen)
+        };
+        let fewer = group.doubtful.len() < group.members.len();
+        Some(fewer.then(|| by_regions(&group.doubtful)).flatten().unwrap_or_else(doubtful))
+    })
 }
 
 /// Make every surface that crosses itself the surface of what it winds around; and parts that overlap where they share edges the
@@ -80,15 +208,10 @@ fn look_at_all(members: &[usize], parts: &[Part], seen: &[Seen], file: &[[DVec3;
 pub(super) fn resolve(parts: Vec<Part>, file: &[[DVec3; 3]], d: &mut Diagnosis, report: &mut Reporter) -> Vec<Part> {
     let mut parts = parts;
     let mut seen: Vec<Seen> = parts.par_iter().map(|part| look_at_one(part, file)).collect();
-    let mut clusters: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (n, part) in parts.iter().enumerate().filter(|(_, p)| p.guessed) {
-        clusters.entry(part.cluster).or_default().push(n);
-    }
-    let clusters: Vec<Vec<usize>> = clusters.into_values().collect();
-    let together: Vec<_> = clusters.par_iter().map(|members| look_at_all(members, &parts, &seen, file)).collect();
+    let groups = groups(&parts, &seen, file);
+    let together: Vec<_> = groups.par_iter().map(|group| look_together(group, &parts, &seen, file)).collect();
     let mut gone = vec![false; parts.len()];
-    for (members, found) in clusters.iter().zip(together) {
-        let Some((whole, all)) = found else { continue };
+    for (members, whole, all) in together.into_iter().flatten() {
         members[1..].iter().for_each(|&n| gone[n] = true);
         (parts[members[0]].shell, seen[members[0]]) = (whole, all);
     }
@@ -112,7 +235,7 @@ struct Places {
 /// Put what was found in the place of a part.
 fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, places: &mut Places) {
     match seen {
-        Seen::As(Found::Simple) => {}
+        Seen::As(Found::Simple { .. }) => {}
         Seen::As(Found::Resolved(made)) => {
             part.shell = Closed::of_parts(made.surface);
             d.crossing += 1;

@@ -29,7 +29,10 @@ const BUDGET: usize = 100_000_000;
 #[derive(Debug)]
 pub enum Found {
     /// It winds once around what it holds.
-    Simple,
+    Simple {
+        /// It has walls without thickness, where it is folded.
+        walls: bool,
+    },
     /// It meets itself.
     Resolved(Resolved),
     /// It meets itself, at this place for one, and no proof was found.
@@ -297,12 +300,14 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let on = tolerance([lo, hi]);
     let shell = Meetings::new(triangles, on);
     let many = || shell.edges().chunk_by(|a, b| a.0 == b.0).find(|uses| uses.len() > 2).map(|uses| uses[0].1);
-    let Some(n) = shell.met.keys().min().copied().or_else(many) else { return Found::Simple };
+    let Some(n) = shell.met.keys().min().copied().or_else(many) else {
+        return Found::Simple { walls: false };
+    };
     let place = triangles[n as usize][0];
     let origin = (lo + hi) * 0.5;
     let inverted = volumes(triangles, origin).x < 0.0;
     match shell.resolved(inverted) {
-        Some(made) if !made.differs => Found::Simple,
+        Some(made) if !made.differs => Found::Simple { walls: made.walls },
         Some(made) if is_closed(&made.surface, [lo, hi]) => {
             let Made { surface, forward, backward, walls, .. } = made;
             Found::Resolved(Resolved {

@@ -67,6 +67,12 @@ impl Closed {
         self.triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
     }
 
+    /// Do the insides of the boxes around both have a place in common?
+    #[must_use]
+    pub fn overlaps(&self, other: &Closed) -> bool {
+        self.bounds[0].cmplt(other.bounds[1]).all() && other.bounds[0].cmplt(self.bounds[1]).all()
+    }
+
     /// No volume to speak of: a sheet with two sides.
     #[must_use]
     pub fn is_sheet(&self) -> bool {

@@ -298,8 +298,10 @@ impl<'a> Complex<'a> {
     /// What each region is, by its set, for a surface that has two sides in places; none if the surface contradicts itself.
     ///
     /// Beside the open it is solid, and so it is behind triangles without backs; where it lies before such triangles and not behind others it may
-    /// as well be a cavity that touches the outside.
-    fn by_sides(&mut self, looks: &[[bool; 2]]) -> Option<Vec<Kind>> {
+    /// as well be a cavity that touches the outside. Where the open lies behind such triangles and before none, all look inward.
+    ///
+    /// `mixed`: some parts look inward and others outward; then what lies behind some and before others is known only beside the open.
+    fn by_sides(&mut self, looks: &[[bool; 2]], mixed: bool) -> Option<(Vec<Kind>, bool)> {
         let outside = self.outside();
         let open = self.sets.find(outside);
         let (mut behind_one, mut before_one, mut beside_open) =
@@ -314,12 +316,27 @@ impl<'a> Complex<'a> {
                 _ => {}
             }
         }
+        let inverted = behind_one[open] && !before_one[open];
+        if inverted {
+            (behind_one, before_one) = (before_one, behind_one);
+        }
+        let mut faces_open = vec![false; outside + 1];
+        for e in 0..self.elements.len() {
+            let [behind, before] = self.beside(e);
+            if looks[e] == [!inverted, inverted] && before == open {
+                faces_open[behind] = true;
+            }
+            if looks[e] == [inverted, !inverted] && behind == open {
+                faces_open[before] = true;
+            }
+        }
         let kind = |r: usize| match r {
             r if r == open => Kind::Open,
+            r if mixed && before_one[r] && !faces_open[r] => Kind::Perhaps,
             r if behind_one[r] || (beside_open[r] && !before_one[r]) => Kind::Solid,
             _ => Kind::Perhaps,
         };
-        (!behind_one[open]).then(|| (0..=outside).map(kind).collect())
+        (!behind_one[open]).then(|| ((0..=outside).map(kind).collect(), inverted))
     }
 
     /// How many more triangles of an element look to its front than to its back.
@@ -393,9 +410,9 @@ impl<'a> Complex<'a> {
 }
 
 /// The regions of a surface; none if they cannot be told. Of `file`, all triangles of the same source, those count
-/// that lie on the surface: they tell where it has a back.
+/// that lie on the surface: they tell where it has a back. `mixed`: some parts look inward, others outward.
 #[must_use]
-pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]]) -> Option<Regions> {
+pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]], mixed: bool) -> Option<Regions> {
     let sided = sided(triangles);
     let corners: Vec<[DVec3; 3]> = sided.iter().map(|t| t.corners).collect();
     let on = tolerance([lo, hi]);
@@ -418,7 +435,7 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]])
     }
     let looks: Vec<[bool; 2]> = (0..complex.elements.len()).map(|e| complex.looks(e, &beside)).collect();
     let two_sided = looks.contains(&[true, true]);
-    let (kinds, inverted) = if two_sided { (complex.by_sides(&looks)?, false) } else { complex.by_winding()? };
+    let (kinds, inverted) = if two_sided { complex.by_sides(&looks, mixed)? } else { complex.by_winding()? };
     let mut of = |kind: Kind| complex.surface(|region| kinds[region] == kind);
     let (solid, perhaps) = (of(Kind::Solid), of(Kind::Perhaps));
     let middle = (lo + hi) * 0.5;
