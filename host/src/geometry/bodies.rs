@@ -403,7 +403,7 @@ fn close(
     let corners = |n: &u32| mesh.triangles[*n as usize].map(|v| mesh.points[v as usize]);
     let mut closed = Vec::new();
     let mut largest_hole: Option<(f64, DVec3)> = None;
-    for group in groups(shells) {
+    for group in groups(mesh, shells, rounding) {
         let members = group.iter().flat_map(|&s| shells[s].triangles.iter());
         let mut triangles: Vec<_> = members.clone().map(corners).collect();
         let own = triangles.len();
@@ -455,12 +455,15 @@ fn without_opposites(edges: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
     left
 }
 
-/// Shells that belong together: closed ones alone, open ones with those that share a corner of their boundary.
-fn groups(shells: &[Shell]) -> Vec<Vec<usize>> {
+/// Shells that belong together: closed ones alone, also those that close but for T-junctions; open ones with those that share a corner of their
+/// boundary.
+fn groups(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Vec<Vec<usize>> {
     let mut sets = Sets::new(shells.len());
     let mut owner = HashMap::default();
     for (s, shell) in shells.iter().enumerate() {
-        for v in shell.boundary.iter().flatten() {
+        let rims = rims(&without_opposites(shell.boundary.iter().copied()));
+        let open = rims.iter().filter(|rim| !rim.cancels(&mesh.points, rounding));
+        for v in open.flat_map(|rim| rim.edges.iter().flatten()) {
             let other = *owner.entry(*v).or_insert(s);
             sets.join(s, other);
         }

@@ -139,7 +139,8 @@ fn groups(parts: &[Part], seen: &[Seen], file: &[[DVec3; 3]]) -> Vec<Group> {
             join(n, m, &mut grouped);
         }
         if has_backs && parts[n].is_capped() {
-            overlapping(n).for_each(|m| join(n, m, &mut grouped));
+            let beside = |m: &usize| *m != n && parts[*m].shell.touches(&parts[n].shell);
+            (0..parts.len()).filter(beside).for_each(|m| join(n, m, &mut grouped));
         }
     }
     let mut at: BTreeMap<usize, Group> = BTreeMap::new();
@@ -173,16 +174,7 @@ fn look_together(
     let by_regions = |members: &[usize]| {
         let own: Vec<[DVec3; 3]> = members.iter().flat_map(|&n| parts[n].own().iter().copied()).collect();
         let (whole, mixed) = (whole(members), !members.iter().all(positive));
-        let mixed = mixed && members.iter().any(positive);
-        let in_box = |t: &&[DVec3; 3]| {
-            t.iter().all(|p| p.cmpge(whole.bounds[0]).all() && p.cmple(whole.bounds[1]).all())
-        };
-        let seen = divided(&own, whole.bounds, file, mixed).or_else(|| {
-            // What is missing may have been dropped as a back.
-            let capped = members.iter().any(|&n| parts[n].is_capped());
-            let all: Vec<[DVec3; 3]> = file.iter().filter(|t| capped && in_box(t)).copied().collect();
-            divided(&all, whole.bounds, file, mixed)
-        })?;
+        let seen = divided(&own, whole.bounds, file, mixed && members.iter().any(positive))?;
         Some((members.to_vec(), whole, seen))
     };
     if simple(&group.members) {

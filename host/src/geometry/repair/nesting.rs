@@ -73,6 +73,12 @@ impl Closed {
         self.bounds[0].cmplt(other.bounds[1]).all() && other.bounds[0].cmplt(self.bounds[1]).all()
     }
 
+    /// Do the boxes around both have a point in common?
+    #[must_use]
+    pub fn touches(&self, other: &Closed) -> bool {
+        self.bounds[0].cmple(other.bounds[1]).all() && other.bounds[0].cmple(self.bounds[1]).all()
+    }
+
     /// No volume to speak of: a sheet with two sides.
     #[must_use]
     pub fn is_sheet(&self) -> bool {
