@@ -258,10 +258,9 @@ impl Bodies {
 
 /// The cavities of a body, overlapping ones made one; and whether that was possible.
 fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
-    let meet = |a: &Closed, b: &Closed| a.bounds[0].cmplt(b.bounds[1]).all() && b.bounds[0].cmplt(a.bounds[1]).all();
     let mut sets = Sets::new(cavities.len());
     for (n, a) in cavities.iter().enumerate() {
-        (0..n).filter(|&m| meet(a, cavities[m])).for_each(|m| sets.join(m, n));
+        (0..n).filter(|&m| a.overlaps(cavities[m])).for_each(|m| sets.join(m, n));
     }
     let mut groups: HashMap<usize, Vec<usize>> = HashMap::default();
     (0..cavities.len()).for_each(|n| groups.entry(sets.find(n)).or_default().push(n));

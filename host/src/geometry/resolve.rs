@@ -102,56 +102,98 @@ struct Group {
 /// - parts whose edges do not tell whose they are; if some look inward, with all that overlap them;
 /// - a part that is folded, with those in its box that look the other way; one that winds both ways, with all in its box;
 /// - a part that had to be capped in a mesh that had backs, with those beside it.
+struct Grouping<'a> {
+    parts: &'a [Part],
+    sets: Sets,
+    grouped: Vec<bool>,
+    doubtful: Vec<bool>,
+}
+
+impl<'a> Grouping<'a> {
+    fn new(parts: &'a [Part]) -> Self {
+        let none = vec![false; parts.len()];
+        Grouping { parts, sets: Sets::new(parts.len()), grouped: none.clone(), doubtful: none }
+    }
+
+    fn volume(&self, n: usize) -> f64 {
+        self.parts[n].shell.volume
+    }
+
+    /// All other parts of which this holds.
+    fn others(&self, n: usize, holds: impl Fn(&Closed, &Closed) -> bool) -> Vec<usize> {
+        let shell = &self.parts[n].shell;
+        (0..self.parts.len()).filter(|&m| m != n && holds(shell, &self.parts[m].shell)).collect()
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        (self.grouped[a], self.grouped[b]) = (true, true);
+        self.sets.join(a, b);
+    }
+
+    fn by_edges(&mut self) {
+        let mut clusters: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (n, part) in self.parts.iter().enumerate().filter(|(_, part)| part.guessed) {
+            clusters.entry(part.cluster).or_default().push(n);
+        }
+        for members in clusters.values() {
+            let forward = members.iter().filter(|&&n| self.volume(n) > 0.0).count();
+            for &n in members {
+                self.doubtful[n] = true;
+                self.join(members[0], n);
+                if forward > 0 && forward < members.len() {
+                    self.others(n, Closed::overlaps).into_iter().for_each(|m| self.join(n, m));
+                }
+            }
+        }
+    }
+
+    fn by_winding(&mut self, seen: &[Seen]) {
+        for n in 0..self.parts.len() {
+            let (odd, both_ways) = match &seen[n] {
+                Seen::As(Found::Simple { walls }) => (*walls && !self.parts[n].shell.is_sheet(), false),
+                Seen::As(Found::Resolved(made)) => (made.both_ways, true),
+                Seen::As(Found::Doubtful(_)) => (false, false),
+                Seen::Divided(_) => (true, true),
+            };
+            if !odd {
+                continue;
+            }
+            for m in self.others(n, |own, other| own.is_around(other) && !other.is_sheet()) {
+                if both_ways || self.volume(m) * self.volume(n) < 0.0 {
+                    (self.doubtful[n], self.doubtful[m]) = (true, true);
+                    self.join(n, m);
+                }
+            }
+        }
+    }
+
+    fn by_caps(&mut self) {
+        for n in (0..self.parts.len()).filter(|&n| self.parts[n].is_capped()) {
+            self.others(n, Closed::touches).into_iter().for_each(|m| self.join(n, m));
+        }
+    }
+
+    fn groups(mut self) -> Vec<Group> {
+        let mut at: BTreeMap<usize, Group> = BTreeMap::new();
+        for n in (0..self.parts.len()).filter(|&n| self.grouped[n]) {
+            let group = at.entry(self.sets.find(n)).or_default();
+            group.members.push(n);
+            if self.doubtful[n] {
+                group.doubtful.push(n);
+            }
+        }
+        at.into_values().collect()
+    }
+}
+
 fn groups(parts: &[Part], seen: &[Seen], file: &[[DVec3; 3]]) -> Vec<Group> {
-    let has_backs = parts.iter().any(Part::is_capped) && have_backs(file).any(|back| back);
-    let mut sets = Sets::new(parts.len());
-    let mut grouped = vec![false; parts.len()];
-    let mut doubtful = vec![false; parts.len()];
-    let mut join = |a: usize, b: usize, grouped: &mut Vec<bool>| {
-        (grouped[a], grouped[b]) = (true, true);
-        sets.join(a, b);
-    };
-    let volume = |n: usize| parts[n].shell.volume;
-    let bounds = |n: usize| parts[n].shell.bounds;
-    let mut clusters: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for n in (0..parts.len()).filter(|&n| parts[n].guessed) {
-        clusters.entry(parts[n].cluster).or_default().push(n);
+    let mut all = Grouping::new(parts);
+    all.by_edges();
+    all.by_winding(seen);
+    if parts.iter().any(Part::is_capped) && have_backs(file).any(|back| back) {
+        all.by_caps();
     }
-    let overlapping = |n: usize| (0..parts.len()).filter(move |&m| m != n && parts[m].shell.overlaps(&parts[n].shell));
-    for members in clusters.values() {
-        let mixed = members.iter().any(|&n| volume(n) > 0.0) && members.iter().any(|&n| !(volume(n) > 0.0));
-        for &n in members {
-            doubtful[n] = true;
-            join(members[0], n, &mut grouped);
-            overlapping(n).filter(|_| mixed).for_each(|m| join(n, m, &mut grouped));
-        }
-    }
-    for n in 0..parts.len() {
-        let against = |m: usize| match &seen[n] {
-            Seen::As(Found::Simple { walls }) => *walls && !parts[n].shell.is_sheet() && volume(m) * volume(n) < 0.0,
-            Seen::As(Found::Resolved(made)) => made.both_ways,
-            Seen::As(Found::Doubtful(_)) => false,
-            Seen::Divided(_) => true,
-        };
-        let holds = |m: usize| (0..3).all(|a| bounds(n)[0][a] <= bounds(m)[0][a] && bounds(m)[1][a] <= bounds(n)[1][a]);
-        for m in overlapping(n).filter(|&m| against(m) && holds(m) && !parts[m].shell.is_sheet()) {
-            (doubtful[n], doubtful[m]) = (true, true);
-            join(n, m, &mut grouped);
-        }
-        if has_backs && parts[n].is_capped() {
-            let beside = |m: &usize| *m != n && parts[*m].shell.touches(&parts[n].shell);
-            (0..parts.len()).filter(beside).for_each(|m| join(n, m, &mut grouped));
-        }
-    }
-    let mut at: BTreeMap<usize, Group> = BTreeMap::new();
-    for n in (0..parts.len()).filter(|&n| grouped[n]) {
-        let group = at.entry(sets.find(n)).or_default();
-        group.members.push(n);
-        if doubtful[n] {
-            group.doubtful.push(n);
-        }
-    }
-    at.into_values().collect()
+    all.groups()
 }
 
 /// What parts are together, all their triangles, and which they are. None if each by itself is simple and all look the same way, or

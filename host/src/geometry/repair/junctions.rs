@@ -6,7 +6,7 @@
 use crate::geometry::repair::edges::{EdgeUses, Use, balance, ends, key};
 use crate::geometry::repair::weld::{Indexed, edges_of};
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 /// Two edges at a corner run straight on if the cosine of their angle is below this.
 const STRAIGHT: f64 = -1.0 + 1e-8;
@@ -17,7 +17,7 @@ type Corners = HashMap<u64, Vec<u32>>;
 /// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
 pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
     let odd: Vec<u64> = uses.each().filter(|uses| is_odd(mesh, uses)).map(|uses| uses[0].0).collect();
-    let corners = corners_on(mesh, &odd, &straight(mesh, &odd), rounding);
+    let corners = corners_on(mesh, &beside(&odd, uses), &straight(mesh, &odd), rounding);
     if corners.is_empty() {
         return 0;
     }
@@ -48,6 +48,14 @@ pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding:
     involved.sort_unstable();
     involved.dedup();
     involved.len()
+}
+
+/// These edges, and those that run from an end of one to an end of another: of parts that touch, some triangles may pair along the whole edge and
+/// others along its pieces.
+fn beside(odd: &[u64], uses: &EdgeUses) -> Vec<u64> {
+    let corners: HashSet<u32> = odd.iter().flat_map(|&edge| ends(edge)).collect();
+    let all = uses.each().map(|uses| uses[0].0);
+    all.filter(|&edge| ends(edge).iter().all(|v| corners.contains(v))).collect()
 }
 
 /// An odd number of different triangles at an edge, or more that run it one way than the other: there is one without a partner.

@@ -67,16 +67,22 @@ impl Closed {
         self.triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
     }
 
-    /// Do the insides of the boxes around both have a place in common?
+    /// Have the boxes around both more than a side in common?
     #[must_use]
     pub fn overlaps(&self, other: &Closed) -> bool {
         self.bounds[0].cmplt(other.bounds[1]).all() && other.bounds[0].cmplt(self.bounds[1]).all()
     }
 
-    /// Do the boxes around both have a point in common?
+    /// Have the boxes around both a point in common?
     #[must_use]
     pub fn touches(&self, other: &Closed) -> bool {
         self.bounds[0].cmple(other.bounds[1]).all() && other.bounds[0].cmple(self.bounds[1]).all()
+    }
+
+    /// Does the box around it hold that around the other?
+    #[must_use]
+    pub fn is_around(&self, other: &Closed) -> bool {
+        self.bounds[0].cmple(other.bounds[0]).all() && self.bounds[1].cmpge(other.bounds[1]).all()
     }
 
     /// No volume to speak of: a sheet with two sides.
@@ -132,7 +138,6 @@ const SAME: f64 = 1e-6;
 
 /// Is `inner` inside `outer`, perhaps touching it? Told by its box and a spread of points just within its own surface.
 fn contains(outer: &Closed, inner: &Closed) -> bool {
-    let boxed = outer.bounds[0].cmple(inner.bounds[0]).all() && outer.bounds[1].cmpge(inner.bounds[1]).all();
     let smaller = inner.volume.abs() < (1.0 - SAME) * outer.volume.abs();
     let step = (inner.triangles.len() / 16).max(1);
     let within = |[a, b, c]: &[DVec3; 3]| {
@@ -141,7 +146,7 @@ fn contains(outer: &Closed, inner: &Closed) -> bool {
         let pulled = (a + b + c) / 3.0 - normal * (OFF_THE_SURFACE / twice_area.sqrt());
         twice_area == 0.0 || winding(outer, pulled).abs() > 0.5
     };
-    boxed && smaller && inner.triangles.iter().step_by(step).all(within)
+    outer.is_around(inner) && smaller && inner.triangles.iter().step_by(step).all(within)
 }
 
 /// Winding number of a closed shell around a point.
