@@ -1,7 +1,7 @@
 //! One file of boxes against coordinate compression: however they touch, and in whatever order their triangles come.
 
 use rayon::prelude::*;
-use voidage_tests::boxes::{Visited, bounds_hold};
+use voidage_tests::boxes::{Scene, Visited, bounds_hold};
 
 /// Every value of random scenes lies within its bounds; where all boxes look the same way and have one side, the bounds are one value
 /// nearly everywhere.
@@ -19,4 +19,33 @@ fn random_boxes() {
     assert!(count(|v| v.t_junctions) > 20 && count(|v| v.far) > 300, "T-junctions, offsets");
     assert!(count(|v| v.flipped) > 30, "scenes of both orientations");
     assert!(count(|v| v.hollow) > 5, "cavities");
+}
+
+/// Scenes that were wrong and certified, with their numbers of triangles, which tell whether they are still the same scenes: surface joined across
+/// an edge that lies on another triangle; triangles paired along a whole edge by two parts of which others are cut there; bodies and cavities that
+/// are joined where they touch, and a third within; two sides that leave one of several parts open.
+#[test]
+fn scenes_once_wrong() {
+    const FOUND: [(u64, usize); 16] = [
+        (1_017_980, 58),
+        (1_021_687, 86),
+        (1_072_866, 40),
+        (1_084_299, 44),
+        (1_094_060, 48),
+        (1_150_046, 42),
+        (1_185_055, 40),
+        (1_212_219, 74),
+        (1_244_630, 74),
+        (2_004_258, 44),
+        (2_018_969, 60),
+        (2_021_718, 48),
+        (2_025_818, 48),
+        (2_038_800, 36),
+        (2_043_993, 46),
+        (2_084_520, 40),
+    ];
+    for (seed, triangles) in FOUND {
+        assert_eq!(Scene::random(seed).triangles.len(), triangles, "another scene has the seed {seed}");
+        bounds_hold(seed).unwrap_or_else(|text| panic!("{text}"));
+    }
 }
