@@ -74,15 +74,9 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
             }
         }
     }
-    let pairs = (0..parts.len())
-        .flat_map(|b| (0..b).map(move |a| (a, b)))
-        .filter(|&(a, b)| match (parts.get(a), parts.get(b)) {
-            (Some(a), Some(b)) => a.solid != b.solid && reaches(&meet(&a.extent, &b.extent), flat),
-            _ => false,
-        })
-        .count();
+    let plane = flat.map(|n| (n, cell[n][0]));
     let mut found = [0.0, 0.0];
-    let mut pairs_left = pairs;
+    let mut pairs_left = pairs(&parts, flat);
     // Sets of parts of different solids, each set after those that it holds.
     let mut set: Vec<usize, MOST_PARTS> = Vec::new();
     let (mut next, mut sets) = (0, 0);
@@ -103,21 +97,8 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
         }
         if !set.is_empty() {
             sets += 1;
-            // What is left of the tolerance, half of it for the pairs to come, each in turn.
             let left = (enough - (found[1] - found[0])).max(0.1 * enough);
-            let share = if set.len() == 1 {
-                pairs_left = pairs_left.saturating_sub(1);
-                0.75 * left / (pairs_left + 1) as f64
-            } else {
-                0.125 * left
-            };
-            let all = || of_set().chain([one]).map(|p| p.part);
-            let plane = flat.map(|n| (n, cell[n][0]));
-            let [low, high] = if set.len() == 1 {
-                common::<2>(all(), &extent, plane, share)
-            } else {
-                common::<MOST_PARTS>(all(), &extent, plane, share)
-            };
+            let [low, high] = common_of(of_set().chain([one]), &extent, plane, share(left, set.len(), &mut pairs_left));
             // Of huge solids rounding may leave nothing to rely on.
             if sets > MOST_SETS || !(low - high <= enough) {
                 return None;
@@ -133,6 +114,37 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
         }
         set.push(next).ok()?;
         next += 1;
+    }
+}
+
+/// How many pairs of parts of different solids may have something in common.
+fn pairs(parts: &[OnePart], flat: Option<Axis>) -> usize {
+    let meets = |a: &OnePart, b: &OnePart| a.solid != b.solid && reaches(&meet(&a.extent, &b.extent), flat);
+    parts.iter().enumerate().map(|(n, b)| parts.iter().take(n).filter(|a| meets(a, b)).count()).sum()
+}
+
+/// How far apart the bounds of a set with `others` beside its last part may be: of the tolerance that is left, half is for the pairs to come,
+/// each in turn.
+fn share(left: f64, others: usize, pairs_left: &mut usize) -> f64 {
+    if others > 1 {
+        return 0.125 * left;
+    }
+    *pairs_left = pairs_left.saturating_sub(1);
+    0.75 * left / (*pairs_left + 1) as f64
+}
+
+/// Bounds of what some parts have in common in a box, or in a plane.
+fn common_of<'a>(
+    parts: impl Iterator<Item = &'a OnePart<'a>> + Clone,
+    extent: &[P2; 3],
+    plane: Option<(Axis, f64)>,
+    share: f64,
+) -> P2 {
+    let all = parts.clone().map(|p| p.part);
+    if parts.count() == 2 {
+        common::<2>(all, extent, plane, share)
+    } else {
+        common::<MOST_PARTS>(all, extent, plane, share)
     }
 }
 

@@ -221,31 +221,9 @@ impl Bodies {
         }
         d.bodies = self.bodies.len() - first;
         d.body_volume = self.bodies[first..].iter().map(|b| b.volume).sum();
-        if d.inside_out > 0 {
-            report.warn(format!(
-                "{} of {} bodies are inside out (normals point inward); taken as solid",
-                d.inside_out, d.bodies
-            ));
-        }
-        let hollowed =
-            self.bodies[first..].iter().zip(shells.iter().zip(&roles).filter(|(_, role)| **role == Role::Body));
-        if let Some((body, _)) = hollowed.into_iter().find(|(b, (shell, _))| b.cavities > 0 && shell.volume < 0.0) {
-            report.warn(format!(
-                "{} shells that look outward became cavities of a body that is inside out (from {} to {}); if it is a room with parts in it, \
-                 give it a wall or leave it out",
-                body.cavities,
-                show(body.bounds[0]),
-                show(body.bounds[1])
-            ));
-        }
-        if d.sheets > 0 {
-            let place = self.bodies[first..].iter().find(|b| b.sheet).map_or(DVec3::ZERO, |b| b.bounds[0]);
-            report.warn(format!(
-                "{} sheets have no thickness (the first at {}); they hold no volume and block a face only where they lie in its plane",
-                d.sheets,
-                show(place)
-            ));
-        }
+        let is_inverted = |s: usize| shells[s].volume < 0.0;
+        let of_bodies = (0..shells.len()).filter(|&s| roles[s] == Role::Body).map(is_inverted);
+        say_roles(&self.bodies[first..], of_bodies, d, report);
     }
 
     /// Store a shell's triangles, outward or inward; returns its volume without sign.
@@ -253,6 +231,33 @@ impl Bodies {
         let turn = (shell.volume < 0.0) == outward && !shell.is_sheet();
         self.triangles.extend(shell.triangles.iter().map(|&[a, b, c]| if turn { [a, c, b] } else { [a, b, c] }));
         shell.volume.abs()
+    }
+}
+
+/// Tell which bodies were inside out (`inverted`, one entry a body), and which have no thickness.
+fn say_roles(bodies: &[Body], inverted: impl Iterator<Item = bool>, d: &Diagnosis, report: &mut Reporter) {
+    if d.inside_out > 0 {
+        report.warn(format!(
+            "{} of {} bodies are inside out (normals point inward); taken as solid",
+            d.inside_out, d.bodies
+        ));
+    }
+    if let Some((body, _)) = bodies.iter().zip(inverted).find(|(b, inverted)| b.cavities > 0 && *inverted) {
+        report.warn(format!(
+            "{} shells that look outward became cavities of a body that is inside out (from {} to {}); if it is a room with parts in it, \
+             give it a wall or leave it out",
+            body.cavities,
+            show(body.bounds[0]),
+            show(body.bounds[1])
+        ));
+    }
+    if d.sheets > 0 {
+        let place = bodies.iter().find(|b| b.sheet).map_or(DVec3::ZERO, |b| b.bounds[0]);
+        report.warn(format!(
+            "{} sheets have no thickness (the first at {}); they hold no volume and block a face only where they lie in its plane",
+            d.sheets,
+            show(place)
+        ));
     }
 }
 

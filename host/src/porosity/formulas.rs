@@ -183,47 +183,12 @@ fn add_shared(
         let (kind, at) = (KINDS[usize::from(place[0].0)], place[0].1 as usize);
         shares.clear();
         place.iter().for_each(|entry| add_share(&mut shares, entry));
-        let range = cell(grid, kind, at, part);
-        let beside = |n: usize| ends_at(&solids[n].bounds, grid, kind, range);
-        let meets = |a: usize| {
-            let with = |&(b, _): &(usize, [f64; 2])| match solids[a].pair_with(solids[b].body) {
-                None => false,
-                Some(Pair::Meeting) => true,
-                Some(Pair::Touching) => beside(a) && beside(b),
-            };
-            shares.iter().any(with)
-        };
+        let place = Place { solids, grid, kind, range: cell(grid, kind, at, part), shares: &shares };
         let alone = sums[number(kind)][at];
-        let mut found = Bounds { lower: alone, upper: alone };
-        let (mut largest, mut sum) = (0.0_f64, Bounds { lower: 0.0, upper: 0.0 });
-        bodies.clear();
-        for &(n, [share, error]) in &shares {
-            let share = if share > FULL { 1.0 } else { share };
-            let (low, high) = ((share - error).max(0.0), share + error);
-            if bodies.iter().any(|other| other.is_same(solids[n])) {
-                continue;
-            }
-            if shares.len() > 1 && meets(n) {
-                bodies.push(solids[n]);
-                (largest, sum) = (largest.max(low), Bounds { lower: sum.lower + low, upper: sum.upper + high });
-            } else {
-                (found.lower, found.upper) = (found.lower + low, found.upper + high);
-            }
-        }
+        let (mut found, known) = place.apart_and_meeting(alone, &mut bodies);
         if !bodies.is_empty() {
             *shared += usize::from(kind == RangeKind::Cells);
-            let known = Bounds { lower: largest, upper: sum.upper.min(1.0) };
-            let ends =
-                if shares.iter().all(|&(n, _)| meets(n)) { concentric(&bodies, grid, kind, range) } else { None };
-            let errors: f64 = shares.iter().map(|(_, [_, error])| 2.0 * error).sum();
-            let known = match ends {
-                _ if largest == 1.0 => known,
-                Some(apart) => Bounds { lower: largest, upper: (largest + errors + apart).min(1.0) },
-                None => match box_of(grid, kind, range).and_then(|cell| by_sections(&bodies, sum, cell, tol)) {
-                    Some(found) if found.gap() <= 2.0 * tol => narrowed(known, found),
-                    found => narrowed(found.map_or(known, |f| narrowed(known, f)), union(&bodies, kind, range)),
-                },
-            };
+            let known = place.together(&bodies, known, tol, union);
             (found.lower, found.upper) = (found.lower + known.lower, found.upper + known.upper);
         }
         let (lower, sum) = values(layer, kind);
@@ -233,6 +198,74 @@ fn add_shared(
         // The shares of those that meet nothing stand there already.
         lower[at] = lower[at].max(found.lower);
         sum[at] += found.upper - alone;
+    }
+}
+
+/// A cell or face, and the shares of it that solids with partners have, with their errors.
+struct Place<'a, 's> {
+    solids: &'a [&'a FormulaSolid],
+    grid: &'a Grid<'a, f64>,
+    kind: RangeKind,
+    range: CellRange,
+    shares: &'s [(usize, [f64; 2])],
+}
+
+impl<'a> Place<'a, '_> {
+    fn meets(&self, a: usize) -> bool {
+        let beside = |n: usize| ends_at(&self.solids[n].bounds, self.grid, self.kind, self.range);
+        let with = |&(b, _): &(usize, [f64; 2])| match self.solids[a].pair_with(self.solids[b].body) {
+            None => false,
+            Some(Pair::Meeting) => true,
+            Some(Pair::Touching) => beside(a) && beside(b),
+        };
+        self.shares.iter().any(with)
+    }
+
+    /// The sum of `alone` and the shares of solids that meet no other here; and of those that meet, which go to `bodies`, each once, the largest
+    /// share and the sum of all.
+    fn apart_and_meeting(&self, alone: f64, bodies: &mut Vec<&'a FormulaSolid>) -> (Bounds<f64>, (f64, Bounds<f64>)) {
+        let mut apart = Bounds { lower: alone, upper: alone };
+        let (mut largest, mut sum) = (0.0_f64, Bounds { lower: 0.0, upper: 0.0 });
+        bodies.clear();
+        for &(n, [share, error]) in self.shares {
+            let share = if share > FULL { 1.0 } else { share };
+            let (low, high) = ((share - error).max(0.0), share + error);
+            if bodies.iter().any(|other| other.is_same(self.solids[n])) {
+                continue;
+            }
+            if self.shares.len() > 1 && self.meets(n) {
+                bodies.push(self.solids[n]);
+                (largest, sum) = (largest.max(low), Bounds { lower: sum.lower + low, upper: sum.upper + high });
+            } else {
+                (apart.lower, apart.upper) = (apart.lower + low, apart.upper + high);
+            }
+        }
+        (apart, (largest, sum))
+    }
+
+    /// The share of the union of solids that meet here, from the largest share and the sum.
+    fn together(
+        &self,
+        bodies: &[&FormulaSolid],
+        (largest, sum): (f64, Bounds<f64>),
+        tol: f64,
+        union: &mut impl FnMut(&[&FormulaSolid], RangeKind, CellRange) -> Bounds<f64>,
+    ) -> Bounds<f64> {
+        let Place { grid, kind, range, shares, .. } = *self;
+        let known = Bounds { lower: largest, upper: sum.upper.min(1.0) };
+        let all_meet = shares.iter().all(|&(n, _)| self.meets(n));
+        let ends = all_meet.then(|| concentric(bodies, grid, kind, range)).flatten();
+        match ends {
+            _ if largest == 1.0 => known,
+            Some(apart) => {
+                let errors: f64 = shares.iter().map(|(_, [_, error])| 2.0 * error).sum();
+                Bounds { lower: largest, upper: (largest + errors + apart).min(1.0) }
+            }
+            None => match box_of(grid, kind, range).and_then(|cell| by_sections(bodies, sum, cell, tol)) {
+                Some(found) if found.gap() <= 2.0 * tol => narrowed(known, found),
+                found => narrowed(found.map_or(known, |f| narrowed(known, f)), union(bodies, kind, range)),
+            },
+        }
     }
 }
 

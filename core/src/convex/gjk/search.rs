@@ -2,7 +2,7 @@
 
 use super::closest::intersect_rounded;
 use super::outcome::{Intersection, OverlapProof, Reason};
-use super::pair::{BodyPair, sized};
+use super::pair::{BodyPair, Probe, sized};
 use super::working_simplex::{SupportPairs, WorkingSimplex, across};
 use crate::convex::simplex::{OriginSide, Simplex, side};
 use crate::convex::support::{ScalarOf, Support, lengthened};
@@ -49,13 +49,7 @@ where
             }
         };
         let room = margin * size;
-        let mut found = pair.probe(axis, starts);
-        if found.w.dot(axis) > room {
-            found = pair.probe_surely(axis, found);
-            if found.w.dot(axis) > room {
-                return Intersection::Apart { axis };
-            }
-        }
+        let Some(found) = nearer(pair, axis, starts, room) else { return Intersection::Apart { axis } };
         starts = found.starts();
         // A point again can only come where there is no progress to speak of.
         let stalled = simplex.count > 0 && found.w.dot(axis) + room >= simplex.w[0].dot(axis);
@@ -79,6 +73,26 @@ where
         return search_harder(pair, axis, reason);
     }
     Intersection::Undecided { reason, axis }
+}
+
+/// The support point of the difference along an axis; none if it lies beyond the origin by more than `room` for certain.
+#[inline(always)]
+fn nearer<A, B, const SCALED: bool>(
+    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
+    axis: A::Vector,
+    starts: (u32, u32),
+    room: ScalarOf<A>,
+) -> Option<Probe<A::Vector>>
+where
+    A: Support,
+    B: Support<Vector = A::Vector>,
+{
+    let found = pair.probe(axis, starts);
+    if !(found.w.dot(axis) > room) {
+        return Some(found);
+    }
+    let found = pair.probe_surely(axis, found);
+    (!(found.w.dot(axis) > room)).then_some(found)
 }
 
 #[inline(always)]

@@ -196,30 +196,8 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
         grid.grid(None).map_err(|e| keys.wrong("refine", e))?;
     }
     keys.finish()?;
-    let others = !(flows.is_empty() && scalings.is_empty());
-    let bare = subjects.is_empty() && grids.is_empty() && recipes.is_empty();
-    for (what, missing) in [
-        ("scene", subjects.is_empty()),
-        ("grid", grids.is_empty()),
-        ("method", recipes.is_empty()),
-        ("threads", threads.is_empty()),
-    ] {
-        if missing && !(bare && others && what != "threads") {
-            return Err(Error::file(path, format!("a study needs at least one {what}")));
-        }
-    }
-    for Subject { name, probe, .. } in &subjects {
-        let outside = |g: &&Edges| probe.is_some_and(|p| (0..3).any(|a| p.cell[a] >= g.cells()[a]));
-        if let Some(grid) = grids.iter().find(outside) {
-            let [nx, ny, nz] = grid.cells();
-            return Err(Error::file(
-                path,
-                format!("scene \"{name}\": the probe lies outside of the grid {nx}x{ny}x{nz}"),
-            ));
-        }
-    }
     let is_quick = false;
-    Ok(StudyCase {
+    let case = StudyCase {
         title,
         repeats,
         threads,
@@ -232,7 +210,37 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
         left_out,
         note,
         is_quick,
-    })
+    };
+    check_complete(path, &case)?;
+    Ok(case)
+}
+
+/// A study needs something to do, and its probes cells to look at.
+fn check_complete(path: &Path, case: &StudyCase) -> Result<()> {
+    let StudyCase { subjects, grids, recipes, threads, .. } = case;
+    let others = !(case.flows.is_empty() && case.scalings.is_empty());
+    let bare = subjects.is_empty() && grids.is_empty() && recipes.is_empty();
+    for (what, missing) in [
+        ("scene", subjects.is_empty()),
+        ("grid", grids.is_empty()),
+        ("method", recipes.is_empty()),
+        ("threads", threads.is_empty()),
+    ] {
+        if missing && !(bare && others && what != "threads") {
+            return Err(Error::file(path, format!("a study needs at least one {what}")));
+        }
+    }
+    for Subject { name, probe, .. } in subjects {
+        let outside = |g: &&Edges| probe.is_some_and(|p| (0..3).any(|a| p.cell[a] >= g.cells()[a]));
+        if let Some(grid) = grids.iter().find(outside) {
+            let [nx, ny, nz] = grid.cells();
+            return Err(Error::file(
+                path,
+                format!("scene \"{name}\": the probe lies outside of the grid {nx}x{ny}x{nz}"),
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
