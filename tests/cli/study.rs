@@ -131,6 +131,7 @@ fn wrong_cases_say_where() {
             "probe = { cell = [1, 1, -2], beta_v = 1 }",
             "cell[2] takes a whole number from 0 on, not -2",
         ),
+        ("name = \"auto\"", "name = \"surface\"", "column 8: method 2: name is that of another table before"),
         ("files = [\"scene.toml\"]", "files = [\"absent.toml\"]", "absent.toml: cannot open"),
         ("files = [\"scene.toml\"]", "", "needs files or [[scene.solid]]"),
         ("shape = \"box\"", "shape = \"bix\"", "line 9, column 9: solid \"brick\": shape \"bix\" is not known"),

@@ -185,9 +185,10 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let refine = keys.get("refine", some(few))?.unwrap_or_else(|| vec![1]);
     let left_out = keys.get("left_out", table::truth)?.unwrap_or(false);
     let note = keys.get("note", table::text)?;
-    let tables = (keys.tables("scene")?, keys.tables("method")?);
-    let flows = keys.tables("flow")?.into_iter().map(flow_recipes).collect::<Result<Vec<_>>>()?.concat();
-    let scalings = keys.tables("scaling")?.into_iter().map(scaling_recipe).collect::<Result<Vec<_>>>()?;
+    let mut named = |key| keys.tables(key).and_then(StrictTable::with_names_of_their_own);
+    let tables = (named("scene")?, named("method")?);
+    let flows = named("flow")?.into_iter().map(flow_recipes).collect::<Result<Vec<_>>>()?.concat();
+    let scalings = named("scaling")?.into_iter().map(scaling_recipe).collect::<Result<Vec<_>>>()?;
     let subjects = tables.0.into_iter().map(|k| subject(k, path)).collect::<Result<Vec<_>>>()?;
     let recipes = tables.1.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
     let grids = keys.grids("grid")?;

@@ -116,6 +116,20 @@ impl<'a> StrictTable<'a> {
         Ok(name)
     }
 
+    /// Some tables of which no two have one name.
+    ///
+    /// # Errors
+    /// The second of two that do.
+    pub fn with_names_of_their_own(tables: Vec<Self>) -> Result<Vec<Self>> {
+        let name = |table: &Self| table.table.get("name").and_then(|value| text(value.get_ref()).ok());
+        let names: Vec<Option<String>> = tables.iter().map(name).collect();
+        let taken = |n: usize| names[n].is_some() && names[..n].contains(&names[n]);
+        match (0..tables.len()).find(|&n| taken(n)) {
+            Some(n) => Err(tables[n].wrong("name", "is that of another table before; results are told apart by it")),
+            None => Ok(tables),
+        }
+    }
+
     /// The table that a key holds, if it is there.
     ///
     /// # Errors
