@@ -186,11 +186,11 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let left_out = keys.get("left_out", table::truth)?.unwrap_or(false);
     let note = keys.get("note", table::text)?;
     let mut named = |key| keys.tables(key).and_then(StrictTable::with_names_of_their_own);
-    let tables = (named("scene")?, named("method")?);
-    let flows = named("flow")?.into_iter().map(flow_recipes).collect::<Result<Vec<_>>>()?.concat();
-    let scalings = named("scaling")?.into_iter().map(scaling_recipe).collect::<Result<Vec<_>>>()?;
-    let subjects = tables.0.into_iter().map(|k| subject(k, path)).collect::<Result<Vec<_>>>()?;
-    let recipes = tables.1.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
+    let (scenes, methods, scalings) = (named("scene")?, named("method")?, named("scaling")?);
+    let flows = keys.tables("flow")?.into_iter().map(flow_recipes).collect::<Result<Vec<_>>>()?.concat();
+    let scalings = scalings.into_iter().map(scaling_recipe).collect::<Result<Vec<_>>>()?;
+    let subjects = scenes.into_iter().map(|k| subject(k, path)).collect::<Result<Vec<_>>>()?;
+    let recipes = methods.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
     let grids = keys.grids("grid")?;
     let grids: Vec<Edges> = grids.iter().flat_map(|g| refine.iter().map(|&n| g.refined(n))).collect();
     for grid in &grids {
