@@ -15,7 +15,7 @@
 //! Read in this order:
 //!
 //! 1. [`state`]: the gas, one cell, a field
-//! 2. [`limiter`]: slopes; [`riemann`]: the flux through a face; [`drag`]: resistance of the obstacles, at any stiffness;
+//! 2. [`limiter`]: slopes; [`face_gas`], [`riemann`]: the flux through a face; [`drag`]: resistance of the obstacles, at any stiffness;
 //!    [`boundary`]: the sides of the domain
 //! 3. [`mod@porosity`]: open fractions made ready: jumps, walls, small cells
 //! 4. [`error`]: what a caller may get wrong
@@ -36,6 +36,7 @@
 pub mod boundary;
 pub mod drag;
 pub mod error;
+pub mod face_gas;
 pub mod fallback;
 mod kernel;
 pub mod limiter;
@@ -46,10 +47,10 @@ pub mod state;
 pub mod step;
 pub mod step_report;
 
-pub use boundary::{Boundary, Patch};
+pub use boundary::{Boundary, Feed, Patch};
 pub use drag::Drag;
 pub use error::Error;
-pub use kernel::flux_choice::{AnyFlux, Barotropic, FluxChoice, OneFlux, WithEnergy};
+pub use kernel::flux_choice::{AnyFlux, AnyGas, Barotropic, FluxChoice, MixedGas, OneFlux, WithEnergy};
 pub use limiter::Limiter;
 pub use porosity::clusters::cluster_scratch;
 pub use porosity::fractions::Mesh;

@@ -99,11 +99,11 @@
 //! energy[4..].fill(0.25);
 //! let mut scratch = [0.0; scratch_needed([8])];
 //! let mut rate =
-//!     tube.start(&mut FieldsMut { density: &mut density, momentum: [&mut momentum], energy: &mut energy })?;
+//!     tube.start(&mut FieldsMut { density: &mut density, momentum: [&mut momentum], energy: &mut energy, capacity: &mut [] })?;
 //! for _ in 0..5 {
-//!     let old = Fields { density: &density, momentum: [&momentum], energy: &energy };
+//!     let old = Fields { density: &density, momentum: [&momentum], energy: &energy, capacity: &[] };
 //!     let mut new =
-//!         FieldsMut { density: &mut new_density, momentum: [&mut new_momentum], energy: &mut new_energy };
+//!         FieldsMut { density: &mut new_density, momentum: [&mut new_momentum], energy: &mut new_energy, capacity: &mut [] };
 //!     rate = tube.step(&old, &mut new, 0.8 / rate, &mut [0; 8], &mut scratch)?.rate;
 //!     (density, momentum, energy) = (new_density, new_momentum, new_energy);
 //! }

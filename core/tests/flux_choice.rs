@@ -29,13 +29,13 @@ fn two_steps<F: FluxChoice>(gas: Gas<f64>, riemann: Riemann) -> Result<Bits, Err
         let velocity = [if cell / N < N / 2 { 0.3 } else { -0.1 }, 0.2 * (cell % N) as f64 / N as f64];
         let u = gas.conserved(&Primitive { density: 1.0 + 0.1 * (cell % 3) as f64, velocity, pressure: 1.0 });
         let [d, x, y, e] = &mut old;
-        FieldsMut { density: d, momentum: [x, y], energy: e }.set(cell, &u);
+        FieldsMut { density: d, momentum: [x, y], energy: e, capacity: &mut [] }.set(cell, &u);
     }
     let mut scratch = vec![0.0; problem.scratch_len()];
     for _ in 0..2 {
         let ([d, x, y, e], [nd, nx, ny, ne]) = (&old, &mut new);
-        let mut to = FieldsMut { density: nd, momentum: [nx, ny], energy: &mut ne[..energy] };
-        let from = Fields { density: d, momentum: [x, y], energy: &e[..energy] };
+        let mut to = FieldsMut { density: nd, momentum: [nx, ny], energy: &mut ne[..energy], capacity: &mut [] };
+        let from = Fields { density: d, momentum: [x, y], energy: &e[..energy], capacity: &[] };
         problem.step_by::<F>(&from, &mut to, 0.1, &mut [0; COUNT], &mut scratch)?;
         old = new;
     }

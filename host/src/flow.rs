@@ -11,8 +11,8 @@ use field::Compensated;
 use rayon::prelude::*;
 use slabs::step;
 use voidage_core::flow::{
-    Boundary, Conserved, Drag, Error, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive, Problem,
-    Report, Scheme, cluster_scratch, prepare,
+    Boundary, Conserved, Drag, Error, Feed, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive,
+    Problem, Report, Scheme, cluster_scratch, prepare,
 };
 
 pub use field::{Field, Scalar};
@@ -50,6 +50,10 @@ pub struct Flow<R: Scalar, const D: usize> {
     pub boundaries: [[Boundary<R, D>; 2]; D],
     /// Parts of the sides where something else stands; of those that overlap, the last. May change between steps.
     pub patches: Vec<Patch<R, D>>,
+    /// Of a mixed gas the ratios of specific heats that far fields and inlets feed, low and high side of each axis; the lowest of the gas, if not told.
+    pub feed_sides: [[R; 2]; D],
+    /// The same of each patch; empty for the lowest.
+    pub feed_patches: Vec<R>,
     /// Choices of the scheme.
     pub scheme: Scheme,
     /// Acceleration of gravity.
@@ -89,6 +93,8 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             gas,
             boundaries,
             patches: Vec::new(),
+            feed_sides: [[gas.gamma(); 2]; D],
+            feed_patches: Vec::new(),
             scheme: Scheme::default(),
             gravity: [R::ZERO; D],
             space: None,
@@ -210,6 +216,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         };
         fits(&self.state.density, &state.density)?;
         fits(&self.state.energy, &state.energy)?;
+        fits(&self.state.capacity, &state.capacity)?;
         (0..D).try_for_each(|d| fits(&self.state.momentum[d], &state.momentum[d]))?;
         let Clock { time, steps, repeated, total } = clock;
         (self.state, self.rate) = (state, Some(total.rate));
@@ -220,7 +227,8 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// Memory of the state and the solver's own, without porosity and drag, in units of one conserved field.
     pub fn memory_ratio(&self) -> f64 {
         let bytes = |f: &Field<R, D>| {
-            (f.density.len() + f.momentum.iter().map(|m| m.len()).sum::<usize>() + f.energy.len()) * size_of::<R>()
+            let momentum = f.momentum.iter().map(|m| m.len()).sum::<usize>();
+            (f.density.len() + momentum + f.energy.len() + f.capacity.len()) * size_of::<R>()
         };
         let scratch: usize = self.scratch.iter().map(|s| s.len() * size_of::<R>()).sum();
         (bytes(&self.state) + bytes(&self.next) + self.marks.len() + scratch) as f64 / bytes(&self.state) as f64
@@ -241,6 +249,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         let mut problem =
             Problem::new(mesh, self.gas, self.boundaries)?.with_scheme(self.scheme).with_gravity(self.gravity);
         problem = problem.with_patches(&self.patches)?;
+        if self.gas.is_mixed() {
+            problem = problem.with_feed(Feed { sides: self.feed_sides, patches: &self.feed_patches })?;
+        }
         if let Some(space) = &self.space {
             problem = problem.with_porosity(space.view())?;
         }
@@ -253,8 +264,14 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         f(&problem, &self.state, &mut self.next, &mut self.marks, &mut self.scratch)
     }
 
-    /// Sets every cell from the coordinates of its centre (the origin of the mesh is 0).
+    /// Sets every cell from the coordinates of its centre (the origin of the mesh is 0). A mixed gas has its lowest ratio of specific heats there.
     pub fn fill(&mut self, f: impl Fn([R; D]) -> Primitive<R, D>) {
+        let gamma = self.gas.gamma();
+        self.fill_mixed(|x| (f(x), gamma));
+    }
+
+    /// The same with the ratio of specific heats of the gas there, which counts in a mixed gas.
+    pub fn fill_mixed(&mut self, f: impl Fn([R; D]) -> (Primitive<R, D>, R)) {
         let centres: [Vec<R>; D] = self.widths.each_ref().map(|w| {
             let mut edge = R::ZERO;
             w.iter()
@@ -265,30 +282,42 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
                 .collect()
         });
         let cells = self.cells();
-        let gas = self.gas;
-        let mut view = self.state.view_mut();
-        for cell in 0..view.density.len() {
+        for cell in 0..self.len() {
             let mut rest = cell;
             let x = std::array::from_fn(|d| {
                 let i = rest % cells[d];
                 rest /= cells[d];
                 centres[d][i]
             });
-            view.set(cell, &gas.conserved(&f(x)));
+            let (w, gamma) = f(x);
+            self.set_mixed(cell, &w, gamma);
         }
-        self.rate = None;
     }
 
-    /// Sets one cell.
+    /// Sets one cell. A mixed gas has its lowest ratio of specific heats there.
     pub fn set(&mut self, cell: usize, w: &Primitive<R, D>) {
-        let u = self.gas.conserved(w);
-        self.state.view_mut().set(cell, &u);
+        self.set_mixed(cell, w, self.gas.gamma());
+    }
+
+    /// Sets one cell and the ratio of specific heats of the gas there, which counts in a mixed gas.
+    pub fn set_mixed(&mut self, cell: usize, w: &Primitive<R, D>, gamma: R) {
+        let gas = if self.gas.is_mixed() { Gas::Ideal { gamma } } else { self.gas };
+        let mut view = self.state.view_mut();
+        view.set(cell, &gas.conserved(w));
+        if let Some(capacity) = view.capacity.get_mut(cell) {
+            *capacity = gas.capacity();
+        }
         self.rate = None;
     }
 
     /// One cell.
     pub fn get(&self, cell: usize) -> Primitive<R, D> {
-        self.gas.primitive(&self.state.view().get(cell).expect("a cell of the mesh"))
+        self.gas_at(cell).primitive(&self.state.view().get(cell).expect("a cell of the mesh"))
+    }
+
+    /// The gas in a cell.
+    pub fn gas_at(&self, cell: usize) -> Gas<R> {
+        self.state.view().gas_at(self.gas, cell)
     }
 
     fn mesh(&self) -> Result<Mesh<'_, R, D>, Error> {
@@ -369,9 +398,10 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         let of_row = |row: usize| {
             let cells = row * self.widths[0].len()..(row + 1) * self.widths[0].len();
             cells.fold(R::ZERO, |most, cell| {
-                let w = self.gas.primitive(&view.get(cell).expect("a cell of the mesh"));
+                let gas = view.gas_at(self.gas, cell);
+                let w = gas.primitive(&view.get(cell).expect("a cell of the mesh"));
                 let speed_sq = w.velocity.iter().fold(R::ZERO, |s, &u| s + u * u);
-                larger(most, speed_sq * w.density / (self.gas.gamma() * w.pressure))
+                larger(most, speed_sq * w.density / (gas.gamma() * w.pressure))
             })
         };
         (0..rows).into_par_iter().map(of_row).reduce(|| R::ZERO, larger).sqrt()

@@ -67,9 +67,9 @@ fn call_each(lengths: &[usize; 17], numbers: Numbers, errors: &mut Vec<Error>) -
         .with_gravity([0.0, -1.0])
         .with_porosity(space.view())?
         .with_drag(Drag { quadratic: [&quadratic, &[]], linear: [&[], &linear] })?;
-    let old = Fields { density: &density, momentum: [&momentum, &momentum], energy: &energy };
+    let old = Fields { density: &density, momentum: [&momentum, &momentum], energy: &energy, capacity: &[] };
     let [u, v] = &mut new_momentum;
-    let mut new = FieldsMut { density: &mut new_density, momentum: [u, v], energy: &mut new_energy };
+    let mut new = FieldsMut { density: &mut new_density, momentum: [u, v], energy: &mut new_energy, capacity: &mut [] };
     let mut scratch = vec![0.0; (scratch_needed([4, 3]) + lengths[16]).saturating_sub(1)];
     let mut report = Report::new();
     let mut note = |result: Result<(), Error>| errors.extend(result.err());
@@ -153,9 +153,9 @@ fn states_that_are_none_are_stepped_over_without_panic() {
         let density: Vec<f64> = states.iter().map(|u| u.density).collect();
         let momentum: Vec<f64> = states.iter().map(|u| u.momentum[0]).collect();
         let energy: Vec<f64> = states.iter().map(|u| u.energy).collect();
-        let old = Fields { density: &density, momentum: [&momentum], energy: &energy };
+        let old = Fields { density: &density, momentum: [&momentum], energy: &energy, capacity: &[] };
         let (mut a, mut b, mut c) = (vec![0.0; 6], vec![0.0; 6], vec![0.0; 6]);
-        let mut new = FieldsMut { density: &mut a, momentum: [&mut b], energy: &mut c };
+        let mut new = FieldsMut { density: &mut a, momentum: [&mut b], energy: &mut c, capacity: &mut [] };
         let mut scratch = vec![0.0; problem.scratch_len()];
         assert!(problem.step(&old, &mut new, 1e-3, &mut [0; 6], &mut scratch).is_ok());
     }
@@ -221,9 +221,9 @@ fn any_fractions_are_made_ready_and_stepped_without_panic() {
         let sides = periodic.map(|p| [if p { Boundary::Periodic } else { Boundary::ZeroGradient }; 2]);
         let problem = Problem::new(mesh, Gas::Ideal { gamma: 1.4 }, sides).unwrap().with_porosity(view).unwrap();
         let (density, momentum, energy) = (vec![1.0; cells], vec![0.1; cells], vec![2.5; cells]);
-        let old = Fields { density: &density, momentum: [&momentum; 2], energy: &energy };
+        let old = Fields { density: &density, momentum: [&momentum; 2], energy: &energy, capacity: &[] };
         let (mut a, mut b, mut c, mut d) = (density.clone(), momentum.clone(), momentum.clone(), energy.clone());
-        let mut new = FieldsMut { density: &mut a, momentum: [&mut b, &mut c], energy: &mut d };
+        let mut new = FieldsMut { density: &mut a, momentum: [&mut b, &mut c], energy: &mut d, capacity: &mut [] };
         let mut scratch = vec![0.0; problem.scratch_len()];
         let _ = problem.step(&old, &mut new, 1e-3, &mut vec![0; cells], &mut scratch).unwrap();
     }

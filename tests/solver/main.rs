@@ -8,6 +8,7 @@ mod extremes;
 mod inclined;
 mod invariance;
 mod low_mach;
+mod mixed;
 mod patches;
 mod reference;
 mod repairs;

@@ -46,8 +46,8 @@ fn marked_step(states: &[[f64; 3]], dt: f64, mark: u8) -> Vec<[f64; 3]> {
     let old: [Vec<f64>; 3] = std::array::from_fn(|k| states.iter().map(|u| u[k]).collect());
     let mut new = old.clone();
     let [density, momentum, energy] = &mut new;
-    let fields = Fields { density: &old[0], momentum: [&old[1]], energy: &old[2] };
-    let mut out = FieldsMut { density, momentum: [momentum], energy };
+    let fields = Fields { density: &old[0], momentum: [&old[1]], energy: &old[2], capacity: &[] };
+    let mut out = FieldsMut { density, momentum: [momentum], energy, capacity: &mut [] };
     let mut scratch = vec![0.0; problem.scratch_len()];
     let _ = problem.advance_slab(&fields, &mut out, 0..1, dt, Some(&vec![mark; n]), &mut scratch).unwrap();
     (0..n).map(|i| std::array::from_fn(|k| new[k][i])).collect()

@@ -51,6 +51,16 @@ pub struct Patch<R, const D: usize> {
     pub boundary: Boundary<R, D>,
 }
 
+/// The ratio of specific heats of the gas that a side feeds, where the gas is mixed: of a far field or an inlet. What comes back through other sides is
+/// what stands inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feed<'a, R, const D: usize> {
+    /// Low and high side of each axis.
+    pub sides: [[R; 2]; D],
+    /// Of each patch; if empty, the lowest of the gas.
+    pub patches: &'a [R],
+}
+
 impl<R: Real, const D: usize> Patch<R, D> {
     /// The patch stands beside a cell on a side of an axis.
     pub fn covers(&self, axis: usize, high: bool, at: [usize; D]) -> bool {
@@ -60,6 +70,11 @@ impl<R: Real, const D: usize> Patch<R, D> {
 }
 
 impl<R: Real, const D: usize> Boundary<R, D> {
+    /// A given gas may enter here.
+    pub(crate) fn feeds(&self) -> bool {
+        matches!(self, Boundary::FarField(_) | Boundary::Inlet(_))
+    }
+
     /// The ghost state beside an inner state, both in the frame of axis `d`; `low` is the low side of the axis. Periodic
     /// sides have no ghost of their own: the inner state comes back.
     pub(crate) fn ghost_face(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {

@@ -34,11 +34,14 @@ pub enum Error {
     TooManyCells,
     /// The porosity was prepared for another mesh, or for one with other periodic axes.
     OtherMesh,
-    /// A number of the gas is not positive and finite, or its ratio of specific heats is not above 1.
+    /// A number of the gas is not positive and finite, or its ratio of specific heats is not above 1; what a side feeds is not between those of a
+    /// mixed gas.
     Gas,
     /// The step is compiled for another Riemann solver or another kind of gas.
     OtherFlux,
-    /// A cell outside the physical set (density or pressure not positive, or not finite).
+    /// A reservoir beside a mixed gas: it feeds gas of one ratio of specific heats.
+    MixedReservoir,
+    /// A cell outside the physical set (density or pressure not positive, or not finite; of a mixed gas a capacity out of its bounds).
     Unphysical {
         /// Its flat index.
         cell: usize,
@@ -64,6 +67,9 @@ impl fmt::Display for Error {
                 "a number of the gas is not positive and finite, or its ratio of specific heats is not above 1",
             ),
             Error::OtherFlux => f.write_str("the step is compiled for another Riemann solver or another kind of gas"),
+            Error::MixedReservoir => {
+                f.write_str("a reservoir has no place beside a gas of several ratios of specific heats")
+            }
             Error::Unphysical { cell } => {
                 write!(f, "the density or pressure of cell {cell} is not positive, or its state is not finite")
             }

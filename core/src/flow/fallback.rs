@@ -48,7 +48,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             first_order[i] = to.max(first_order[i]);
         };
         // First each troubled cell by itself, so that the order of the cells does not count.
-        let troubled = |cell: &usize| !self.is_physical(&new.at(*cell));
+        let troubled = |cell: &usize| !self.holds(new, *cell);
         for cell in (0..self.mesh.len()).filter(troubled) {
             let marked = first_order[cell] > 0;
             raise(first_order, cell, if marked { POSITIVE } else { FIRST_ORDER });
@@ -64,7 +64,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let at = self.mesh.coordinates(cell);
         let (mut density, mut pressure, mut count) = (R::ZERO, R::ZERO, R::ZERO);
         let mut add = |cell: usize| {
-            let w = self.gas.primitive(&field.at(cell));
+            let w = field.gas_at(self.gas, cell).primitive(&field.at(cell));
             density += w.density;
             pressure += w.pressure;
             count += R::ONE;
@@ -83,7 +83,12 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     ///
     /// Density and pressure become at least a share of those around. Mass and energy are kept where they are more: if the kinetic
     /// energy does not leave enough of the total, the gas loses speed rather than winning energy.
-    fn floored(&self, u: &Conserved<R, D>, before: &Primitive<R, D>, (density, pressure): (R, R)) -> Conserved<R, D> {
+    fn floored(
+        u: &Conserved<R, D>,
+        gas: Gas<R>,
+        before: &Primitive<R, D>,
+        (density, pressure): (R, R),
+    ) -> Conserved<R, D> {
         let least = |around: R| R::larger(R::from_f64(FLOOR_SHARE) * around, R::MIN_POSITIVE);
         // What fits the scalar with room for what a step multiplies it by.
         let fits = |x: R| x.abs() < R::MAX * R::EPSILON;
@@ -92,8 +97,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             u.density > R::ZERO && fits(u.density) && fits(kinetic_of(u.density, u.momentum.map(|m| m / u.density)));
         let density = if sound { R::larger(u.density, least(density)) } else { least(density) };
         let velocity = if sound { u.momentum.map(|m| m / density) } else { before.velocity };
-        let Gas::Ideal { gamma } = self.gas else {
-            return self.gas.conserved(&Primitive { density, velocity, pressure });
+        let Gas::Ideal { gamma } = gas else {
+            return gas.conserved(&Primitive { density, velocity, pressure });
         };
         let total = if fits(u.energy) { R::larger(u.energy, R::ZERO) } else { R::ZERO };
         // Above the rounding of the total energy that it is a part of.
@@ -102,6 +107,15 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         let (kinetic, most) = (kinetic_of(density, velocity), energy - internal);
         let slower = if kinetic > most { (most / kinetic).sqrt() } else { R::ONE };
         Conserved { density, momentum: velocity.map(|v| density * (slower * v)), energy }
+    }
+
+    /// Puts the capacity of a cell of a mixed gas within its bounds; that before the step takes the place of one that is no number.
+    fn bound_capacity(&self, old: &Fields<'_, R, D>, new: &mut FieldsMut<'_, R, D>, cell: usize) {
+        let [least, most] = self.gas.capacities();
+        if let Some((own, before)) = new.capacity.get_mut(cell).zip(old.capacity.get(cell)) {
+            let finite = if own.is_finite() { *own } else { *before };
+            *own = finite.limited(least, most);
+        }
     }
 
     /// The last resort: gives every unphysical cell a positive state, scaled to the old states around it. Adds to the report how many
@@ -118,12 +132,18 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(old)?;
         self.fits(&new.as_fields(), self.mesh.len())?;
         for cell in 0..self.mesh.len() {
-            let u = new.at(cell);
-            if self.is_physical(&u) {
+            if self.holds(&new.as_fields(), cell) {
                 continue;
             }
-            let before = old.at(cell);
-            let floored = self.floored(&u, &self.gas.primitive(&before), self.surroundings(old, cell));
+            self.bound_capacity(old, new, cell);
+            let (u, before) = (new.at(cell), old.at(cell));
+            let floored = if self.is_physical(&u) {
+                u
+            } else {
+                let gas = new.as_fields().gas_at(self.gas, cell);
+                let was = old.gas_at(self.gas, cell).primitive(&before);
+                Self::floored(&u, gas, &was, self.surroundings(old, cell))
+            };
             new.set(cell, &floored);
             let open = self.porosity.map_or(R::ONE, |p| p.volume[cell]);
             let volume = open * self.mesh.volume(self.mesh.coordinates(cell));
@@ -136,7 +156,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             });
             report.floored += 1;
             report.floored_cell = Some(cell);
-            report.rate = R::larger(self.cell_rate(&floored, cell), report.rate);
+            report.rate = R::larger(self.cell_rate(&new.as_fields(), cell), report.rate);
         }
         report.unphysical = 0;
         Ok(())

@@ -1,7 +1,7 @@
 //! One slab of one step, row by row.
 //!
 //! - `scratch`: the buffers, cut from the caller's memory
-//! - `rows`: loops over the cells of a row
+//! - `rows`: loops over the cells of a row; `mixed`: what comes to them for a mixed gas
 //! - `slab`: what a step reads, and where each row stands in the window
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
@@ -13,6 +13,7 @@
 pub(crate) mod flux_choice;
 pub(crate) mod fluxes;
 pub(crate) mod long_line;
+pub(crate) mod mixed;
 pub(crate) mod positive_fluxes;
 pub(crate) mod reconstruct;
 pub(crate) mod rows;

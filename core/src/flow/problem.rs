@@ -1,6 +1,6 @@
 //! The problem: mesh, gas, boundaries, porosity, drag and the choices of the scheme; its contracts, and the rate of its signals.
 
-use crate::flow::boundary::{Boundary, Patch};
+use crate::flow::boundary::{Boundary, Feed, Patch};
 use crate::flow::drag::Drag;
 use crate::flow::error::{Error, fits};
 use crate::flow::limiter::Limiter;
@@ -47,6 +47,8 @@ pub struct Problem<'a, R, const D: usize> {
     pub(in crate::flow) boundaries: [[Boundary<R, D>; 2]; D],
     /// Parts of sides where something else stands; of those that overlap, the last.
     pub(in crate::flow) patches: &'a [Patch<R, D>],
+    /// What sides and patches feed of a mixed gas.
+    pub(in crate::flow) feed: Feed<'a, R, D>,
     pub(in crate::flow) scheme: Scheme,
     /// Open fractions; without them nothing is read.
     pub(in crate::flow) porosity: Option<Porosity<'a, R, D>>,
@@ -57,7 +59,8 @@ pub struct Problem<'a, R, const D: usize> {
 }
 
 impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
-    /// Gas in an open space between its sides, low and high along each axis; the default scheme, no drag, no gravity.
+    /// Gas in an open space between its sides, low and high along each axis; the default scheme, no drag, no gravity. Of a mixed gas the sides feed
+    /// that of the lowest ratio of specific heats; see [`Problem::with_feed`].
     ///
     /// # Errors
     /// An axis is periodic on one side only, or a number of the gas makes no sense.
@@ -73,7 +76,34 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         let scheme = Scheme::default();
         let gravity = [R::ZERO; D];
         let (patches, clusters) = (&[][..], Clusters(&[]));
-        Ok(Problem { mesh, gas, boundaries, patches, scheme, porosity: None, clusters, drag: None, gravity })
+        let feed = Feed { sides: [[gas.gamma(); 2]; D], patches: &[] };
+        let problem =
+            Problem { mesh, gas, boundaries, patches, feed, scheme, porosity: None, clusters, drag: None, gravity };
+        problem.without_reservoirs(boundaries.iter().flatten())
+    }
+
+    /// The same, unless the gas is mixed and one of these sides a reservoir.
+    fn without_reservoirs<'b>(self, mut sides: impl Iterator<Item = &'b Boundary<R, D>>) -> Result<Self, Error>
+    where
+        R: 'b,
+    {
+        let reservoir = |side: &Boundary<R, D>| matches!(side, Boundary::Reservoir { .. });
+        if self.gas.is_mixed() && sides.any(reservoir) { Err(Error::MixedReservoir) } else { Ok(self) }
+    }
+
+    /// The same where far fields and inlets feed gases of these ratios of specific heats: of each side, and of each patch that there is.
+    ///
+    /// # Errors
+    /// The gas is not mixed, or one of the ratios is not between its lowest and highest; those of patches are not one for each patch.
+    pub fn with_feed(self, feed: Feed<'a, R, D>) -> Result<Self, Error> {
+        let Gas::Mixed { gammas: [low, high] } = self.gas else { return Err(Error::Gas) };
+        if feed.sides.iter().flatten().chain(feed.patches).any(|gamma| !(*gamma >= low && *gamma <= high)) {
+            return Err(Error::Gas);
+        }
+        if !feed.patches.is_empty() {
+            fits(self.patches.len(), feed.patches.len())?;
+        }
+        Ok(Problem { feed, ..self })
     }
 
     /// The same with patches on the sides; of those that overlap, the last counts.
@@ -87,7 +117,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         };
         match patches.iter().position(wrong) {
             Some(number) => Err(Error::Patch { number }),
-            None => Ok(Problem { patches, ..self }),
+            None => Problem { patches, ..self }.without_reservoirs(patches.iter().map(|p| &p.boundary)),
         }
     }
 
@@ -95,6 +125,17 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     pub(in crate::flow) fn side(&self, d: usize, high: bool, at: [usize; D]) -> &Boundary<R, D> {
         let patch = self.patches.iter().rev().find(|p| p.covers(d, high, at));
         patch.map_or(&self.boundaries[d][usize::from(high)], |p| &p.boundary)
+    }
+
+    /// Capacity of the gas beyond a side (an axis, and whether it is the high one) beside a cell: what the side feeds, else that `inside`.
+    pub(in crate::flow) fn capacity_beyond(&self, (d, high): (usize, bool), at: [usize; D], inside: R) -> R {
+        if !self.side(d, high, at).feeds() {
+            return inside;
+        }
+        let patch = self.patches.iter().rposition(|p| p.covers(d, high, at));
+        let of_patch = patch.map(|n| self.feed.patches.get(n).copied().unwrap_or(self.gas.gamma()));
+        let gamma = of_patch.unwrap_or(self.feed.sides[d][usize::from(high)]);
+        Gas::Ideal { gamma }.capacity()
     }
 
     /// The same by other choices of the scheme.
@@ -141,6 +182,14 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         self.gas
     }
 
+    /// The cell at a flat index of a field that fits is physical, and of a mixed gas its capacity within the bounds.
+    pub(in crate::flow) fn holds(&self, field: &Fields<'_, R, D>, cell: usize) -> bool {
+        let [least, most] = self.gas.capacities();
+        let mixed = self.gas.is_mixed();
+        let within = !mixed || field.capacity.get(cell).is_some_and(|c| *c >= least && *c <= most);
+        within && self.is_physical(&field.at(cell))
+    }
+
     /// Positive density and pressure, all finite.
     pub fn is_physical(&self, u: &Conserved<R, D>) -> bool {
         let w = self.gas.primitive(u);
@@ -159,14 +208,16 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
 
     pub(in crate::flow) fn fits(&self, f: &Fields<'_, R, D>, expected: usize) -> Result<(), Error> {
         let energy = if self.gas.has_energy() { f.energy.len() } else { expected };
-        let lengths = f.momentum.iter().map(|m| m.len()).chain([f.density.len(), energy]);
+        let capacity = if self.gas.is_mixed() { f.capacity.len() } else { expected };
+        let lengths = f.momentum.iter().map(|m| m.len()).chain([f.density.len(), energy, capacity]);
         lengths.into_iter().try_for_each(|found| fits(expected, found))
     }
 
     /// Signal rate of one cell, jumps and merging included.
-    pub(in crate::flow) fn cell_rate(&self, u: &Conserved<R, D>, cell: usize) -> R {
-        let w = self.gas.primitive(u);
-        let c = self.gas.sound_speed(&w);
+    pub(in crate::flow) fn cell_rate(&self, field: &Fields<'_, R, D>, cell: usize) -> R {
+        let gas = field.gas_at(self.gas, cell);
+        let w = gas.primitive(&field.at(cell));
+        let c = gas.sound_speed(&w);
         let at = self.mesh.coordinates(cell);
         sum::<R, D>(core::array::from_fn(|d| {
             let t = (w.velocity[d].abs() + c) / self.mesh.widths[d][at[d]];
@@ -199,11 +250,10 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         self.check_fields(field)?;
         let mut rate = R::ZERO;
         for cell in 0..self.mesh.len() {
-            let u = field.at(cell);
-            if !self.is_physical(&u) {
+            if !self.holds(field, cell) {
                 return Err(Error::Unphysical { cell });
             }
-            rate = R::larger(self.cell_rate(&u, cell), rate);
+            rate = R::larger(self.cell_rate(field, cell), rate);
         }
         Ok(rate)
     }

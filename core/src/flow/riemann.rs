@@ -19,7 +19,8 @@
 //! References: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., ch. 10;
 //! P. Batten, N. Clarke, C. Lambert, D. M. Causon, SIAM J. Sci. Comput. 18 (1997) 1553; B. Einfeldt, SIAM J. Numer. Anal. 25 (1988) 294.
 
-use crate::flow::state::{Gas, Primitive, each};
+use crate::flow::face_gas::FaceGases;
+use crate::flow::state::{Primitive, each};
 use crate::number::real::Real;
 
 /// What passes a face per unit area and time, in the frame of the face.
@@ -33,6 +34,10 @@ pub struct Flux<R, const D: usize> {
     pub energy: R,
     /// The part of the normal momentum that is pressure at the face.
     pub pressure: R,
+    /// Volume, by which a capacity 1/(gamma − 1) is carried: of three waves the speed of the contact.
+    pub velocity: R,
+    /// The capacity that it carries, and what diffusion adds to their product.
+    pub capacity: [R; 2],
 }
 
 /// Which approximate Riemann solver stands at the faces.
@@ -47,70 +52,6 @@ pub enum Riemann {
     Hlle,
     /// One speed: the most diffusive, kindest to slow shocks.
     Rusanov,
-}
-
-/// The constants of a gas that a face needs.
-#[derive(Clone, Copy, Debug)]
-pub struct FaceGas<R> {
-    gamma: R,
-    half_gamma_minus_one: R,
-    inv_gamma_minus_one: R,
-}
-
-impl<R: Real> FaceGas<R> {
-    /// From a gas; the energy constants of a barotropic gas are never used.
-    pub fn new(gas: Gas<R>) -> Self {
-        let gamma = gas.gamma();
-        FaceGas {
-            gamma,
-            half_gamma_minus_one: R::HALF * (gamma - R::ONE),
-            inv_gamma_minus_one: R::ONE / (gamma - R::ONE),
-        }
-    }
-
-    /// Total energy per volume.
-    #[inline(always)]
-    fn energy<const D: usize>(&self, w: &Primitive<R, D>) -> R {
-        let v = &w.velocity;
-        let tangential = if D == 1 {
-            R::ZERO
-        } else if D == 2 {
-            v[1] * v[1]
-        } else {
-            v[1] * v[1] + v[2] * v[2]
-        };
-        w.pressure * self.inv_gamma_minus_one + R::HALF * w.density * (v[0] * v[0] + tangential)
-    }
-
-    /// Total enthalpy per volume.
-    #[inline(always)]
-    pub(in crate::flow) fn enthalpy<const D: usize>(&self, w: &Primitive<R, D>) -> R {
-        self.energy(w) + w.pressure
-    }
-
-    /// Speed of sound.
-    #[inline(always)]
-    pub(in crate::flow) fn sound_speed<const D: usize>(&self, w: &Primitive<R, D>) -> R {
-        (self.gamma * w.pressure / w.density).sqrt()
-    }
-
-    /// Bounds of the fastest waves: the slower of the left sound wave and of that of the Roe average, and the mirror image.
-    /// Batten et al. eq. (4.13), Einfeldt eq. (4.4).
-    #[inline(always)]
-    fn speeds<const D: usize>(&self, l: &Primitive<R, D>, r: &Primitive<R, D>) -> (R, R, R) {
-        let (a_sq_l, a_sq_r) = (self.gamma * l.pressure / l.density, self.gamma * r.pressure / r.density);
-        // The weights √rho_l and √rho_r, both times √rho_l + √rho_r: one root instead of two, and a sum of weights to divide by.
-        let mean = R::smaller(l.density * r.density, R::MAX).sqrt();
-        let (weight_l, weight_r) = (l.density + mean, r.density + mean);
-        let inv = R::ONE / (weight_l + weight_r);
-        let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
-        let jump = u_r - u_l;
-        let u = (weight_l * u_l + weight_r * u_r) * inv;
-        let mixed = (weight_l * a_sq_l + weight_r * a_sq_r) + self.half_gamma_minus_one * mean * (jump * jump);
-        let a = (mixed * inv).sqrt();
-        let (a_l, a_r) = (a_sq_l.sqrt(), a_sq_r.sqrt());
-        (R::smaller(u_l - a_l, u - a), R::larger(u_r + a_r, u + a), R::larger(a_l, a_r))
-    }
 }
 
 /// What a solver that is kind to slow flow needs to know of a face besides its two states.
@@ -137,7 +78,7 @@ pub trait Solver: sealed::Sealed {
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
     ) -> Flux<R, D>;
 
     /// The flux in a field that may be slow: beside the faces inside the domain and its walls.
@@ -145,7 +86,7 @@ pub trait Solver: sealed::Sealed {
     fn slow_flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
         _: Slowness<R>,
     ) -> Flux<R, D> {
         Self::flux::<R, D, ENERGY>(l, r, gas)
@@ -174,7 +115,7 @@ impl Solver for Hllc {
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
     ) -> Flux<R, D> {
         hllc::<R, D, ENERGY>(l, r, gas, |_| R::ZERO)
     }
@@ -190,7 +131,7 @@ impl Solver for HllcLowMach {
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
     ) -> Flux<R, D> {
         Hllc::flux::<R, D, ENERGY>(l, r, gas)
     }
@@ -199,7 +140,7 @@ impl Solver for HllcLowMach {
     fn slow_flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
         slowness: Slowness<R>,
     ) -> Flux<R, D> {
         if D == 1 {
@@ -257,16 +198,35 @@ fn all_speeds<R: Real, const D: usize>(v: &[R; D]) -> R {
 /// Mach number from which on the impact of two streams at a face is left as it is. Larger: less damping of slow flow, weaker shocks change.
 const SLOW: f64 = 0.3;
 
+/// Bounds of the fastest waves: the slower of the left sound wave and of that of the Roe average, and the mirror image.
+/// Batten et al. eq. (4.13), Einfeldt eq. (4.4). Between two gases the mean of the squared speeds of sound takes the place of that of the Roe
+/// average, raised by the jump of velocity as in that of the larger gamma.
+#[inline(always)]
+fn speeds<R: Real, const D: usize>(l: &Primitive<R, D>, r: &Primitive<R, D>, gas: &impl FaceGases<R>) -> (R, R, R) {
+    let (a_sq_l, a_sq_r) = (gas.left().sound_speed_sq(l), gas.right().sound_speed_sq(r));
+    // The weights √rho_l and √rho_r, both times √rho_l + √rho_r: one root instead of two, and a sum of weights to divide by.
+    let mean = R::smaller(l.density * r.density, R::MAX).sqrt();
+    let (weight_l, weight_r) = (l.density + mean, r.density + mean);
+    let inv = R::ONE / (weight_l + weight_r);
+    let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
+    let jump = u_r - u_l;
+    let u = (weight_l * u_l + weight_r * u_r) * inv;
+    let mixed = (weight_l * a_sq_l + weight_r * a_sq_r) + gas.half_gamma_minus_one() * mean * (jump * jump);
+    let a = (mixed * inv).sqrt();
+    let (a_l, a_r) = (a_sq_l.sqrt(), a_sq_r.sqrt());
+    (R::smaller(u_l - a_l, u - a), R::larger(u_r + a_r, u + a), R::larger(a_l, a_r))
+}
+
 /// Toro sec. 10.4 with the star pressure averaged over both sides, and the flux written as a share of the upwind side
 /// plus a share of the star pressure: F = s (F_K − S U_K) + (1 − s) p* (0, 1, 0, 0, S*), s = S* / (S* − S). `raise` is added to p*.
 #[inline(always)]
 fn hllc<R: Real, const D: usize, const ENERGY: bool>(
     l: &Primitive<R, D>,
     r: &Primitive<R, D>,
-    gas: &FaceGas<R>,
+    gas: &impl FaceGases<R>,
     raise: impl Fn(Waves<R>) -> R,
 ) -> Flux<R, D> {
-    let (speed_l, speed_r, sound) = gas.speeds(l, r);
+    let (speed_l, speed_r, sound) = speeds(l, r, gas);
     let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
     // Mass swept by the outer waves, Toro eq. (10.37); negative on the left, positive on the right.
     let (swept_l, swept_r) = (l.density * (speed_l - u_l), r.density * (speed_r - u_r));
@@ -288,6 +248,7 @@ fn hllc<R: Real, const D: usize, const ENERGY: bool>(
     let share = if gap == R::ZERO { R::ONE } else { share };
     let rest = R::ONE - share;
 
+    let upwind = gas.from_side(from_left);
     let relative = velocity[0] - speed;
     let mass = share * (density * relative);
     let mut momentum = [R::ZERO; D];
@@ -296,13 +257,14 @@ fn hllc<R: Real, const D: usize, const ENERGY: bool>(
         momentum[c] = mass * velocity[c];
     }
     let energy = if ENERGY {
-        let total = gas.energy(&Primitive { density, velocity, pressure });
+        let total = upwind.energy(&Primitive { density, velocity, pressure });
         share * (total * relative + pressure * velocity[0]) + rest * (p_star * star)
     } else {
         R::ZERO
     };
-    let face_pressure = if speed == R::ZERO { pressure } else { p_star };
-    Flux { mass, momentum, energy, pressure: face_pressure }
+    let (face_velocity, face_pressure) = if speed == R::ZERO { (velocity[0], pressure) } else { (star, p_star) };
+    let capacity = [upwind.capacity(), R::ZERO];
+    Flux { mass, momentum, energy, pressure: face_pressure, velocity: face_velocity, capacity }
 }
 
 /// The mean of two fluxes, a share of their difference, and a diffusion of the jump.
@@ -310,7 +272,7 @@ fn hllc<R: Real, const D: usize, const ENERGY: bool>(
 fn blend<R: Real, const D: usize, const ENERGY: bool>(
     l: &Primitive<R, D>,
     r: &Primitive<R, D>,
-    gas: &FaceGas<R>,
+    gas: &impl FaceGases<R>,
     lean: R,
     diffusion: R,
 ) -> Flux<R, D> {
@@ -327,12 +289,18 @@ fn blend<R: Real, const D: usize, const ENERGY: bool>(
     }
     momentum[0] += pressure;
     let energy = if ENERGY {
-        let (e_l, e_r) = (gas.energy(l), gas.energy(r));
+        let (e_l, e_r) = (gas.left().energy(l), gas.right().energy(r));
         mix((e_l + l.pressure) * l.velocity[0], (e_r + r.pressure) * r.velocity[0], e_l, e_r)
     } else {
         R::ZERO
     };
-    Flux { mass, momentum, energy, pressure }
+    // The same for the capacity, taken apart into that of the mean of both sides and what their difference adds.
+    let (u_l, u_r) = (l.velocity[0], r.velocity[0]);
+    let velocity = mix(u_l, u_r, R::ZERO, R::ZERO);
+    let (c_l, c_r) = (gas.left().capacity(), gas.right().capacity());
+    let half = R::HALF * (c_r - c_l);
+    let capacity = [R::HALF * (c_l + c_r), mix(-half * u_l, half * u_r, -half, half)];
+    Flux { mass, momentum, energy, pressure, velocity, capacity }
 }
 
 impl sealed::Sealed for Hlle {}
@@ -345,9 +313,9 @@ impl Solver for Hlle {
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
     ) -> Flux<R, D> {
-        let (speed_l, speed_r, _) = gas.speeds(l, r);
+        let (speed_l, speed_r, _) = speeds(l, r, gas);
         let (low, high) = (R::smaller(speed_l, R::ZERO), R::larger(speed_r, R::ZERO));
         let span = high - low;
         let inv = if span > R::ZERO { R::ONE / span } else { R::ZERO };
@@ -365,10 +333,10 @@ impl Solver for Rusanov {
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
         l: &Primitive<R, D>,
         r: &Primitive<R, D>,
-        gas: &FaceGas<R>,
+        gas: &impl FaceGases<R>,
     ) -> Flux<R, D> {
-        let fastest = |w: &Primitive<R, D>| w.velocity[0].abs() + (gas.gamma * w.pressure / w.density).sqrt();
-        let speed = R::larger(fastest(l), fastest(r));
+        let fastest = |w: &Primitive<R, D>, sound: R| w.velocity[0].abs() + sound;
+        let speed = R::larger(fastest(l, gas.left().sound_speed(l)), fastest(r, gas.right().sound_speed(r)));
         blend::<R, D, ENERGY>(l, r, gas, R::ZERO, R::HALF * speed)
     }
 }

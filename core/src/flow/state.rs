@@ -95,6 +95,9 @@ impl<R: Real, const D: usize> Conserved<R, D> {
     }
 }
 
+/// Roundings by which the capacity of a cell may leave the bounds of its gas and is put back. Larger: less of what a bad step does is seen.
+const ROUNDINGS: f64 = 64.0;
+
 /// Where the pressure comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -118,21 +121,65 @@ pub enum Gas<R> {
         /// Pressure p0 of the reference state.
         pressure: R,
     },
+    /// p = (gamma − 1) rho e with a gamma that goes along with the gas: burnt gas in fresh gas. A field holds `capacity`, 1/(gamma − 1), of each
+    /// cell; the gas of a cell is [`Gas::at`].
+    Mixed {
+        /// Lowest and highest ratio of specific heats, above 1.
+        gammas: [R; 2],
+    },
 }
 
 impl<R: Real> Gas<R> {
     /// The gas carries an energy equation.
     #[inline(always)]
     pub fn has_energy(self) -> bool {
-        matches!(self, Gas::Ideal { .. })
+        matches!(self, Gas::Ideal { .. } | Gas::Mixed { .. })
     }
 
-    /// rho a² / p.
+    /// Each cell has a ratio of specific heats of its own.
+    #[inline(always)]
+    pub fn is_mixed(self) -> bool {
+        matches!(self, Gas::Mixed { .. })
+    }
+
+    /// rho a² / p; the lowest of a mixed gas.
     #[inline(always)]
     pub fn gamma(self) -> R {
         match self {
-            Gas::Ideal { gamma } | Gas::Isentropic { gamma, .. } => gamma,
+            Gas::Ideal { gamma } | Gas::Isentropic { gamma, .. } | Gas::Mixed { gammas: [gamma, _] } => gamma,
             Gas::Isothermal { .. } => R::ONE,
+        }
+    }
+
+    /// 1/(gamma − 1): the heat capacity at constant volume over the gas constant, and the internal energy per volume over the pressure.
+    #[inline(always)]
+    pub fn capacity(self) -> R {
+        R::ONE / (self.gamma() - R::ONE)
+    }
+
+    /// Lowest and highest capacity of a cell.
+    pub(in crate::flow) fn capacities(self) -> [R; 2] {
+        match self {
+            Gas::Mixed { gammas: [low, high] } => [R::ONE / (high - R::ONE), R::ONE / (low - R::ONE)],
+            _ => [self.capacity(); 2],
+        }
+    }
+
+    /// A capacity that left the bounds by rounding, put back to them; any other as it is.
+    #[inline(always)]
+    pub(in crate::flow) fn settled(self, capacity: R) -> R {
+        let [least, most] = self.capacities();
+        let inside = capacity.limited(least, most);
+        if (capacity - inside).abs() <= R::from_f64(ROUNDINGS) * R::EPSILON * most { inside } else { capacity }
+    }
+
+    /// The gas in a cell of this capacity: of a mixed gas an ideal one, else this gas.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(self, capacity: R) -> Self {
+        match self {
+            Gas::Mixed { .. } => Gas::Ideal { gamma: R::ONE + R::ONE / capacity },
+            _ => self,
         }
     }
 
@@ -141,6 +188,7 @@ impl<R: Real> Gas<R> {
         let positive = |x: R| x > R::ZERO && x.is_finite();
         match self {
             Gas::Ideal { gamma } => gamma > R::ONE && gamma.is_finite(),
+            Gas::Mixed { gammas: [low, high] } => low > R::ONE && low <= high && high.is_finite(),
             Gas::Isothermal { sound_speed } => positive(sound_speed),
             Gas::Isentropic { gamma, density, pressure } => {
                 gamma > R::ONE && gamma.is_finite() && positive(density) && positive(pressure)
@@ -148,11 +196,11 @@ impl<R: Real> Gas<R> {
         }
     }
 
-    /// Pressure of a barotropic gas; of an ideal gas from its internal energy per volume.
+    /// Pressure of a barotropic gas; of an ideal gas from its internal energy per volume; of a mixed gas where gamma is lowest.
     #[inline(always)]
     pub fn pressure(self, density: R, internal: R) -> R {
         match self {
-            Gas::Ideal { gamma } => (gamma - R::ONE) * internal,
+            Gas::Ideal { gamma } | Gas::Mixed { gammas: [gamma, _] } => (gamma - R::ONE) * internal,
             Gas::Isothermal { sound_speed } => sound_speed * sound_speed * density,
             // NaN for a negative density, which the caller's check for positive states finds.
             Gas::Isentropic { gamma, density: rho0, pressure: p0 } => p0 * (density / rho0).pow(gamma),
@@ -168,13 +216,13 @@ impl<R: Real> Gas<R> {
     /// Density of a barotropic gas at a pressure; `None` for an ideal gas, which has two degrees of freedom.
     pub fn density(self, pressure: R) -> Option<R> {
         match self {
-            Gas::Ideal { .. } => None,
+            Gas::Ideal { .. } | Gas::Mixed { .. } => None,
             Gas::Isothermal { sound_speed } => Some(pressure / (sound_speed * sound_speed)),
             Gas::Isentropic { gamma, density, pressure: p0 } => Some(density * (pressure / p0).pow(R::ONE / gamma)),
         }
     }
 
-    /// The primitive form of a cell.
+    /// The primitive form of a cell. Of a mixed gas ask [`Gas::at`].
     #[inline(always)]
     pub fn primitive<const D: usize>(self, u: &Conserved<R, D>) -> Primitive<R, D> {
         let velocity = u.momentum.map(|m| m / u.density);
@@ -182,12 +230,12 @@ impl<R: Real> Gas<R> {
         Primitive { density: u.density, velocity, pressure: self.pressure(u.density, u.energy - kinetic) }
     }
 
-    /// The conserved form of a state; a barotropic gas ignores the pressure.
+    /// The conserved form of a state; a barotropic gas ignores the pressure. Of a mixed gas ask [`Gas::at`].
     #[inline(always)]
     pub fn conserved<const D: usize>(self, w: &Primitive<R, D>) -> Conserved<R, D> {
         let momentum = w.velocity.map(|v| w.density * v);
         let energy = match self {
-            Gas::Ideal { gamma } => {
+            Gas::Ideal { gamma } | Gas::Mixed { gammas: [gamma, _] } => {
                 let kinetic = R::HALF * sum::<R, D>(core::array::from_fn(|c| momentum[c] * w.velocity[c]));
                 w.pressure / (gamma - R::ONE) + kinetic
             }
@@ -206,6 +254,8 @@ pub struct Fields<'a, R, const D: usize> {
     pub momentum: [&'a [R]; D],
     /// Total energy per open volume; empty for a barotropic gas.
     pub energy: &'a [R],
+    /// 1/(gamma − 1) of a [`Gas::Mixed`]; else empty.
+    pub capacity: &'a [R],
 }
 
 impl<R: Real, const D: usize> Fields<'_, R, D> {
@@ -224,6 +274,12 @@ impl<R: Real, const D: usize> Fields<'_, R, D> {
             energy: self.energy.get(cell).copied().unwrap_or(R::ZERO),
         }
     }
+
+    /// The gas of the cell at a flat index: that of its capacity, if `gas` is mixed.
+    #[inline(always)]
+    pub fn gas_at(&self, gas: Gas<R>, cell: usize) -> Gas<R> {
+        self.capacity.get(cell).map_or(gas, |&capacity| gas.at(capacity))
+    }
 }
 
 /// The same, to be written.
@@ -235,6 +291,8 @@ pub struct FieldsMut<'a, R, const D: usize> {
     pub momentum: [&'a mut [R]; D],
     /// Total energy per open volume; empty for a barotropic gas.
     pub energy: &'a mut [R],
+    /// 1/(gamma − 1) of a [`Gas::Mixed`]; else empty.
+    pub capacity: &'a mut [R],
 }
 
 impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
@@ -244,12 +302,18 @@ impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
             density: &mut *self.density,
             momentum: self.momentum.each_mut().map(|m| &mut **m),
             energy: &mut *self.energy,
+            capacity: &mut *self.capacity,
         }
     }
 
     /// The same field, to be read.
     pub fn as_fields(&self) -> Fields<'_, R, D> {
-        Fields { density: self.density, momentum: self.momentum.each_ref().map(|m| &**m), energy: self.energy }
+        Fields {
+            density: self.density,
+            momentum: self.momentum.each_ref().map(|m| &**m),
+            energy: self.energy,
+            capacity: self.capacity,
+        }
     }
 
     /// Cells before `cell` (all, if there are fewer), and the rest: how a caller cuts a field into slabs for its threads.
@@ -259,6 +323,7 @@ impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
         }
         let (d0, d1) = cut(self.density, cell);
         let (e0, e1) = cut(self.energy, cell);
+        let (c0, c1) = cut(self.capacity, cell);
         let mut low = [const { None }; D];
         let mut high = [const { None }; D];
         for (c, m) in self.momentum.into_iter().enumerate() {
@@ -268,8 +333,8 @@ impl<'a, R: Real, const D: usize> FieldsMut<'a, R, D> {
         }
         let part = |a: [Option<&'a mut [R]>; D]| a.map(|s| s.unwrap_or_default());
         (
-            FieldsMut { density: d0, momentum: part(low), energy: e0 },
-            FieldsMut { density: d1, momentum: part(high), energy: e1 },
+            FieldsMut { density: d0, momentum: part(low), energy: e0, capacity: c0 },
+            FieldsMut { density: d1, momentum: part(high), energy: e1, capacity: c1 },
         )
     }
 

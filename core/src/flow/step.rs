@@ -13,17 +13,23 @@ use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
 
-/// Scalars of scratch that one call of [`Problem::advance_slab`] or [`Problem::step`] needs on a mesh of so many cells along each axis.
+/// Scalars of scratch that one call of [`Problem::advance_slab`] or [`Problem::step`] needs on a mesh of so many cells along each axis, unless
+/// the gas is mixed.
 pub const fn scratch_needed<const D: usize>(cells: [usize; D]) -> usize {
-    let sizes = Sizes::new(cells);
-    let pieces = if D > 0 && in_pieces::<D>(cells[0]) { (D + 2) * PIECE } else { 0 };
+    scratch_of(cells, false)
+}
+
+/// The same for a gas that is mixed or not.
+const fn scratch_of<const D: usize>(cells: [usize; D], mixed: bool) -> usize {
+    let sizes = Sizes::new(cells, mixed);
+    let pieces = if D > 0 && in_pieces::<D>(cells[0]) { sizes.state * PIECE } else { 0 };
     sizes.total::<D>().saturating_add(pieces)
 }
 
 impl<R: Real, const D: usize> Problem<'_, R, D> {
-    /// [`scratch_needed`] for the cells of this mesh.
+    /// [`scratch_needed`] for the cells of this mesh and its gas.
     pub fn scratch_len(&self) -> usize {
-        scratch_needed(self.mesh.cells())
+        scratch_of(self.mesh.cells(), self.gas.is_mixed())
     }
 
     /// Advances the layers `slab` (along the last axis; all of them in 1D) by `dt`.
@@ -42,7 +48,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.advance_slab_by::<AnyFlux>(old, new, slab, dt, first_order, scratch)
     }
 
-    /// The same, compiled for some solvers and gases only.
+    /// The same, compiled for some solvers and gases: for fewer, or for mixed gases too.
     ///
     /// # Errors
     /// As of [`Problem::advance_slab`]; and [`Error::OtherFlux`].
@@ -87,6 +93,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(&field.as_fields())?;
         if let Some(p) = &self.porosity {
             clusters::average_unequal(self.clusters, &self.mesh, p.volume, self.gas, field);
+            if self.gas.is_mixed() {
+                clusters::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, field);
+            }
         }
         self.rate(&field.as_fields())
     }
@@ -105,10 +114,12 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.fits(&new.as_fields(), self.mesh.len())?;
         let Some(p) = &self.porosity else { return Ok(()) };
         clusters::apply(self.clusters, &self.mesh, p.volume, old, new);
+        if self.gas.is_mixed() {
+            clusters::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, new);
+        }
         for cell in self.clusters.cells() {
-            let u = new.at(cell);
-            if self.is_physical(&u) {
-                report.rate = R::larger(self.cell_rate(&u, cell), report.rate);
+            if self.holds(&new.as_fields(), cell) {
+                report.rate = R::larger(self.cell_rate(&new.as_fields(), cell), report.rate);
             } else {
                 report.unphysical += 1;
             }

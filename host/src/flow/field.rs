@@ -19,6 +19,8 @@ pub struct Field<R: Scalar, const D: usize> {
     pub momentum: [HugeVec<R>; D],
     /// Total energy per open volume; empty for a barotropic gas.
     pub energy: HugeVec<R>,
+    /// 1/(gamma − 1) of the gas in each cell of a mixed gas; else empty.
+    pub capacity: HugeVec<R>,
 }
 
 impl<R: Scalar, const D: usize> Field<R, D> {
@@ -29,12 +31,18 @@ impl<R: Scalar, const D: usize> Field<R, D> {
             density: zeros(),
             momentum: std::array::from_fn(|_| zeros()),
             energy: if gas.has_energy() { zeros() } else { HugeVec::default() },
+            capacity: if gas.is_mixed() { zeros() } else { HugeVec::default() },
         }
     }
 
     /// To be read.
     pub fn view(&self) -> Fields<'_, R, D> {
-        Fields { density: &self.density, momentum: self.momentum.each_ref().map(|m| &**m), energy: &self.energy }
+        Fields {
+            density: &self.density,
+            momentum: self.momentum.each_ref().map(|m| &**m),
+            energy: &self.energy,
+            capacity: &self.capacity,
+        }
     }
 
     /// To be written.
@@ -43,6 +51,7 @@ impl<R: Scalar, const D: usize> Field<R, D> {
             density: &mut self.density,
             momentum: self.momentum.each_mut().map(|m| &mut **m),
             energy: &mut self.energy,
+            capacity: &mut self.capacity,
         }
     }
 }

@@ -26,12 +26,13 @@ impl<const D: usize, const COUNT: usize> State<D, COUNT> {
     }
 
     fn view(&self) -> Fields<'_, Real, D> {
-        Fields { density: &self.density, momentum: self.momentum.each_ref().map(|m| &m[..]), energy: &self.energy }
+        let momentum = self.momentum.each_ref().map(|m| &m[..]);
+        Fields { density: &self.density, momentum, energy: &self.energy, capacity: &[] }
     }
 
     fn view_mut(&mut self) -> FieldsMut<'_, Real, D> {
         let momentum = self.momentum.each_mut().map(|m| &mut m[..]);
-        FieldsMut { density: &mut self.density, momentum, energy: &mut self.energy }
+        FieldsMut { density: &mut self.density, momentum, energy: &mut self.energy, capacity: &mut [] }
     }
 }
 

@@ -34,11 +34,13 @@ impl<R: Real, const D: usize> Field<R, D> {
     }
 
     fn view(&self) -> Fields<'_, R, D> {
-        Fields { density: self.density, momentum: self.momentum.each_ref().map(|m| &**m), energy: self.energy }
+        let momentum = self.momentum.each_ref().map(|m| &**m);
+        Fields { density: self.density, momentum, energy: self.energy, capacity: &[] }
     }
 
     fn view_mut(&mut self) -> FieldsMut<'_, R, D> {
-        FieldsMut { density: self.density, momentum: self.momentum.each_mut().map(|m| &mut **m), energy: self.energy }
+        let momentum = self.momentum.each_mut().map(|m| &mut **m);
+        FieldsMut { density: self.density, momentum, energy: self.energy, capacity: &mut [] }
     }
 }
 

@@ -12,11 +12,16 @@ use core::marker::PhantomData;
 /// The sweep over the cells is compiled for each solver and each kind of gas. A program that names one of them links no other.
 pub trait FluxChoice: Choice {}
 
-/// All solvers and gases; the problem says which.
+/// All solvers and gases but mixed ones; the problem says which.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyFlux;
 
-/// One solver (of [`crate::flow::riemann`]: [`Hllc`], [`HllcLowMach`], [`Hlle`], [`Rusanov`]) and one kind of gas ([`WithEnergy`], [`Barotropic`]).
+/// All solvers and gases, mixed ones too.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyGas;
+
+/// One solver (of [`crate::flow::riemann`]: [`Hllc`], [`HllcLowMach`], [`Hlle`], [`Rusanov`]) and one kind of gas ([`WithEnergy`], [`Barotropic`],
+/// [`MixedGas`]).
 /// A problem that asks for another is refused.
 #[derive(Clone, Copy, Debug)]
 pub struct OneFlux<S, G>(PhantomData<(S, G)>);
@@ -28,6 +33,10 @@ pub struct WithEnergy;
 /// A gas without: [`crate::flow::Gas::Isothermal`] and [`crate::flow::Gas::Isentropic`].
 #[derive(Clone, Copy, Debug)]
 pub struct Barotropic;
+
+/// A gas of several ratios of specific heats: [`crate::flow::Gas::Mixed`].
+#[derive(Clone, Copy, Debug)]
+pub struct MixedGas;
 
 mod sealed {
     use super::{Error, Problem, Real, Sweep};
@@ -44,15 +53,34 @@ impl FluxChoice for AnyFlux {}
 
 impl Choice for AnyFlux {
     fn sweep<R: Real, const D: usize>(problem: &Problem<'_, R, D>) -> Result<Sweep<R, D>, Error> {
+        if problem.gas.is_mixed() {
+            return Err(Error::OtherFlux);
+        }
         Ok(match (problem.gas.has_energy(), problem.scheme.riemann) {
-            (true, Riemann::Hllc) => Sweep::by::<Hllc, true>(),
-            (true, Riemann::HllcLowMach) => Sweep::by::<HllcLowMach, true>(),
-            (true, Riemann::Hlle) => Sweep::by::<Hlle, true>(),
-            (true, Riemann::Rusanov) => Sweep::by::<Rusanov, true>(),
-            (false, Riemann::Hllc) => Sweep::by::<Hllc, false>(),
-            (false, Riemann::HllcLowMach) => Sweep::by::<HllcLowMach, false>(),
-            (false, Riemann::Hlle) => Sweep::by::<Hlle, false>(),
-            (false, Riemann::Rusanov) => Sweep::by::<Rusanov, false>(),
+            (true, Riemann::Hllc) => Sweep::by::<Hllc, true, false>(),
+            (true, Riemann::HllcLowMach) => Sweep::by::<HllcLowMach, true, false>(),
+            (true, Riemann::Hlle) => Sweep::by::<Hlle, true, false>(),
+            (true, Riemann::Rusanov) => Sweep::by::<Rusanov, true, false>(),
+            (false, Riemann::Hllc) => Sweep::by::<Hllc, false, false>(),
+            (false, Riemann::HllcLowMach) => Sweep::by::<HllcLowMach, false, false>(),
+            (false, Riemann::Hlle) => Sweep::by::<Hlle, false, false>(),
+            (false, Riemann::Rusanov) => Sweep::by::<Rusanov, false, false>(),
+        })
+    }
+}
+
+impl FluxChoice for AnyGas {}
+
+impl Choice for AnyGas {
+    fn sweep<R: Real, const D: usize>(problem: &Problem<'_, R, D>) -> Result<Sweep<R, D>, Error> {
+        if !problem.gas.is_mixed() {
+            return AnyFlux::sweep(problem);
+        }
+        Ok(match problem.scheme.riemann {
+            Riemann::Hllc => Sweep::by::<Hllc, true, true>(),
+            Riemann::HllcLowMach => Sweep::by::<HllcLowMach, true, true>(),
+            Riemann::Hlle => Sweep::by::<Hlle, true, true>(),
+            Riemann::Rusanov => Sweep::by::<Rusanov, true, true>(),
         })
     }
 }
@@ -61,7 +89,7 @@ impl<S: Solver> FluxChoice for OneFlux<S, WithEnergy> {}
 
 impl<S: Solver> Choice for OneFlux<S, WithEnergy> {
     fn sweep<R: Real, const D: usize>(problem: &Problem<'_, R, D>) -> Result<Sweep<R, D>, Error> {
-        asked::<R, D, S, true>(problem)
+        asked::<R, D, S, true, false>(problem)
     }
 }
 
@@ -69,14 +97,23 @@ impl<S: Solver> FluxChoice for OneFlux<S, Barotropic> {}
 
 impl<S: Solver> Choice for OneFlux<S, Barotropic> {
     fn sweep<R: Real, const D: usize>(problem: &Problem<'_, R, D>) -> Result<Sweep<R, D>, Error> {
-        asked::<R, D, S, false>(problem)
+        asked::<R, D, S, false, false>(problem)
+    }
+}
+
+impl<S: Solver> FluxChoice for OneFlux<S, MixedGas> {}
+
+impl<S: Solver> Choice for OneFlux<S, MixedGas> {
+    fn sweep<R: Real, const D: usize>(problem: &Problem<'_, R, D>) -> Result<Sweep<R, D>, Error> {
+        asked::<R, D, S, true, true>(problem)
     }
 }
 
 /// The one sweep there is; refuses a problem that asks for another solver or another kind of gas.
-fn asked<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+fn asked<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     problem: &Problem<'_, R, D>,
 ) -> Result<Sweep<R, D>, Error> {
-    let same = problem.scheme.riemann == S::KIND && problem.gas.has_energy() == ENERGY;
-    if same { Ok(Sweep::by::<S, ENERGY>()) } else { Err(Error::OtherFlux) }
+    let same =
+        problem.scheme.riemann == S::KIND && problem.gas.has_energy() == ENERGY && problem.gas.is_mixed() == MIXED;
+    if same { Ok(Sweep::by::<S, ENERGY, MIXED>()) } else { Err(Error::OtherFlux) }
 }

@@ -1,6 +1,7 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
 use crate::flow::boundary::Boundary;
+use crate::flow::kernel::mixed::{self, Carried};
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
@@ -15,7 +16,7 @@ use crate::number::real::Real;
 use core::ops::Range;
 
 /// Face states of the present row on the low or high side of its cells along axis `d`.
-fn states<R: Real, const D: usize>(
+fn states<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     high: bool,
     d: usize,
@@ -23,11 +24,15 @@ fn states<R: Real, const D: usize>(
     out: Faces<'_, R>,
 ) {
     let weight = if slab.problem.gravity[d] != R::ZERO { Some(weight) } else { None };
+    if MIXED {
+        let faces = Faces { block: &mut *out.block, ..out };
+        mixed::face_states::<R, D>(high, half, slope, slab.size.n, slab.capacities, faces);
+    }
     rows::face_states::<R, D>(high, d, half, slope, slab.size.n, weight, out);
 }
 
 /// Fluxes through the faces inside and at both ends of a row, and their differences; `place` is that of the row in its tile.
-pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     place: usize,
@@ -36,9 +41,9 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
 ) {
     let (n, m) = (slab.size.n, slab.size.m);
     let from = (&*work.half, &*work.slope[0], &*work.coefficients.weight[0]);
-    states(slab, true, 0, from, Faces { block: work.left, stride: m, offset: 1 });
-    states(slab, false, 0, from, Faces { block: work.right, stride: m, offset: 0 });
-    states_at_ends(slab, row, work);
+    states::<R, D, MIXED>(slab, true, 0, from, Faces { block: work.left, stride: m, offset: 1 });
+    states::<R, D, MIXED>(slab, false, 0, from, Faces { block: work.right, stride: m, offset: 0 });
+    states_at_ends::<R, D, MIXED>(slab, row, work);
 
     let openings = match &slab.medium {
         None => Openings::None,
@@ -62,16 +67,16 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
     if S::LOW_MACH {
         paces(slab, 0, row.at, openings.face(), pace);
     }
-    rows::fluxes::<R, S, D, ENERGY>(work.left, work.right, openings, &slab.face_gas, pace, work.flux);
+    rows::fluxes::<R, S, D, ENERGY, MIXED>(work.left, work.right, openings, &slab.face_gas, pace, work.flux);
     if let Some(medium) = &slab.medium {
         let marks = &medium.porosity.marks[row.start..][..n];
         let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
         let broken = marked(marks, break_low(0)).chain(last);
         let flux = FluxBlock { values: work.flux, n: m };
-        fluxes_at_breaks::<R, D, S>(slab, 0, row.at, broken, [work.left, work.right], flux);
+        fluxes_at_breaks::<R, D, S, MIXED>(slab, 0, row.at, broken, [work.left, work.right], flux);
     }
     let flux = FluxBlock { values: work.flux, n: m };
-    positive_fluxes::<R, D, ENERGY>(slab, 0, row.at, [work.left, work.right], flux);
+    positive_fluxes::<R, D, ENERGY, MIXED>(slab, 0, row.at, [work.left, work.right], flux);
     let flux = &*work.flux;
     count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
     count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
@@ -86,11 +91,30 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
         &mut work.change[0][slab.changes(0, place)],
         n,
     );
+    if MIXED {
+        let carried = |v: usize| Carried { volume: &var(flux, D + 3, m)[v..], capacity: &var(flux, D + 4, m)[v..] };
+        let own = &slab.old.capacity[row.start..];
+        let out = &mut work.change[0][slab.changes(0, place)][(D + 2) * n..];
+        mixed::differences(own, carried(0), carried(1), |i| inv[i], out);
+    }
 }
 
 /// The states beyond both ends of a row: of the other end, or ghosts.
-fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, work: &mut Work<'_, R, D>) {
-    let (n, m, gas) = (slab.size.n, slab.size.m, slab.problem.gas);
+fn states_at_ends<R: Real, const D: usize, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    work: &mut Work<'_, R, D>,
+) {
+    let (n, m) = (slab.size.n, slab.size.m);
+    // Capacities on the low and the high side, inside and outside.
+    let (low, high) = ((D + 3) * m, (D + 3) * m + n);
+    let gases = [slab.gas_of::<MIXED>(work.right, low), slab.gas_of::<MIXED>(work.left, high)];
+    if MIXED {
+        let inside = [work.right[low], work.left[high]];
+        let beyond = |high: bool| slab.problem.capacity_beyond((0, high), row.at, inside[usize::from(high)]);
+        let [a, b] = if slab.periodic[0] { [inside[1], inside[0]] } else { [false, true].map(beyond) };
+        (work.left[low], work.right[high]) = (a, b);
+    }
     let inner_low = rows::face_state::<R, D>(work.right, m, 0);
     let inner_high = rows::face_state::<R, D>(work.left, m, n);
     let (of_low, of_high) = (work.right[(D + 2) * m], work.left[(D + 2) * m + n]);
@@ -98,7 +122,7 @@ fn states_at_ends<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>,
         ((inner_high, of_high), (inner_low, of_low))
     } else {
         let [a, b] = [false, true].map(|high| slab.problem.side(0, high, row.at));
-        let (low, high) = (a.ghost_face(&inner_low, 0, true, gas), b.ghost_face(&inner_high, 0, false, gas));
+        let (low, high) = (a.ghost_face(&inner_low, 0, true, gases[0]), b.ghost_face(&inner_high, 0, false, gases[1]));
         ((low, middle(a, of_low, &low)), (high, middle(b, of_high, &high)))
     };
     rows::put_state(work.left, m, 0, &low.0);
@@ -196,7 +220,7 @@ fn half_weight<'s, R: Real, const D: usize>(
 
 /// Fluxes of a row of faces across axis `d` > 0 between `left` and `right`, into `flux`. `at` names the row of cells above the faces,
 /// with `at[d]` one past the end at the upper boundary.
-fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
@@ -231,17 +255,17 @@ fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
     if S::LOW_MACH {
         paces(slab, d, at, openings.face(), pace);
     }
-    rows::fluxes::<R, S, D, ENERGY>(left, right, openings, &slab.face_gas, pace, flux);
+    rows::fluxes::<R, S, D, ENERGY, MIXED>(left, right, openings, &slab.face_gas, pace, flux);
     if let Some(medium) = &slab.medium {
         let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
-        fluxes_at_breaks::<R, D, S>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
+        fluxes_at_breaks::<R, D, S, MIXED>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
     }
-    positive_fluxes::<R, D, ENERGY>(slab, d, at, [left, right], FluxBlock { values: flux, n });
+    positive_fluxes::<R, D, ENERGY, MIXED>(slab, d, at, [left, right], FluxBlock { values: flux, n });
 }
 
 /// Ghost states beside the boundary faces of axis `d` > 0 of the row from `at` on, from the inner face states.
-fn ghosts<R: Real, const D: usize>(
+fn ghosts<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (d, low): (usize, bool),
     mut at: [usize; D],
@@ -252,14 +276,18 @@ fn ghosts<R: Real, const D: usize>(
     for i in 0..n {
         at[0] = i;
         let boundary = slab.problem.side(d, !low, at);
-        let w = boundary.ghost_face(&rows::face_state::<R, D>(inner, n, i), d, low, slab.problem.gas);
+        let gas = slab.gas_of::<MIXED>(inner, (D + 3) * n + i);
+        let w = boundary.ghost_face(&rows::face_state::<R, D>(inner, n, i), d, low, gas);
         rows::put_state(out, n, i, &w);
+        if MIXED {
+            out[(D + 3) * n + i] = slab.problem.capacity_beyond((d, !low), at, inner[(D + 3) * n + i]);
+        }
         out[(D + 2) * n + i] = middle(boundary, inner[(D + 2) * n + i], &w);
     }
 }
 
 /// Faces between row `j` and the row below it along axis 1 of a 3D mesh; `present` tells whether there is a row `j`.
-pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (layer, j): (usize, isize),
     present: bool,
@@ -273,19 +301,25 @@ pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, co
     let mut below = core::mem::take(&mut work.below_row);
     let changed = (j > slab.rows.start as isize).then(|| slab.place(j - 1));
     let faces = FacesUnder { d, at, present, changed };
-    fluxes_under::<R, D, S, ENERGY>(slab, faces, (below.state, below.flux), work, report);
+    fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, (below.state, below.flux), work, report);
     core::mem::swap(&mut below, &mut work.below_row);
 }
 
 /// Faces between row `j` of layer `l` and of the layer below; `present` tells whether there is a layer `l`.
-pub(in crate::flow) fn fluxes_across_layers<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+pub(in crate::flow) fn fluxes_across_layers<
+    R: Real,
+    const D: usize,
+    S: Solver,
+    const ENERGY: bool,
+    const MIXED: bool,
+>(
     slab: &Slab<'_, R, D>,
     (l, j): (isize, isize),
     present: bool,
     work: &mut Work<'_, R, D>,
     report: &mut Report<R, D>,
 ) {
-    let f = (D + 3) * slab.size.n;
+    let f = slab.size.face * slab.size.n;
     let mut at = [0; D];
     if D == 3 {
         at[1] = j as usize;
@@ -296,7 +330,7 @@ pub(in crate::flow) fn fluxes_across_layers<R: Real, const D: usize, S: Solver, 
     let own = (&mut below.state[place * f..][..f], &mut below.flux[place * f..][..f]);
     let changed = (l > slab.layers.start as isize).then_some(place);
     let faces = FacesUnder { d: D - 1, at, present, changed };
-    fluxes_under::<R, D, S, ENERGY>(slab, faces, own, work, report);
+    fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, own, work, report);
     core::mem::swap(&mut below, &mut work.below_layer);
 }
 
@@ -314,26 +348,26 @@ struct FacesUnder<const D: usize> {
 
 /// Fluxes through the faces under a row, from the high face states of the row below; then, if that row is advanced, the changes they make
 /// in it. `below_flux` holds the fluxes under that row, and afterwards the new ones.
-fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     FacesUnder { d, at, present, changed }: FacesUnder<D>,
     (below_state, below_flux): (&mut [R], &mut [R]),
     work: &mut Work<'_, R, D>,
     report: &mut Report<R, D>,
 ) {
-    let (n, f) = (slab.size.n, (D + 3) * slab.size.n);
+    let (n, f) = (slab.size.n, slab.size.face * slab.size.n);
     let mesh = &slab.problem.mesh;
     if present {
         let from = (&*work.half, &*work.slope[d], &*work.coefficients.weight[d]);
-        states(slab, false, d, from, Faces { block: &mut work.right[..f], stride: n, offset: 0 });
+        states::<R, D, MIXED>(slab, false, d, from, Faces { block: &mut work.right[..f], stride: n, offset: 0 });
         if at[d] == 0 && !slab.periodic[d] {
-            ghosts(slab, (d, true), at, &work.right[..f], below_state);
+            ghosts::<R, D, MIXED>(slab, (d, true), at, &work.right[..f], below_state);
         }
     } else {
-        ghosts(slab, (d, false), at, below_state, &mut work.right[..f]);
+        ghosts::<R, D, MIXED>(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
     let to = (&mut work.flux[..f], &mut *work.coefficients.pace);
-    fluxes_of_faces::<R, D, S, ENERGY>(slab, d, at, [below_state, &work.right[..f]], to);
+    fluxes_of_faces::<R, D, S, ENERGY, MIXED>(slab, d, at, [below_state, &work.right[..f]], to);
     let last = mesh.cells()[d];
     for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
         if at[d] == edge {
@@ -358,28 +392,39 @@ fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
             &mut work.change[d][slab.changes(d, place)],
             n,
         );
+        if MIXED {
+            let mut of_row = at;
+            of_row[d] = below;
+            let own = &slab.old.capacity[mesh.index(of_row)..];
+            let carried = |flux| Carried { volume: var(flux, D + 3, n), capacity: var(flux, D + 4, n) };
+            let out = &mut work.change[d][slab.changes(d, place)][(D + 2) * n..];
+            mixed::differences(own, carried(low), carried(high), |_| inv, out);
+        }
     }
     below_flux.copy_from_slice(&work.flux[..f]);
 }
 
 /// Leaves the high face states of the present row for the row above it.
-pub(in crate::flow) fn keep_for_row_above<R: Real, const D: usize>(slab: &Slab<'_, R, D>, work: &mut Work<'_, R, D>) {
+pub(in crate::flow) fn keep_for_row_above<R: Real, const D: usize, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    work: &mut Work<'_, R, D>,
+) {
     let (n, d) = (slab.size.n, 1 % D);
     let from = (&*work.half, &*work.slope[d], &*work.coefficients.weight[d]);
-    let block = &mut work.below_row.state[..(D + 3) * n];
-    states(slab, true, d, from, Faces { block, stride: n, offset: 0 });
+    let block = &mut work.below_row.state[..slab.size.face * n];
+    states::<R, D, MIXED>(slab, true, d, from, Faces { block, stride: n, offset: 0 });
 }
 
 /// Leaves the high face states of the present row, at a place of its tile, for the layer above it.
-pub(in crate::flow) fn keep_for_layer_above<R: Real, const D: usize>(
+pub(in crate::flow) fn keep_for_layer_above<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     place: usize,
     work: &mut Work<'_, R, D>,
 ) {
-    let (n, f) = (slab.size.n, (D + 3) * slab.size.n);
+    let (n, f) = (slab.size.n, slab.size.face * slab.size.n);
     let from = (&*work.half, &*work.slope[D - 1], &*work.coefficients.weight[D - 1]);
     let block = &mut work.below_layer.state[place * f..][..f];
-    states(slab, true, D - 1, from, Faces { block, stride: n, offset: 0 });
+    states::<R, D, MIXED>(slab, true, D - 1, from, Faces { block, stride: n, offset: 0 });
 }
 
 /// Adds what enters through some boundary faces of a flux block, beside cells of `row` on a side (axis, 0 low or 1 high) of the domain;

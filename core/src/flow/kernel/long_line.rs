@@ -89,15 +89,17 @@ fn advance_piece<R: Real, const D: usize>(
     run: Sweep<R, D>,
 ) -> Report<R, D> {
     let inner = &part.reported;
-    let (mut held, scratch) = take_field::<R, D>(scratch, piece.mesh.len(), !part.old.energy.is_empty());
+    let (mut held, scratch) = take_field::<R, D>(scratch, piece.mesh.len(), present_in(part.old));
     let report = sweep::advance(piece, part, &mut held, scratch, run);
-    let energy = if new.energy.is_empty() { 0..0 } else { own.clone() };
     new.density[own.clone()].copy_from_slice(&held.density[inner.clone()]);
     for (new, held) in new.momentum.iter_mut().zip(&held.momentum) {
         new[own.clone()].copy_from_slice(&held[inner.clone()]);
     }
-    let held_energy = if energy.is_empty() { 0..0 } else { inner.clone() };
-    new.energy[energy].copy_from_slice(&held.energy[held_energy]);
+    for (new, held) in [(&mut *new.energy, &*held.energy), (&mut *new.capacity, &*held.capacity)] {
+        if !(new.is_empty() || held.is_empty()) {
+            new[own.clone()].copy_from_slice(&held[inner.clone()]);
+        }
+    }
     report
 }
 
@@ -119,6 +121,7 @@ fn advance_seam<R: Real, const D: usize>(
     let widths = line.mesh.widths.map(gather);
     let old = whole.old;
     let (density, momentum, energy) = (gather(old.density), old.momentum.map(gather), gather(old.energy));
+    let capacity = gather(old.capacity);
     let none = (&[][..], [&[][..]; D], &[][..]);
     let (volume, faces, marks) = line.porosity.map_or(none, |p| (p.volume, p.faces, p.marks));
     let (porous, volume) = (!volume.is_empty(), gather(volume));
@@ -144,15 +147,19 @@ fn advance_seam<R: Real, const D: usize>(
         density: &density,
         momentum: momentum.each_ref().map(|m| &m[..]),
         energy: &energy[..present(old.energy)],
+        capacity: &capacity[..present(old.capacity)],
     };
     let asked = whole.first_order.map(bytes);
     let first_order = asked.as_ref().map(|a| &a[..]);
-    let (mut held, scratch) = take_field::<R, D>(scratch, SEAM, !old.energy.is_empty());
+    let (mut held, scratch) = take_field::<R, D>(scratch, SEAM, present_in(&old));
     let inner = BESIDE..SEAM - BESIDE;
     let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported: inner.clone() };
     let mut report = sweep::advance(&seam, &part, &mut held, scratch, run);
     for i in inner {
         new.set(place(i), &held.at(i));
+        if let Some((new, held)) = new.capacity.get_mut(place(i)).zip(held.capacity.get(i)) {
+            *new = *held;
+        }
     }
     report.inflow = Report::new().inflow;
     report
@@ -160,15 +167,26 @@ fn advance_seam<R: Real, const D: usize>(
 
 /// A range of a field.
 fn part_of<'a, R: Real, const D: usize>(field: &Fields<'a, R, D>, cells: Range<usize>) -> Fields<'a, R, D> {
+    let part = |s: &'a [R]| if s.is_empty() { s } else { &s[cells.clone()] };
     Fields {
-        density: &field.density[cells.clone()],
-        momentum: field.momentum.map(|m| &m[cells.clone()]),
-        energy: if field.energy.is_empty() { field.energy } else { &field.energy[cells] },
+        density: part(field.density),
+        momentum: field.momentum.map(part),
+        energy: part(field.energy),
+        capacity: part(field.capacity),
     }
 }
 
-/// A field of `n` cells from the front of the scratch, and what remains of it.
-fn take_field<R: Real, const D: usize>(scratch: &mut [R], n: usize, energy: bool) -> (FieldsMut<'_, R, D>, &mut [R]) {
+/// Whether a field has an energy, and capacities.
+fn present_in<R: Real, const D: usize>(field: &Fields<'_, R, D>) -> [bool; 2] {
+    [!field.energy.is_empty(), !field.capacity.is_empty()]
+}
+
+/// A field of `n` cells from the front of the scratch, with an `energy` and `capacities` or without, and what remains of the scratch.
+fn take_field<R: Real, const D: usize>(
+    scratch: &mut [R],
+    n: usize,
+    [energy, capacities]: [bool; 2],
+) -> (FieldsMut<'_, R, D>, &mut [R]) {
     let mut rest = scratch;
     let mut take = |n: usize| {
         let (piece, after) = core::mem::take(&mut rest).split_at_mut(n);
@@ -179,6 +197,7 @@ fn take_field<R: Real, const D: usize>(scratch: &mut [R], n: usize, energy: bool
         density: take(n),
         momentum: core::array::from_fn(|_| take(n)),
         energy: take(if energy { n } else { 0 }),
+        capacity: take(if capacities { n } else { 0 }),
     };
     (field, rest)
 }

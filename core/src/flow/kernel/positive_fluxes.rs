@@ -8,6 +8,7 @@
 //! Reference: X. Y. Hu, N. A. Adams, C.-W. Shu, J. Comput. Phys. 242 (2013) 169, sec. 2 (which flux is positive, and that it may replace
 //! another face by face).
 
+use crate::flow::face_gas::MixedFace;
 use crate::flow::fallback::POSITIVE;
 use crate::flow::kernel::rows::{self, FluxBlock};
 use crate::flow::kernel::slab::Slab;
@@ -16,7 +17,7 @@ use crate::number::real::Real;
 
 /// Replaces the fluxes beside marked cells in a row of faces of axis `d`; `at` names the cell above the first of them. `states` are those on
 /// the left and on the right, with the pressures that act on the walls inside the cells.
-pub(in crate::flow) fn positive_fluxes<R: Real, const D: usize, const ENERGY: bool>(
+pub(in crate::flow) fn positive_fluxes<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
@@ -33,7 +34,11 @@ pub(in crate::flow) fn positive_fluxes<R: Real, const D: usize, const ENERGY: bo
             continue;
         }
         let [l, r] = states.map(|s| rows::face_state::<R, D>(s, n, i));
-        let f = Rusanov::flux::<R, D, ENERGY>(&l, &r, &slab.face_gas);
+        let f = if MIXED {
+            Rusanov::flux::<R, D, ENERGY>(&l, &r, &MixedFace::of_capacities(states.map(|s| s[(D + 3) * n + i])))
+        } else {
+            Rusanov::flux::<R, D, ENERGY>(&l, &r, &slab.face_gas)
+        };
         // Through a closed face nothing passes; the wall there answers with the pressure of the cell.
         let open = slab.medium.as_ref().map_or(R::ONE, |m| m.porosity.faces[d][mesh.face(d, face)]);
         let through = |x: R| if open > R::ZERO { open * x } else { R::ZERO };
@@ -47,5 +52,10 @@ pub(in crate::flow) fn positive_fluxes<R: Real, const D: usize, const ENERGY: bo
             flux.values[(D + 1) * n + i] = through(f.energy);
         }
         flux.values[(D + 2) * n + i] = through(f.momentum[0] - reference[1]);
+        if MIXED {
+            let volume = through(f.velocity);
+            flux.values[(D + 3) * n + i] = volume;
+            flux.values[(D + 4) * n + i] = volume * f.capacity[0] + through(f.capacity[1]);
+        }
     }
 }

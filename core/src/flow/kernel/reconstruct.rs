@@ -1,6 +1,7 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
 use crate::flow::boundary::Boundary;
+use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, StateBlock, Three, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::slab::{RowAt, Slab};
@@ -16,7 +17,7 @@ type Place = (isize, isize);
 
 /// Slopes and half-step states of a row of real cells, which stands in the window at a layer and row. Counts the cells that had to fall
 /// back to first order.
-pub(in crate::flow) fn reconstruct<R: Real, const D: usize>(
+pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     place: Place,
@@ -25,25 +26,31 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize>(
 ) {
     coefficients(slab, row, &mut work.coefficients);
     match slab.problem.scheme.limiter {
-        Limiter::Steep => slopes::<R, D, Steep>(slab, row, place, work),
-        Limiter::MonotonizedCentral => slopes::<R, D, MonotonizedCentral>(slab, row, place, work),
-        Limiter::VanLeer => slopes::<R, D, VanLeer>(slab, row, place, work),
-        Limiter::Minmod => slopes::<R, D, Minmod>(slab, row, place, work),
-        Limiter::Unlimited => slopes::<R, D, Unlimited>(slab, row, place, work),
+        Limiter::Steep => slopes::<R, D, Steep, MIXED>(slab, row, place, work),
+        Limiter::MonotonizedCentral => slopes::<R, D, MonotonizedCentral, MIXED>(slab, row, place, work),
+        Limiter::VanLeer => slopes::<R, D, VanLeer, MIXED>(slab, row, place, work),
+        Limiter::Minmod => slopes::<R, D, Minmod, MIXED>(slab, row, place, work),
+        Limiter::Unlimited => slopes::<R, D, Unlimited, MIXED>(slab, row, place, work),
         Limiter::FirstOrder => work.slope.iter_mut().for_each(|s| s.fill(R::ZERO)),
     }
     let n = slab.size.n;
     let marks = slab.medium.as_ref().map(|m| &m.porosity.marks[row.start..][..n]);
     let here = &work.window[slab.block(place.0, place.1)];
-    half_step(slab, row, here, &work.slope, &work.coefficients, work.half);
-    if slab.problem.drag.is_some() {
-        drag_half(slab, row, here, work.half);
+    if MIXED {
+        let n_slope = (D + 2) * n;
+        let mut slope = work.slope.each_mut().map(|s| &mut s[n_slope..][..n]);
+        let own = &var(here, D + 2, slab.size.padded)[1..][..n];
+        mixed::bound_slopes(own, &mut slope, slab.capacities);
     }
-    fall_back(slab, row, here, &mut work.slope, work.half, marks, first_order_cells);
+    half_step::<R, D, MIXED>(slab, row, here, &work.slope, &work.coefficients, work.half);
+    if slab.problem.drag.is_some() {
+        drag_half::<R, D, MIXED>(slab, row, here, work.half);
+    }
+    fall_back::<R, D, MIXED>(slab, row, here, &mut work.slope, work.half, marks, first_order_cells);
 }
 
 /// Slopes of a row along all axes.
-fn slopes<R: Real, const D: usize, S: Slope>(
+fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     (l, j): Place,
@@ -54,8 +61,14 @@ fn slopes<R: Real, const D: usize, S: Slope>(
     let split = S::SPLIT && slab.problem.gas.has_energy();
     if split {
         let inner = |v: usize| &var(here, v, padded)[1..][..n];
-        let gamma = slab.problem.gas.gamma();
-        rows::compliances(inner(0), inner(D + 1), gamma, &mut work.coefficients.compliance[..n]);
+        let (rho, p, out) = (inner(0), inner(D + 1), &mut work.coefficients.compliance[..n]);
+        if MIXED {
+            let capacity = inner(D + 2);
+            rows::compliances(rho, p, |i| mixed::gamma_of(capacity[i]), out);
+        } else {
+            let gamma = slab.problem.gas.gamma();
+            rows::compliances(rho, p, |_| gamma, out);
+        }
     }
     let compliance = if split { Some(&*work.coefficients.compliance) } else { None };
     for d in 0..D {
@@ -75,20 +88,20 @@ fn slopes<R: Real, const D: usize, S: Slope>(
         let gravity = slab.problem.gravity[d];
         let out = &mut *work.slope[d];
         if gravity == R::ZERO && slab.even[d] {
-            slopes_along::<R, D, S>(slab, d, row, three, &Even, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, d, row, three, &Even, compliance, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let sides = slab.problem.boundaries[d];
             let copied = sides.map(|b| matches!(b, Boundary::Wall | Boundary::ZeroGradient));
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
-            slopes_along::<R, D, S>(slab, d, row, three, &axis, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, d, row, three, &axis, compliance, out);
         }
     }
 }
 
 /// Slopes of a row along one axis, breaks included.
-fn slopes_along<'a, R: Real, const D: usize, S: Slope>(
+fn slopes_along<'a, R: Real, const D: usize, S: Slope, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     row: RowAt<D>,
@@ -97,15 +110,19 @@ fn slopes_along<'a, R: Real, const D: usize, S: Slope>(
     compliance: Option<&[R]>,
     out: &mut [R],
 ) {
-    rows::slopes::<R, S, D>(&values, axis, compliance, out, slab.size.n);
+    let n = slab.size.n;
+    rows::slopes::<R, S, D>(&values, axis, compliance, out, n);
+    if MIXED {
+        mixed::slopes::<R, S>(values(D + 2), axis, &mut out[(D + 2) * n..][..n]);
+    }
     slopes_at_boundaries(slab, d, row, values(1 + d), axis, out);
     if slab.medium.is_some() {
-        slopes_at_breaks::<R, D, S>(slab, d, row, values, axis, compliance, out);
+        slopes_at_breaks::<R, D, S, MIXED>(slab, d, row, values, axis, compliance, out);
     }
 }
 
 /// The states at the half step from the cells `here` and their slopes.
-fn half_step<R: Real, const D: usize>(
+fn half_step<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     here: &[R],
@@ -125,16 +142,26 @@ fn half_step<R: Real, const D: usize>(
     let weights = of_row.weight.each_ref().map(|b| &**b);
     let weight = if slab.weighted { Some(&weights) } else { None };
     let gamma = slab.problem.gas.gamma();
-    let here = StateBlock { values: here, n: slab.size.padded };
-    if slab.medium.is_some() {
-        rows::half_step::<R, D, true>(here, &slope, &rate, &widening, weight, gamma, half);
+    let (values, padded) = (here, slab.size.padded);
+    let here = StateBlock { values, n: padded };
+    if MIXED {
+        let capacity = &var(values, D + 2, padded)[1..][..slab.size.n];
+        let gamma = |i: usize| mixed::gamma_of(capacity[i]);
+        if slab.medium.is_some() {
+            rows::half_step::<R, D, true>(here, &slope, &rate, &widening, weight, gamma, half);
+        } else {
+            rows::half_step::<R, D, false>(here, &slope, &rate, &widening, weight, gamma, half);
+        }
+        mixed::half_step::<R, D>((values, padded), &slope, &rate, half);
+    } else if slab.medium.is_some() {
+        rows::half_step::<R, D, true>(here, &slope, &rate, &widening, weight, |_| gamma, half);
     } else {
-        rows::half_step::<R, D, false>(here, &slope, &rate, &widening, weight, gamma, half);
+        rows::half_step::<R, D, false>(here, &slope, &rate, &widening, weight, |_| gamma, half);
     }
 }
 
 /// First order where the face states would leave the physical set, where the caller asks, and in small cells.
-fn fall_back<R: Real, const D: usize>(
+fn fall_back<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     here: &[R],
@@ -157,7 +184,7 @@ fn fall_back<R: Real, const D: usize>(
         let small = small.is_some_and(|m| m[i] & KIND != 0);
         if leaves || asked || small {
             *first_order_cells += usize::from((leaves || asked) && slab.reported.contains(&i));
-            for v in 0..(D + 2) {
+            for v in 0..D + 2 + usize::from(MIXED) {
                 half[v * n + i] = here[v * padded + 1 + i];
                 for d in 0..D {
                     slope[d][v * n + i] = R::ZERO;
@@ -220,7 +247,12 @@ fn coefficients<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, o
 }
 
 /// Drag over the half step: slows the half state and heats it.
-fn drag_half<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, here: &[R], half: &mut [R]) {
+fn drag_half<R: Real, const D: usize, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    here: &[R],
+    half: &mut [R],
+) {
     let (n, padded) = (slab.size.n, slab.size.padded);
     let Some(drag) = &slab.problem.drag else { return };
     for i in 0..n {
@@ -235,7 +267,7 @@ fn drag_half<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, here
         for c in 0..D {
             half[(1 + c) * n + i] = v[c];
         }
-        if let Gas::Ideal { gamma } = slab.problem.gas {
+        if let Gas::Ideal { gamma } = slab.gas_of::<MIXED>(here, (D + 2) * padded + 1 + i) {
             half[(D + 1) * n + i] += (gamma - R::ONE) * R::HALF * half[i] * lost;
         }
     }

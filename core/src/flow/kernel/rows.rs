@@ -9,10 +9,13 @@
 //!   the right cell sees it; D + 3
 //! - change block: density, momentum, energy; D + 2
 //!
+//! Of a mixed gas more follows: see `mixed`.
+//!
 //! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., sec. 14.4 (MUSCL-Hancock) and 16.5.
 
+use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::limiter::Slope;
-use crate::flow::riemann::{FaceGas, Slowness, Solver};
+use crate::flow::riemann::{Slowness, Solver};
 use crate::flow::state::{Fields, FieldsMut, Gas, Primitive, each, sum};
 use crate::number::real::Real;
 
@@ -57,11 +60,11 @@ fn state<R, const D: usize>(block: &[R], n: usize) -> (&[R], [&[R]; D], &[R]) {
 }
 
 /// The first D + 2 variables of a block, and what follows.
-type Variables<'b, R, const D: usize> = (&'b mut [R], [&'b mut [R]; D], &'b mut [R], &'b mut [R]);
+pub(super) type Variables<'b, R, const D: usize> = (&'b mut [R], [&'b mut [R]; D], &'b mut [R], &'b mut [R]);
 
 /// The variables of a block to be written, D + 2 of them in the order of a state block, and what follows.
 #[inline(always)]
-fn split_mut<R, const D: usize>(block: &mut [R], n: usize) -> Variables<'_, R, D> {
+pub(super) fn split_mut<R, const D: usize>(block: &mut [R], n: usize) -> Variables<'_, R, D> {
     let (first, mut rest) = block.split_at_mut(n);
     let middle = core::array::from_fn(|_| {
         let (a, b) = core::mem::take(&mut rest).split_at_mut(n);
@@ -125,7 +128,7 @@ pub(crate) trait Differences<R> {
 
 /// Differences of a variable to the cell below and to the cell above, scaled to the width of the cell.
 #[inline(always)]
-fn differences_of<R: Real>((low, here, high): Three<'_, R>, i: usize, axis: &impl Differences<R>) -> (R, R) {
+pub(super) fn differences_of<R: Real>((low, here, high): Three<'_, R>, i: usize, axis: &impl Differences<R>) -> (R, R) {
     let (a, b) = axis.scale(i);
     (a * (here[i] - low[i]), b * (high[i] - here[i]))
 }
@@ -192,16 +195,16 @@ fn one_slope<R: Real, S: Slope>(values: Three<'_, R>, axis: &impl Differences<R>
 
 /// One length for all, so that the loops need no checks.
 #[inline(always)]
-fn fit<R>((a, b, c): Three<'_, R>, n: usize) -> Three<'_, R> {
+pub(super) fn fit<R>((a, b, c): Three<'_, R>, n: usize) -> Three<'_, R> {
     (&a[..n], &b[..n], &c[..n])
 }
 
 /// 1/c² of each cell of a row.
-pub(crate) fn compliances<R: Real>(rho: &[R], p: &[R], gamma: R, out: &mut [R]) {
+pub(crate) fn compliances<R: Real>(rho: &[R], p: &[R], gamma: impl Fn(usize) -> R, out: &mut [R]) {
     let n = out.len();
     let (rho, p) = (&rho[..n], &p[..n]);
     for i in 0..n {
-        out[i] = rho[i] / (gamma * p[i]);
+        out[i] = rho[i] / (gamma(i) * p[i]);
     }
 }
 
@@ -217,14 +220,14 @@ pub(crate) enum Rate<'a, R> {
 /// The state at the half step: W − ½ dt Σ A_d ∂W/∂x_d, and, in a porous medium, the change of the open area along each axis,
 /// `widening[d]` = ½ dt Δbeta_d / (beta_v dx_d). `weight[d]` = g_d dx_d acts on the deviation from hydrostatic balance.
 ///
-/// `here` is a padded state block.
+/// `here` is a padded state block, `gamma` that of each cell.
 pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     here: StateBlock<'_, R>,
     slope: &[&[R]; D],
     rate: &[Rate<'_, R>; D],
     widening: &[&[R]; D],
     weight: Option<&[&[R]; D]>,
-    gamma: R,
+    gamma: impl Fn(usize) -> R,
     out: &mut [R],
 ) {
     let n = here.n - 2;
@@ -252,7 +255,7 @@ pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     for i in 0..n {
         let velocity: [R; D] = each(|c| u[c][i]);
         let inv_rho = R::ONE / rho[i];
-        let stiff = gamma * p[i];
+        let stiff = gamma(i) * p[i];
         let scale: [R; D] = each(|d| if POROUS || d == 0 { rows[d][i] } else { ones[d] });
         let wide: [R; D] = each(|d| if POROUS { widening[d][i] * velocity[d] } else { R::ZERO });
         let d_rho: [R; D] = each(|d| {
@@ -365,7 +368,7 @@ impl<'a, R> Openings<'a, R> {
 
 /// Fluxes through a row of faces of axis `d`, from face state blocks in the frame of the axis, as long as `pace`: time step over width, times
 /// open area over open volume.
-pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool>(
+pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool, const MIXED: bool>(
     left: &[R],
     right: &[R],
     openings: Openings<'_, R>,
@@ -374,9 +377,9 @@ pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool>(
     out: &mut [R],
 ) {
     match openings {
-        Openings::None => face_loop::<R, S, D, ENERGY, 0>([left, right], [&[]; 3], gas, pace, out),
-        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, 1>([left, right], [b; 3], gas, pace, out),
-        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, 2>([left, right], [b, l, r], gas, pace, out),
+        Openings::None => face_loop::<R, S, D, ENERGY, MIXED, 0>([left, right], [&[]; 3], gas, pace, out),
+        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, MIXED, 1>([left, right], [b; 3], gas, pace, out),
+        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, MIXED, 2>([left, right], [b, l, r], gas, pace, out),
     }
 }
 
@@ -386,7 +389,7 @@ const SHUT: f64 = 1e-9;
 
 /// `FORM`: 0 plain, 1 geometric, 2 paper.
 #[inline(always)]
-fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM: u8>(
+fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const MIXED: bool, const FORM: u8>(
     [left, right]: [&[R]; 2],
     openings: [&[R]; 3],
     gas: &FaceGas<R>,
@@ -398,13 +401,22 @@ fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM:
     let (r_rho, r_u, r_p) = state::<R, D>(right, m);
     let (l_wall, r_wall) = (var(left, D + 2, m), var(right, D + 2, m));
     let (mass, momentum, energy, rest) = split_mut::<R, D>(out, m);
-    let other = &mut rest[..m];
+    let (other, rest) = rest.split_at_mut(m);
+    // Of one gas none of these is read or written.
+    let (volume, carried) = if MIXED { rest.split_at_mut(m) } else { (&mut [][..], &mut [][..]) };
+    let capacities = if MIXED { [left, right].map(|s| var(s, D + 3, m)) } else { [l_rho, r_rho] };
     let [face, vol_l, vol_r] = if FORM == 0 { [l_rho; 3] } else { openings.map(|b| &b[..m]) };
     for i in 0..m {
         let l = Primitive { density: l_rho[i], velocity: each(|c| l_u[c][i]), pressure: l_p[i] };
         let r = Primitive { density: r_rho[i], velocity: each(|c| r_u[c][i]), pressure: r_p[i] };
         let bend = (l.pressure - l_wall[i]) + (r.pressure - r_wall[i]);
-        let f = S::slow_flux::<R, D, ENERGY>(&l, &r, gas, Slowness { bend, pace: pace[i] });
+        let slowness = Slowness { bend, pace: pace[i] };
+        let f = if MIXED {
+            let gases = MixedFace::of_capacities(capacities.map(|c| c[i]));
+            S::slow_flux::<R, D, ENERGY>(&l, &r, &gases, slowness)
+        } else {
+            S::slow_flux::<R, D, ENERGY>(&l, &r, gas, slowness)
+        };
         let (mut to_left, mut to_right) = (f.momentum[0] - l_wall[i], f.momentum[0] - r_wall[i]);
         let b = face[i];
         let open = |x: R| if FORM == 0 { x } else { b * x };
@@ -425,6 +437,10 @@ fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const FORM:
         }
         if ENERGY {
             energy[i] = open(f.energy);
+        }
+        if MIXED {
+            volume[i] = open(f.velocity);
+            carried[i] = volume[i] * f.capacity[0] + open(f.capacity[1]);
         }
     }
 }
@@ -466,7 +482,7 @@ pub(crate) fn differences<'a, R: Real, const D: usize, const ENERGY: bool>(
 }
 
 /// The cells after the step: U − dt/beta_v Σ_d changes_d. `scale` holds dt/beta_v per cell in a porous medium.
-pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool>(
+pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     old: &Fields<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     Span { from, to, n }: Span,
@@ -497,6 +513,9 @@ pub(crate) fn update<R: Real, const D: usize, const ENERGY: bool>(
     }
     if ENERGY {
         one(old.energy, D + 1, new.energy);
+    }
+    if MIXED {
+        one(old.capacity, D + 2, new.capacity);
     }
 }
 

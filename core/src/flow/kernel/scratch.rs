@@ -68,11 +68,14 @@ pub(in crate::flow) struct Sizes {
     pub rows_padded: usize,
     /// Layers of the window.
     pub layers: usize,
+    /// Variables of a state or a change block, and of a face state or a flux block.
+    pub state: usize,
+    pub face: usize,
 }
 
 impl Sizes {
-    /// For a mesh of so many cells along each axis.
-    pub const fn new<const D: usize>(cells: [usize; D]) -> Self {
+    /// For a mesh of so many cells along each axis, and a gas that is mixed or not.
+    pub const fn new<const D: usize>(cells: [usize; D], mixed: bool) -> Self {
         let n = if in_pieces::<D>(cells[0]) { PIECE } else { cells[0] };
         let rows = if D == 3 { cells[1].div_ceil(tiles(n, cells[1])) } else { 1 };
         Sizes {
@@ -82,6 +85,8 @@ impl Sizes {
             rows,
             rows_padded: if D == 3 { rows + 2 * ROWS_BESIDE } else { 1 },
             layers: if D == 1 { 1 } else { 3 },
+            state: if mixed { D + 3 } else { D + 2 },
+            face: if mixed { D + 5 } else { D + 3 },
         }
     }
 
@@ -94,8 +99,7 @@ impl Sizes {
 
     /// Scalars in all; the largest number there is, if they are more.
     pub const fn total<const D: usize>(&self) -> usize {
-        let v = D + 2;
-        let f = D + 3;
+        let (v, f) = (self.state, self.face);
         let window = product([self.layers, self.rows_padded, v, self.padded]);
         let row = product([D + 1, v, self.n]).saturating_add(product([3, f, self.m]));
         let (middle, last) = self.lagged::<D>();
@@ -169,7 +173,7 @@ pub(in crate::flow) struct RowCoefficients<'s, R, const D: usize> {
 impl<'s, R: Real, const D: usize> Work<'s, R, D> {
     /// Cuts the scratch, which holds [`Sizes::total`] scalars.
     pub fn new(s: Sizes, scratch: &'s mut [R]) -> Self {
-        let (v, f) = (D + 2, D + 3);
+        let (v, f) = (s.state, s.face);
         let mut arena = Arena(scratch);
         let (middle, last) = s.lagged::<D>();
         let mut faces =

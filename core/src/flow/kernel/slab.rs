@@ -1,11 +1,11 @@
 //! A slab of layers in one step: the problem, the old field, the sizes, and where each row stands in the window.
 
+use crate::flow::face_gas::FaceGas;
 use crate::flow::kernel::scratch::{ROWS_BESIDE, Sizes};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::throat::ThroatGas;
 use crate::flow::problem::Problem;
-use crate::flow::riemann::FaceGas;
-use crate::flow::state::Fields;
+use crate::flow::state::{Fields, Gas};
 use crate::number::real::Real;
 use core::ops::Range;
 
@@ -45,6 +45,8 @@ pub(in crate::flow) struct Slab<'p, R, const D: usize> {
     pub first_order: Option<&'p [u8]>,
     pub face_gas: FaceGas<R>,
     pub throat: ThroatGas<R>,
+    /// Lowest and highest capacity.
+    pub capacities: [R; 2],
     pub old: &'p Fields<'p, R, D>,
     pub dt: R,
     pub layers: Range<usize>,
@@ -60,13 +62,14 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         Slab {
             problem,
             medium: problem.porosity.map(|porosity| Medium { mesh: problem.mesh, porosity }),
-            size: Sizes::new(problem.mesh.cells()),
+            size: Sizes::new(problem.mesh.cells(), problem.gas.is_mixed()),
             periodic: problem.periodic(),
             weighted: problem.gravity.iter().any(|&g| g != R::ZERO),
             even: problem.mesh.widths.map(|w| w.iter().all(|x| *x == w[0])),
             first_order: part.first_order,
             face_gas: FaceGas::new(problem.gas),
             throat: ThroatGas::new(problem.gas),
+            capacities: problem.gas.capacities(),
             old: part.old,
             dt: part.dt,
             layers: part.layers.clone(),
@@ -93,6 +96,11 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
             face[d] += side;
             if breaks[side] { self.contraction(d, face) } else { R::ONE }
         })
+    }
+
+    /// The gas of the capacity at a place of a block; the one gas there is, if it is not mixed.
+    pub fn gas_of<const MIXED: bool>(&self, block: &[R], capacity: usize) -> Gas<R> {
+        if MIXED { self.problem.gas.at(block[capacity]) } else { self.problem.gas }
     }
 
     /// Cells of the whole mesh along an axis.
@@ -125,7 +133,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         let s = self.size;
         let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
         let row = if D == 3 { (j - self.rows.start as isize + ROWS_BESIDE as isize) as usize } else { 0 };
-        let len = (D + 2) * s.padded;
+        let len = s.state * s.padded;
         let start = (slot * s.rows_padded + row) * len;
         start..start + len
     }
@@ -137,7 +145,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
 
     /// Where the changes of the row at a place of the tile stand along axis `d`.
     pub fn changes(&self, d: usize, place: usize) -> Range<usize> {
-        let len = (D + 2) * self.size.n;
+        let len = self.size.state * self.size.n;
         let row = if d == D - 1 { 0 } else { place };
         row * len..(row + 1) * len
     }

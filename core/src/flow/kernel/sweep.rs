@@ -8,6 +8,7 @@
 use crate::flow::kernel::fluxes::{
     fluxes_across_layers, fluxes_across_rows, fluxes_x, keep_for_layer_above, keep_for_row_above,
 };
+use crate::flow::kernel::mixed;
 use crate::flow::kernel::reconstruct::reconstruct;
 use crate::flow::kernel::rows;
 use crate::flow::kernel::scratch::{Sizes, Work};
@@ -27,9 +28,9 @@ type SweepFn<R, const D: usize> = fn(&Slab<'_, R, D>, &mut FieldsMut<'_, R, D>, 
 pub struct Sweep<R, const D: usize>(SweepFn<R, D>);
 
 impl<R: Real, const D: usize> Sweep<R, D> {
-    /// Of a solver, for a gas with or without energy.
-    pub(in crate::flow) fn by<S: Solver, const ENERGY: bool>() -> Self {
-        Sweep(sweep::<R, D, S, ENERGY>)
+    /// Of a solver, for a gas with or without energy, of one or of several ratios of specific heats.
+    pub(in crate::flow) fn by<S: Solver, const ENERGY: bool, const MIXED: bool>() -> Self {
+        Sweep(sweep::<R, D, S, ENERGY, MIXED>)
     }
 }
 
@@ -51,7 +52,7 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
 }
 
 /// Advances a tile of a slab into `new`.
-fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
@@ -65,10 +66,10 @@ fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
     let mut report = Report::new();
     if D == 1 {
         let row = RowAt { start: 0, at: [0; D] };
-        load_row(slab, 0, 0, &mut work);
-        reconstruct(slab, row, (0, 0), &mut work, &mut report.first_order);
-        fluxes_x::<R, D, S, ENERGY>(slab, row, 0, &mut work, &mut report);
-        update::<R, D, ENERGY>(slab, row, 0, &mut work, new, &mut report);
+        load_row::<R, D, MIXED>(slab, 0, 0, &mut work);
+        reconstruct::<R, D, MIXED>(slab, row, (0, 0), &mut work, &mut report.first_order);
+        fluxes_x::<R, D, S, ENERGY, MIXED>(slab, row, 0, &mut work, &mut report);
+        update::<R, D, ENERGY, MIXED>(slab, row, 0, &mut work, new, &mut report);
         return report;
     }
     let n_last = slab.cells(D - 1);
@@ -79,23 +80,23 @@ fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
             // The ghost of a boundary: no cells, only the face beside the domain.
             if l == high {
                 for j in slab.rows() {
-                    fluxes_across_layers::<R, D, S, ENERGY>(slab, (l, j), false, &mut work, &mut report);
-                    update_below::<R, D, ENERGY>(slab, (l, j), &mut work, new, &mut report);
+                    fluxes_across_layers::<R, D, S, ENERGY, MIXED>(slab, (l, j), false, &mut work, &mut report);
+                    update_below::<R, D, ENERGY, MIXED>(slab, (l, j), &mut work, new, &mut report);
                 }
             }
             continue;
         }
         if l == low - 1 || (l == low && !slab.periodic[D - 1] && low == 0) {
-            load_rows(slab, l - 1, held.clone(), &mut work);
-            load_rows(slab, l, held.clone(), &mut work);
+            load_rows::<R, D, MIXED>(slab, l - 1, held.clone(), &mut work);
+            load_rows::<R, D, MIXED>(slab, l, held.clone(), &mut work);
         }
-        sweep_layer::<R, D, S, ENERGY>(slab, l, &mut work, new, &mut report);
+        sweep_layer::<R, D, S, ENERGY, MIXED>(slab, l, &mut work, new, &mut report);
     }
     report
 }
 
 /// The rows of a layer of the domain, and in 3D one more on each side for the faces between them. Loads the layer above.
-fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     l: isize,
     work: &mut Work<'_, R, D>,
@@ -110,12 +111,12 @@ fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
     for j in rows.start - beside..rows.end + beside {
         if (j < 0 || j >= slab.all_rows()) && !slab.periodic[1 % D] {
             if j == rows.end {
-                fluxes_across_rows::<R, D, S, ENERGY>(slab, (layer, j), false, work, report);
+                fluxes_across_rows::<R, D, S, ENERGY, MIXED>(slab, (layer, j), false, work, report);
             }
             continue;
         }
         // Row by row, so that memory delivers while the processor computes.
-        load_rows(slab, l + 1, to_load..j + 1, work);
+        load_rows::<R, D, MIXED>(slab, l + 1, to_load..j + 1, work);
         to_load = j + 1;
         let mut at = [0; D];
         at[D - 1] = layer;
@@ -123,13 +124,13 @@ fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
             at[1] = j.rem_euclid(slab.all_rows()) as usize;
         }
         let row = RowAt { start: slab.problem.mesh.index(at), at };
-        sweep_row::<R, D, S, ENERGY>(slab, row, (l, j), work, new, report);
+        sweep_row::<R, D, S, ENERGY, MIXED>(slab, row, (l, j), work, new, report);
     }
-    load_rows(slab, l + 1, to_load..held.end, work);
+    load_rows::<R, D, MIXED>(slab, l + 1, to_load..held.end, work);
 }
 
 /// Row `j` of layer `l`: its cells, the faces under it, and what the faces above it need of it.
-fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
+fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     (l, j): (isize, isize),
@@ -141,38 +142,48 @@ fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool>(
     let own_layer = slab.layers.contains(&(l as usize));
     let mut beside = 0;
     let first_order = if own_row && own_layer { &mut report.first_order } else { &mut beside };
-    reconstruct(slab, row, (l, j), work, first_order);
+    reconstruct::<R, D, MIXED>(slab, row, (l, j), work, first_order);
     if own_row {
         if l >= slab.layers.start as isize {
-            fluxes_across_layers::<R, D, S, ENERGY>(slab, (l, j), true, work, report);
+            fluxes_across_layers::<R, D, S, ENERGY, MIXED>(slab, (l, j), true, work, report);
             if l > slab.layers.start as isize {
-                update_below::<R, D, ENERGY>(slab, (l, j), work, new, report);
+                update_below::<R, D, ENERGY, MIXED>(slab, (l, j), work, new, report);
             }
         }
         if l < slab.layers.end as isize {
-            keep_for_layer_above(slab, slab.place(j), work);
+            keep_for_layer_above::<R, D, MIXED>(slab, slab.place(j), work);
         }
     }
     if D == 3 && own_layer {
         if j >= slab.rows.start as isize {
-            fluxes_across_rows::<R, D, S, ENERGY>(slab, (row.at[D - 1], j), true, work, report);
+            fluxes_across_rows::<R, D, S, ENERGY, MIXED>(slab, (row.at[D - 1], j), true, work, report);
         }
-        keep_for_row_above(slab, work);
+        keep_for_row_above::<R, D, MIXED>(slab, work);
     }
     if own_row && own_layer {
-        fluxes_x::<R, D, S, ENERGY>(slab, row, slab.place(j), work, report);
+        fluxes_x::<R, D, S, ENERGY, MIXED>(slab, row, slab.place(j), work, report);
     }
 }
 
 /// Primitive variables of rows of a layer with their ghosts.
-fn load_rows<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, rows: Range<isize>, work: &mut Work<'_, R, D>) {
+fn load_rows<R: Real, const D: usize, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    l: isize,
+    rows: Range<isize>,
+    work: &mut Work<'_, R, D>,
+) {
     for j in rows {
-        load_row(slab, l, j, work);
+        load_row::<R, D, MIXED>(slab, l, j, work);
     }
 }
 
 /// Primitive variables of a row with its ghosts. A layer or row beyond a boundary is made from that inside it.
-fn load_row<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, j: isize, work: &mut Work<'_, R, D>) {
+fn load_row<R: Real, const D: usize, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    l: isize,
+    j: isize,
+    work: &mut Work<'_, R, D>,
+) {
     let s = slab.size;
     let inside = |k: isize, cells: isize, d: usize| {
         if slab.periodic[d] { k.rem_euclid(cells) } else { k.clamp(0, cells - 1) }
@@ -185,33 +196,62 @@ fn load_row<R: Real, const D: usize>(slab: &Slab<'_, R, D>, l: isize, j: isize, 
         at[1] = inside(j, slab.all_rows(), 1) as usize;
     }
     let block = &mut work.window[slab.block(l, j)];
-    rows::primitives(slab.problem.gas, slab.old, slab.problem.mesh.index(at), block, s.padded);
-    let state = |block: &[R], i: usize| rows::face_state::<R, D>(block, s.padded, i);
-    let gas = slab.problem.gas;
-    let [low, high] = [false, true].map(|high| slab.problem.side(0, high, at));
-    let (a, b) = if slab.periodic[0] {
-        (state(block, s.n), state(block, 1))
+    let from = slab.problem.mesh.index(at);
+    if MIXED {
+        mixed::primitives(slab.old, from, block, s.padded);
     } else {
-        (low.ghost_cell(&state(block, 1), 0, true, gas), high.ghost_cell(&state(block, s.n), 0, false, gas))
-    };
-    rows::put_state(block, s.padded, 0, &a);
-    rows::put_state(block, s.padded, s.padded - 1, &b);
+        rows::primitives(slab.problem.gas, slab.old, from, block, s.padded);
+    }
+    if slab.periodic[0] {
+        copy_ends::<R, D, MIXED>(block, s.padded);
+    } else {
+        for (side, i) in [(0, 0), (1, s.padded - 1)] {
+            let beside = slab.problem.side(0, side == 1, at);
+            let inside = if side == 0 { 1 } else { s.n };
+            let gas = slab.gas_of::<MIXED>(block, (D + 2) * s.padded + inside);
+            let ghost = beside.ghost_cell(&rows::face_state(block, s.padded, inside), 0, side == 0, gas);
+            if MIXED {
+                let own = block[(D + 2) * s.padded + inside];
+                block[(D + 2) * s.padded + i] = slab.problem.capacity_beyond((0, side == 1), at, own);
+            }
+            rows::put_state(block, s.padded, i, &ghost);
+        }
+    }
     for (d, k) in [(D - 1, l), (1, j)] {
         let across = d > 0 && (d == D - 1 || D == 3);
         if across && !slab.periodic[d] && (k < 0 || k >= slab.problem.mesh.cells()[d] as isize) {
-            mirror(slab, block, d, k < 0, at);
+            mirror::<R, D, MIXED>(slab, block, d, k < 0, at);
         }
     }
 }
 
+/// The cells beyond both ends of a periodic row: those of the other end.
+fn copy_ends<R: Real, const D: usize, const MIXED: bool>(block: &mut [R], padded: usize) {
+    for v in 0..D + 2 + usize::from(MIXED) {
+        let values = &mut block[v * padded..][..padded];
+        (values[0], values[padded - 1]) = (values[padded - 2], values[1]);
+    }
+}
+
 /// Turns a row of inner states, of the cells from `at` on, into the ghosts beyond a boundary of axis `d`.
-fn mirror<R: Real, const D: usize>(slab: &Slab<'_, R, D>, block: &mut [R], d: usize, low: bool, at: [usize; D]) {
+fn mirror<R: Real, const D: usize, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    block: &mut [R],
+    d: usize,
+    low: bool,
+    at: [usize; D],
+) {
     let padded = slab.size.padded;
     for i in 0..padded {
         let mut beside = at;
         beside[0] = i.saturating_sub(1).min(padded - 3);
         let boundary = slab.problem.side(d, !low, beside);
         let w = rows::face_state::<R, D>(block, padded, i);
-        rows::put_state(block, padded, i, &boundary.ghost_cell(&w, d, low, slab.problem.gas));
+        let capacity = (D + 2) * padded + i;
+        let gas = slab.gas_of::<MIXED>(block, capacity);
+        rows::put_state(block, padded, i, &boundary.ghost_cell(&w, d, low, gas));
+        if MIXED {
+            block[capacity] = slab.problem.capacity_beyond((d, !low), beside, block[capacity]);
+        }
     }
 }

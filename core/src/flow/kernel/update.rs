@@ -1,5 +1,6 @@
 //! The new states of a row: fluxes summed, drag applied, the next stable rate found.
 
+use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Span};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::slab::{RowAt, Slab};
@@ -10,7 +11,7 @@ use crate::flow::step_report::Report;
 use crate::number::real::Real;
 
 /// New states of row `j` of the layer below `l`.
-pub(in crate::flow) fn update_below<R: Real, const D: usize, const ENERGY: bool>(
+pub(in crate::flow) fn update_below<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (l, j): (isize, isize),
     work: &mut Work<'_, R, D>,
@@ -23,11 +24,11 @@ pub(in crate::flow) fn update_below<R: Real, const D: usize, const ENERGY: bool>
     }
     at[D - 1] = l as usize - 1;
     let row = RowAt { start: slab.problem.mesh.index(at), at };
-    update::<R, D, ENERGY>(slab, row, slab.place(j), work, new, report);
+    update::<R, D, ENERGY, MIXED>(slab, row, slab.place(j), work, new, report);
 }
 
 /// New states of the row at a place of the tile, drag included; their signal rate and whether they are physical.
-pub(in crate::flow) fn update<R: Real, const D: usize, const ENERGY: bool>(
+pub(in crate::flow) fn update<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     place: usize,
@@ -41,9 +42,14 @@ pub(in crate::flow) fn update<R: Real, const D: usize, const ENERGY: bool>(
     let change = core::array::from_fn(|d| &work.change[d][slab.changes(d, place)]);
     let coefficients = &mut work.coefficients;
     let scale = open_areas(slab, row, coefficients).then_some(&coefficients.scale[..span.n]);
-    rows::update::<R, D, ENERGY>(slab.old, new, span, &change, scale, slab.dt);
+    rows::update::<R, D, ENERGY, MIXED>(slab.old, new, span, &change, scale, slab.dt);
+    if MIXED {
+        for own in &mut new.capacity[span.to..][..span.n] {
+            *own = slab.problem.gas.settled(*own);
+        }
+    }
     drag(slab, span, new);
-    report_row(slab, row, span, coefficients, &new.as_fields(), report);
+    report_row::<R, D, MIXED>(slab, row, span, coefficients, &new.as_fields(), report);
 }
 
 /// dt/beta_v of the cells of a row, and open area over open volume along each axis; false where there is no porosity.
@@ -92,7 +98,7 @@ fn drag<R: Real, const D: usize>(slab: &Slab<'_, R, D>, span: Span, new: &mut Fi
 }
 
 /// Adds a row of new states to the report: the largest signal rate, and how many are unphysical.
-fn report_row<R: Real, const D: usize>(
+fn report_row<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     span: Span,
@@ -106,7 +112,11 @@ fn report_row<R: Real, const D: usize>(
     let inverse = |d: usize, i: usize| if d == 0 { inv_width[i] } else { across[d] };
     let open = coefficients.open.each_ref().map(|o| &**o);
     let signal = &mut coefficients.signal[..n];
-    let bad = if slab.medium.is_some() {
+    let bad = if MIXED && slab.medium.is_some() {
+        mixed::signal_rates::<R, D, true>(new, span.to, inverse, &open, slab.capacities, signal)
+    } else if MIXED {
+        mixed::signal_rates::<R, D, false>(new, span.to, inverse, &open, slab.capacities, signal)
+    } else if slab.medium.is_some() {
         rows::signal_rates::<R, D, true>(slab.problem.gas, new, span.to, inverse, &open, signal)
     } else {
         rows::signal_rates::<R, D, false>(slab.problem.gas, new, span.to, inverse, &open, signal)
@@ -130,7 +140,7 @@ fn report_row<R: Real, const D: usize>(
     if bad {
         for i in reported {
             let merged = small.is_some_and(|m| is(m[i], SMALL));
-            report.unphysical += usize::from(!merged && !slab.problem.is_physical(&new.at(span.to + i)));
+            report.unphysical += usize::from(!merged && !slab.problem.holds(new, span.to + i));
         }
     }
 }

@@ -5,13 +5,14 @@
 //! would stagnate at a pressure wrong by rho c u. At a jump both cells are flat along the axis and the throat map acts.
 
 use crate::flow::boundary::Boundary;
+use crate::flow::face_gas::FaceGas;
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, Three, var};
 use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
-use crate::flow::porosity::jump::{JumpFaces, jump_fluxes};
+use crate::flow::porosity::jump::{JumpFaces, carried_through, jump_fluxes, mixed_jump_fluxes};
 use crate::flow::problem::PressureForm;
 use crate::flow::riemann::{Slowness, Solver};
 use crate::flow::state::Primitive;
@@ -42,7 +43,7 @@ impl<R: Real> Differences<R> for Single<R> {
 /// Corrects the slopes along axis `d` in the cells of a row that have a wall or a jump of porosity on one side, where the usual slope took a value
 /// from beyond it: at a wall that value is mirrored, at a jump the slope is 0. Where gas flows along an inclined wall the correction fades out.
 /// `values` gives a variable in the cells below, here and above.
-pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope>(
+pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     row: RowAt<D>,
@@ -67,6 +68,10 @@ pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope>(
             let own = &mut out[v * n + i];
             *own = if share >= R::ONE { slope } else { *own + share * (slope - *own) };
         };
+        if MIXED {
+            // Flat at a jump; beside a wall, where a capacity meets itself, a limited slope is.
+            blend(D + 2, R::ZERO);
+        }
         if (breaks[0] & (low > R::ZERO)) | (breaks[1] & (high > R::ZERO)) {
             (0..D + 2).for_each(|v| blend(v, R::ZERO));
             continue;
@@ -152,7 +157,7 @@ pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
 
 /// Replaces the fluxes at the broken faces of a row along or across axis `d`, by their places; `at` names the first of them. `states`
 /// are those on the left and on the right.
-pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver>(
+pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
@@ -167,13 +172,13 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver>(
     let mut count = 0;
     for i in broken {
         if !(row.ducts.face(i) > R::ZERO) {
-            wall_flux::<R, D, S>(&row, i, &mut flux);
+            wall_flux::<R, D, S, MIXED>(&row, i, &mut flux);
             continue;
         }
         group[count] = i;
         count += 1;
         if count == LANES {
-            jump_group::<R, D, S>(&row, &group, count, &mut flux);
+            jump_group::<R, D, S, MIXED>(&row, &group, count, &mut flux);
             count = 0;
         }
     }
@@ -181,7 +186,7 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver>(
         // A last group of fewer faces repeats its first one.
         let first = group[0];
         group[count..].fill(first);
-        jump_group::<R, D, S>(&row, &group, count, &mut flux);
+        jump_group::<R, D, S, MIXED>(&row, &group, count, &mut flux);
     }
 }
 
@@ -221,7 +226,7 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
 }
 
 /// Fluxes at the first `count` jump faces of a group.
-fn jump_group<R: Real, const D: usize, S: Solver>(
+fn jump_group<R: Real, const D: usize, S: Solver, const MIXED: bool>(
     row: &BrokenRow<'_, R, D>,
     group: &[usize; LANES],
     count: usize,
@@ -257,7 +262,12 @@ fn jump_group<R: Real, const D: usize, S: Solver>(
         references: [gather(0, D + 2), gather(1, D + 2)],
         acoustic_weight,
     };
-    let f = jump_fluxes::<R, S, D, LANES>(&faces, &slab.face_gas, &slab.throat);
+    let capacities = [0, 1].map(|s| if MIXED { gather(s, D + 3) } else { [R::ZERO; LANES] });
+    let f = if MIXED {
+        mixed_jump_fluxes::<R, S, D, LANES>(&faces, &capacities)
+    } else {
+        jump_fluxes::<R, S, D, LANES>(&faces, &slab.face_gas, [&slab.throat; 2])
+    };
     let mut scatter = |v: usize, from: &[R; LANES]| {
         let to = &mut flux.values[v * flux.n..][..flux.n];
         for (value, &i) in from.iter().zip(&group[..count]) {
@@ -271,10 +281,19 @@ fn jump_group<R: Real, const D: usize, S: Solver>(
     }
     scatter(D + 1, &f.energy);
     scatter(D + 2, &f.normal[1]);
+    if MIXED {
+        let [volume, carried] = carried_through(&faces.states, &capacities, &f.mass);
+        scatter(D + 3, &volume);
+        scatter(D + 4, &carried);
+    }
 }
 
 /// Flux at the closed face `i` of a row: nothing passes, and each side is pushed by its mirror image.
-fn wall_flux<R: Real, const D: usize, S: Solver>(row: &BrokenRow<'_, R, D>, i: usize, flux: &mut FluxBlock<'_, R>) {
+fn wall_flux<R: Real, const D: usize, S: Solver, const MIXED: bool>(
+    row: &BrokenRow<'_, R, D>,
+    i: usize,
+    flux: &mut FluxBlock<'_, R>,
+) {
     let (problem, medium, d, m) = (row.slab.problem, row.medium, row.d, flux.n);
     let beside = row.beside(i);
     let push = |side: usize| {
@@ -286,16 +305,18 @@ fn wall_flux<R: Real, const D: usize, S: Solver>(row: &BrokenRow<'_, R, D>, i: u
             return R::ZERO;
         }
         let w = rows::face_state(row.states[side], m, i);
-        let image = Boundary::Wall.ghost_face(&w, d, side == 1, problem.gas);
+        let gas = row.slab.gas_of::<MIXED>(row.states[side], (D + 3) * m + i);
+        let image = Boundary::Wall.ghost_face(&w, d, side == 1, gas);
         let pair: [&Primitive<R, D>; 2] = if side == 0 { [&w, &image] } else { [&image, &w] };
         let reference = row.states[side][(D + 2) * m + i];
         let above = w.pressure - reference;
         let slowness = Slowness { bend: above + above, pace: row.pace(side, i, area) };
-        let f = S::slow_flux::<R, D, false>(pair[0], pair[1], &row.slab.face_gas, slowness);
+        let face_gas = if MIXED { FaceGas::new(gas) } else { row.slab.face_gas };
+        let f = S::slow_flux::<R, D, false>(pair[0], pair[1], &face_gas, slowness);
         row.contraction(i) * area * (f.momentum[0] - reference)
     };
     let (to_left, to_right) = (push(0), push(1));
-    for v in 0..D + 2 {
+    for v in (0..D + 2).chain(D + 3..D + 3 + 2 * usize::from(MIXED)) {
         flux.values[v * m + i] = R::ZERO;
     }
     flux.values[m + i] = to_left;

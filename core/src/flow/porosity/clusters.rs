@@ -334,12 +334,16 @@ pub(in crate::flow) fn average_unequal<R: Real, const D: usize>(
 ) {
     for cells in clusters.groups() {
         let Some(first) = cells.clone().next() else { continue };
-        let w = gas.primitive(&field.at(first));
+        let gas_of = |field: &FieldsMut<'_, R, D>, cell: usize| field.as_fields().gas_at(gas, cell);
+        let own = gas_of(field, first);
+        let w = own.primitive(&field.at(first));
         let limit = R::from_f64(UNEQUAL);
         let unequal = cells.clone().any(|cell| {
-            let other = gas.primitive(&field.at(cell));
-            let c = gas.sound_speed(&w);
-            !((other.pressure - w.pressure).abs() <= limit * w.pressure)
+            let (other_gas, c) = (gas_of(field, cell), own.sound_speed(&w));
+            let other = other_gas.primitive(&field.at(cell));
+            // Gases that differ at all share one: what they carry into each other would not add up.
+            other_gas != own
+                || !((other.pressure - w.pressure).abs() <= limit * w.pressure)
                 || (0..D).any(|d| !((other.velocity[d] - w.velocity[d]).abs() <= limit * c))
         });
         if !unequal {
@@ -366,6 +370,30 @@ pub(in crate::flow) fn average_unequal<R: Real, const D: usize>(
         for cell in cells {
             field.set(cell, &mean);
         }
+    }
+}
+
+/// Gives each cluster the mean capacity of its open volumes: where the pressure is one, the energy of all has that pressure still.
+pub(in crate::flow) fn apply_capacities<R: Real, const D: usize>(
+    clusters: Clusters<'_>,
+    mesh: &Mesh<'_, R, D>,
+    volume: &[R],
+    gas: Gas<R>,
+    field: &mut FieldsMut<'_, R, D>,
+) {
+    for cells in clusters.groups() {
+        let Some(first) = cells.clone().next() else { continue };
+        if cells.clone().all(|cell| field.capacity[cell] == field.capacity[first]) {
+            continue;
+        }
+        let (mut total, mut sum) = (Sum::new(), Sum::new());
+        for cell in cells.clone() {
+            let v = R::larger(volume[cell], least_volume()) * mesh.volume(mesh.coordinates(cell));
+            total.add(v);
+            sum.add(v * field.capacity[cell]);
+        }
+        let mean = gas.settled(sum.value() / total.value());
+        cells.for_each(|cell| field.capacity[cell] = mean);
     }
 }
 

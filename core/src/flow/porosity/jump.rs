@@ -4,9 +4,10 @@
 //! laws of sound at a change of area; what lies between takes a share of both. What each cell loses in momentum follows from
 //! its own side of the stationary wave, so the two cells lose different normal momentum.
 
+use crate::flow::face_gas::{FaceGas, FaceGases, MixedFace};
 use crate::flow::porosity::throat::{AtThroat, ThroatGas, throat_area};
-use crate::flow::riemann::{FaceGas, Flux, Solver};
-use crate::flow::state::{Primitive, each};
+use crate::flow::riemann::{Flux, Solver};
+use crate::flow::state::{Gas, Primitive, each};
 use crate::number::real::Real;
 
 /// Open faces at which the porosity jumps, one per lane: what lies on the left and right of them.
@@ -52,12 +53,12 @@ struct JumpLane<R, const D: usize> {
 /// The fluxes through several jump faces.
 pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
     faces: &JumpFaces<R, D, L>,
-    gas: &FaceGas<R>,
-    throat: &ThroatGas<R>,
+    gas: &impl FaceGases<R>,
+    throat: [&ThroatGas<R>; 2],
 ) -> JumpFlux<[R; L], D> {
     let [left, right] = &faces.ducts;
     let to: [R; L] = each(|i| throat_area(left[i], faces.face[i], right[i]));
-    let side = |s: usize| throat.carry_all(&faces.states[s], &faces.ducts[s], &to);
+    let side = |s: usize| throat[s].carry_all(&faces.states[s], &faces.ducts[s], &to);
     let at = [side(0), side(1)];
     let (walls, acoustic_weight) = chokes(faces, &at, throat);
     let none = [R::ZERO; L];
@@ -87,11 +88,60 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
     out
 }
 
+/// The same where each side has a gas of its own, of these `capacities`: one face after the other.
+pub(in crate::flow) fn mixed_jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
+    faces: &JumpFaces<R, D, L>,
+    capacities: &[[R; L]; 2],
+) -> JumpFlux<[R; L], D> {
+    let none = [R::ZERO; L];
+    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
+    for i in 0..L {
+        let one = |all: &[R; L]| [all[i]];
+        let state = |w: &Primitive<[R; L], D>| {
+            let w = w.lane(i);
+            Primitive { density: [w.density], velocity: w.velocity.map(|u| [u]), pressure: [w.pressure] }
+        };
+        let face = JumpFaces {
+            states: faces.states.each_ref().map(state),
+            ducts: faces.ducts.each_ref().map(one),
+            face: one(&faces.face),
+            references: faces.references.each_ref().map(one),
+            acoustic_weight: one(&faces.acoustic_weight),
+        };
+        let gases = capacities.each_ref().map(|c| Gas::Ideal { gamma: R::ONE + R::ONE / c[i] });
+        let throats = gases.map(ThroatGas::new);
+        let [left, right] = throats.each_ref();
+        let f = jump_fluxes::<R, S, D, 1>(&face, &MixedFace(gases.map(FaceGas::new)), [left, right]);
+        (out.mass[i], out.energy[i]) = (f.mass[0], f.energy[0]);
+        out.normal = [0, 1].map(|s| with(out.normal[s], i, f.normal[s][0]));
+        out.momentum = core::array::from_fn(|c| with(out.momentum[c], i, f.momentum[c][0]));
+    }
+    out
+}
+
+/// Lanes with another value in one of them.
+fn with<R: Copy, const L: usize>(mut lanes: [R; L], i: usize, value: R) -> [R; L] {
+    lanes[i] = value;
+    lanes
+}
+
+/// Volumes that pass faces with these masses, and the capacities that they carry: of the cell upstream, at the density that it has there. Slow gas of
+/// several capacities keeps its pressure with that: the energy that passes is this volume's.
+pub(in crate::flow) fn carried_through<R: Real, const D: usize, const L: usize>(
+    states: &[Primitive<[R; L], D>; 2],
+    capacities: &[[R; L]; 2],
+    mass: &[R; L],
+) -> [[R; L]; 2] {
+    let upstream = |i: usize| usize::from(mass[i] < R::ZERO);
+    let volume: [R; L] = each(|i| mass[i] / states[upstream(i)].density[i]);
+    [volume, each(|i| volume[i] * capacities[upstream(i)][i])]
+}
+
 /// The forces on the walls beside streams that choke, and `acoustic_weight` set to 0 where a stream chokes.
 fn chokes<R: Real, const D: usize, const L: usize>(
     faces: &JumpFaces<R, D, L>,
     at: &[AtThroat<[R; L], D>; 2],
-    throat: &ThroatGas<R>,
+    throat: [&ThroatGas<R>; 2],
 ) -> ([[R; L]; 2], [R; L]) {
     let (mut walls, mut acoustic_weight) = ([[R::ZERO; L]; 2], faces.acoustic_weight);
     for s in 0..2 {
@@ -100,7 +150,7 @@ fn chokes<R: Real, const D: usize, const L: usize>(
             if blocked > R::ZERO {
                 let w = faces.states[s].lane(i);
                 let into_wall = if s == 0 { w.velocity[0] } else { -w.velocity[0] };
-                let force = throat.wall_pressure(w.density, w.pressure, into_wall) - faces.references[s][i];
+                let force = throat[s].wall_pressure(w.density, w.pressure, into_wall) - faces.references[s][i];
                 walls[s][i] = blocked * force;
                 acoustic_weight[i] = R::ZERO;
             }
@@ -111,7 +161,7 @@ fn chokes<R: Real, const D: usize, const L: usize>(
 
 /// The Riemann problem in the throat.
 #[inline(always)]
-fn riemann<R: Real, S: Solver, const D: usize>(face: &JumpLane<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
+fn riemann<R: Real, S: Solver, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases<R>) -> JumpFlux<R, D> {
     let to = face.to;
     let f: Flux<R, D> = S::flux::<R, D, true>(&face.throat[0], &face.throat[1], gas);
     let through = to * f.momentum[0];
@@ -144,12 +194,12 @@ const STRONG: f64 = 0.6;
 /// of the pressure as a share and the Mach number in the throat; the latter also for `mass_flux`, what weak waves would carry per area of
 /// the throat.
 #[inline(always)]
-fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2], gas: &FaceGas<R>) -> R {
-    let mach = |w: &Primitive<R, D>| {
-        R::larger((w.density * w.velocity[0]).abs(), mass_flux.abs()) / (w.density * gas.sound_speed(w))
+fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2], gas: &impl FaceGases<R>) -> R {
+    let mach = |w: &Primitive<R, D>, sound: R| {
+        R::larger((w.density * w.velocity[0]).abs(), mass_flux.abs()) / (w.density * sound)
     };
     let step = (l.pressure - r.pressure).abs() / R::smaller(l.pressure, r.pressure);
-    let strength = R::larger(R::larger(mach(l), mach(r)), step);
+    let strength = R::larger(R::larger(mach(l, gas.left().sound_speed(l)), mach(r, gas.right().sound_speed(r))), step);
     let share = R::TWO - strength * R::from_f64(2.0 / STRONG);
     R::smaller(R::larger(share, R::ZERO), R::ONE)
 }
@@ -162,9 +212,9 @@ fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2]
 /// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
 /// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
 #[inline(always)]
-fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &FaceGas<R>) -> JumpFlux<R, D> {
+fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases<R>) -> JumpFlux<R, D> {
     let [l, r] = &face.cell;
-    let (c_l, c_r) = (gas.sound_speed(l), gas.sound_speed(r));
+    let (c_l, c_r) = (gas.left().sound_speed(l), gas.right().sound_speed(r));
     let mass = |s: usize| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]);
     let (mass_l, mass_r) = (mass(0), mass(1));
     // Stiffnesses c/a of the ducts, times both areas.
@@ -173,7 +223,7 @@ fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &FaceGas<R>) ->
     let common = ((stiff_l * mass_l + stiff_r * mass_r) + drive) / (stiff_l + stiff_r);
     let own = |s: usize, wave: R, change: R| {
         let (w, duct) = (&face.cell[s], face.ducts[s]);
-        let enthalpy = (duct * gas.enthalpy(w) + wave * change) / (duct * w.density);
+        let enthalpy = (duct * gas.from_side(s == 0).enthalpy(w) + wave * change) / (duct * w.density);
         (duct * relative_impulse(w, face.references[s]) + (w.velocity[0] + wave) * change, common * enthalpy)
     };
     let ((left, energy_l), (right, energy_r)) = (own(0, -c_l, common - mass_l), own(1, c_r, common - mass_r));

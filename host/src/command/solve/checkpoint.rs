@@ -133,6 +133,9 @@ impl Fingerprint {
             let place = [patch.axis, usize::from(patch.high)].into_iter().chain(patch.first).chain(patch.end);
             sides.extend(place.map(|n| n as f64).chain(side_numbers(&patch.boundary)));
         }
+        if flow.gas().is_mixed() {
+            sides.extend(flow.feed_sides.iter().flatten().chain(&flow.feed_patches));
+        }
         let treatment = [setup.treatment.jump, f64::from(u8::from(setup.treatment.merge))];
         let scheme = [&scheme_numbers(&flow.scheme)[..], &[setup.cfl, flow.careful_steps as f64]].concat();
         let parts = [
@@ -176,6 +179,7 @@ fn gas_numbers(gas: &Gas<f64>) -> Vec<f64> {
         Gas::Ideal { gamma } => vec![0.0, gamma],
         Gas::Isothermal { sound_speed } => vec![1.0, sound_speed],
         Gas::Isentropic { gamma, density, pressure } => vec![2.0, gamma, density, pressure],
+        Gas::Mixed { gammas } => [&[3.0], &gammas[..]].concat(),
         _ => vec![UNNAMED],
     }
 }
@@ -221,7 +225,9 @@ fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
 /// The fields of a state in the order of the file.
 fn columns<const D: usize>(state: &Field<f64, D>) -> impl Iterator<Item = &[f64]> {
     let momentum = state.momentum.iter().map(|m| &m[..]);
-    std::iter::once(&state.density[..]).chain(momentum).chain(std::iter::once(&state.energy[..]))
+    // Of a gas that is not mixed the file knows nothing of capacities.
+    let capacity = Some(&state.capacity[..]).filter(|c| !c.is_empty());
+    std::iter::once(&state.density[..]).chain(momentum).chain(std::iter::once(&state.energy[..])).chain(capacity)
 }
 
 /// Writes a checkpoint.
@@ -292,7 +298,8 @@ pub fn resume<const D: usize>(
     let old = &setup.flow.state;
     let density = take(&old.density);
     let momentum = old.momentum.each_ref().map(&mut take);
-    let state = Field { density, momentum, energy: take(&old.energy) };
+    let (energy, capacity) = (take(&old.energy), take(&old.capacity));
+    let state = Field { density, momentum, energy, capacity };
     let wanted: usize = maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum();
     if wanted != header.maxima {
         let reason = "knows other largest values over time than output.maxima asks for; run without --resume";
@@ -366,6 +373,7 @@ mod tests {
     #[test]
     fn kinds_keep_their_numbers() {
         assert_eq!(gas_numbers(&Gas::Ideal { gamma: 1.4 }), [0.0, 1.4]);
+        assert_eq!(gas_numbers(&Gas::Mixed { gammas: [1.25, 1.4] }), [3.0, 1.25, 1.4]);
         assert_eq!(gas_numbers(&Gas::Isothermal { sound_speed: 340.0 }), [1.0, 340.0]);
         assert_eq!(gas_numbers(&Gas::Isentropic { gamma: 1.4, density: 1.2, pressure: 1e5 }), [2.0, 1.4, 1.2, 1e5]);
         let w = Primitive { density: 1.0, velocity: [2.0, 3.0], pressure: 4.0 };

@@ -70,12 +70,13 @@ impl State {
     }
 
     fn view(&self) -> Fields<'_, f64, 3> {
-        Fields { density: &self.density, momentum: self.momentum.each_ref().map(|m| &m[..]), energy: &self.energy }
+        let momentum = self.momentum.each_ref().map(|m| &m[..]);
+        Fields { density: &self.density, momentum, energy: &self.energy, capacity: &[] }
     }
 
     fn view_mut(&mut self) -> FieldsMut<'_, f64, 3> {
         let State { density, momentum, energy } = self;
-        FieldsMut { density, momentum: momentum.each_mut().map(|m| &mut m[..]), energy }
+        FieldsMut { density, momentum: momentum.each_mut().map(|m| &mut m[..]), energy, capacity: &mut [] }
     }
 }
 
