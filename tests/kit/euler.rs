@@ -7,6 +7,7 @@ pub mod cases;
 pub mod expression;
 pub mod property;
 pub mod space;
+pub mod two_gases;
 
 use voidage_core::flow::Primitive;
 

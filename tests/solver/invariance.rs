@@ -67,11 +67,15 @@ struct Block {
     alike: bool,
     seed: u64,
     riemann: Riemann,
+    gas: Gas<f64>,
 }
 
+/// A gas of two ratios of specific heats.
+const MIXED: Gas<f64> = Gas::Mixed { gammas: [1.2, 1.67] };
+
 /// The flow in a block whose axes are exchanged and then turned around, told in the frame of the block.
-fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64; 5]> {
-    let Block { n, sides, alike, seed, riemann } = block;
+fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64; 6]> {
+    let Block { n, sides, alike, seed, riemann, gas } = block;
     let mut s = Source::seeded(seed);
     let mut s = move || s.unit();
     let cells = n.iter().product();
@@ -108,7 +112,7 @@ fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64;
             .collect()
     });
     let sign = |a: usize| if turned[a] { -1.0 } else { 1.0 };
-    let mut flow = Flow::uniform(m, [0.1; 3], IDEAL, [[sides; 2]; 3]);
+    let mut flow = Flow::uniform(m, [0.1; 3], gas, [[sides; 2]; 3]);
     flow.scheme.riemann = riemann;
     flow.set_porosity(volume, face, Treatment::default()).unwrap();
     flow.set_drag(
@@ -118,19 +122,21 @@ fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64;
     for c in 0..cells {
         let d = data[old_cell(c)];
         let velocity = std::array::from_fn(|a| sign(a) * (d[1 + order[a]] - 0.5));
-        flow.set(c, &Primitive { density: 0.5 + d[0], velocity, pressure: 0.1 + 3.0 * d[4] });
+        flow.set_mixed(c, &Primitive { density: 0.5 + d[0], velocity, pressure: 0.1 + 3.0 * d[4] }, 1.2 + 0.47 * d[8]);
     }
     for _ in 0..8 {
         flow.step(0.004).unwrap();
     }
-    let mut out = vec![[0; 5]; cells];
+    let mut out = vec![[0; 6]; cells];
     for c in 0..cells {
         let w = flow.get(c);
         let mut velocity = [0.0; 3];
         for a in 0..3 {
             velocity[order[a]] = sign(a) * w.velocity[a];
         }
-        out[old_cell(c)] = [w.density, velocity[0], velocity[1], velocity[2], w.pressure].map(|x| (x + 0.0).to_bits());
+        let gamma = flow.gas_at(c).gamma();
+        out[old_cell(c)] =
+            [w.density, velocity[0], velocity[1], velocity[2], w.pressure, gamma].map(|x| (x + 0.0).to_bits());
     }
     out
 }
@@ -138,8 +144,15 @@ fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64;
 #[test]
 fn exchanged_and_turned_axes_give_the_same_bits() {
     for riemann in [Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle, Riemann::Rusanov] {
-        for (seed, alike) in [(0, false), (1, false), (2, true), (3, true)] {
-            let block = Block { n: [5, 6, 7], sides: Boundary::Wall, alike, seed, riemann };
+        for (seed, alike, gas) in [
+            (0, false, IDEAL),
+            (1, false, IDEAL),
+            (2, true, IDEAL),
+            (3, true, IDEAL),
+            (4, false, MIXED),
+            (5, true, MIXED),
+        ] {
+            let block = Block { n: [5, 6, 7], sides: Boundary::Wall, alike, seed, riemann, gas };
             let plain = [false; 3];
             let reference = turned_block(block, [0, 1, 2], plain);
             for order in [[1, 0, 2], [2, 1, 0], [0, 2, 1], [1, 2, 0], [2, 0, 1]] {
@@ -157,10 +170,13 @@ fn exchanged_and_turned_axes_give_the_same_bits() {
 #[test]
 fn layers_in_tiles_give_the_bits_of_one() {
     for (seed, sides) in [Boundary::Wall, Boundary::Periodic, Boundary::ZeroGradient].into_iter().enumerate() {
-        let block = Block { n: [280, 35, 3], sides, alike: false, seed: seed as u64, riemann: Riemann::Hllc };
-        let whole = turned_block(block, [2, 1, 0], [false; 3]);
-        for order in [[0, 1, 2], [1, 0, 2]] {
-            assert!(turned_block(block, order, [false; 3]) == whole, "{sides:?} {order:?}");
+        for gas in [IDEAL, MIXED] {
+            let riemann = Riemann::Hllc;
+            let block = Block { n: [280, 35, 3], sides, alike: false, seed: seed as u64, riemann, gas };
+            let whole = turned_block(block, [2, 1, 0], [false; 3]);
+            for order in [[0, 1, 2], [1, 0, 2]] {
+                assert!(turned_block(block, order, [false; 3]) == whole, "{sides:?} {order:?} {gas:?}");
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`space`], [`inlet`], [`sides`], [`units`] and
+//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`mixture`], [`space`], [`inlet`], [`sides`], [`units`] and
 //! [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`], [`force_peaks`], [`table`], [`series`],
 //! [`checkpoint`], [`lock`], [`report`], what it writes; [`limits`] and [`stepping`], how far it goes and each step; [`refine`], the same case on half
 //! the cells; [`run`].
@@ -15,6 +15,7 @@ pub mod inlet;
 pub mod limits;
 pub mod lock;
 pub mod maxima;
+pub mod mixture;
 pub mod monitors;
 pub mod pictures;
 pub mod places;

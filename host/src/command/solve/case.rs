@@ -1,7 +1,7 @@
 //! The case file of `voidage solve`, as typed. Every key that is not known is an error.
 //!
 //! Lengths in metres, times in seconds, any consistent units. A state is `rho`, `u`, `v`, `w`, `p`: density, velocity
-//! along x, y, z, pressure; velocities left out are 0. With `gas.gas_constant` a temperature `T` may stand for `rho`.
+//! along x, y, z, pressure; velocities left out are 0; `gamma` is that of another gas than `[gas]` tells. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
 use super::places;
 use crate::command::streams::{INPUT, text_of};
@@ -166,6 +166,8 @@ pub struct StateKeys {
     pub w: Option<f64>,
     /// Pressure.
     pub p: Option<f64>,
+    /// Ratio of specific heats of the gas there, if it is not that of the gas of the case.
+    pub gamma: Option<f64>,
     /// Of a side: what stands there.
     #[serde(rename = "type")]
     pub kind: Option<Kind>,
@@ -234,6 +236,7 @@ impl StateKeys {
             ("v", self.v.is_some()),
             ("w", self.w.is_some()),
             ("p", self.p.is_some()),
+            ("gamma", self.gamma.is_some()),
             ("relax", self.relax.is_some()),
             ("min", self.min.is_some()),
             ("max", self.max.is_some()),

@@ -61,17 +61,6 @@ pub fn put_aside(dir: &Path) -> Result<bool> {
     Ok(was)
 }
 
-/// Removes a file that an earlier run may have left.
-///
-/// # Errors
-/// It cannot be removed.
-pub fn forget(path: &Path) -> Result<()> {
-    match std::fs::remove_file(path) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Error::io(path, "remove", &e)),
-        _ => Ok(()),
-    }
-}
-
 /// What the run has written and counted so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Journal {

@@ -17,6 +17,8 @@ pub struct Snapshot {
     pub velocity: [Vec<f64>; 3],
     /// Pressure.
     pub pressure: Vec<f64>,
+    /// Ratio of specific heats of a mixed gas.
+    pub gamma: Option<Vec<f64>>,
 }
 
 impl Snapshot {
@@ -32,17 +34,26 @@ impl Snapshot {
             live.iter().zip(w.velocity).for_each(|(&axis, u)| velocity[axis].push(u));
         }
         velocity.iter_mut().for_each(|v| v.resize(flow.len(), 0.0));
-        Snapshot { density, velocity, pressure }
+        let gammas = || (0..flow.len()).map(|c| flow.gas_at(c).gamma()).collect();
+        let gamma = flow.gas().is_mixed().then(gammas);
+        Snapshot { density, velocity, pressure, gamma }
     }
 
-    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`, all or none.
+    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`, and `gamma.npy` of a mixed gas, all or none.
     ///
     /// # Errors
     /// The files cannot be written.
     pub fn arrays(&self, dir: &Path, edges: &Edges) -> Result<()> {
         let [u, v, w] = &self.velocity;
         let named = [("rho", &self.density), ("u", u), ("v", v), ("w", w), ("p", &self.pressure)];
-        npy::write_all(dir, &named.map(|(name, values)| (name.to_owned(), edges.cells(), &values[..])))
+        let named = named.into_iter().chain(self.gamma.iter().map(|gamma| ("gamma", gamma)));
+        let arrays: Vec<_> = named.map(|(name, values)| (name.to_owned(), edges.cells(), &values[..])).collect();
+        npy::write_all(dir, &arrays)?;
+        match self.gamma {
+            Some(_) => Ok(()),
+            // What an earlier run with a mixed gas has left would speak for this one.
+            None => forget(&dir.join("gamma.npy")),
+        }
     }
 
     /// Writes a frame for ParaView.
@@ -58,6 +69,7 @@ impl Snapshot {
             scalar("rho", &self.density),
             CellField::Vector { name: "velocity", parts },
         ];
+        cell.extend(self.gamma.iter().map(|gamma| scalar("gamma", gamma)));
         cell.extend(beta_v.map(|b| scalar("beta_v", b)));
         let time = [time];
         let field_data = vec![NamedField { name: "TimeValue", components: 1, data: &time }];
@@ -85,6 +97,17 @@ pub fn cell_at(edges: &Edges, point: [f64; 3]) -> Option<[usize; 3]> {
         at[a] = e.partition_point(|&x| x <= point[a]).clamp(1, e.len() - 1) - 1;
     }
     Some(at)
+}
+
+/// Removes a file that an earlier run may have left.
+///
+/// # Errors
+/// It cannot be removed.
+pub fn forget(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io(path, "remove", &e)),
+        _ => Ok(()),
+    }
 }
 
 /// A directory, made if need be.

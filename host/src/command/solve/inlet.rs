@@ -22,6 +22,8 @@ pub struct Inlet<const D: usize> {
     pub relax: f64,
     /// +1 if the gas enters along the axis, −1 if against it.
     sign: f64,
+    /// What enters.
+    gas: Gas<f64>,
     /// Density over pressure where the temperature is given.
     per_pressure: Option<f64>,
     /// Open area beside each cell of the side, as a share of all.
@@ -51,7 +53,8 @@ impl<const D: usize> Inlet<D> {
             return Err(states.file.wrong(&format!("{key}.{name}"), reason));
         }
         let axis = &edges.0[states.live[at.0]];
-        let crossing = (axis[axis.len() - 1] - axis[0]) / states.gas.sound_speed(&state);
+        let gas = states.gas_of(states.gamma(keys, None));
+        let crossing = (axis[axis.len() - 1] - axis[0]) / gas.sound_speed(&state);
         states.file.demand(
             &format!("{key}.relax"),
             keys.relax,
@@ -59,8 +62,8 @@ impl<const D: usize> Inlet<D> {
             "needs a positive time",
         )?;
         let relax = keys.relax.unwrap_or(crossing);
-        let inlet = Inlet { at, patch: None, relax, sign, per_pressure, shares: Vec::new() };
-        inlet.follow(states.gas, &mut state);
+        let inlet = Inlet { at, patch: None, relax, sign, gas, per_pressure, shares: Vec::new() };
+        inlet.follow(&mut state);
         Ok((inlet, state))
     }
 
@@ -85,11 +88,10 @@ impl<const D: usize> Inlet<D> {
         let d = self.at.0;
         let Boundary::Inlet(state) = *self.place(flow) else { return };
         let mean: f64 = self.shares.iter().map(|&(cell, share)| share * flow.get(cell).velocity[d]).sum();
-        let gas = flow.gas();
         let share = (dt / self.relax).min(1.0);
-        let mut next = self.place(flow).relaxed(d, self.sign * mean, gas.sound_speed(&state), share);
+        let mut next = self.place(flow).relaxed(d, self.sign * mean, self.gas.sound_speed(&state), share);
         if let Boundary::Inlet(w) = &mut next {
-            self.follow(gas, w);
+            self.follow(w);
         }
         *self.place(flow) = next;
     }
@@ -105,16 +107,15 @@ impl<const D: usize> Inlet<D> {
 
     /// Sets the pressure outside, of a flow that goes on.
     pub fn set_pressure(&self, flow: &mut Flow<f64, D>, pressure: f64) {
-        let gas = flow.gas();
         if let Boundary::Inlet(w) = self.place(flow) {
             w.pressure = pressure;
-            self.follow(gas, w);
+            self.follow(w);
         }
     }
 
     /// The density that goes with the pressure.
-    fn follow(&self, gas: Gas<f64>, w: &mut Primitive<f64, D>) {
-        if let Some(density) = gas.density(w.pressure).or(self.per_pressure.map(|k| k * w.pressure)) {
+    fn follow(&self, w: &mut Primitive<f64, D>) {
+        if let Some(density) = self.gas.density(w.pressure).or(self.per_pressure.map(|k| k * w.pressure)) {
             w.density = density;
         }
     }

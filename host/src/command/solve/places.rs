@@ -7,15 +7,15 @@ use crate::keys::reader::not_known;
 use crate::keys::value::{Entry, Misfit, Value};
 
 /// Keys of a state.
-pub const STATE: [&str; 6] = ["rho", "T", "u", "v", "w", "p"];
+pub const STATE: [&str; 7] = ["rho", "T", "u", "v", "w", "p", "gamma"];
 
-const REGION: [&str; 10] = ["rho", "T", "u", "v", "w", "p", "min", "max", "center", "radius"];
+const REGION: [&str; 11] = ["rho", "T", "u", "v", "w", "p", "gamma", "min", "max", "center", "radius"];
 
 const SIDES: [&str; 6] = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
 
-const SIDE: [&str; 8] = ["type", "rho", "T", "u", "v", "w", "p", "relax"];
+const SIDE: [&str; 9] = ["type", "rho", "T", "u", "v", "w", "p", "gamma", "relax"];
 
-const PATCH: [&str; 11] = ["side", "min", "max", "type", "rho", "T", "u", "v", "w", "p", "relax"];
+const PATCH: [&str; 12] = ["side", "min", "max", "type", "rho", "T", "u", "v", "w", "p", "gamma", "relax"];
 
 /// Looks for keys that are not known where they stand.
 ///

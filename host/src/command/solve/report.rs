@@ -15,6 +15,7 @@ use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use voidage_core::flow::Gas;
 
 /// Work of this session.
 #[derive(Debug, Clone, Copy, Default)]
@@ -90,6 +91,9 @@ struct GasReport {
     model: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     gamma: Option<f64>,
+    /// Lowest and highest of a mixed gas.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gammas: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sound_speed: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,9 +105,10 @@ struct GasReport {
 }
 
 impl GasReport {
-    fn new(file: &CaseFile) -> Self {
+    fn new(file: &CaseFile, gas: Gas<f64>) -> Self {
+        let gammas = if let Gas::Mixed { gammas } = gas { Some(gammas) } else { None };
         let GasKeys { model, gamma, sound_speed, rho, p, gas_constant } = file.case.gas;
-        GasReport { model: model.word(), gamma, sound_speed, rho, p, gas_constant }
+        GasReport { model: model.word(), gamma, gammas, sound_speed, rho, p, gas_constant }
     }
 }
 
@@ -159,7 +164,7 @@ impl Report {
             build: BUILD,
             command: crate::command::stages::command_line(),
             title: file.case.title.clone(),
-            gas: GasReport::new(file),
+            gas: GasReport::new(file, flow.gas()),
             cells: setup.edges.cells(),
             axes: setup.live.iter().map(|&a| AXES[a]).collect(),
             steps: flow.steps,

@@ -83,7 +83,7 @@ fn make_way(dir: &Path, progress: &mut Progress) -> Result<()> {
     let report = dir.join(REPORT);
     if report.exists() {
         frames::remove_old(dir)?;
-        return checkpoint::forget(&report);
+        return frames::forget(&report);
     }
     if checkpoint::put_aside(dir)? {
         let (dir, kept) = (dir.display(), checkpoint::BEFORE);
@@ -209,10 +209,10 @@ impl<'a, const D: usize> Run<'a, D> {
         };
         if resume && run.goes_on() {
             // A report tells that a run is finished.
-            checkpoint::forget(&run.dir.join(REPORT))?;
+            frames::forget(&run.dir.join(REPORT))?;
         }
         if !begun {
-            checkpoint::forget(&run.dir.join(checkpoint::UNTOUCHED))?;
+            frames::forget(&run.dir.join(checkpoint::UNTOUCHED))?;
             run.record(0.0)?;
             run.frame()?;
             run.checkpoint()?;

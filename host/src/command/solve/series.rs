@@ -73,7 +73,10 @@ impl<const D: usize> Series<D> {
         let Watched { probes, planes } = watched;
         let probes = match probes.is_empty() {
             true => None,
-            false => Some((table("probes.csv", &probe_head(&file.case.output), journal.probes)?, probes)),
+            false => Some((
+                table("probes.csv", &probe_head(&file.case.output, setup.flow.gas().is_mixed()), journal.probes)?,
+                probes,
+            )),
         };
         let monitors = match planes.is_empty() {
             true => None,
@@ -158,7 +161,7 @@ impl<const D: usize> Series<D> {
 /// The columns of a probe, each after a comma; empty in a solid.
 fn probe_columns<const D: usize>(setup: &Setup<D>, cell: usize, line: &mut String) {
     if setup.flow.open_volume(cell) == 0.0 {
-        line.push_str(",,,,,");
+        line.push_str(if setup.flow.gas().is_mixed() { ",,,,,," } else { ",,,,," });
         return;
     }
     let w = setup.flow.get(cell);
@@ -168,6 +171,9 @@ fn probe_columns<const D: usize>(setup: &Setup<D>, cell: usize, line: &mut Strin
         let _ = write!(line, ",{u}");
     }
     let _ = write!(line, ",{}", w.pressure);
+    if setup.flow.gas().is_mixed() {
+        let _ = write!(line, ",{}", setup.flow.gas_at(cell).gamma());
+    }
 }
 
 /// The cells of the probes.
@@ -193,8 +199,12 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
     Ok(cells)
 }
 
-fn probe_head(output: &OutputKeys) -> String {
-    let of_probe = |name: &str| ["rho", "u", "v", "w", "p"].map(|q| format!("{name} {q}")).join(",");
+fn probe_head(output: &OutputKeys, mixed: bool) -> String {
+    let gamma = mixed.then_some("gamma");
+    let of_probe = |name: &str| {
+        let columns = ["rho", "u", "v", "w", "p"].into_iter().chain(gamma);
+        columns.map(|q| format!("{name} {q}")).collect::<Vec<_>>().join(",")
+    };
     let all = output.probes.iter().enumerate().map(|(n, p)| of_probe(&p.name(n)));
     ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")
 }

@@ -3,11 +3,12 @@
 use super::arrays;
 use super::case::{CaseFile, GasKeys, LimiterName, Model, Pressure, RiemannName};
 use super::inlet::Inlet;
+use super::mixture::mixture;
 use super::regions::{self, RegionReport};
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
 use super::space::{self, Space};
-use super::state::States;
+use super::state::{Beginning, States};
 use super::units;
 use crate::command::progress::Progress;
 use crate::error::{Error, Result};
@@ -84,18 +85,19 @@ pub fn setup<const D: usize>(
     progress: &mut Progress,
 ) -> Result<Setup<D>> {
     let case = &file.case;
-    let gas = gas(file, &case.gas)?;
+    let gas = mixture(file, gas(file, &case.gas)?, edges)?;
     let mut skipped: Vec<String> =
         (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
-    let cells = progress.stage("initial", |_| states.initial(edges))?;
+    let Beginning { cells, gammas } = progress.stage("initial", |_| states.initial(edges))?;
 
     let lowest = cells.iter().map(|w| w.pressure).fold(f64::INFINITY, f64::min);
     units::doubts(file, lowest).into_iter().for_each(|doubt| progress.warn(doubt));
     let widths = live.map(|d| edges.widths(d));
-    let Sides { boundaries, patches, mut inlets } = sides::sides(file, &states, edges, &cells)?;
+    let Sides { boundaries, patches, feed, mut inlets } = sides::sides(file, &states, edges, &cells)?;
     let mut flow = Flow::new(widths, gas, boundaries);
     flow.patches = patches;
+    (flow.feed_sides, flow.feed_patches) = feed;
     (flow.scheme, flow.careful_steps) = scheme(file)?;
     flow.gravity = gravity(file, live)?;
 
@@ -122,7 +124,7 @@ pub fn setup<const D: usize>(
         skipped.push("energy equation: the gas is barotropic".into());
     }
 
-    set_states(&mut flow, &cells);
+    set_states(&mut flow, &cells, &gammas);
     if let Some(report) = &mut report {
         report.step_share = step_share(&mut flow);
     }
@@ -162,22 +164,22 @@ fn fill<const D: usize>(
     })
 }
 
-/// Gives all cells their states; nothing flows in solid.
-fn set_states<const D: usize>(flow: &mut Flow<f64, D>, cells: &[Primitive<f64, D>]) {
+/// Gives all cells their states, and those of a mixed gas their ratios of specific heats; nothing flows in solid.
+fn set_states<const D: usize>(flow: &mut Flow<f64, D>, cells: &[Primitive<f64, D>], gammas: &[f64]) {
     for (cell, w) in cells.iter().enumerate() {
         let closed = flow.beta_v().is_some_and(|b| b[cell] == 0.0);
         let velocity = if closed { [0.0; D] } else { w.velocity };
-        flow.set(cell, &Primitive { velocity, ..*w });
+        let gamma = gammas.get(cell).copied().unwrap_or(flow.gas().gamma());
+        flow.set_mixed(cell, &Primitive { velocity, ..*w }, gamma);
     }
 }
 
 /// The stable step over that of the same gas in open space; 1 where there is none.
 fn step_share<const D: usize>(flow: &mut Flow<f64, D>) -> f64 {
     let Ok(rate) = flow.rate() else { return 1.0 };
-    let gas = flow.gas();
     let open = |cell: usize| {
         let (w, at) = (flow.get(cell), flow.coordinates(cell));
-        let c = gas.sound_speed(&w);
+        let c = flow.gas_at(cell).sound_speed(&w);
         (0..D).map(|d| (w.velocity[d].abs() + c) * flow.area(d, at) / flow.volume(at)).sum::<f64>()
     };
     let gaseous = (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0);

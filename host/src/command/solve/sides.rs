@@ -20,6 +20,8 @@ pub struct Sides<const D: usize> {
     pub boundaries: [[Boundary<f64, D>; 2]; D],
     /// Parts of them where something else stands.
     pub patches: Vec<Patch<f64, D>>,
+    /// Of a mixed gas the ratios of specific heats of what sides and patches feed.
+    pub feed: ([[f64; 2]; D], Vec<f64>),
     /// The inlets among both.
     pub inlets: Vec<Inlet<D>>,
 }
@@ -58,7 +60,8 @@ pub fn sides<const D: usize>(
     cells: &[Primitive<f64, D>],
 ) -> Result<Sides<D>> {
     let given = file.case.boundary.by_axis();
-    let mut sides = Sides { boundaries: [[Boundary::Wall; 2]; D], patches: Vec::new(), inlets: Vec::new() };
+    let feed = ([[states.gas.gamma(); 2]; D], Vec::new());
+    let mut sides = Sides { boundaries: [[Boundary::Wall; 2]; D], patches: Vec::new(), feed, inlets: Vec::new() };
     for axis in 0..3 {
         for side in 0..2 {
             let key = format!("boundary.{}", side_word(axis, side));
@@ -69,6 +72,7 @@ pub fn sides<const D: usize>(
             let keys = given[axis][side].ok_or_else(|| file.wrong(&key, "is missing"))?;
             let place = Place { key, keys, at: (d, side), patch: None };
             sides.boundaries[d][side] = boundary(states, edges, cells, &place, &mut sides.inlets)?;
+            sides.feed.0[d][side] = states.gamma(keys, None);
         }
         let periodic = [0, 1].map(|s| given[axis][s].and_then(|k| k.kind) == Some(Kind::Periodic));
         if periodic[0] != periodic[1] {
@@ -84,6 +88,7 @@ pub fn sides<const D: usize>(
         }
         let boundary = boundary(states, edges, cells, &place, &mut sides.inlets)?;
         let (first, end) = covered(&Region::new(file, &place.key, keys)?, edges, states.live);
+        sides.feed.1.push(states.gamma(keys, None));
         sides.patches.push(Patch { axis: d, high: side == 1, first, end, boundary });
     }
     Ok(sides)
@@ -176,7 +181,7 @@ fn no_flow_through(file: &CaseFile, key: &str, keys: Option<&StateKeys>) -> Resu
 /// Keys that a type of boundary has no use for are errors.
 fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
     let of_kind: &[&str] = match kind {
-        Kind::Inlet => &["rho", "T", "u", "v", "w", "p", "relax"],
+        Kind::Inlet => &["rho", "T", "u", "v", "w", "p", "gamma", "relax"],
         Kind::FarField => &STATE,
         Kind::Outlet => &["p"],
         Kind::Wall | Kind::ZeroGradient | Kind::Periodic => &[],

@@ -2,6 +2,7 @@
 
 use super::arrays;
 use super::case::{CaseFile, StateKeys, VELOCITIES};
+use super::mixture;
 use super::places::STATE;
 use super::regions::Region;
 use crate::command::stages;
@@ -29,7 +30,28 @@ const AGREEMENT: f64 = 1e-9;
 /// What a run keeps for each cell, at least: a grid too large for any memory is refused before it is filled.
 const BYTES_A_CELL: usize = 128;
 
+/// All cells at the beginning, x fastest.
+#[derive(Debug, Clone)]
+pub struct Beginning<const D: usize> {
+    /// Their states.
+    pub cells: Vec<Primitive<f64, D>>,
+    /// The ratio of specific heats of each cell of a mixed gas; else empty.
+    pub gammas: Vec<f64>,
+}
+
 impl<const D: usize> States<'_, D> {
+    /// The ratio of specific heats of a table; if it gives none, `base`, or that of the gas of the case.
+    #[must_use]
+    pub fn gamma(&self, keys: &StateKeys, base: Option<f64>) -> f64 {
+        keys.gamma.or(base).or(self.file.case.gas.gamma).unwrap_or(f64::NAN)
+    }
+
+    /// The gas of this ratio of specific heats, if the gas of the case is a mixed one.
+    #[must_use]
+    pub fn gas_of(&self, gamma: f64) -> Gas<f64> {
+        if self.gas.is_mixed() { Gas::Ideal { gamma } } else { self.gas }
+    }
+
     /// The state of a table at `key`; what it does not say is taken from `base`.
     ///
     /// # Errors
@@ -96,24 +118,35 @@ impl<const D: usize> States<'_, D> {
     ///
     /// # Errors
     /// As [`States::state`]; an array that cannot be read or holds no states; cells without a state.
-    pub fn initial(&self, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
+    pub fn initial(&self, edges: &Edges) -> Result<Beginning<D>> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
         stages::room_for(count.saturating_mul(BYTES_A_CELL))?;
-        let whole = |state| Some(Filled { state, share: 1.0 });
+        let whole = |state, gamma| Some(Filled { state, gamma, share: 1.0 });
         let mut cells = match (&keys.uniform, &keys.from) {
             (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
             (Some(state), None) => {
-                vec![whole(self.state("initial.uniform", state, None)?); count]
+                vec![whole(self.state("initial.uniform", state, None)?, self.gamma(state, None)); count]
             }
-            (None, Some(dir)) => self.read(&self.file.resolve(dir), edges)?.into_iter().map(whole).collect(),
+            (None, Some(dir)) => {
+                let gammas = match mixture::array(self.file).filter(|_| self.gas.is_mixed()) {
+                    Some(path) => arrays::read(&path, edges.cells(), mixture::above_one)?,
+                    None => vec![self.gamma(&StateKeys::default(), None); count],
+                };
+                let states = self.read(&self.file.resolve(dir), edges)?.into_iter();
+                states.zip(gammas).map(|(state, gamma)| whole(state, gamma)).collect()
+            }
             (None, None) => vec![None; count],
         };
         (0..keys.regions.len()).try_for_each(|n| self.fill(n, edges, &mut cells))?;
         // Regions that fill half of a cell or more speak for all of it.
         let missing = |c: &Option<Filled<D>>| c.is_none_or(|c| c.share < 0.5 - 1e-9);
         match cells.iter().position(missing) {
-            None => Ok(cells.into_iter().flatten().map(|c| c.state).collect()),
+            None => {
+                let cells: Vec<Filled<D>> = cells.into_iter().flatten().collect();
+                let gammas = if self.gas.is_mixed() { cells.iter().map(|c| c.gamma).collect() } else { Vec::new() };
+                Ok(Beginning { cells: cells.iter().map(|c| c.state).collect(), gammas })
+            }
             Some(cell) => {
                 let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
                 Err(self
@@ -133,7 +166,8 @@ impl<const D: usize> States<'_, D> {
         let region = Region::new(self.file, &key, keys)?;
         for (cell, share) in region.shares(edges)? {
             let state = self.state(&key, keys, cells[cell].map(|c| c.state))?;
-            cells[cell] = Some(Filled { state, share }.over(cells[cell], self.gas));
+            let gamma = self.gamma(keys, cells[cell].map(|c| c.gamma));
+            cells[cell] = Some(Filled { state, gamma, share }.over(cells[cell], self));
         }
         Ok(())
     }
@@ -170,23 +204,33 @@ impl<const D: usize> States<'_, D> {
 #[derive(Debug, Clone, Copy)]
 struct Filled<const D: usize> {
     state: Primitive<f64, D>,
+    /// Ratio of specific heats, which counts in a mixed gas.
+    gamma: f64,
     share: f64,
 }
 
 impl<const D: usize> Filled<D> {
-    /// The cell once this state has taken its share of what it held before: mass, momentum and energy of both.
-    fn over(self, before: Option<Self>, gas: Gas<f64>) -> Self {
+    /// The cell once this state has taken its share of what it held before: mass, momentum and energy of both. Gases of one pressure keep it: of
+    /// 1/(γ − 1), the energy per volume and pressure, the cell has the mean.
+    fn over(self, before: Option<Self>, states: &States<'_, D>) -> Self {
         let Some(before) = before.filter(|_| self.share < 1.0) else { return self };
         let kept = before.share.min(1.0 - self.share);
         let share = kept + self.share;
-        let (a, b) = (gas.conserved(&before.state), gas.conserved(&self.state));
+        let gases = [before.gamma, self.gamma].map(|gamma| states.gas_of(gamma));
+        let (a, b) = (gases[0].conserved(&before.state), gases[1].conserved(&self.state));
         let mean = |a: f64, b: f64| (kept * a + self.share * b) / share;
-        let state = gas.primitive(&Conserved {
+        let gamma = match before.gamma == self.gamma || !states.gas.is_mixed() {
+            true => self.gamma,
+            false => 1.0 + 1.0 / mean(gases[0].capacity(), gases[1].capacity()),
+        };
+        // A mean of two lies between them, whatever the rounding.
+        let gamma = gamma.max(before.gamma.min(self.gamma)).min(before.gamma.max(self.gamma));
+        let state = states.gas_of(gamma).primitive(&Conserved {
             density: mean(a.density, b.density),
             momentum: std::array::from_fn(|c| mean(a.momentum[c], b.momentum[c])),
             energy: mean(a.energy, b.energy),
         });
-        Filled { state, share }
+        Filled { state, gamma, share }
     }
 }
 

@@ -87,7 +87,7 @@ fn typical_speed<const D: usize>(flow: &Flow<f64, D>, mass: f64, energy: f64) ->
 /// What is the matter with a flow that cannot go on: the cell, and its values.
 #[must_use]
 pub fn unphysical<const D: usize>(setup: &Setup<D>, error: Option<Error>) -> String {
-    let (flow, gas) = (&setup.flow, setup.flow.gas());
+    let flow = &setup.flow;
     let physical = |cell: usize| {
         let w = flow.get(cell);
         let finite = w.velocity.iter().all(|u| u.is_finite()) && w.density.is_finite() && w.pressure.is_finite();
@@ -96,7 +96,7 @@ pub fn unphysical<const D: usize>(setup: &Setup<D>, error: Option<Error>) -> Str
     let fastest = || {
         let speed = |c: usize| {
             let w = flow.get(c);
-            w.velocity.iter().fold(gas.sound_speed(&w), |s, u| s + u.abs())
+            w.velocity.iter().fold(flow.gas_at(c).sound_speed(&w), |s, u| s + u.abs())
         };
         (0..flow.len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b))).unwrap_or(0)
     };
@@ -120,5 +120,9 @@ fn state_of<const D: usize>(setup: &Setup<D>, cell: usize) -> String {
     for (axis, u) in setup.live.iter().zip(w.velocity) {
         let _ = write!(text, "{} = {u:?}, ", VELOCITIES[*axis]); // a String takes anything
     }
-    format!("{text}p = {:?}", w.pressure)
+    let _ = write!(text, "p = {:?}", w.pressure);
+    if setup.flow.gas().is_mixed() {
+        let _ = write!(text, ", gamma = {:?}", setup.flow.gas_at(cell).gamma());
+    }
+    text
 }

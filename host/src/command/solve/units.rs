@@ -57,8 +57,9 @@ pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
     said
 }
 
-/// All tables of a case that may give a pressure, by their keys.
-fn states(file: &CaseFile) -> Vec<(String, &StateKeys)> {
+/// All tables of a case that may give a state, by their keys.
+#[must_use]
+pub fn states(file: &CaseFile) -> Vec<(String, &StateKeys)> {
     let (initial, boundary) = (&file.case.initial, &file.case.boundary);
     let mut all: Vec<(String, &StateKeys)> = Vec::new();
     all.extend(initial.uniform.iter().map(|keys| ("initial.uniform".to_owned(), keys)));
