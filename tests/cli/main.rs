@@ -6,6 +6,7 @@ mod forces;
 mod inspect;
 mod kit;
 mod maxima;
+mod mixed;
 mod monitors;
 mod no_effect;
 mod outputs;

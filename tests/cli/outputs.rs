@@ -104,9 +104,11 @@ fn reports_and_tables_of_solve() {
     .expect("written");
     let ideal = "model = \"ideal\"\ngamma = 1.4\ngas_constant = 287";
     let more = "[porosity]\nscene = \"scene.toml\"\n[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\nmonitors = [{ name = \"NAME\", x = 0.3 }]\nmaxima = {}\nforces = [\"*\"]\n";
+    let burnt = "[output]\nprobes = [{ name = \"NAME\", at = [0.1, 0, 0] }]\n";
     let isentropic = "model = \"isentropic\"\ngamma = 1.4\nrho = 1.2\np = 1e5";
     let cases = [
         ("ideal", tube(ideal, "T = 300, p = 1e5", more)),
+        ("burnt", tube(ideal, "T = 300, p = 1e5, gamma = 1.3", burnt)),
         ("isothermal", tube("model = \"isothermal\"\nsound_speed = 340", "rho = 1.2", "")),
         ("isentropic", tube(isentropic, "rho = 1.2", "")),
     ];
@@ -133,7 +135,10 @@ fn reports_and_tables_of_solve() {
         );
     }
     assert_eq!(columns(&at.file("ideal/log.csv")), documented("log"));
-    assert_eq!(columns(&at.file("ideal/probes.csv")), documented("probes"));
+    assert_eq!(columns(&at.file("burnt/probes.csv")), documented("probes"));
+    let of_two = "NAME gamma".to_owned();
+    let of_one: BTreeSet<String> = documented("probes").into_iter().filter(|column| *column != of_two).collect();
+    assert_eq!(columns(&at.file("ideal/probes.csv")), of_one);
     assert_eq!(columns(&at.file("ideal/monitors.csv")), documented("monitors"));
 }
 

@@ -85,7 +85,7 @@ pub trait FaceGases<R: Real>: sealed::Sealed {
     /// On the right.
     fn right(&self) -> &FaceGas<R>;
     /// What comes from the left, or from the right.
-    fn from_side(&self, left: bool) -> FaceGas<R>;
+    fn upwind(&self, from_left: bool) -> FaceGas<R>;
     /// ½(gamma − 1) by which a jump of velocity raises the mean of the squared speeds of sound; the larger one.
     fn half_gamma_minus_one(&self) -> R;
 }
@@ -104,7 +104,7 @@ impl<R: Real> FaceGases<R> for FaceGas<R> {
     }
 
     #[inline(always)]
-    fn from_side(&self, _: bool) -> FaceGas<R> {
+    fn upwind(&self, _: bool) -> FaceGas<R> {
         *self
     }
 
@@ -140,9 +140,9 @@ impl<R: Real> FaceGases<R> for MixedFace<R> {
     }
 
     #[inline(always)]
-    fn from_side(&self, left: bool) -> FaceGas<R> {
+    fn upwind(&self, from_left: bool) -> FaceGas<R> {
         let [l, r] = &self.0;
-        let pick = |a: R, b: R| core::hint::select_unpredictable(left, a, b);
+        let pick = |a: R, b: R| core::hint::select_unpredictable(from_left, a, b);
         FaceGas {
             gamma: pick(l.gamma, r.gamma),
             half_gamma_minus_one: pick(l.half_gamma_minus_one, r.half_gamma_minus_one),

@@ -248,7 +248,7 @@ fn hllc<R: Real, const D: usize, const ENERGY: bool>(
     let share = if gap == R::ZERO { R::ONE } else { share };
     let rest = R::ONE - share;
 
-    let upwind = gas.from_side(from_left);
+    let upwind = gas.upwind(from_left);
     let relative = velocity[0] - speed;
     let mass = share * (density * relative);
     let mut momentum = [R::ZERO; D];

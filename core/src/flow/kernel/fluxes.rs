@@ -77,6 +77,18 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
     }
     let flux = FluxBlock { values: work.flux, n: m };
     positive_fluxes::<R, D, ENERGY, MIXED>(slab, 0, row.at, [work.left, work.right], flux);
+    changes_x::<R, D, ENERGY, MIXED>(slab, row, place, work, report);
+}
+
+/// What the fluxes of a row bring into the domain at both of its ends, and into its cells.
+fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
+    slab: &Slab<'_, R, D>,
+    row: RowAt<D>,
+    place: usize,
+    work: &mut Work<'_, R, D>,
+    report: &mut Report<R, D>,
+) {
+    let (n, m) = (slab.size.n, slab.size.m);
     let flux = &*work.flux;
     count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
     count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);

@@ -282,9 +282,8 @@ fn jump_group<R: Real, const D: usize, S: Solver, const MIXED: bool>(
     scatter(D + 1, &f.energy);
     scatter(D + 2, &f.normal[1]);
     if MIXED {
-        let [volume, carried] = carried_through(&faces.states, &capacities, &f.mass);
-        scatter(D + 3, &volume);
-        scatter(D + 4, &carried);
+        let carried = carried_through(&faces.states, &capacities, &f.mass);
+        (0..2).for_each(|n| scatter(D + 3 + n, &carried[n]));
     }
 }
 

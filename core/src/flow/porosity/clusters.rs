@@ -392,7 +392,8 @@ pub(in crate::flow) fn apply_capacities<R: Real, const D: usize>(
             total.add(v);
             sum.add(v * field.capacity[cell]);
         }
-        let mean = gas.settled(sum.value() / total.value());
+        // As the energy is divided, so that a pressure of 1 stays 1.
+        let mean = gas.settled(sum.value() * (R::ONE / total.value()));
         cells.for_each(|cell| field.capacity[cell] = mean);
     }
 }

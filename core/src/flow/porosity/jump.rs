@@ -223,7 +223,7 @@ fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases
     let common = ((stiff_l * mass_l + stiff_r * mass_r) + drive) / (stiff_l + stiff_r);
     let own = |s: usize, wave: R, change: R| {
         let (w, duct) = (&face.cell[s], face.ducts[s]);
-        let enthalpy = (duct * gas.from_side(s == 0).enthalpy(w) + wave * change) / (duct * w.density);
+        let enthalpy = (duct * gas.upwind(s == 0).enthalpy(w) + wave * change) / (duct * w.density);
         (duct * relative_impulse(w, face.references[s]) + (w.velocity[0] + wave) * change, common * enthalpy)
     };
     let ((left, energy_l), (right, energy_r)) = (own(0, -c_l, common - mass_l), own(1, c_r, common - mass_r));
