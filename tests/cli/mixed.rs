@@ -184,7 +184,7 @@ fn what_cannot_be_is_refused() {
             "x_max = { type = \"wall\", gamma = 1.3 }",
             "boundary.x_max.gamma: is not a key of this type (wall)",
         ),
-        ("gamma = 1.25", "gama = 1.25", "initial.regions[0].gama: is not known; did you mean gamma?"),
+        ("gamma = 1.25", "gama = 1.25", "initial.regions[0].gama: is not known here; did you mean gamma?"),
         (
             "model = \"ideal\"\ngamma = 1.4\ngas_constant = 287",
             isentropic,

@@ -181,7 +181,8 @@ fn numbers() {
 #[test]
 fn slips_in_states_and_regions() {
     let uniform = "{ rho = 1, u = 0.5, p = 1 }\n[boundary]";
-    let velocity = "is not known here; did you mean u, v, w, the velocities along x, y, z? (known: rho, T, u, v, w, p)";
+    let velocity =
+        "is not known here; did you mean u, v, w, the velocities along x, y, z? (known: rho, T, u, v, w, p, gamma)";
     let words =
         &["line 9, column 22: key initial.uniform.velocity: ", velocity, "\n     |                      ^^^^^^^^\n"];
     for value in ["[1, 0, 0]", "\"1 m/s\"", "1"] {
@@ -189,7 +190,7 @@ fn slips_in_states_and_regions() {
     }
     fails(uniform, "{ density = 1, p = 1 }\n[boundary]", &["uniform.density: is not known here; did you mean rho?"]);
     fails(uniform, "{ rho = 1, u = [1, 0], p = 1 }\n[boundary]", &["uniform.u: takes a number, not a list", "^^^^^^"]);
-    let no_table = "key initial.uniform: takes a table with any of rho, T, u, v, w, p, not a text";
+    let no_table = "key initial.uniform: takes a table with any of rho, T, u, v, w, p, gamma, not a text";
     fails(uniform, "\"rest\"\n[boundary]", &["line 9, column 11: ", no_table]);
     let region = |keys: &str| format!("{{ rho = 1, p = 1 }}\nregions = [{{ {keys} }}]\n[boundary]");
     let mark = "\n     |            ^^^^";
@@ -206,7 +207,7 @@ fn slips_in_states_and_regions() {
         ("centre = [0.5], radius = 0.2, p = 2", &["key initial.regions[0].centre", "did you mean center?"]),
         (
             "type = \"wall\", p = 2",
-            &["key initial.regions[0].type: is not known here", "(known: rho, T, u, v, w, p, min, max"],
+            &["key initial.regions[0].type: is not known here", "(known: rho, T, u, v, w, p, gamma, min, max"],
         ),
     ] {
         fails(uniform, &region(keys), words);
@@ -251,7 +252,7 @@ fn states_and_sides() {
     fails(
         uniform,
         "rho = 1, p = 1, min = [0] }\n[boundary]",
-        &["key initial.uniform.min: is not known here (known: rho, T, u, v, w, p)\n"],
+        &["key initial.uniform.min: is not known here (known: rho, T, u, v, w, p, gamma)\n"],
     );
     fails(
         "uniform = { rho = 1, u = 0.5, p = 1 }",

@@ -214,7 +214,7 @@ fn converges(problem: (&str, GasSide, GasSide, f64), scheme: (Riemann, Limiter),
 fn tubes_of_two_gases_converge_to_the_exact_solution() {
     for problem in TUBES {
         for riemann in SOLVERS {
-            converges(problem, (riemann, Limiter::MonotonizedCentral), [0.62, 0.8, 0.58]);
+            converges(problem, (riemann, Limiter::MonotonizedCentral), [0.62, 0.75, 0.58]);
         }
         converges(problem, (Riemann::Hllc, Limiter::Steep), [0.85, 0.8, 0.65]);
     }
