@@ -426,7 +426,9 @@ fn gases_at_rest_stay_at_rest_to_the_bit() {
         let start = bits(&flow.state);
         for limiter in [Limiter::Steep, Limiter::VanLeer] {
             flow.scheme.limiter = limiter;
-            (0..5).for_each(|_| drop(flow.step(0.01).unwrap()));
+            for _ in 0..5 {
+                flow.step(0.01).unwrap();
+            }
         }
         assert!(bits(&flow.state) == start, "seed {seed}");
     }
@@ -446,7 +448,11 @@ fn threads_do_not_change_the_bits_of_two_gases() {
         flow.patches = vec![Patch { axis: 0, high: false, first: [0; 3], end: [8, 9, 20], boundary }];
         flow.feed_patches = vec![1.3];
         fill_unevenly(&mut flow, [0.3, -0.2, 0.5], 3);
-        pool.install(|| (0..12).for_each(|_| drop(flow.advance(0.8, f64::MAX).unwrap())));
+        pool.install(|| {
+            for _ in 0..12 {
+                flow.advance(0.8, f64::MAX).unwrap();
+            }
+        });
         assert!(within(&flow));
         bits(&flow.state)
     };
