@@ -9,6 +9,9 @@
 //! d(beta_v rho E)/dt + div(beta_f rho H u) = beta_v rho g·u
 //! ```
 //!
+//! A mixed gas, burnt beside fresh, has a ratio of specific heats gamma in each cell, which goes with the gas: 1/(gamma − 1) is advected by the flux of
+//! volume that moves the energy (`kernel::mixed`), so that pressure and velocity stay uniform where they are, whatever gases meet.
+//!
 //! The scheme is MUSCL-Hancock, unsplit, in primitive variables, with one Riemann problem per face and step. Axes that hold a
 //! single cell are not part of a problem: the same text is compiled for one, two and three axes.
 //!
