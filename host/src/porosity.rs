@@ -19,10 +19,11 @@ mod road;
 pub mod shadows;
 pub mod snap;
 mod solid;
+pub mod surface_fields;
 mod targets;
 pub mod throat;
 
-use crate::geometry::bodies::{self, Bodies};
+use crate::geometry::bodies::{self, Bodies, Doubt};
 pub use crate::huge::HugeVec;
 pub use fields::FieldSet;
 use glam::DVec3;
@@ -31,7 +32,9 @@ pub use levels::levels;
 pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
 pub use result::{CellCounts, Gjk, Leak, Porosity};
-use road::Roads;
+use road::{Road, Roads};
+use std::sync::Arc;
+use surface_fields::{SurfaceFields, no_areas};
 use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
@@ -65,7 +68,7 @@ pub fn porosity_watched(
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
     let Some(sure) = doubt::without_perhaps(bodies) else { return measured(grid, bodies, options, layer_done) };
-    let bounded = Options { bounds: true, ..options };
+    let bounded = Options { bounds: true, resistance: false, ..options };
     let mut found = measured(grid, bodies, bounded, layer_done);
     doubt::open_upwards(&mut found, measured(grid, &sure, bounded, &|| ()));
     found.bounds = found.bounds.filter(|_| options.bounds);
@@ -160,7 +163,8 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
     let workers = Workers::new();
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
-    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut())
+    let mut areas = with_surface(scene, &convex).then(|| no_areas(grid));
+    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), areas.as_mut())
         .into_par_iter()
         .enumerate()
         .map(|(k, mut target)| {
@@ -177,6 +181,7 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
         first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
     }
     let total = summaries.iter().fold(Summary::default(), Summary::join);
+    let surface = areas.map(|areas| Arc::new(SurfaceFields::finish(grid, &layers, &beta, areas, &summaries)));
     let porosity = Porosity {
         beta,
         bounds,
@@ -190,8 +195,17 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
         by_formula: roads.by_formula(),
         gjk: Gjk { queries: total.tally.queries, undecided: total.tally.undecided },
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
+        surface,
     };
     Union { level, porosity, layers: summaries }
+}
+
+/// Are areas and shadows of surface asked for, and those of the bodies whose porosity is found? Bodies by formula have them as facets, and those
+/// of which nothing is known have none.
+fn with_surface(scene: &Scene, beside: &Road) -> bool {
+    let Scene { bodies, options, .. } = scene;
+    let all_known = bodies.bodies.iter().all(|b| b.doubt == Doubt::None);
+    options.resistance && options.areas && beside.is_empty() && all_known && levels(bodies) == [0.0]
 }
 
 /// The surfaces of all bodies, made of the triangles that `own` gives for a body's number, and which of them are broken: those with a

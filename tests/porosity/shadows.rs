@@ -10,7 +10,7 @@ use voidage::porosity::{Options, Porosity, porosity};
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::{LayerOptions, Layers, OpenLayer};
-use voidage_core::surface::shadow::{Shadow, ShadowEdge, ShadowMemory};
+use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, turned_box};
 
@@ -205,10 +205,15 @@ fn crossing_sheets_against_lines() {
         let layers = Layers::new(&grid, &bodies, LayerOptions::default(), &mut numbers, &mut groups).expect("memory");
         let (mut edges, mut crossed) = (vec![ShadowEdge::default(); 9 * 2 * count], vec![0; 3 * 2 * count]);
         let mut lists = vec![0; layers.shadow_lists_needed(0)];
-        let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut lists };
+        let mut faces = vec![ShadowFace::default(); 2 * count];
+        let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut lists, faces: &mut faces };
         let open = OpenLayer { cell: &[1.0], x: &[1.0; 2], y: &[1.0; 2], z: &[1.0], top: &[1.0] };
-        let mut found = [Shadow::default()];
-        assert_eq!(layers.shadows(0, &open, &mut found, memory), Ok(0));
+        let (mut share, mut place) = ([[0.0]; 3], [[0.0]; 3]);
+        let slices = ShadowSlices {
+            share: share.each_mut().map(|field| &mut field[..]),
+            place: place.each_mut().map(|field| &mut field[..]),
+        };
+        assert_eq!(layers.shadows(0, &open, None, slices, memory), Ok(0));
         for axis in 0..3 {
             let (iu, iv) = ((axis + 1) % 3, (axis + 2) % 3);
             let meets = |[a, b, c]: &Triangle, u: f64, v: f64| {
@@ -219,7 +224,7 @@ fn crossing_sheets_against_lines() {
             let at = |n: usize| (n as f64 + 0.5) / LINES as f64;
             let met = (0..LINES * LINES).filter(|n| sheets.iter().any(|t| meets(t, at(n % LINES), at(n / LINES))));
             let truth = met.count() as f64 / (LINES * LINES) as f64;
-            assert!((found[0].share[axis] - truth).abs() < 3e-3, "{count} along {axis}: {found:?} and {truth}");
+            assert!((share[axis][0] - truth).abs() < 3e-3, "{count} along {axis}: {share:?} and {truth}");
         }
     }
 }

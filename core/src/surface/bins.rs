@@ -1,6 +1,7 @@
 //! Which triangles of which bodies reach which layer of cells.
 
-use crate::grid::{Grid, Located};
+use crate::grid::fields::{ShapeMismatch, at_least};
+use crate::grid::{Grid, Located, locate};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use core::fmt;
@@ -439,20 +440,33 @@ impl<'m, V: Vector> Row<'m, V> {
 
 /// Cells along an axis that an interval reaches or touches.
 pub(super) fn cells_touched<R: Real>(edges: &[R], [lo, hi]: [R; 2]) -> Range<usize> {
-    let first = edges.partition_point(|&e| e < lo).saturating_sub(1);
-    first..edges.partition_point(|&e| e <= hi).min(edges.len().saturating_sub(1))
+    let cells = edges.len().saturating_sub(1);
+    let first = match locate(edges, lo) {
+        Located::Below => 0,
+        Located::Cell(i) => i.saturating_sub(usize::from(edges.get(i) == Some(&lo))),
+        Located::Above => cells.saturating_sub(usize::from(edges.last() == Some(&lo))),
+    };
+    let end = match locate(edges, hi) {
+        Located::Below => 0,
+        Located::Cell(i) => i + 1,
+        Located::Above => cells,
+    };
+    first..end
 }
 
-/// Which triangles reach or touch, by their boxes, which cell of a layer.
+/// Which triangles reach or touch, by their boxes, which cell of a layer, for those cells that are wanted.
 pub(super) struct CellLists<'m> {
-    /// The end of each cell's entries.
+    /// The end of each cell's entries, or [`UNWANTED`] and that of the cell before.
     ends: &'m [u32],
     /// Position of a group in the layer and number of a triangle, by cell, and by group within a cell.
     entries: &'m [[u32; 2]],
 }
 
+/// Marks cells that are not wanted.
+const UNWANTED: u32 = 1 << 31;
+
 impl<'m> CellLists<'m> {
-    /// Numbers needed.
+    /// Numbers needed if all cells are wanted.
     pub fn needed<V: Vector>(bins: &Bins<V>, grid: &Grid<V::Scalar>, k: usize) -> usize {
         let [nx, ny, _] = grid.cells();
         let cells = |[x, y]: [Range<usize>; 2]| x.len().saturating_mul(y.len());
@@ -460,39 +474,59 @@ impl<'m> CellLists<'m> {
         entries.saturating_mul(2).saturating_add(nx * ny)
     }
 
-    /// Of layer `k`; with less memory than needed some entries are lost.
-    pub fn new<V: Vector>(bins: &Bins<V>, grid: &Grid<V::Scalar>, k: usize, memory: &'m mut [u32]) -> Self {
+    /// Of layer `k`; each cell is asked for once whether it is wanted.
+    ///
+    /// # Errors
+    /// [`ShapeMismatch`] if the memory is too small.
+    pub fn new<V: Vector>(
+        bins: &Bins<V>,
+        grid: &Grid<V::Scalar>,
+        k: usize,
+        wanted: impl FnMut(usize) -> bool,
+        memory: &'m mut [u32],
+    ) -> Result<Self, ShapeMismatch> {
         let [nx, ny, _] = grid.cells();
-        let (ends, entries) = memory.split_at_mut_checked(nx * ny).unwrap_or_default();
+        let (given, short) = (memory.len(), ShapeMismatch { expected: nx * ny, found: memory.len() });
+        let (ends, entries) = memory.split_at_mut_checked(nx * ny).ok_or(short)?;
         let (entries, _) = entries.as_chunks_mut();
-        ends.fill(0);
         let cells = |[x, y]: [Range<usize>; 2]| y.flat_map(move |j| x.clone().map(move |i| j * nx + i));
+        let mut any = false;
+        for (end, wanted) in ends.iter_mut().zip((0..).map(wanted)) {
+            *end = if wanted { 0 } else { UNWANTED };
+            any |= wanted;
+        }
+        if !any {
+            return Ok(CellLists { ends, entries });
+        }
         for cell in spans(bins, grid, k).flat_map(|(_, spans)| cells(spans)) {
-            if let Some(count) = ends.get_mut(cell) {
-                *count = count.saturating_add(1);
+            if let Some(count) = ends.get_mut(cell).filter(|count| **count < UNWANTED - 1) {
+                *count += 1;
             }
         }
         let mut sum = 0_u32;
         for first in &mut *ends {
-            sum = sum.saturating_add(core::mem::replace(first, sum));
+            let count = *first & !UNWANTED;
+            *first = sum | *first & UNWANTED;
+            sum = sum.saturating_add(count).min(UNWANTED - 1);
         }
+        at_least(nx * ny + 2 * sum as usize, given)?;
         for (entry, spans) in spans(bins, grid, k) {
             for cell in cells(spans) {
-                let Some(end) = ends.get_mut(cell) else { continue };
+                let Some(end) = ends.get_mut(cell).filter(|end| **end < UNWANTED - 1) else { continue };
                 if let Some(place) = entries.get_mut(*end as usize) {
                     *place = entry;
                 }
-                *end = end.saturating_add(1);
+                *end += 1;
             }
         }
-        CellLists { ends, entries }
+        Ok(CellLists { ends, entries })
     }
 
-    /// The entries of a cell.
-    pub fn of(&self, cell: usize) -> &'m [[u32; 2]] {
-        let first = cell.checked_sub(1).and_then(|before| self.ends.get(before)).copied().unwrap_or(0);
-        let end = self.ends.get(cell).copied().unwrap_or(first);
-        self.entries.get(first as usize..end as usize).unwrap_or_default()
+    /// The entries of a cell; none if it is not wanted.
+    pub fn of(&self, cell: usize) -> Option<&'m [[u32; 2]]> {
+        let end = *self.ends.get(cell).filter(|end| **end < UNWANTED)?;
+        let first = cell.checked_sub(1).and_then(|before| self.ends.get(before)).map_or(0, |end| end & !UNWANTED);
+        self.entries.get(first as usize..end as usize)
     }
 }
 

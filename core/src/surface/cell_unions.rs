@@ -6,6 +6,7 @@ use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group, Row, cells_touched};
+use crate::surface::surface_area::{PieceSums, SurfaceArea, UnionSurface};
 use crate::surface::union::{CellFractions, CellUnion, NoProof, UnionMemory};
 use core::ops::Range;
 use heapless::Vec;
@@ -38,6 +39,42 @@ impl<V: Vector> OtherBodies<V> for () {
     fn add_plane(&mut self, _: &Grid<V::Scalar>, _: usize, _: &mut Layer<V::Scalar>) {}
     fn reach(&mut self, _: Aabb<V>) -> bool {
         false
+    }
+}
+
+/// What else is made of the surface of unions. The unit type makes nothing of it.
+pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
+    /// Is the surface of the union in a cell of the layer asked for?
+    fn wants_union(&self, cell: usize) -> bool;
+    /// What the union has of surface in a cell.
+    fn set_union(&mut self, cell: usize, found: UnionSurface<V::Scalar>);
+    /// The same where there is no proof for the cell as a whole, whose bounds may have been `refined`.
+    fn divide_union<O: OtherBodies<V>>(
+        &mut self,
+        shared: &mut Shared<V, O>,
+        site: &Site<V>,
+        at: (usize, Aabb<V>),
+        refined: Option<&Refined<V::Scalar>>,
+        room: Room<V>,
+    );
+}
+
+impl<V: Vector> UnionSums<V> for () {
+    #[inline(always)]
+    fn wants_union(&self, _: usize) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn set_union(&mut self, _: usize, _: UnionSurface<V::Scalar>) {}
+    #[inline(always)]
+    fn divide_union<O: OtherBodies<V>>(
+        &mut self,
+        _: &mut Shared<V, O>,
+        _: &Site<V>,
+        _: (usize, Aabb<V>),
+        _: Option<&Refined<V::Scalar>>,
+        _: Room<V>,
+    ) {
     }
 }
 
@@ -188,12 +225,14 @@ pub(super) struct Resolved {
     pub divided: usize,
 }
 
-/// Narrow the bounds of the cells that bodies share in a layer, of their x and y faces and of the z faces below.
-pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
+/// Narrow the bounds of the cells that bodies share in a layer, of their x and y faces and of the z faces below. `pieces` is told of the
+/// surface of unions.
+pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
     room: Room<V>,
+    pieces: &mut P,
 ) -> Resolved {
     let [nx, ny, _] = site.grid.cells();
     let mut resolved = Resolved::default();
@@ -219,7 +258,12 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
             let at = At { i, j, cells: [nx, ny] };
             resolved.ambiguous += usize::from(at.cell_gap(layer) > V::Scalar::ZERO);
             let open = at.largest_gap(layer);
-            if !(open > known()) {
+            let mut wanted = P::WANTED && pieces.wants_union(at.cell());
+            if wanted && at.is_closed(layer) {
+                pieces.set_union(at.cell(), UnionSurface::default());
+                wanted = false;
+            }
+            if !(open > known() || wanted) {
                 continue;
             }
             if row.is_none() {
@@ -227,15 +271,18 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
             }
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
             let believed = |u: &Refined<V::Scalar>| at.agrees(layer, u, site.areas);
-            let refined = match union(shared, site, cell, row, believed) {
-                None if open > shared.tol => {
-                    resolved.divided += 1;
-                    let rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
-                    divide(shared, site, cell, rest)
-                }
-                found => found,
-            };
-            if let Some(refined) = refined {
+            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, believed).unzip();
+            let mut rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
+            if refined.is_none() && open > shared.tol {
+                resolved.divided += 1;
+                refined = divide(shared, site, cell, rest.reborrow());
+            }
+            match surface {
+                Some(surface) if wanted => pieces.set_union(at.cell(), surface),
+                None if wanted => pieces.divide_union(shared, site, (at.cell(), cell), refined.as_ref(), rest),
+                _ => {}
+            }
+            if let Some(refined) = refined.filter(|_| open > known()) {
                 at.store(layer, &refined);
             }
         }
@@ -266,11 +313,11 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
                 row = Row::new(site.bins, site.k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
             }
             let Some(row) = &mut row else { continue };
-            let refined = match union(shared, site, cell, row, |_| true) {
+            let refined = match union::<_, _, ()>(shared, site, cell, row, |_| true) {
                 None if open > shared.tol => {
                     divide(shared, site, cell, Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 })
                 }
-                found => found,
+                found => found.map(|(refined, _)| refined),
             };
             if let Some(refined) = refined {
                 narrow(lower, sum, refined.high[2]);
@@ -290,22 +337,41 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
     surfaces.chain(others.map(|b| (b, false)))
 }
 
-/// The union in a cell: exact, or with the least blur that gives a proof; of triangles only.
-fn union<V: Vector, O: OtherBodies<V>>(
+/// The union in a cell: exact, or with the least blur that gives a proof; of triangles only. What it has of surface is found if `P` wants it.
+fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
     row: &Row<V>,
     believed: impl Fn(&Refined<V::Scalar>) -> bool,
-) -> Option<Refined<V::Scalar>> {
+) -> Option<(Refined<V::Scalar>, UnionSurface<V::Scalar>)> {
     if shared.others.reach(cell) {
         return None;
     }
+    let across = side_areas(cell);
     with_least_blur(shared.tol, |blur| {
-        let found = bodies_in(shared.union.reborrow(), site, cell, row, blur)?.cell()?;
+        let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
+        let mut surface = UnionSurface::default();
+        let found = bodies.cell_and_surface(|kept| {
+            if P::WANTED {
+                let [x, y, z] = kept.doubled_area();
+                let area = SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]);
+                surface.area = surface.area.plus(area);
+            }
+        })?;
+        if P::WANTED {
+            surface.sides = Some([0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]));
+        }
+        let error = found.error;
         let refined = Refined::from_union(found);
-        if believed(&refined) { Ok((refined, found.error)) } else { Err(NoProof::Ambiguous) }
+        if believed(&refined) { Ok(((refined, surface), error)) } else { Err(NoProof::Ambiguous) }
     })
+}
+
+/// Areas of a cell's sides normal to x, y and z.
+pub(super) fn side_areas<V: Vector>(cell: Aabb<V>) -> [V::Scalar; 3] {
+    let [x, y, z] = cell.size().to_array();
+    [y * z, z * x, x * y]
 }
 
 /// Most bodies of a cell with which the others are compared.
@@ -412,6 +478,11 @@ struct At {
 impl At {
     fn cell(self) -> usize {
         self.j * self.cells[0] + self.i
+    }
+
+    /// Does one body fill it?
+    fn is_closed<R: Real>(self, layer: &Layer<R>) -> bool {
+        layer.lower.cell.get(self.cell()).is_some_and(|&lower| lower >= R::ONE)
     }
 
     /// The faces that the cell decides: its low ones, and at the upper ends of the grid the high ones; axis, position, and whether high.

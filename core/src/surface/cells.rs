@@ -21,6 +21,7 @@ use crate::grid::fields::{Layer, ShapeMismatch, accumulate, accumulate_face, at_
 use crate::grid::{Grid, Located};
 use crate::number::real::{Real, Vector};
 use crate::surface::clip::{Polygon, split};
+use crate::surface::surface_area::{PieceSums, Place};
 use core::fmt;
 
 /// What is wrong with a body's surface in one layer; zero, but for rounding, if it is closed and does not cross itself.
@@ -238,6 +239,18 @@ pub fn add_body<R: Real, V: Vector<Scalar = R>>(
     scratch: &mut Scratch<R>,
     layer: &mut Layer<R>,
 ) -> Result<Defects<R>, SurfaceError> {
+    add_body_and(grid, k, (triangles, ids), scratch, layer, &mut ())
+}
+
+/// As [`add_body`]; `pieces` makes something else of the pieces.
+pub(super) fn add_body_and<R: Real, V: Vector<Scalar = R>, P: PieceSums<R>>(
+    grid: &Grid<R>,
+    k: usize,
+    (triangles, ids): (&[[V; 3]], &[u32]),
+    scratch: &mut Scratch<R>,
+    layer: &mut Layer<R>,
+    pieces: &mut P,
+) -> Result<Defects<R>, SurfaceError> {
     let none = Defects { leak: R::ZERO, winding: R::ZERO };
     let Some(&[lo, hi]) = grid.edges(2).get(k..).and_then(|edges| edges.first_chunk()) else {
         return Err(SurfaceError::NoLayer { layer: k, layers: grid.cells()[2] });
@@ -245,14 +258,17 @@ pub fn add_body<R: Real, V: Vector<Scalar = R>>(
     layer.fits(grid)?;
     scratch.fits(grid)?;
     let Some(window) = Window::around(grid, triangles, ids)? else { return Ok(none) };
-    let mut sums = Sums::new(grid, window, scratch, layer);
+    let mut sums = Sums::new(grid, window, scratch, layer, pieces);
     let mut b = Buffers::default();
     for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
         let mut corners = triangle.map(Vector::to_array);
         sums.x.origin = take_origin(&mut corners, 0);
         sums.y.origin = take_origin(&mut corners, 1);
         if slab_part(&corners, lo, hi, &mut b.slab, &mut b.spare) {
-            sums.scatter(&mut b);
+            sums.scatter(Place::Inside, &mut b);
+        } else if P::WANTED && is_seen_level(&corners, lo, hi) {
+            b.slab.set(&corners);
+            sums.scatter(Place::InPlane, &mut b);
         }
     }
     let defects = sums.x_faces_and_cells(hi - lo);
@@ -294,8 +310,16 @@ fn slab_part<R: Real>(corners: &[[R; 3]; 3], lo: R, hi: R, slab: &mut Polygon<R>
     true
 }
 
+/// Does a triangle lie in the plane below a layer or above it, and its normal point into the layer?
+fn is_seen_level<R: Real>(corners: &[[R; 3]; 3], lo: R, hi: R) -> bool {
+    let [a, b, c] = *corners;
+    let up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let plane = if up > R::ZERO { lo } else { hi };
+    up != R::ZERO && corners.iter().all(|p| p[2] == plane)
+}
+
 /// Running sums of one body over its window of one layer.
-struct Sums<'s, 'g, 'l, R> {
+struct Sums<'s, 'g, 'l, R, P> {
     window: Window,
     grid: &'s Grid<'g, R>,
     x: Axis<'g, R>,
@@ -307,10 +331,17 @@ struct Sums<'s, 'g, 'l, R> {
     /// ∫ n_y dA by slot along y and by column.
     flux_y: &'s mut [R],
     layer: &'s mut Layer<'l, R>,
+    pieces: &'s mut P,
 }
 
-impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
-    fn new(grid: &'s Grid<'g, R>, window: Window, scratch: &'s mut Scratch<R>, layer: &'s mut Layer<'l, R>) -> Self {
+impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
+    fn new(
+        grid: &'s Grid<'g, R>,
+        window: Window,
+        scratch: &'s mut Scratch<R>,
+        layer: &'s mut Layer<'l, R>,
+        pieces: &'s mut P,
+    ) -> Self {
         let Window { i0, ni, j0, nj } = window;
         let (flux_x, rest) = scratch.reals.split_at_mut_checked((ni + 2) * nj).unwrap_or_default();
         let (moment, rest) = rest.split_at_mut_checked(ni * nj).unwrap_or_default();
@@ -319,47 +350,47 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             sums.fill(R::ZERO);
         }
         let (x, y) = (Axis::new(grid.edges(0), i0, ni), Axis::new(grid.edges(1), j0, nj));
-        Sums { window, grid, x, y, flux_x, moment, flux_y, layer }
+        Sums { window, grid, x, y, flux_x, moment, flux_y, layer, pieces }
     }
 
-    /// Spread `b.slab` over rows.
+    /// Spread `b.slab` over rows. In a plane of the grid only `pieces` sees it.
     #[inline]
-    fn scatter(&mut self, b: &mut Buffers<R>) {
+    fn scatter(&mut self, place: Place, b: &mut Buffers<R>) {
         let (min, max) = b.slab.extent(1);
         let mut row = self.y.cell(min);
         if min == max && self.y.opens(row, min) {
             let begins = b.slab.doubled_area()[1] < R::ZERO;
             b.row.assign(&b.slab);
-            return self.scatter_row(if begins { row - 1 } else { row }, Some(row), b);
+            return self.scatter_row(if begins { row - 1 } else { row }, Some(row), place, b);
         }
         while row < self.y.count && max > self.y.upper(row) {
             split(&b.slab, 1, self.y.upper(row), &mut b.row, &mut b.spare);
             core::mem::swap(&mut b.slab, &mut b.spare);
-            self.scatter_row(row, None, b);
+            self.scatter_row(row, None, place, b);
             row += 1;
         }
         core::mem::swap(&mut b.slab, &mut b.row);
-        self.scatter_row(row, None, b);
+        self.scatter_row(row, None, place, b);
     }
 
     /// Spread `b.row` over the cells of a row. `wall` is the y face in whose plane it lies, if it does.
     #[inline]
-    fn scatter_row(&mut self, row: isize, wall: Option<isize>, b: &mut Buffers<R>) {
+    fn scatter_row(&mut self, row: isize, wall: Option<isize>, place: Place, b: &mut Buffers<R>) {
         if b.row.is_empty() {
             return;
         }
         let (min, max) = b.row.extent(0);
         let mut c = self.x.cell(min);
         if min == max && self.x.opens(c, min) {
-            return self.wall_x(row, c, &b.row);
+            return if P::WANTED && place == Place::InPlane { () } else { self.wall_x(row, c, &b.row) };
         }
         while c < self.x.count && max > self.x.upper(c) {
             split(&b.row, 0, self.x.upper(c), &mut b.cell, &mut b.spare);
             core::mem::swap(&mut b.row, &mut b.spare);
-            self.add(row, c, wall, &b.cell);
+            self.add(row, c, (wall, place), &b.cell);
             c += 1;
         }
-        self.add(row, c, wall, &b.row);
+        self.add(row, c, (wall, place), &b.row);
     }
 
     /// Add a piece in the plane of the x face below cell `c`.
@@ -370,14 +401,17 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
             mark(self.layer.has_surface.x, (j0 + row as usize) * (nx + 1) + i0 + c as usize);
         }
         let begins = piece.doubled_area()[0] < R::ZERO;
-        self.integrate(row, if begins { c - 1 } else { c }, piece);
+        self.integrate(row, if begins { c - 1 } else { c }, Place::InPlane, piece);
     }
 
     /// Add a piece that lies in one cell, or in the y face `wall`.
     #[inline(always)]
-    fn add(&mut self, row: isize, c: isize, wall: Option<isize>, piece: &Polygon<R>) {
+    fn add(&mut self, row: isize, c: isize, (wall, place): (Option<isize>, Place), piece: &Polygon<R>) {
         if piece.is_empty() {
             return;
+        }
+        if P::WANTED && place == Place::InPlane {
+            return self.note(row, c, place, piece.doubled_area());
         }
         let Window { i0, j0, .. } = self.window;
         if self.x.holds(c) {
@@ -389,24 +423,41 @@ impl<'s, 'g, 'l, R: Real> Sums<'s, 'g, 'l, R> {
                 None => {}
             }
         }
-        self.integrate(row, c, piece);
+        self.integrate(row, c, if wall.is_some() { Place::InPlane } else { Place::Inside }, piece);
+    }
+
+    /// Tell `pieces` of a piece, by twice its area vector. It may lie beyond the window, but not beyond the grid.
+    #[inline(always)]
+    fn note(&mut self, row: isize, c: isize, place: Place, doubled_area: [R; 3]) {
+        let [nx, ny, _] = self.grid.cells();
+        let Window { i0, j0, .. } = self.window;
+        let (i, j) = (i0.wrapping_add_signed(c), j0.wrapping_add_signed(row));
+        if i < nx && j < ny {
+            self.pieces.add(j * nx + i, place, doubled_area);
+        }
     }
 
     /// Add the integrals over a piece, fanned from its first corner so that only differences enter.
     #[inline(always)]
-    fn integrate(&mut self, row: isize, c: isize, piece: &Polygon<R>) {
+    fn integrate(&mut self, row: isize, c: isize, place: Place, piece: &Polygon<R>) {
         let [o, first, others @ ..] = piece.corners() else { return };
         let (ni, inside) = (self.window.ni, self.x.holds(c));
         let reach = if inside { (self.x.upper(c) - o[0]) * R::from_f64(3.0) } else { R::ZERO };
-        let (mut nx, mut ny, mut moment) = (R::ZERO, R::ZERO, R::ZERO);
+        let (mut nx, mut ny, mut nz, mut moment) = (R::ZERO, R::ZERO, R::ZERO, R::ZERO);
         let mut a = crate::surface::clip::sub(*first, *o);
         for p in others {
             let b = crate::surface::clip::sub(*p, *o);
             let ax = a[1] * b[2] - a[2] * b[1];
             nx += ax;
             ny += a[2] * b[0] - a[0] * b[2];
+            if P::WANTED {
+                nz += a[0] * b[1] - a[1] * b[0];
+            }
             moment += ax * (reach - (a[0] + b[0]));
             a = b;
+        }
+        if P::WANTED {
+            self.note(row, c, place, [nx, ny, nz]);
         }
         if self.y.holds(row) {
             add_at(self.flux_x, row as usize * (ni + 2) + (c + 1) as usize, nx * R::HALF);

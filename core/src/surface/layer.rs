@@ -21,13 +21,13 @@ pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};
 pub use report::{CellKinds, LayerReport};
 pub use slices::LayerSlices;
-pub use surface_areas::{AreaReport, OpenLayer};
+pub use surface_areas::{AreaReport, AreaSlices, CellSides, OpenLayer};
 
 use crate::grid::Grid;
 use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, BinsError, BinsNeeded, Group, Surface};
-use crate::surface::cell_unions::{Effort, OtherBodies, Room, Shared, Site};
+use crate::surface::cell_unions::{Effort, OtherBodies, Room, Shared, Site, UnionSums};
 use crate::surface::cells::{Defects, Scratch};
 use fractions::{count_cells, open_field, to_open_fractions};
 use parts::{LEVEL, parts};
@@ -148,9 +148,21 @@ impl<'a, V: Vector> Layers<'a, V> {
         &self,
         k: usize,
         beta: LayerSlices<V::Scalar>,
-        mut bounds: Option<[LayerSlices<V::Scalar>; 2]>,
+        bounds: Option<[LayerSlices<V::Scalar>; 2]>,
         memory: &mut LayerMemory<V>,
         others: &mut O,
+        each_body: impl FnMut(usize, Defects<V::Scalar>),
+    ) -> Result<LayerReport<V::Scalar>, LayerError> {
+        self.measure(k, (beta, bounds), memory, (others, &mut ()), each_body)
+    }
+
+    /// Open fractions of layer `k`, and what `pieces` makes of the surface in it.
+    fn measure<O: OtherBodies<V>, P: UnionSums<V>>(
+        &self,
+        k: usize,
+        (beta, mut bounds): (LayerSlices<V::Scalar>, Option<[LayerSlices<V::Scalar>; 2]>),
+        memory: &mut LayerMemory<V>,
+        (others, pieces): (&mut O, &mut P),
         each_body: impl FnMut(usize, Defects<V::Scalar>),
     ) -> Result<LayerReport<V::Scalar>, LayerError> {
         self.check(k, &beta, bounds.as_ref(), memory)?;
@@ -174,7 +186,7 @@ impl<'a, V: Vector> Layers<'a, V> {
             (0..3).for_each(|axis| wanted.lower.faces_mut(axis).fill(V::Scalar::ZERO));
             wanted.lower.cell = cell;
         }
-        let mut report = solid_bounds(&mut shared, &site, &mut wanted, &mut scratch, room.reborrow(), each_body);
+        let mut report = solid_bounds(&mut shared, &site, &mut wanted, &mut scratch, room.reborrow(), pieces, each_body);
         count_cells(&site, &wanted, solid_end, &mut report);
         to_open_fractions(&mut wanted, areas, bounds.as_mut(), solid_end, &mut report.max_gap);
         if !top.is_empty() {

@@ -6,10 +6,13 @@
 //! common. Edges between two faces that look the same way cancel before: what is left are outlines. The sweep is that of J. L. Bentley and
 //! T. A. Ottmann, *Algorithms for Reporting and Counting Geometric Intersections*, IEEE Transactions on Computers C-28, 1979.
 //!
+//! No sweep is needed where a line enters solid at most once: the shadow is then the section with the low side and the area of all faces that are
+//! entered, as they are seen along the axis ([`CellFaces::passed_once`]).
+//!
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
 use crate::number::real::Real;
-use crate::surface::clip::{Polygon, cross, sub};
+use crate::surface::clip::{Polygon, cross, dot, sub};
 
 /// Places closer than this, in ε, are one place.
 const THICKNESS_IN_EPSILONS: f64 = 64.0;
@@ -68,31 +71,39 @@ impl<R: Real> ShadowEdge<R> {
 
 /// Memory for the shadows of one cell at a time; the larger, the more surface a cell may hold. What the slices hold does not matter.
 #[derive(Debug, Default)]
-pub struct ShadowMemory<'a, R> {
+pub struct ShadowMemory<'a, R: Real> {
     /// Edges of faces, a third for each axis: 3 to 5 times as many as faces, and as many again in sides of the cell.
     pub edges: &'a mut [ShadowEdge<R>],
     /// Edges that the sweeping line crosses, in their order: a third as many.
     pub crossed: &'a mut [u32],
-    /// Which triangles reach which cell of a layer; `Layers::shadow_lists_needed` tells how many.
+    /// Which triangles reach which cell of a layer; `Layers::shadow_lists_needed` tells how many are always enough.
     pub lists: &'a mut [u32],
+    /// Faces in the cell.
+    pub faces: &'a mut [ShadowFace<R>],
 }
 
-/// The shadow of the solids in a cell along x, y and z.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shadow<R> {
+/// The shadows of the solids in the cells of a layer along x, y and z, `ny*nx` each, x fastest.
+#[derive(Debug)]
+pub struct ShadowSlices<'a, R> {
     /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it.
-    pub share: [R; 3],
+    pub share: [&'a mut [R]; 3],
     /// Where, from 0 at the low side of the cell to 1: the mean place of the surface inside, each part counted by its area as seen along the axis. One
-    /// half where there is none.
-    pub place: [R; 3],
+    /// half where lines that meet solid do so on a side of the cell.
+    pub place: [&'a mut [R]; 3],
+}
+
+impl<R> ShadowSlices<'_, R> {
+    /// The same slices, for a shorter time.
+    pub fn reborrow(&mut self) -> ShadowSlices<'_, R> {
+        let ShadowSlices { share: [x, y, z], place: [u, v, w] } = self;
+        ShadowSlices { share: [x, y, z], place: [u, v, w] }
+    }
 }
 
 /// The outlines of what is in a cell, seen along x, y and z.
 pub(super) struct Outlines<'m, R> {
     axes: [Outline<'m, R>; 3],
     crossed: &'m mut [u32],
-    /// Seen area, and its first moment.
-    seen: [[R; 2]; 3],
 }
 
 /// The edges of what is in a cell, seen along an axis.
@@ -106,14 +117,13 @@ struct Outline<'m, R> {
 }
 
 impl<'m, R: Real> Outlines<'m, R> {
-    /// Of nothing yet; `lists` is not used.
-    pub fn new(memory: ShadowMemory<'m, R>) -> Self {
-        let ShadowMemory { edges, crossed, .. } = memory;
+    /// Of nothing yet.
+    pub fn new(edges: &'m mut [ShadowEdge<R>], crossed: &'m mut [u32]) -> Self {
         let third = edges.len() / 3;
         let (x, rest) = edges.split_at_mut_checked(third).unwrap_or_default();
         let (y, z) = rest.split_at_mut_checked(third).unwrap_or_default();
         let outline = |edges| Outline { edges, count: 0, section: R::ZERO, starting: 0 };
-        Outlines { axes: [outline(x), outline(y), outline(z)], crossed, seen: [[R::ZERO; 2]; 3] }
+        Outlines { axes: [outline(x), outline(y), outline(z)], crossed }
     }
 
     /// Of nothing again.
@@ -121,7 +131,6 @@ impl<'m, R: Real> Outlines<'m, R> {
         for outline in &mut self.axes {
             (outline.count, outline.section, outline.starting) = (0, R::ZERO, 0);
         }
-        self.seen = [[R::ZERO; 2]; 3];
     }
 
     /// Is nothing seen?
@@ -129,43 +138,30 @@ impl<'m, R: Real> Outlines<'m, R> {
         self.axes.iter().all(|outline| outline.count == 0)
     }
 
-    /// Add a face, in the frame of the cell; false if there is no room.
-    pub fn add(&mut self, polygon: &Polygon<R>, sheet: bool) -> bool {
-        let normal = polygon.doubled_area();
-        self.see(polygon);
-        let [x, y, z] = &mut self.axes;
-        [x, y, z].into_iter().zip(0..).all(|(outline, axis)| outline.add(polygon, normal[axis], sheet, axis).is_some())
+    /// Add all faces of a cell, as seen along some axes; none if there is no room.
+    pub fn add(&mut self, faces: &CellFaces<R>, wanted: [bool; 3]) -> Option<()> {
+        let mut last = 0;
+        for face in faces.all() {
+            if face.solid != last {
+                self.finish_solid();
+                last = face.solid;
+            }
+            for axis in (0..3).filter(|&axis| wanted[axis]) {
+                self.axes[axis].add(&face.polygon, face.doubled[axis], face.sheet, axis)?;
+            }
+        }
+        self.finish_solid();
+        Some(())
     }
 
     /// All faces of one solid have been added.
-    pub fn finish_solid(&mut self) {
+    fn finish_solid(&mut self) {
         for outline in &mut self.axes {
             if outline.section < -R::from_f64(NO_SECTION).max(thickness()) {
                 outline.starting = outline.starting.saturating_add(1);
             }
             outline.section = R::ZERO;
         }
-    }
-
-    /// Take note of where a face stands.
-    fn see(&mut self, polygon: &Polygon<R>) {
-        let [first, second, others @ ..] = polygon.corners() else { return };
-        let mut last = second;
-        for corner in others {
-            let doubled = cross(sub(*last, *first), sub(*corner, *first));
-            for axis in 0..3 {
-                let area = doubled[axis].abs();
-                self.seen[axis][0] += area;
-                self.seen[axis][1] += area * (first[axis] + last[axis] + corner[axis]);
-            }
-            last = corner;
-        }
-    }
-
-    /// The mean place of all faces along each axis, each part counted by its area as seen along it; one half if nothing is seen.
-    pub fn places(&self) -> [R; 3] {
-        let three = R::from_f64(3.0);
-        self.seen.map(|[area, moment]| if area > R::ZERO { moment / (three * area) } else { R::HALF })
     }
 
     /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid; none if patience or memory is spent.
@@ -222,6 +218,120 @@ impl<R: Real> Outline<'_, R> {
             self.push(edge)?;
         }
         Some(())
+    }
+}
+
+/// A face of a solid in a cell. The default serves as memory.
+#[derive(Clone, Debug, Default)]
+pub struct ShadowFace<R: Real> {
+    polygon: Polygon<R>,
+    /// Twice its area vector.
+    doubled: [R; 3],
+    solid: usize,
+    sheet: bool,
+}
+
+/// The faces in a cell, those of one solid after those of another, in the frame of the cell.
+pub(super) struct CellFaces<'m, R: Real> {
+    faces: &'m mut [ShadowFace<R>],
+    count: usize,
+    /// The number of the solid whose faces are added, from 1.
+    solid: usize,
+    sheet: bool,
+}
+
+/// Faces whose planes make an angle with a smaller sine may be the sides of a slit.
+const LEAST_SINE: f64 = 0.05;
+
+impl<'m, R: Real> CellFaces<'m, R> {
+    /// Of nothing yet.
+    pub fn new(faces: &'m mut [ShadowFace<R>]) -> Self {
+        CellFaces { faces, count: 0, solid: 0, sheet: false }
+    }
+
+    /// Of nothing again.
+    pub fn clear(&mut self) {
+        (self.count, self.solid) = (0, 0);
+    }
+
+    /// The faces that follow are of another solid, or of a sheet.
+    pub fn begin_solid(&mut self, sheet: bool) {
+        (self.solid, self.sheet) = (self.solid + 1, sheet);
+    }
+
+    /// Where to write the next face; none if there is no room.
+    pub fn next(&mut self) -> Option<&mut Polygon<R>> {
+        self.faces.get_mut(self.count).map(|face| &mut face.polygon)
+    }
+
+    /// Add the face that has been written.
+    pub fn push(&mut self) {
+        if let Some(face) = self.faces.get_mut(self.count) {
+            (face.doubled, face.solid, face.sheet) = (face.polygon.doubled_area(), self.solid, self.sheet);
+            self.count += 1;
+        }
+    }
+
+    fn all(&self) -> &[ShadowFace<R>] {
+        self.faces.get(..self.count).unwrap_or_default()
+    }
+
+    /// The mean place of all faces along an axis (0, 1, otherwise 2), each part counted by its area as seen along it; one half if nothing is seen.
+    pub fn place(&self, axis: usize) -> R {
+        let (axis, mut seen, mut moment) = (axis.min(2), R::ZERO, R::ZERO);
+        for face in self.all() {
+            let [first, second, others @ ..] = face.polygon.corners() else { continue };
+            let mut last = second;
+            for corner in others {
+                let area = cross(sub(*last, *first), sub(*corner, *first))[axis].abs();
+                seen += area;
+                moment += area * (first[axis] + last[axis] + corner[axis]);
+                last = corner;
+            }
+        }
+        if seen > R::ZERO { moment / (R::from_f64(3.0) * seen) } else { R::HALF }
+    }
+
+    /// The area on which lines along an axis (0, 1, otherwise 2) enter solid, and that on which they leave it, if all is of one solid and no line
+    /// enters it after it has left it: as seen along the axis, whatever is entered does not lie beyond the plane of what is left.
+    pub fn passed_once(&self, axis: usize) -> Option<[R; 2]> {
+        let (axis, faces) = (axis.min(2), self.all());
+        let (first, last) = (faces.first()?, faces.last()?);
+        if first.solid != last.solid || first.sheet {
+            return None;
+        }
+        let (mut areas, mut entered_to, mut left_from) = ([R::ZERO; 2], -R::INFINITY, R::INFINITY);
+        for face in faces {
+            let (area, (low, high)) = (face.doubled[axis], face.polygon.extent(axis));
+            if area < R::ZERO {
+                areas[0] -= area * R::HALF;
+                entered_to = entered_to.larger(high);
+            } else if area > R::ZERO {
+                areas[1] += area * R::HALF;
+                left_from = left_from.smaller(low);
+            }
+        }
+        let seen = |sign: R| faces.iter().filter(move |face| face.doubled[axis] * sign > thickness());
+        let once = entered_to <= left_from || seen(R::ONE).all(|left| seen(-R::ONE).all(|entered| left.is_beyond(entered)));
+        once.then_some(areas)
+    }
+}
+
+impl<R: Real> ShadowFace<R> {
+    /// Does another face lie behind the plane of this one, so that who leaves here does not come to it? They may meet at an edge.
+    fn is_beyond(&self, other: &Self) -> bool {
+        let Some(&corner) = self.polygon.corners().first() else { return true };
+        let height = |c: &[R; 3]| dot(self.doubled, sub(*c, corner));
+        let highest = other.polygon.corners().iter().map(height).fold(-R::INFINITY, R::larger);
+        // Squares spare the roots: heights are multiples of twice the area of this face.
+        let area = dot(self.doubled, self.doubled);
+        let clear = highest * highest > area * (thickness::<R>() * thickness());
+        if clear {
+            return highest < R::ZERO;
+        }
+        let turn = cross(self.doubled, other.doubled);
+        let least = R::from_f64(LEAST_SINE * LEAST_SINE);
+        dot(turn, turn) > area * dot(other.doubled, other.doubled) * least
     }
 }
 

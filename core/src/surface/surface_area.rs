@@ -50,6 +50,24 @@ impl<R: Real> SurfaceArea<R> {
     }
 }
 
+/// What else the sums of a layer make of the pieces of surface that they add up. The unit type makes nothing, at no cost.
+pub(super) trait PieceSums<R> {
+    /// Something is made of them.
+    const WANTED: bool;
+    /// The pieces that follow are of this body, which may be a sheet without volume.
+    fn begin_body(&mut self, body: u32, sheet: bool);
+    /// A piece that counts for a cell of the layer, by twice its area vector.
+    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3]);
+}
+
+impl<R> PieceSums<R> for () {
+    const WANTED: bool = false;
+    #[inline(always)]
+    fn begin_body(&mut self, _: u32, _: bool) {}
+    #[inline(always)]
+    fn add(&mut self, _: usize, _: Place, _: [R; 3]) {}
+}
+
 /// What one cell holds of single bodies' surfaces. The default serves as memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellSurface<R> {
@@ -60,6 +78,8 @@ pub struct CellSurface<R> {
     /// Of sheets without volume, both sides.
     pub(super) sheets: SurfaceArea<R>,
     pub(super) bodies: Bodies,
+    /// Of several bodies, what their union has.
+    pub(super) union: Option<UnionSurface<R>>,
 }
 
 impl<R: Real> CellSurface<R> {
@@ -67,6 +87,15 @@ impl<R: Real> CellSurface<R> {
     pub(super) fn sum(&self) -> SurfaceArea<R> {
         let SurfaceArea { frontal, wetted } = self.inside.plus(self.sheets);
         SurfaceArea { frontal, wetted: wetted + self.in_plane }
+    }
+
+    /// What the union of the bodies with volume has inside the cell, as far as it is known.
+    pub(super) fn of_union(&self) -> UnionSurface<R> {
+        let alone = UnionSurface { area: self.inside, ..UnionSurface::default() };
+        match self.bodies {
+            Bodies::Several => self.union.unwrap_or(UnionSurface { doubt: self.inside.wetted, ..alone }),
+            _ => alone,
+        }
     }
 }
 
@@ -79,35 +108,65 @@ pub(super) enum Bodies {
     Several,
 }
 
-/// Gather what single bodies have of surface in each cell of layer `k`; `cells` is `ny*nx`, x fastest.
-pub(super) fn gather<V: Vector>(
-    bins: &Bins<V>,
-    grid: &Grid<V::Scalar>,
-    k: usize,
-    cells: &mut [CellSurface<V::Scalar>],
-) {
-    cells.fill(CellSurface::default());
-    let nx = grid.cells()[0];
-    for group in bins.groups(k) {
-        let triangles = bins.triangles(group);
-        for corners in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
-            spread(grid, k, &corners.map(Vector::to_array), &mut |[i, j], place, polygon| {
-                let Some(cell) = cells.get_mut(j * nx + i) else { return };
-                let area = SurfaceArea::of_polygon(polygon.doubled_area());
-                match (group.sheet, place) {
-                    (true, Place::Inside) => cell.sheets = cell.sheets.plus(area),
-                    (true, Place::InPlane) => cell.sheets.wetted += area.wetted,
-                    (false, Place::Inside) => cell.inside = cell.inside.plus(area),
-                    (false, Place::InPlane) => cell.in_plane += area.wetted,
-                }
-                if !group.sheet {
-                    cell.bodies = match cell.bodies {
-                        Bodies::None => Bodies::One(group.body),
-                        Bodies::One(body) if body == group.body => Bodies::One(body),
-                        _ => Bodies::Several,
-                    };
-                }
-            });
+/// What the union of several bodies has of surface inside a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct UnionSurface<R> {
+    pub area: SurfaceArea<R>,
+    /// How much of its wetted area is in doubt.
+    pub doubt: R,
+    /// Solid fractions of the cell's sides as seen from inside, low and high along each axis, if they are known.
+    pub sides: Option<[[R; 2]; 3]>,
+}
+
+/// The surfaces in the cells of a layer, gathered piece by piece.
+pub(super) struct LayerSurface<'a, R> {
+    /// `ny*nx`, x fastest.
+    cells: &'a mut [CellSurface<R>],
+    body: u32,
+    sheet: bool,
+}
+
+impl<'a, R: Real> LayerSurface<'a, R> {
+    /// Of nothing yet.
+    pub fn new(cells: &'a mut [CellSurface<R>]) -> Self {
+        cells.fill(CellSurface::default());
+        LayerSurface { cells, body: 0, sheet: false }
+    }
+
+    /// What has been gathered.
+    pub fn cells(&self) -> &[CellSurface<R>] {
+        self.cells
+    }
+
+    /// What a cell holds; none if there is no such cell.
+    pub fn cell_mut(&mut self, cell: usize) -> Option<&mut CellSurface<R>> {
+        self.cells.get_mut(cell)
+    }
+}
+
+impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
+    const WANTED: bool = true;
+
+    fn begin_body(&mut self, body: u32, sheet: bool) {
+        (self.body, self.sheet) = (body, sheet);
+    }
+
+    #[inline(always)]
+    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3]) {
+        let Some(cell) = self.cells.get_mut(cell) else { return };
+        let area = SurfaceArea::of_polygon(doubled_area);
+        match (self.sheet, place) {
+            (true, Place::Inside) => cell.sheets = cell.sheets.plus(area),
+            (true, Place::InPlane) => cell.sheets.wetted += area.wetted,
+            (false, Place::Inside) => cell.inside = cell.inside.plus(area),
+            (false, Place::InPlane) => cell.in_plane += area.wetted,
+        }
+        if !self.sheet {
+            cell.bodies = match cell.bodies {
+                Bodies::None => Bodies::One(self.body),
+                Bodies::One(body) if body == self.body => Bodies::One(body),
+                _ => Bodies::Several,
+            };
         }
     }
 }

@@ -331,12 +331,20 @@ impl<R: Real> Frame<R> {
         Frame { origin: lo, scale: size, thickness: R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach }
     }
 
-    /// What a triangle has inside a cell; nothing if it lies in the plane of a side.
-    pub fn inside<V: Vector<Scalar = R>>(&self, triangle: &[[R; 3]; 3], cell: Aabb<V>) -> Option<Polygon<R>> {
+    /// What a triangle has inside a cell, in the frame; false if it has nothing there or lies in the plane of a side.
+    pub fn inside<V: Vector<Scalar = R>>(
+        &self,
+        triangle: &[[R; 3]; 3],
+        cell: Aabb<V>,
+        scratch: &mut [Polygon<R>; 2],
+        part: &mut Polygon<R>,
+    ) -> bool {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
-        let (mut scratch, mut piece) = ([Polygon::default(), Polygon::default()], Piece::default());
-        let found = reaches(triangle, lo, hi) && self.piece(triangle, lo, hi, &mut scratch, &mut piece);
-        found.then_some(piece.polygon)
+        if !reaches(triangle, lo, hi) || !self.part(triangle, lo, hi, scratch, part) {
+            return false;
+        }
+        let [a, b, c] = triangle.map(|c| self.framed(c));
+        dot(part.doubled_area(), cross(sub(b, a), sub(c, a))) > R::ZERO
     }
 
     fn framed(&self, p: [R; 3]) -> [R; 3] {
@@ -345,13 +353,14 @@ impl<R: Real> Frame<R> {
     }
 
     /// The part of a triangle inside the cell `lo..hi`, in the frame; false if there is none. Cut along z, y, x as in [`crate::surface::cells`].
-    fn piece(
+    #[inline(always)]
+    fn part(
         &self,
         corners: &[[R; 3]; 3],
         lo: [R; 3],
         hi: [R; 3],
         scratch: &mut [Polygon<R>; 2],
-        piece: &mut Piece<R>,
+        part: &mut Polygon<R>,
     ) -> bool {
         let [mut polygon, mut kept] = scratch.each_mut();
         polygon.set(corners);
@@ -370,9 +379,24 @@ impl<R: Real> Frame<R> {
                 return false;
             }
         }
-        piece.polygon.clear();
+        part.clear();
         for c in polygon.corners() {
-            piece.polygon.push(self.framed(*c));
+            part.push(self.framed(*c));
+        }
+        true
+    }
+
+    /// The piece that a triangle has inside the cell `lo..hi`; false if there is none.
+    fn piece(
+        &self,
+        corners: &[[R; 3]; 3],
+        lo: [R; 3],
+        hi: [R; 3],
+        scratch: &mut [Polygon<R>; 2],
+        piece: &mut Piece<R>,
+    ) -> bool {
+        if !self.part(corners, lo, hi, scratch, &mut piece.polygon) {
+            return false;
         }
         let [a, b, c] = corners.map(|c| self.framed(c));
         let (Some(normal), Some(&corner)) = (unit(cross(sub(b, a), sub(c, a))), piece.polygon.corners().first()) else {

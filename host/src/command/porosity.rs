@@ -51,11 +51,11 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let zones = zones::read(args.zones.as_deref(), &edges)?;
         let depth = args.depth.unwrap_or(args.leaf.depth());
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
-        let options = Options { tol: args.tol, depth, bounds, areas, method, leaf };
+        let resistance = args.resistance || args.zones.is_some() || args.drag.is_some();
+        let options = Options { tol: args.tol, depth, bounds, areas, method, leaf, resistance };
         let mut result = measure(&bodies, &edges, options, &mut progress)?;
         let (grid, coefficients) = (edges.grid(None)?, args.cd.unwrap_or_default());
         let drag = args.drag.map(|law| (law, coefficients));
-        let resistance = args.resistance || args.zones.is_some();
         let wanted = Wanted { resistance, drag, faces: args.faces, warning: false };
         let found = obstacles(&grid, &bodies, &mut result, options, wanted, &mut progress);
         let congestion = found.resistance.as_ref().map(|r| congestion(&grid, &zones, &result, r)).unwrap_or_default();

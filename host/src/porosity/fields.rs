@@ -2,7 +2,7 @@
 
 use crate::huge::HugeVec;
 use voidage_core::grid::Grid;
-use voidage_core::surface::layer::LayerSlices;
+use voidage_core::surface::layer::{LayerSlices, OpenLayer};
 
 /// A value for every cell and face of a grid, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -52,6 +52,20 @@ impl FieldSet {
             0 => &mut self.x,
             1 => &mut self.y,
             _ => &mut self.z,
+        }
+    }
+
+    /// The open fractions of layer `k`.
+    #[must_use]
+    pub fn open_layer(&self, grid: &Grid<f64>, k: usize) -> OpenLayer<'_, f64> {
+        let [nx, ny, _] = grid.cells();
+        let nth = |k: usize, length: usize| k * length..(k + 1) * length;
+        OpenLayer {
+            cell: &self.v[nth(k, nx * ny)],
+            x: &self.x[nth(k, (nx + 1) * ny)],
+            y: &self.y[nth(k, nx * (ny + 1))],
+            z: &self.z[nth(k, nx * ny)],
+            top: &self.z[nth(k + 1, nx * ny)],
         }
     }
 

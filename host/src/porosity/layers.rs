@@ -8,7 +8,10 @@ use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
 use voidage_core::subdivide::QueryCount;
 use voidage_core::surface::bins::Group;
-use voidage_core::surface::layer::{CellKinds, LayerMemory, LayerReport, Layers, MemoryNeeded};
+use voidage_core::surface::layer::{
+    AreaReport, AreaSlices, CellKinds, CellSides, LayerMemory, LayerReport, Layers, MemoryNeeded,
+};
+use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
 use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 
 /// Rows that miss zero by more than this fraction of a face leak.
@@ -34,6 +37,10 @@ pub struct Summary {
     pub tally: QueryCount,
     /// Body and residual of rows that leak.
     pub leaks: Vec<(usize, f64)>,
+    /// What is told about areas.
+    pub areas: AreaReport<f64>,
+    /// Sides of cells whose areas ask for all faces.
+    pub sides: Vec<CellSides<f64>>,
 }
 
 impl Summary {
@@ -47,6 +54,7 @@ impl Summary {
             winding: report.defects.winding,
             tally: others.tally(),
             leaks,
+            ..Summary::default()
         }
     }
 
@@ -79,6 +87,8 @@ pub struct Target<'a> {
     pub beta: Slices<'a>,
     /// Lower and upper bounds, if wanted.
     pub bounds: Option<[Slices<'a>; 2]>,
+    /// Areas of the surface in cells, if wanted; then bodies go by their surface alone.
+    pub areas: Option<&'a mut [SurfaceArea<f64>]>,
 }
 
 /// Bytes of memory that one layer's sums take.
@@ -104,7 +114,7 @@ impl Workers {
     }
 
     /// Work in the memory of the current thread.
-    pub fn with<T>(&self, layers: &Layers<DVec3>, work: impl FnOnce(&mut Worker) -> T) -> T {
+    fn with<T>(&self, layers: &Layers<DVec3>, work: impl FnOnce(&mut Worker) -> T) -> T {
         let slot = rayon::current_thread_index().and_then(|n| self.0.get(n));
         match slot {
             None => work(&mut Worker::new(layers)),
@@ -117,9 +127,17 @@ impl Workers {
 }
 
 /// A thread's memory.
-pub struct Worker {
+struct Worker {
     sums: SumVecs,
     lists: Lists,
+    areas: AreaVecs,
+}
+
+/// What a thread needs for areas of surface in a layer.
+#[derive(Default)]
+struct AreaVecs {
+    cells: Vec<CellSurface<f64>>,
+    sides: Vec<CellSides<f64>>,
 }
 
 /// What a thread needs for sums over surfaces and for unions.
@@ -160,17 +178,12 @@ impl Worker {
             groups: Vec::new(),
             union: None,
         };
-        Worker { sums, lists: Lists::default() }
-    }
-
-    /// Memory for all that the core does with layer `k`.
-    pub fn memory(&mut self, grid: &Grid<f64>, layers: &Layers<DVec3>, k: usize) -> LayerMemory<'_, DVec3> {
-        self.sums.memory(grid, layers.bodies_in(k) > 1)
+        Worker { sums, lists: Lists::default(), areas: AreaVecs::default() }
     }
 
     /// Compute layer `k`.
     fn layer(&mut self, grid: &Grid<f64>, layers: &Layers<DVec3>, road: &Road, k: usize, target: Target) -> Summary {
-        let Worker { sums, lists } = self;
+        let Worker { sums, lists, areas: vecs } = self;
         // Only bodies that share cells ask for more than sums.
         let mut memory = sums.memory(grid, layers.bodies_in(k) > usize::from(road.is_empty()));
         let mut others = road.with(grid, lists);
@@ -180,10 +193,18 @@ impl Worker {
                 leaks.push((body, defects.leak));
             }
         };
-        let Target { beta, bounds } = target;
-        let bounds = bounds.map(|both| both.map(Slices::for_core));
-        let report = layers.zeroed_layer(k, beta.for_core(), bounds, &mut memory, &mut others, note_leak).expect(FITS);
-        Summary::new(report, &others, leaks)
+        let Target { beta, bounds, areas } = target;
+        let (beta, bounds) = (beta.for_core(), bounds.map(|both| both.map(Slices::for_core)));
+        let Some(union) = areas else {
+            let report = layers.zeroed_layer(k, beta, bounds, &mut memory, &mut others, note_leak).expect(FITS);
+            return Summary::new(report, &others, leaks);
+        };
+        let AreaVecs { cells, sides } = vecs;
+        cells.resize(union.len(), CellSurface::default());
+        sides.resize(union.len(), CellSides::default());
+        let areas = AreaSlices { union, sides, cells };
+        let (report, areas) = layers.layer_and_areas(k, beta, bounds, areas, &mut memory, note_leak).expect(FITS);
+        Summary { areas, sides: sides[..areas.sides].to_vec(), ..Summary::new(report, &others, leaks) }
     }
 }
 

@@ -63,6 +63,8 @@ pub struct Options {
     pub method: Method,
     /// What ends a subdivision by GJK.
     pub leaf: Leaf,
+    /// Find areas and shadows of the surface in cells on the way, where [`super::resistance`] will ask for them.
+    pub resistance: bool,
 }
 
 impl Options {
@@ -81,6 +83,14 @@ impl From<Options> for LayerOptions<f64> {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { tol: 1e-4, depth: 6, bounds: false, areas: true, method: Method::Auto, leaf: Leaf::Plane }
+        Options {
+            tol: 1e-4,
+            depth: 6,
+            bounds: false,
+            areas: true,
+            method: Method::Auto,
+            leaf: Leaf::Plane,
+            resistance: false,
+        }
     }
 }

@@ -1,15 +1,13 @@
 //! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
 
-use super::layers::Workers;
-use super::shadows::{Shadows, of_layers};
-use super::solid::{open_layer, solid_alone, with_solid_layers};
-use super::{FieldSet, Options, Porosity};
+use super::shadows::Shadows;
+use super::solid::with_solid_surface;
+use super::surface_fields::SurfaceFields;
+use super::{Options, Porosity};
 use crate::geometry::bodies::Bodies;
-use glam::DVec3;
-use rayon::prelude::*;
+use std::sync::Arc;
 use voidage_core::grid::Grid;
-use voidage_core::surface::layer::{AreaReport, Layers};
-use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
+use voidage_core::surface::surface_area::SurfaceArea;
 
 /// Obstacles in the cells of a grid, `nx*ny*nz`, x fastest, and their totals. Of solids that are porous themselves nothing is counted.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,7 +21,7 @@ pub struct Resistance {
     /// Mean size of the obstacles 4 (1 − β_v) / s in m: of a pipe its diameter; 0 in cells without surface.
     pub l_obs: Vec<f64>,
     /// Shadows along x, y and z.
-    pub shadows: Shadows,
+    pub shadows: Arc<Shadows>,
     /// Totals.
     pub totals: Totals,
 }
@@ -49,51 +47,30 @@ pub struct Totals {
 /// The obstacles among `bodies` on `grid`; `result` holds their porosities, faces included. Runs in the current rayon pool.
 #[must_use]
 pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Resistance {
-    let own = solid_alone(grid, bodies, options);
-    let beta = &own.as_ref().unwrap_or(result).beta;
-    with_solid_layers(grid, bodies, options, |layers| {
-        let (union, sum, reports) = areas(grid, layers, beta);
-        let shadows = of_layers(grid, layers, beta);
-        Resistance { totals: totals(&union, &sum, &reports), shadows, ..densities(grid, &beta.v, &union) }
+    with_solid_surface(grid, bodies, result, options, |surface, beta| Resistance {
+        totals: totals(surface),
+        shadows: surface.shadows.clone(),
+        ..densities(grid, &beta.v, &surface.areas)
     })
 }
 
-/// Areas of the union and of all bodies added up, and how well they are known.
-type Areas = (Vec<SurfaceArea<f64>>, Vec<SurfaceArea<f64>>, Vec<AreaReport<f64>>);
-
-/// Areas in all cells.
-fn areas(grid: &Grid<f64>, layers: &Layers<DVec3>, beta: &FieldSet) -> Areas {
-    let [nx, ny, nz] = grid.cells();
-    let mut union = vec![SurfaceArea::default(); nx * ny * nz];
-    let (mut sum, workers) = (union.clone(), Workers::new());
-    let reports: Vec<AreaReport<f64>> = union
-        .par_chunks_mut(nx * ny)
-        .zip(sum.par_chunks_mut(nx * ny))
-        .enumerate()
-        .map(|(k, (union, sum))| {
-            workers.with(layers, |worker| {
-                let (mut cells, open) = (vec![CellSurface::default(); nx * ny], open_layer(grid, k, beta));
-                let mut memory = worker.memory(grid, layers, k);
-                layers
-                    .surface_areas(k, &open, [union, sum], &mut cells, &mut memory)
-                    .expect("slices of a layer fit its grid")
-            })
-        })
-        .collect();
-    (union, sum, reports)
+/// The shadows of the solid bodies among `bodies` on `grid`, as [`resistance`] finds them.
+#[must_use]
+pub fn shadows(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Arc<Shadows> {
+    with_solid_surface(grid, bodies, result, options, |surface, _| surface.shadows.clone())
 }
 
 /// Totals in the order of cells, so that their bits do not depend on the number of threads.
-fn totals(union: &[SurfaceArea<f64>], sum: &[SurfaceArea<f64>], reports: &[AreaReport<f64>]) -> Totals {
-    let add = |areas: &[SurfaceArea<f64>]| areas.iter().fold(SurfaceArea::default(), |total, a| total.plus(*a));
-    let (union, sum) = (add(union), add(sum));
+fn totals(SurfaceFields { areas, sum, unproved, max_doubt, .. }: &SurfaceFields) -> Totals {
+    let surface = areas.iter().filter(|area| area.wetted > 0.0);
+    let union = surface.fold(SurfaceArea::default(), |total, area| total.plus(*area));
     Totals {
         frontal_area: union.frontal,
         wetted_area: union.wetted,
         frontal_area_of_bodies: sum.frontal,
         wetted_area_of_bodies: sum.wetted,
-        unproved: reports.iter().map(|r| r.unproved).sum(),
-        max_doubt: reports.iter().fold(0.0, |most, r| r.max_doubt.max(most)),
+        unproved: *unproved,
+        max_doubt: *max_doubt,
     }
 }
 
@@ -102,22 +79,19 @@ const ROUNDING: f64 = 2e-13;
 
 /// Areas over volumes, and the lengths that follow.
 fn densities(grid: &Grid<f64>, open: &[f64], union: &[SurfaceArea<f64>]) -> Resistance {
-    let widths = |axis: usize| grid.edges(axis).windows(2).map(|e| e[1] - e[0]).collect::<Vec<_>>();
-    let [x, y, z] = [0, 1, 2].map(widths);
-    let mut found = Resistance::default();
-    let mut cells = open.iter().zip(union);
-    for dz in &z {
-        for dy in &y {
-            for (dx, (&open, area)) in x.iter().zip(&mut cells) {
-                let area = area.times((dx * dy * dz).recip());
-                let length = |share: f64| if area.wetted > 0.0 { 4.0 * share / area.wetted } else { 0.0 };
-                found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a.push(f));
-                found.s.push(area.wetted);
-                found.d_h.push(length(open));
-                // What rounding leaves of a solid has no size.
-                found.l_obs.push(if 1.0 - open > ROUNDING { length(1.0 - open) } else { 0.0 });
-            }
-        }
+    let zeros = || vec![0.0; union.len()];
+    let mut found = Resistance { a: [zeros(), zeros(), zeros()], s: zeros(), d_h: zeros(), ..Resistance::default() };
+    found.l_obs = zeros();
+    let [nx, ny, _] = grid.cells();
+    for (n, area) in union.iter().enumerate().filter(|(_, area)| area.wetted > 0.0) {
+        let Some(cell) = grid.cell_box([n % nx, n / nx % ny, n / (nx * ny)]) else { continue };
+        let area = area.times(cell.size().element_product().recip());
+        found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a[n] = f);
+        found.s[n] = area.wetted;
+        found.d_h[n] = 4.0 * open[n] / area.wetted;
+        // What rounding leaves of a solid has no size.
+        let solid = 1.0 - open[n];
+        found.l_obs[n] = if solid > ROUNDING { 4.0 * solid / area.wetted } else { 0.0 };
     }
     found
 }

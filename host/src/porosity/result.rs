@@ -2,6 +2,8 @@
 
 use super::fields::FieldSet;
 use super::snap::OffPlanes;
+use super::surface_fields::SurfaceFields;
+use std::sync::Arc;
 
 /// Cells by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -66,4 +68,6 @@ pub struct Porosity {
     pub gjk: Gjk,
     /// Bodies whose rows did not return to zero, worst first, one entry a body.
     pub leaks: Vec<Leak>,
+    /// Areas and shadows of the surface, if they were asked for and come with the porosity: of solid bodies that go by their surface.
+    pub surface: Option<Arc<SurfaceFields>>,
 }

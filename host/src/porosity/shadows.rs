@@ -1,21 +1,22 @@
 //! Passages that no face of the grid sees blocked: shadows of the solids in every cell.
 
-use super::solid::{open_layer, solid_alone, with_solid_layers};
-use super::{FieldSet, Options, Porosity};
-use crate::geometry::bodies::Bodies;
+use super::fields::FieldSet;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
-use voidage_core::surface::layer::Layers;
-use voidage_core::surface::shadow::{Shadow, ShadowEdge, ShadowMemory};
+use voidage_core::grid::fields::ShapeMismatch;
+use voidage_core::surface::layer::{LayerError, Layers, OpenLayer};
+use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
+use voidage_core::surface::surface_area::SurfaceArea;
 
 /// Shadows of the union of all solid bodies in the cells of a grid, `nx*ny*nz`, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shadows {
     /// Along x, y and z, which share of the lines through the cell meets solid in it or a blocked side of it.
     pub tau: [Vec<f64>; 3],
-    /// Where in the cell that surface stands, 0 at the low side, 1 at the high one; along x, y and z.
+    /// Where in the cell that surface stands, 0 at the low side, 1 at the high one; along x, y and z. One half where no more is blocked than a side of
+    /// the cell shows.
     pub place: [Vec<f64>; 3],
     /// Cells that hold more surface than there is room for: in place of their shadow stands what their faces show.
     pub too_full: usize,
@@ -37,38 +38,31 @@ pub struct HiddenPassages {
 /// Blockage of its section that makes a cell between two open faces a hidden passage.
 pub const HIDDEN: f64 = 0.95;
 
-/// The shadows of the solid bodies among `bodies` on `grid`; `result` holds their porosities, faces included. Runs in the current rayon
-/// pool.
-#[must_use]
-pub fn shadows(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Shadows {
-    let own = solid_alone(grid, bodies, options);
-    let beta = &own.as_ref().unwrap_or(result).beta;
-    with_solid_layers(grid, bodies, options, |layers| of_layers(grid, layers, beta))
-}
-
-/// The shadows of bodies in layers, whose open fractions are known.
-pub(super) fn of_layers(grid: &Grid<f64>, layers: &Layers<DVec3>, beta: &FieldSet) -> Shadows {
-    let [nx, ny, nz] = grid.cells();
-    let mut found = vec![Shadow::default(); nx * ny * nz];
-    let buffers = Mutex::new(Vec::new());
-    let too_full = found
-        .par_chunks_mut(nx * ny)
-        .enumerate()
-        .map(|(k, found)| {
+impl Shadows {
+    /// Of bodies in layers, whose open fractions and areas of surface are known.
+    #[must_use]
+    pub fn of_layers(grid: &Grid<f64>, layers: &Layers<DVec3>, beta: &FieldSet, areas: &[SurfaceArea<f64>]) -> Self {
+        let [nx, ny, nz] = grid.cells();
+        let fields = |value: f64| [0; 3].map(|_| vec![value; nx * ny * nz]);
+        let (mut tau, mut place) = (fields(0.0), fields(0.5));
+        let mut slices: Vec<ShadowSlices<f64>> = Vec::with_capacity(nz);
+        let [mut share_x, mut share_y, mut share_z] = tau.each_mut().map(|field| field.chunks_exact_mut(nx * ny));
+        let [mut place_x, mut place_y, mut place_z] = place.each_mut().map(|field| field.chunks_exact_mut(nx * ny));
+        while let (Some(x), Some(y), Some(z)) = (share_x.next(), share_y.next(), share_z.next()) {
+            let place = [&mut place_x, &mut place_y, &mut place_z].map(|field| field.next().unwrap_or_default());
+            slices.push(ShadowSlices { share: [x, y, z], place });
+        }
+        let buffers = Mutex::new(Vec::new());
+        let layer = |(k, slices): (usize, ShadowSlices<f64>)| {
             let mut own = buffers.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_else(Buffers::new);
-            own.lists.resize(layers.shadow_lists_needed(k), 0);
-            let too_full = layers.shadows(k, &open_layer(grid, k, beta), found, own.memory());
+            let areas = &areas[k * nx * ny..(k + 1) * nx * ny];
+            let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), areas), slices);
             buffers.lock().unwrap_or_else(PoisonError::into_inner).push(own);
-            too_full.expect("slices of a layer fit its grid")
-        })
-        .sum();
-    let by_axis = |of: &dyn Fn(&Shadow<f64>) -> [f64; 3]| [0, 1, 2].map(|a| found.iter().map(|s| of(s)[a]).collect());
-    let tau: [Vec<f64>; 3] = by_axis(&|s| s.share);
-    Shadows {
-        too_full,
-        hidden: [0, 1, 2].map(|axis| hidden(grid, axis, &tau[axis], beta)),
-        place: by_axis(&|s| s.place),
-        tau,
+            too_full
+        };
+        let too_full = slices.into_par_iter().enumerate().map(layer).sum();
+        let hidden = [0, 1, 2].map(|axis| hidden(grid, axis, &tau[axis], beta));
+        Shadows { tau, place, too_full, hidden }
     }
 }
 
@@ -86,9 +80,10 @@ pub fn cells(grid: &Grid<f64>) -> impl Iterator<Item = [usize; 3]> {
 }
 
 fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> HiddenPassages {
-    let open = beta.faces(axis);
+    let (open, [nx, ny, _]) = (beta.faces(axis), grid.cells());
     let mut found = HiddenPassages::default();
-    for (at, tau) in cells(grid).zip(tau) {
+    for (n, tau) in tau.iter().enumerate().filter(|(_, tau)| **tau > HIDDEN) {
+        let at = [n % nx, n / nx % ny, n / (nx * ny)];
         let [low, high] = faces_of_cell(grid, axis, at).map(|face| open[face]);
         if low.min(high) > 0.0 && tau - (1.0 - low.min(high)) > HIDDEN {
             found.cells += 1;
@@ -101,19 +96,44 @@ fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> Hidden
 /// Edges that a cell may hold, seen along one axis.
 const MAX_EDGES: usize = 1 << 15;
 
+/// Faces that a cell may hold.
+const MAX_FACES: usize = MAX_EDGES / 4;
+
 /// A thread's memory.
 struct Buffers {
     edges: Vec<ShadowEdge<f64>>,
     crossed: Vec<u32>,
     lists: Vec<u32>,
+    faces: Vec<ShadowFace<f64>>,
 }
 
 impl Buffers {
     fn new() -> Self {
-        Buffers { edges: vec![ShadowEdge::default(); 3 * MAX_EDGES], crossed: vec![0; MAX_EDGES], lists: Vec::new() }
+        Buffers {
+            edges: vec![ShadowEdge::default(); 3 * MAX_EDGES],
+            crossed: vec![0; MAX_EDGES],
+            lists: Vec::new(),
+            faces: vec![ShadowFace::default(); MAX_FACES],
+        }
     }
 
-    fn memory(&mut self) -> ShadowMemory<'_, f64> {
-        ShadowMemory { edges: &mut self.edges, crossed: &mut self.crossed, lists: &mut self.lists }
+    /// The shadows of layer `k`; how many of its cells are too full.
+    fn layer(
+        &mut self,
+        layers: &Layers<DVec3>,
+        k: usize,
+        (open, areas): (&OpenLayer<f64>, &[SurfaceArea<f64>]),
+        mut into: ShadowSlices<f64>,
+    ) -> usize {
+        loop {
+            let Buffers { edges, crossed, lists, faces } = self;
+            let memory = ShadowMemory { edges, crossed, lists, faces };
+            match layers.shadows(k, open, Some(areas), into.reborrow(), memory) {
+                Err(LayerError::Shape(ShapeMismatch { expected, found })) if found == self.lists.len() => {
+                    self.lists.resize(expected.max(2 * found), 0);
+                }
+                too_full => return too_full.expect("slices of a layer fit its grid"),
+            }
+        }
     }
 }

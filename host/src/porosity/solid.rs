@@ -1,20 +1,40 @@
 //! The layers of the bodies that are solid, for what is measured beside their porosity.
 
+use super::surface_fields::SurfaceFields;
 use super::{FieldSet, Options, Porosity, levels, porosity, snap, surfaces};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::Group;
-use voidage_core::surface::layer::{Layers, OpenLayer};
+use voidage_core::surface::layer::Layers;
+
+/// Work with the surface of the bodies that are solid and with their open fractions; `result` holds the porosities of all bodies.
+pub(super) fn with_solid_surface<T>(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    result: &Porosity,
+    options: Options,
+    work: impl FnOnce(&SurfaceFields, &FieldSet) -> T,
+) -> T {
+    let alone = solid_alone(grid, bodies, options);
+    let Porosity { beta, surface, .. } = alone.as_ref().unwrap_or(result);
+    let found = surface.clone().unwrap_or_else(|| {
+        with_solid_layers(grid, bodies, options, |layers| {
+            Arc::new(SurfaceFields::of_layers(grid, layers, options, beta))
+        })
+    });
+    work(&found, beta)
+}
 
 /// Porosities of the solid bodies alone, if there are others: the unions of several levels are mixed into the porosities.
-pub(super) fn solid_alone(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Option<Porosity> {
+fn solid_alone(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Option<Porosity> {
     (levels(bodies) != [0.0]).then(|| {
         let mut bodies = bodies.clone();
         bodies.bodies.retain(|b| b.porosity == 0.0);
-        porosity(grid, &bodies, Options { bounds: false, areas: true, ..options })
+        porosity(grid, &bodies, Options { bounds: false, areas: true, resistance: true, ..options })
     })
 }
 
@@ -40,17 +60,4 @@ pub(super) fn with_solid_layers<T>(
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
     let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
     work(&layers)
-}
-
-/// The open fractions of layer `k`.
-pub(super) fn open_layer<'a>(grid: &Grid<f64>, k: usize, beta: &'a FieldSet) -> OpenLayer<'a, f64> {
-    let [nx, ny, _] = grid.cells();
-    let nth = |k: usize, length: usize| k * length..(k + 1) * length;
-    OpenLayer {
-        cell: &beta.v[nth(k, nx * ny)],
-        x: &beta.x[nth(k, (nx + 1) * ny)],
-        y: &beta.y[nth(k, nx * (ny + 1))],
-        z: &beta.z[nth(k, nx * ny)],
-        top: &beta.z[nth(k + 1, nx * ny)],
-    }
 }

@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 use voidage_core::grid::{Grid, Located};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
-use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
-use voidage_core::surface::shadow::{Shadow, ShadowEdge, ShadowMemory};
+use voidage_core::surface::layer::{AreaSlices, CellSides, LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
+use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
 use voidage_core::surface::union::{UnionBuffers, UnionMemory};
 
@@ -46,29 +46,46 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let mut buffers = UnionBuffers::<V::Scalar, 8>::default();
     let union = buffers.memory();
     let Ok(mut memory) = LayerMemory::new(grid, &mut reals, &mut flags, &mut numbers, &mut groups, union) else { return 1 };
-    let mut fields = [[zero; 99]; 12];
+    let mut fields = [[zero; 99]; 16];
     let mut slices = fields.iter_mut().map(|f| f.as_mut_slice());
     let mut next = || -> Option<LayerSlices<V::Scalar>> {
         let (cell, x, y, z) = (slices.next()?, slices.next()?, slices.next()?, slices.next()?);
         LayerSlices::of_fields(grid, at, cell, [x, y, z]).ok()
     };
-    let (Some(beta), Some(low), Some(high)) = (next(), next(), next()) else { return 2 };
+    let (Some(beta), Some(low), Some(high), Some(again)) = (next(), next(), next(), next()) else { return 2 };
     let porosity = layers.layer(at, beta, Some([low, high]), &mut memory).map_or(3, |report| report.divided);
-    let (open, mut areas, mut cells) = ([V::Scalar::HALF; 99], [[SurfaceArea::default(); 99]; 2], [CellSurface::default(); 99]);
+    let (mut union, mut sides) = ([SurfaceArea::default(); 99], [CellSides::default(); 99]);
+    let mut cells = [CellSurface::default(); 99];
+    let areas = AreaSlices {
+        union: union.get_mut(..at).unwrap_or_default(),
+        sides: sides.get_mut(..at).unwrap_or_default(),
+        cells: cells.get_mut(..at).unwrap_or_default(),
+    };
+    let found = layers.layer_and_areas(at, again, None, areas, &mut memory, |_, _| ());
+    let (unproved, used) = found.map_or((4, 0), |(_, report)| (report.unproved, report.sides));
+    let open = [V::Scalar::HALF; 99];
     let of = |count: usize| open.get(..count).unwrap_or(&open);
     let known = OpenLayer { cell: of(at), x: of(at + 1), y: of(at + 2), z: of(at), top: of(at) };
-    let [union, sum] = areas.each_mut().map(|a| a.get_mut(..at).unwrap_or_default());
-    let cells = cells.get_mut(..at).unwrap_or_default();
-    let areas = layers.surface_areas(at, &known, [union, sum], cells, &mut memory).map_or(4, |report| report.unproved);
-    porosity ^ areas ^ shadowed(layers, &known, at)
+    let finished = layers.finish_areas(at, &known, sides.get(..used).unwrap_or_default(), union.get_mut(..at).unwrap_or_default());
+    porosity ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, union.get(..at), at)
 }
 
-fn shadowed<V: Vector>(layers: &Layers<V>, open: &OpenLayer<V::Scalar>, at: usize) -> usize {
+fn shadowed<V: Vector>(
+    layers: &Layers<V>,
+    open: &OpenLayer<V::Scalar>,
+    areas: Option<&[SurfaceArea<V::Scalar>]>,
+    at: usize,
+) -> usize {
     let (mut edges, mut crossed, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);
     let lists = lists.get_mut(..layers.shadow_lists_needed(at)).unwrap_or_default();
-    let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists };
-    let mut found = [Shadow::default(); 99];
-    layers.shadows(at, open, found.get_mut(..at).unwrap_or_default(), memory).unwrap_or(5)
+    let mut faces = core::array::from_fn::<_, 9, _>(|_| ShadowFace::default());
+    let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists, faces: &mut faces };
+    let (mut share, mut place) = ([[V::Scalar::ZERO; 99]; 3], [[V::Scalar::ZERO; 99]; 3]);
+    let mut slices = ShadowSlices {
+        share: share.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),
+        place: place.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),
+    };
+    layers.shadows(at, open, areas, slices.reborrow(), memory).unwrap_or(5)
 }
 
 /// In double precision.

@@ -63,7 +63,7 @@ pub(super) fn parts<V: Vector, O: OtherBodies<V>>(
     for k in 0..count {
         let part = Site { grid, bins: &bins, k, areas: true, ..*site };
         layer.clear();
-        solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), |_, _| ());
+        solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), &mut (), |_, _| ());
         means.add_layer(&layer, k);
         if k + 1 == count {
             layer.sum.z.fill(V::Scalar::ZERO);

@@ -4,18 +4,21 @@ use super::report::LayerReport;
 use crate::grid::fields::Layer;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Group;
-use crate::surface::cell_unions::{self, OtherBodies, Room, Shared, Site};
-use crate::surface::cells::{Defects, Scratch, SurfaceError, add_body};
+use crate::surface::cell_unions::{self, OtherBodies, Room, Shared, Site, UnionSums};
+use crate::surface::cells::{Defects, Scratch, SurfaceError, add_body_and};
+use crate::surface::surface_area::PieceSums;
 use crate::surface::walls;
 use crate::surface::z_faces::{Side, add_section};
 
-/// Bounds of the solid fractions of a layer: body by body, narrowed where bodies share cells. `layer` holds zeros before.
-pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>>(
+/// Bounds of the solid fractions of a layer: body by body, narrowed where bodies share cells. `layer` holds zeros before; `pieces` is told
+/// of all surface in the layer.
+pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
     scratch: &mut Scratch<V::Scalar>,
     mut room: Room<V>,
+    pieces: &mut P,
     mut each_body: impl FnMut(usize, Defects<V::Scalar>),
 ) -> LayerReport<V::Scalar> {
     let mut report = LayerReport::default();
@@ -23,13 +26,13 @@ pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>>(
     for group in groups {
         // All that could be refused has been checked; if it were not, the body would be told as broken.
         let broken = Defects { leak: V::Scalar::INFINITY, winding: V::Scalar::INFINITY };
-        let defects = add_group(site, group, layer, scratch).unwrap_or(broken);
+        let defects = add_group(site, group, layer, scratch, pieces).unwrap_or(broken);
         report.defects = report.defects.worst(defects);
         each_body(group.body as usize, defects);
     }
     shared.others.add(site.grid, site.k, site.areas, layer);
     if groups.len() > usize::from(shared.others.is_empty()) {
-        let resolved = cell_unions::resolve(shared, site, layer, room.reborrow());
+        let resolved = cell_unions::resolve(shared, site, layer, room.reborrow(), pieces);
         walls::resolve(shared, site, layer, room);
         (report.cells.ambiguous, report.divided) = (resolved.ambiguous, resolved.divided);
     }
@@ -37,14 +40,16 @@ pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>>(
 }
 
 /// Add a body to the cells and faces of a layer.
-fn add_group<V: Vector>(
+fn add_group<V: Vector, P: PieceSums<V::Scalar>>(
     site: &Site<V>,
     group: &Group<V>,
     layer: &mut Layer<V::Scalar>,
     scratch: &mut Scratch<V::Scalar>,
+    pieces: &mut P,
 ) -> Result<Defects<V::Scalar>, SurfaceError> {
     let (triangles, ids) = (site.bins.triangles(group), site.bins.ids(group));
-    let mut defects = add_body(site.grid, site.k, triangles, ids, scratch, layer)?;
+    pieces.begin_body(group.body, group.is_sheet());
+    let mut defects = add_body_and(site.grid, site.k, (triangles, ids), scratch, layer, pieces)?;
     if site.areas {
         let leak = add_section(site.grid, site.k, Side::Above, triangles, ids, scratch, layer)?;
         defects.leak = defects.leak.max(leak);

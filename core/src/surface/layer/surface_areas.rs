@@ -1,21 +1,22 @@
 //! Frontal and wetted area of the union in the cells of a layer.
 
+use super::Layers;
 use super::error::LayerError;
 use super::memory::LayerMemory;
-use super::parts::{self, SmallGrid};
+use super::parts::SmallGrid;
+use super::report::LayerReport;
+use super::slices::LayerSlices;
 use super::solid_bounds::solid_bounds;
-use super::{Layers, MOST_HALVINGS};
 use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
 use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::Row;
 use crate::surface::cell_unions::{
-    Effort, Refined, Room, Shared, Site, bodies_in, divide, rounding, with_effort, with_least_blur,
+    OtherBodies, Refined, Room, Shared, Site, UnionSums, divide, rounding, side_areas, with_effort,
 };
-use crate::surface::surface_area::{Bodies, CellSurface, SurfaceArea, gather, gather_weighted};
-use crate::surface::union::NoProof;
+use crate::surface::cells::Defects;
+use crate::surface::surface_area::{Bodies, CellSurface, LayerSurface, SurfaceArea, UnionSurface, gather_weighted};
 
 /// Open fractions of a layer that are known already: cells `ny*nx`, x faces `ny*(nx+1)`, y faces `(ny+1)*nx`, z faces below and above
 /// `ny*nx` each; x fastest.
@@ -61,82 +62,129 @@ type Sides<R> = [[R; 2]; 3];
 /// How well the areas of a layer are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AreaReport<R> {
+    /// The areas of all bodies added up, whether they overlap or not.
+    pub sum: SurfaceArea<R>,
+    /// Entries of [`AreaSlices::sides`] that are used.
+    pub sides: usize,
     /// Cells that several bodies share and whose union has no proof, even divided: their areas lie between that of one body and the sum.
     pub unproved: usize,
     /// The largest wetted area that is in doubt in one cell.
     pub max_doubt: R,
 }
 
+/// Where the areas of a layer go, and memory for them.
+#[derive(Debug)]
+pub struct AreaSlices<'a, R> {
+    /// Areas of the union, without what [`Layers::finish_areas`] adds, `ny*nx`, x fastest, in the unit of the grid. Sheets count as they are.
+    pub union: &'a mut [SurfaceArea<R>],
+    /// Cells that several bodies share with surface in the planes of their sides, `ny*nx` at most.
+    pub sides: &'a mut [CellSides<R>],
+    /// Memory, `ny*nx`.
+    pub cells: &'a mut [CellSurface<R>],
+}
+
+/// A cell, and the solid fractions of its sides as seen from inside. The default serves as memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CellSides<R> {
+    cell: u32,
+    solid: Sides<R>,
+}
+
 impl<V: Vector> Layers<'_, V> {
-    /// Areas of the union's surface in the cells of layer `k`, and the sums over all bodies whether they overlap or not, both `ny*nx`, x
-    /// fastest, in the unit of the grid. `open` holds the layer's open fractions, `cells` is memory, `ny*nx`. Sheets count as they are.
+    /// As [`Layers::zeroed_layer`], and with it areas of the surface in the cells.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length, memory of another grid.
-    pub fn surface_areas(
+    pub fn layer_and_areas(
+        &self,
+        k: usize,
+        beta: LayerSlices<V::Scalar>,
+        bounds: Option<[LayerSlices<V::Scalar>; 2]>,
+        areas: AreaSlices<V::Scalar>,
+        memory: &mut LayerMemory<V>,
+        each_body: impl FnMut(usize, Defects<V::Scalar>),
+    ) -> Result<(LayerReport<V::Scalar>, AreaReport<V::Scalar>), LayerError> {
+        let [nx, ny, _] = self.grid.cells();
+        let AreaSlices { union, sides, cells } = areas;
+        for found in [union.len(), sides.len(), cells.len()] {
+            exactly(nx * ny, found)?;
+        }
+        let mut surface = LayerSurface::new(cells);
+        let report = self.measure(k, (beta, bounds), memory, (&mut (), &mut surface), each_body)?;
+        Ok((report, summed(surface.cells(), union, sides)))
+    }
+
+    /// Add to the areas of the union what is wetted in the planes of grid, for which the faces of neighbouring layers must be known, and drop the surface of
+    /// cells that are closed. `open` holds the open fractions of layer `k`, `sides` as many entries as [`AreaReport::sides`] tells.
+    ///
+    /// # Errors
+    /// [`LayerError`]: no such layer, slices of wrong length.
+    pub fn finish_areas(
         &self,
         k: usize,
         open: &OpenLayer<V::Scalar>,
-        [union, sum]: [&mut [SurfaceArea<V::Scalar>]; 2],
-        cells: &mut [CellSurface<V::Scalar>],
-        memory: &mut LayerMemory<V>,
-    ) -> Result<AreaReport<V::Scalar>, LayerError> {
+        sides: &[CellSides<V::Scalar>],
+        union: &mut [SurfaceArea<V::Scalar>],
+    ) -> Result<(), LayerError> {
         let [nx, ny, layers] = self.grid.cells();
         if k >= layers {
             return Err(LayerError::NoLayer { layer: k, layers });
         }
-        (memory.cells == [nx, ny]).then_some(()).ok_or(LayerError::OtherGrid)?;
         open.check(&self.grid)?;
-        for found in [union.len(), sum.len(), cells.len()] {
-            exactly(nx * ny, found)?;
-        }
-        let LayerMemory { reals, flags, numbers, groups, union: trees, .. } = memory;
-        let mut shared = Shared {
-            tol: self.options.tol,
-            others: &mut (),
-            union: trees.reborrow(),
-            parts: parts::parts,
-            effort: Effort::default(),
-        };
-        let halvings = 3 * self.options.depth.min(MOST_HALVINGS);
-        let site = Site { grid: &self.grid, bins: &self.bins, k, halvings, areas: true };
-        gather(&self.bins, &self.grid, k, cells);
-        let mut report: AreaReport<V::Scalar> = AreaReport::default();
-        for j in 0..ny {
-            let mut row = None;
-            for i in 0..nx {
-                let c = j * nx + i;
-                let (Some(surface), Some(&open_share)) = (cells.get(c), open.cell.get(c)) else { continue };
-                let (Some(union), Some(sum)) = (union.get_mut(c), sum.get_mut(c)) else { continue };
-                *sum = surface.sum();
-                *union = SurfaceArea::default();
-                if !(open_share > V::Scalar::ZERO) {
-                    // Another body holds all that surface.
-                    continue;
-                }
-                *union = *sum;
-                if surface.bodies != Bodies::Several {
-                    continue;
-                }
-                let (Some(cell), Some(blocked)) = (site.grid.cell_box([i, j, k]), open.blocked([i, j], nx)) else {
-                    continue;
-                };
-                if row.is_none() {
-                    let ends = [cell.min.y(), cell.max.y()];
-                    row = Row::new(site.bins, k, ends, (&mut *numbers, &mut *groups));
-                }
-                let Some(row) = &mut row else { continue };
-                let place = SharedCell { cell, surface, blocked };
-                let (area, doubt) = of_shared_cell(&mut shared, &site, &place, row, (&mut *reals, &mut *flags));
-                *union = area;
-                if let Some(doubt) = doubt {
-                    report.unproved += 1;
-                    report.max_doubt = report.max_doubt.max(doubt);
-                }
+        exactly(nx * ny, union.len())?;
+        for CellSides { cell, solid } in sides {
+            let c = *cell as usize;
+            let at = [c.checked_rem(nx).unwrap_or(0), c.checked_div(nx).unwrap_or(0)];
+            let (Some(blocked), Some(cell)) = (open.blocked(at, nx), self.grid.cell_box([at[0], at[1], k])) else {
+                continue;
+            };
+            if let Some(area) = union.get_mut(c) {
+                area.wetted += in_planes(cell, &blocked, solid);
             }
         }
-        Ok(report)
+        for (area, open) in union.iter_mut().zip(open.cell) {
+            if !(*open > V::Scalar::ZERO) {
+                // Another body holds all that surface.
+                *area = SurfaceArea::default();
+            }
+        }
+        Ok(())
     }
+}
+
+/// Write the areas of the union, and the sides of those cells whose wetted area asks for their faces.
+fn summed<R: Real>(
+    cells: &[CellSurface<R>],
+    union: &mut [SurfaceArea<R>],
+    sides: &mut [CellSides<R>],
+) -> AreaReport<R> {
+    let mut report = AreaReport::default();
+    for ((surface, union), cell) in cells.iter().zip(union).zip(0..) {
+        *union = surface.sum();
+        if !(union.wetted > R::ZERO) {
+            continue;
+        }
+        report.sum = report.sum.plus(*union);
+        if surface.bodies != Bodies::Several {
+            continue;
+        }
+        let found = surface.of_union();
+        *union = found.area.plus(surface.sheets);
+        if found.doubt > R::ZERO {
+            report.unproved += 1;
+            report.max_doubt = report.max_doubt.max(found.doubt);
+        }
+        if surface.in_plane > R::ZERO {
+            match (found.sides, sides.get_mut(report.sides)) {
+                (Some(solid), Some(place)) => {
+                    *place = CellSides { cell, solid };
+                    report.sides += 1;
+                }
+                _ => union.wetted += surface.in_plane,
+            }
+        }
+    }
+    report
 }
 
 impl<V: Vector> Layers<'_, V> {
@@ -162,43 +210,36 @@ impl<V: Vector> Layers<'_, V> {
     }
 }
 
-/// A cell in which several bodies have surface.
-struct SharedCell<'a, V: Vector> {
-    cell: Aabb<V>,
-    surface: &'a CellSurface<V::Scalar>,
-    /// Solid fractions of its sides.
-    blocked: Sides<V::Scalar>,
-}
-
-/// The area of the union in a cell, and what of its wetted area is in doubt, if there is no proof.
-fn of_shared_cell<V: Vector>(
-    shared: &mut Shared<V, ()>,
-    site: &Site<V>,
-    SharedCell { cell, surface, blocked }: &SharedCell<V>,
-    row: &mut Row<V>,
-    (reals, flags): (&mut [V::Scalar], &mut [u8]),
-) -> (SurfaceArea<V::Scalar>, Option<V::Scalar>) {
-    let (inside, sides, doubt) = match fragments(shared, site, *cell, row) {
-        Some(Fragments { area, sides }) => (area, Some(sides), None),
-        None => {
-            let mut room = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
-            let inside =
-                with_effort(shared, site, site.k..site.k + 1, |shared| parts_of(shared, site, *cell, room.reborrow()));
-            let sides =
-                divide(shared, site, *cell, room).map(|Refined { low, high, .. }| [0, 1, 2].map(|a| [low[a], high[a]]));
-            let (area, doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
-            (
-                area,
-                sides.map(|sides| sides.map(|side| side.map(Bounds::middle))),
-                (doubt > V::Scalar::ZERO).then_some(doubt),
-            )
-        }
-    };
-    let mut area = inside.plus(surface.sheets);
-    if surface.in_plane > V::Scalar::ZERO {
-        area.wetted += sides.map_or(surface.in_plane, |sides| in_planes(*cell, blocked, &sides));
+impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
+    fn wants_union(&self, cell: usize) -> bool {
+        self.cells().get(cell).is_some_and(|surface| surface.bodies == Bodies::Several)
     }
-    (area, doubt)
+
+    fn set_union(&mut self, cell: usize, found: UnionSurface<V::Scalar>) {
+        if let Some(surface) = self.cell_mut(cell) {
+            surface.union = Some(found);
+        }
+    }
+
+    fn divide_union<O: OtherBodies<V>>(
+        &mut self,
+        shared: &mut Shared<V, O>,
+        site: &Site<V>,
+        (number, cell): (usize, Aabb<V>),
+        refined: Option<&Refined<V::Scalar>>,
+        mut room: Room<V>,
+    ) {
+        let Some(surface) = self.cell_mut(number) else { return };
+        let layers = site.k..site.k + 1;
+        let inside = with_effort(shared, site, layers, |shared| parts_of(shared, site, cell, room.reborrow()));
+        let (area, doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
+        let middles = |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
+        let sides = match refined {
+            None if surface.in_plane > V::Scalar::ZERO => divide(shared, site, cell, room).as_ref().map(middles),
+            refined => refined.map(middles),
+        };
+        surface.union = Some(UnionSurface { area, doubt, sides });
+    }
 }
 
 /// Area of the surface in the planes of a cell's sides that is wetted from the cell: what is blocked, less what is solid on this side of it.
@@ -215,45 +256,13 @@ fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides
     sum
 }
 
-/// Areas of a cell's sides normal to x, y and z.
-fn side_areas<V: Vector>(cell: Aabb<V>) -> [V::Scalar; 3] {
-    let [x, y, z] = cell.size().to_array();
-    [y * z, z * x, x * y]
-}
-
-/// What the union has of surface inside a cell.
-struct Fragments<R> {
-    area: SurfaceArea<R>,
-    sides: Sides<R>,
-}
-
-/// What the union of all bodies has of surface inside a cell, and the solid fractions of the cell's sides; none without a proof.
-fn fragments<V: Vector>(
-    shared: &mut Shared<V, ()>,
-    site: &Site<V>,
-    cell: Aabb<V>,
-    row: &Row<V>,
-) -> Option<Fragments<V::Scalar>> {
-    let across = side_areas(cell);
-    with_least_blur(shared.tol, |blur| {
-        let mut union = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
-        let mut area = SurfaceArea::default();
-        let found = union.cell_and_surface(|kept| {
-            let [x, y, z] = kept.doubled_area();
-            area = area.plus(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));
-        })?;
-        let sides = [0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]);
-        Ok::<_, NoProof>((Fragments { area, sides }, found.error))
-    })
-}
-
 /// Where a cell without a proof is divided, as a share of its width: surface of bodies seldom lies there.
 const DIVIDED_AT: f64 = 0.472_135_954_999_579_4;
 
 /// What the union has of surface inside a cell, from its parts, and how much of the wetted area is in doubt; none if depth, memory or effort
 /// is spent. Calls itself, once a level.
-fn parts_of<V: Vector>(
-    shared: &mut Shared<V, ()>,
+fn parts_of<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
     room: Room<V>,
@@ -267,26 +276,15 @@ fn parts_of<V: Vector>(
     for k in 0..2 {
         let part = Site { grid: &grid, bins: &bins, k, areas: true, halvings: site.halvings.checked_sub(3)? };
         layer.clear();
-        solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), |_, _| ());
         let mut cells = [CellSurface::default(); 4];
-        gather(&bins, &grid, k, &mut cells);
+        let mut pieces = LayerSurface::new(&mut cells);
+        solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), &mut pieces, |_, _| ());
         for (n, surface) in cells.iter().enumerate() {
             if layer.lower.cell.get(n).is_none_or(|&lower| lower >= V::Scalar::ONE) {
                 continue;
             }
-            let mut found = Some((surface.inside, V::Scalar::ZERO));
-            if surface.bodies == Bodies::Several {
-                let cell = grid.cell_box([n % 2, n / 2, k])?;
-                let Room { reals, flags, numbers, groups } = room.reborrow();
-                let row = Row::new(&bins, k, [cell.min.y(), cell.max.y()], (numbers, groups))?;
-                found = fragments(shared, &part, cell, &row).map(|found| (found.area, V::Scalar::ZERO));
-                if found.is_none() {
-                    let rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
-                    found = with_effort(shared, &part, k..k + 1, |shared| parts_of(shared, &part, cell, rest));
-                }
-            }
-            let (area, open) = found.unwrap_or((surface.inside, surface.inside.wetted));
-            (total, doubt) = (total.plus(area), doubt + open);
+            let found = surface.of_union();
+            (total, doubt) = (total.plus(found.area), doubt + found.doubt);
         }
     }
     Some((total, doubt))

@@ -86,7 +86,7 @@ impl ObstacleReport {
             sharp_bodies: drag.bodies[1],
             capped: drag.capped,
         });
-        let Shadows { hidden, too_full, .. } = &found.shadows;
+        let Shadows { hidden, too_full, .. } = &*found.shadows;
         ObstacleReport {
             totals: found.totals,
             hidden_passages: *hidden,

@@ -85,7 +85,7 @@ fn from_scene<const D: usize>(
     let (bodies, _) = stages::load(&scene, progress)?;
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
-    let mut result = stages::measure(&bodies, edges, options, progress)?;
+    let mut result = stages::measure(&bodies, edges, Options { resistance: true, ..options }, progress)?;
     let wanted = wanted_solids(file, &bodies)?;
     let solids = match wanted.is_empty() {
         true => Vec::new(),

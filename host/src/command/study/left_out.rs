@@ -84,7 +84,7 @@ fn of_scene(scene: &str, n: usize, bodies: &Bodies, edges: &Edges, repeats: usiz
     let grid = edges.grid(None)?;
     let pool = stages::threads(Some(1))?;
     let run = |areas: bool, bounds: bool, surface: bool| {
-        let options = Options { areas, bounds, ..Options::default() };
+        let options = Options { areas, bounds, resistance: surface, ..Options::default() };
         let (_, seconds) = timed(repeats, || {
             pool.install(|| {
                 let found = porosity(&grid, bodies, options);

@@ -39,13 +39,19 @@ struct Site<'a> {
 }
 
 /// The reference by the surface: unions as exactly as they are found.
-const SURFACE: Options =
-    Options { tol: 0.0, depth: 6, bounds: true, areas: true, method: Method::Surface, leaf: Leaf::Plane };
+const SURFACE: Options = Options {
+    tol: 0.0,
+    depth: 6,
+    bounds: true,
+    areas: true,
+    method: Method::Surface,
+    leaf: Leaf::Plane,
+    resistance: false,
+};
 
 /// The reference where solids have formulas and no surface: closed forms, and where two of them meet a subdivision that is finer than
 /// those it is compared with.
-const FORMULA: Options =
-    Options { tol: 1e-6, depth: 7, bounds: true, areas: true, method: Method::Auto, leaf: Leaf::Plane };
+const FORMULA: Options = Options { tol: 1e-6, depth: 7, method: Method::Auto, ..SURFACE };
 
 /// The bodies of all scenes of the case file at `path`.
 ///

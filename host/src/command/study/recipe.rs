@@ -77,7 +77,7 @@ pub fn recipes(mut keys: StrictTable, areas: bool) -> Result<Vec<Recipe>> {
             let family = varied(&name, &parts);
             parts.push((depths.as_ref().map_or(1, Vec::len), format!("depth {depth}")));
             parts.push((tols.len(), format!("tol {tol:e}")));
-            let options = Options { tol, depth, bounds: false, areas, method, leaf };
+            let options = Options { tol, depth, areas, method, leaf, ..Options::default() };
             let recipe = Recipe { name: varied(&name, &parts), family, options, precision };
             if all.iter().all(|r| r.name != recipe.name) {
                 all.push(recipe);
