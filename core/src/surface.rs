@@ -39,13 +39,13 @@
 //! A file uses only those above it in this list:
 //!
 //! 1. [`clip`]: convex polygons cut by planes
-//! 2. [`cells`]: cells, x and y faces of a layer, from sums along rows
-//! 3. [`z_faces`]: its z faces, from the section with their plane
-//! 4. [`union`]: the exact union of bodies in a cell, from BSP trees of their surfaces
-//! 5. [`bins`]: which triangles of which bodies reach which layer
-//! 6. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies; [`surface_area`]: frontal and
-//!    wetted area of single bodies; [`shadow`]: what surface in a cell covers, seen along an axis
-//! 7. [`layer`]: the door: porosity of the layers of a grid
+//! 2. [`bins`]: which triangles of which bodies reach which layer
+//! 3. [`surface_area`]: frontal and wetted area of what others cut; [`shadow`]: what surface in a cell covers, seen along an axis
+//! 4. [`cells`]: cells, x and y faces of a layer, from sums along rows
+//! 5. [`z_faces`]: its z faces, from the section with their plane
+//! 6. [`union`]: the exact union of bodies in a cell, from BSP trees of their surfaces
+//! 7. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies
+//! 8. [`layer`]: the door: porosity of the layers of a grid, and the surface in them
 
 pub mod bins;
 mod cell_unions;

@@ -8,6 +8,7 @@ use voidage::grid::Edges;
 use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::{Options, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
+use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, formulas, scene};
 
 /// `cells` cells along each axis from `lo` to `hi`.
@@ -16,10 +17,16 @@ fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
     Edges([axis.clone(), axis.clone(), axis])
 }
 
+/// The obstacles, found on the way to porosity and after it: both are the same to the bit, and so is the porosity.
 fn obstacles(edges: &Edges, bodies: &Bodies) -> Resistance {
     let grid = edges.grid(None).expect("a grid");
-    let found = porosity(&grid, bodies, Options::default());
-    resistance(&grid, bodies, &found, Options::default())
+    let (after, asked) = (Options::default(), Options { resistance: true, ..Options::default() });
+    let [without, with] = [after, asked].map(|options| porosity(&grid, bodies, options));
+    assert!(without.surface.is_none());
+    assert!(without.beta == with.beta && without.cells == with.cells);
+    let found = resistance(&grid, bodies, &with, asked);
+    assert!(found == resistance(&grid, bodies, &without, after));
+    found
 }
 
 type Cuboid = [[u8; 3]; 2];
@@ -74,6 +81,41 @@ proptest! {
         let alone: f64 = boxes.iter().map(|b| lattice_area(&[*b]).iter().sum::<f64>()).sum();
         prop_assert!(close(beside.wetted_area_of_bodies, alone), "{beside:?} {alone}");
         prop_assert_eq!(beside.unproved + on.unproved, 0);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// The same boxes turned anyhow, thin along one axis, in many cells and far off: a turn leaves areas as they are, and a face of area A is seen along
+    /// axis i as A |n_i|.
+    #[test]
+    fn turned_boxes_have_the_area_of_their_union(
+        boxes in prop::collection::vec((prop::array::uniform3(0_u8..5), prop::array::uniform3(1_u8..4)), 1..6),
+        seed in any::<u64>(),
+        cells in 1_usize..14,
+        thin in 0_usize..4,
+        far in any::<bool>(),
+    ) {
+        let boxes: Vec<Cuboid> = boxes.iter().map(|(lo, size)| [*lo, [0, 1, 2].map(|a| lo[a] + size[a])]).collect();
+        let turn = Random::new(seed).turn();
+        let mut scale = DVec3::ONE;
+        if thin < 3 {
+            scale[thin] = 1.0 / 64.0;
+        }
+        let offset = DVec3::splat(if far { 512.0 } else { 0.0 });
+        let place = |p: DVec3| offset + turn * ((p - DVec3::splat(4.0)) * scale);
+        let solids: Vec<Vec<Triangle>> = boxes.iter().map(|b| triangles(b).iter().map(|t| t.map(place)).collect()).collect();
+        let found = obstacles(&edges(cells, offset.x - 8.3, offset.x + 8.1), &scene(&solids)).totals;
+        let across = [scale.y * scale.z, scale.z * scale.x, scale.x * scale.y];
+        let area: Vec<f64> = lattice_area(&boxes).iter().zip(across).map(|(area, across)| area * across).collect();
+        let near = |found: f64, truth: f64| (found - truth).abs() <= if far { 1e-9 } else { 1e-11 };
+        prop_assert!(near(found.wetted_area, area.iter().sum()), "{found:?} {area:?} {boxes:?}");
+        for axis in 0..3 {
+            let seen: f64 = (0..3).map(|normal| area[normal] * turn.col(normal)[axis].abs()).sum();
+            prop_assert!(near(found.frontal_area[axis], seen / 2.0), "{axis}: {found:?} {seen} {boxes:?}");
+        }
+        prop_assert_eq!(found.unproved, 0);
     }
 }
 

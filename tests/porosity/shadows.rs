@@ -1,6 +1,6 @@
 //! Shadows in cells: boxes by coordinate compression, convex bodies by a closed relation, anything by lines, walls that no face sees.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use voidage::geometry::bodies::Bodies;
 use voidage::grid::Edges;
@@ -8,9 +8,12 @@ use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::shadows::{cells, faces_of_cell};
 use voidage::porosity::{Options, Porosity, porosity};
 use voidage_core::grid::Grid;
+use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
-use voidage_core::surface::layer::{LayerOptions, Layers, OpenLayer};
+use voidage_core::surface::layer::{AreaSlices, CellSides, LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
+use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
+use voidage_core::surface::union::UnionMemory;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, turned_box};
 
@@ -20,9 +23,9 @@ fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
 }
 
 fn found(edges: &Edges, bodies: &Bodies) -> (Porosity, Resistance) {
-    let grid = edges.grid(None).expect("a grid");
-    let result = porosity(&grid, bodies, Options::default());
-    let resistance = resistance(&grid, bodies, &result, Options::default());
+    let (grid, options) = (edges.grid(None).expect("a grid"), Options { resistance: true, ..Options::default() });
+    let result = porosity(&grid, bodies, options);
+    let resistance = resistance(&grid, bodies, &result, options);
     (result, resistance)
 }
 
@@ -137,6 +140,114 @@ fn of_one_convex_body_the_frontal_area_tells() {
             }
         }
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// Boxes turned about the line of sight, in layers of one cell each: the area that they cover does not turn with them.
+    #[test]
+    fn boxes_turned_about_the_line_of_sight(
+        boxes in prop::collection::vec((prop::array::uniform3(0_u8..9), prop::array::uniform3(1_u8..6)), 1..9),
+        angle in 0.01_f64..1.5,
+        layers in 1_usize..7,
+        axis in 0_usize..3,
+        thickness in prop::sample::select(vec![1.0, 1.0 / 128.0]),
+    ) {
+        let half = |p: &[u8; 3]| DVec3::from_array(p.map(|c| f64::from(c) * 0.5)) - DVec3::splat(3.0);
+        let boxes: Vec<[DVec3; 2]> = boxes.iter().map(|(lo, size)| {
+            let (lo, mut size) = (half(lo), DVec3::from_array(size.map(|c| f64::from(c) * 0.5)));
+            size[(axis + 1) % 3] *= thickness;
+            [lo, lo + size]
+        }).collect();
+        let turn = DMat3::from_axis_angle(DVec3::AXES[axis], angle);
+        let solids: Vec<Vec<Triangle>> =
+            boxes.iter().map(|[a, b]| cuboid(*a, *b).iter().map(|t| t.map(|p| turn * p)).collect()).collect();
+        let mut edges = Edges([0; 3].map(|_| vec![-9.0, 9.0]));
+        edges.0[axis] = (0..=layers).map(|n| -5.137 + 10.4 * n as f64 / layers as f64).collect();
+        let (_, found) = found(&edges, &scene(&solids));
+        for (n, ends) in edges.0[axis].windows(2).enumerate() {
+            let mut cell = [DVec3::splat(-9.0), DVec3::splat(9.0)];
+            (cell[0][axis], cell[1][axis]) = (ends[0], ends[1]);
+            let truth = covered_by_boxes(&boxes, cell, axis);
+            let tau = found.shadows.tau[axis][n];
+            prop_assert!((tau - truth).abs() < 1e-11, "layer {n} along {axis}: {tau}, {truth}, {boxes:?}");
+        }
+    }
+}
+
+/// Two plates of one body, however near: what lies behind the slit does not count again.
+#[test]
+fn a_slit_within_a_body() {
+    let edges = edges(1, 0.0, 1.0);
+    for turn in [0.0, 0.3] {
+        let turn = DMat3::from_rotation_x(turn);
+        let plate = |lo: f64, hi: f64| {
+            turned_box(DVec3::new((lo + hi) / 2.0, 0.5, 0.5), DVec3::new((hi - lo) / 2.0, 0.3, 0.2), turn)
+        };
+        for gap in [0.2, 1e-3, 1e-9, 1e-13, 1e-14, 1e-15, 2.3e-16] {
+            let body = [plate(0.2, 0.5), plate(0.5 + gap, 0.8)].concat();
+            let (_, found) = found(&edges, &scene(&[body]));
+            let tau = found.shadows.tau[0][0];
+            assert!((tau - 0.24).abs() < 1e-12, "{gap}: {tau}");
+        }
+    }
+}
+
+/// Frontal areas and shadows of the cells of a single layer, in the precision of the triangles.
+fn in_one_layer<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]]) -> Vec<[f64; 6]> {
+    let zero = V::Scalar::ZERO;
+    let ends = [edges[0], edges[edges.len() - 1]];
+    let (grid, bodies) = (Grid::new(edges, edges, &ends).expect("a grid"), [Surface::new(triangles)]);
+    let needed = Layers::needed(&grid, &bodies);
+    let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
+    let layers = Layers::new(&grid, &bodies, LayerOptions::default(), &mut numbers, &mut groups).expect("memory");
+    let (needed, cells) = (layers.memory_needed(), grid.cell_count());
+    let (mut reals, mut flags) = (vec![zero; needed.reals], vec![0; needed.flags]);
+    let union = UnionMemory::default();
+    let mut memory = LayerMemory::new(&grid, &mut reals, &mut flags, &mut [], &mut [], union).expect("memory");
+    let field = |axis: usize| vec![zero; grid.face_shape(axis).iter().product()];
+    let (mut v, [mut x, mut y, mut z]) = (vec![zero; cells], [field(0), field(1), field(2)]);
+    let beta = LayerSlices::of_fields(&grid, 0, &mut v, [&mut x, &mut y, &mut z]).expect("slices");
+    let (mut union, mut sides) = (vec![SurfaceArea::default(); cells], vec![CellSides::default(); cells]);
+    let mut surface = vec![CellSurface::default(); cells];
+    let areas = AreaSlices { union: &mut union, sides: &mut sides, cells: &mut surface };
+    let (_, report) = layers.layer_and_areas(0, beta, None, areas, &mut memory, |_, _| ()).expect("a layer");
+    let (bottom, top) = z.split_at(cells);
+    let open = OpenLayer { cell: &v, x: &x, y: &y, z: bottom, top };
+    let sides = &sides[..report.sides];
+    layers.finish_areas(0, &open, sides, &mut union).expect("areas");
+    let (mut edges, mut crossed) = (vec![ShadowEdge::default(); 999], vec![0; 333]);
+    let (mut lists, mut faces) = (vec![0; layers.shadow_lists_needed(0)], vec![ShadowFace::default(); 99]);
+    let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut lists, faces: &mut faces };
+    let (mut share, mut place) = ([0; 3].map(|_| vec![zero; cells]), [0; 3].map(|_| vec![zero; cells]));
+    let slices =
+        ShadowSlices { share: share.each_mut().map(|f| &mut f[..]), place: place.each_mut().map(|f| &mut f[..]) };
+    assert_eq!(layers.shadows(0, &open, Some((&union, sides)), slices, memory), Ok(0));
+    let of = |c: usize| {
+        let ([a, b, c_], [x, y, z]) = (union[c].frontal, share.each_ref().map(|f| f[c]));
+        [a, b, c_, x, y, z].map(Real::to_f64)
+    };
+    (0..cells).map(of).collect()
+}
+
+/// Single precision finds what double precision does, to its own rounding.
+#[test]
+fn in_single_precision() {
+    let mut random = Random::new(11);
+    let (mut partly, axis) = (0, [0.0, 0.9, 2.1, 3.0]);
+    for _ in 0..30 {
+        let body = Turned::random(&mut random, 1.2).triangles();
+        let single: Vec<[Vec3; 3]> = body.iter().map(|t| t.map(DVec3::as_vec3)).collect();
+        let widened: Vec<Triangle> = single.iter().map(|t| t.map(Vec3::as_dvec3)).collect();
+        let found = in_one_layer(&axis.map(|e| e as f32), &single);
+        let truth = in_one_layer(&axis.map(|e| f64::from(e as f32)), &widened);
+        for (found, truth) in found.iter().flatten().zip(truth.iter().flatten()) {
+            assert!((found - truth).abs() < 3e-5, "{found} {truth}");
+            partly += usize::from(*truth > 0.01 && *truth < 0.99);
+        }
+    }
+    assert!(partly > 300, "{partly}");
 }
 
 /// Several turned boxes, by lines.

@@ -456,22 +456,22 @@ pub(super) fn cells_touched<R: Real>(edges: &[R], [lo, hi]: [R; 2]) -> Range<usi
 
 /// Which triangles reach or touch, by their boxes, which cell of a layer, for those cells that are wanted.
 pub(super) struct CellLists<'m> {
-    /// The end of each cell's entries, or [`UNWANTED`] and that of the cell before.
-    ends: &'m [u32],
-    /// Position of a group in the layer and number of a triangle, by cell, and by group within a cell.
-    entries: &'m [[u32; 2]],
+    /// The last entry of each cell, [`NO_ENTRY`] or [`UNWANTED`].
+    last: &'m [u32],
+    /// Position of a group in the layer, number of a triangle, and the entry of the same cell before.
+    entries: &'m [[u32; 3]],
 }
 
-/// Marks cells that are not wanted.
-const UNWANTED: u32 = 1 << 31;
+/// Marks cells that are not wanted, and the end of a list.
+const UNWANTED: u32 = u32::MAX;
+const NO_ENTRY: u32 = u32::MAX - 1;
 
 impl<'m> CellLists<'m> {
     /// Numbers needed if all cells are wanted.
     pub fn needed<V: Vector>(bins: &Bins<V>, grid: &Grid<V::Scalar>, k: usize) -> usize {
-        let [nx, ny, _] = grid.cells();
-        let cells = |[x, y]: [Range<usize>; 2]| x.len().saturating_mul(y.len());
-        let entries = spans(bins, grid, k).map(|(_, spans)| cells(spans)).fold(0, usize::saturating_add);
-        entries.saturating_mul(2).saturating_add(nx * ny)
+        let ([nx, ny, _], mut entries) = (grid.cells(), 0_usize);
+        each_span(bins, grid, k, |_, [x, y]| entries = entries.saturating_add(x.len().saturating_mul(y.len())));
+        entries.saturating_mul(3).saturating_add(nx * ny)
     }
 
     /// Of layer `k`; each cell is asked for once whether it is wanted.
@@ -487,60 +487,58 @@ impl<'m> CellLists<'m> {
     ) -> Result<Self, ShapeMismatch> {
         let [nx, ny, _] = grid.cells();
         let (given, short) = (memory.len(), ShapeMismatch { expected: nx * ny, found: memory.len() });
-        let (ends, entries) = memory.split_at_mut_checked(nx * ny).ok_or(short)?;
+        let (last, entries) = memory.split_at_mut_checked(nx * ny).ok_or(short)?;
         let (entries, _) = entries.as_chunks_mut();
-        let cells = |[x, y]: [Range<usize>; 2]| y.flat_map(move |j| x.clone().map(move |i| j * nx + i));
-        let mut any = false;
-        for (end, wanted) in ends.iter_mut().zip((0..).map(wanted)) {
-            *end = if wanted { 0 } else { UNWANTED };
+        let (mut any, mut count) = (false, 0_usize);
+        for (last, wanted) in last.iter_mut().zip((0..).map(wanted)) {
+            *last = if wanted { NO_ENTRY } else { UNWANTED };
             any |= wanted;
         }
-        if !any {
-            return Ok(CellLists { ends, entries });
-        }
-        for cell in spans(bins, grid, k).flat_map(|(_, spans)| cells(spans)) {
-            if let Some(count) = ends.get_mut(cell).filter(|count| **count < UNWANTED - 1) {
-                *count += 1;
-            }
-        }
-        let mut sum = 0_u32;
-        for first in &mut *ends {
-            let count = *first & !UNWANTED;
-            *first = sum | *first & UNWANTED;
-            sum = sum.saturating_add(count).min(UNWANTED - 1);
-        }
-        at_least(nx * ny + 2 * sum as usize, given)?;
-        for (entry, spans) in spans(bins, grid, k) {
-            for cell in cells(spans) {
-                let Some(end) = ends.get_mut(cell).filter(|end| **end < UNWANTED - 1) else { continue };
-                if let Some(place) = entries.get_mut(*end as usize) {
-                    *place = entry;
+        let mut add = |[group, id]: [u32; 2], [x, y]: [Range<usize>; 2]| {
+            for j in y {
+                let row = last.get_mut(j * nx..).and_then(|rows| rows.get_mut(x.clone())).unwrap_or_default();
+                for last in row.iter_mut().filter(|last| **last != UNWANTED) {
+                    if let Some(entry) = entries.get_mut(count) {
+                        *entry = [group, id, *last];
+                        *last = count as u32;
+                    }
+                    count += 1;
                 }
-                *end += 1;
             }
+        };
+        if any {
+            each_span(bins, grid, k, &mut add);
         }
-        Ok(CellLists { ends, entries })
+        at_least(nx * ny + 3 * count, given)?;
+        Ok(CellLists { last, entries })
     }
 
-    /// The entries of a cell; none if it is not wanted.
-    pub fn of(&self, cell: usize) -> Option<&'m [[u32; 2]]> {
-        let end = *self.ends.get(cell).filter(|end| **end < UNWANTED)?;
-        let first = cell.checked_sub(1).and_then(|before| self.ends.get(before)).map_or(0, |end| end & !UNWANTED);
-        self.entries.get(first as usize..end as usize)
+    /// The entries of a cell, the last first; none if it is not wanted.
+    pub fn of(&self, cell: usize) -> Option<impl Iterator<Item = [u32; 2]> + use<'m>> {
+        let mut at = *self.last.get(cell).filter(|last| **last != UNWANTED)?;
+        let entries = self.entries;
+        Some(from_fn(move || {
+            let [group, id, before] = *entries.get(at as usize)?;
+            at = before;
+            Some([group, id])
+        }))
     }
 }
 
-/// The triangles of layer `k`: position of the group, number of the triangle, and the cells along x and y that it reaches or touches.
-fn spans<V: Vector>(
+/// Hand over the triangles of layer `k`: position of the group, number of the triangle, and the cells along x and y that it reaches or touches.
+fn each_span<V: Vector>(
     bins: &Bins<V>,
     grid: &Grid<V::Scalar>,
     k: usize,
-) -> impl Iterator<Item = ([u32; 2], [Range<usize>; 2])> {
-    bins.groups(k).iter().zip(0_u32..).flat_map(move |(group, n)| {
-        bins.ids(group).iter().map(move |&id| {
-            let around = Aabb::around(&bins.corners(group, id));
-            let x = cells_touched(grid.edges(0), [around.min.x(), around.max.x()]);
-            ([n, id], [x, cells_touched(grid.edges(1), [around.min.y(), around.max.y()])])
-        })
-    })
+    mut each: impl FnMut([u32; 2], [Range<usize>; 2]),
+) {
+    for (group, n) in bins.groups(k).iter().zip(0_u32..) {
+        let triangles = bins.triangles(group);
+        for &id in bins.ids(group) {
+            let Some([a, b, c]) = triangles.get(id as usize) else { continue };
+            let (min, max) = (a.min(*b).min(*c), a.max(*b).max(*c));
+            let x = cells_touched(grid.edges(0), [min.x(), max.x()]);
+            each([n, id], [x, cells_touched(grid.edges(1), [min.y(), max.y()])]);
+        }
+    }
 }

@@ -260,7 +260,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             let open = at.largest_gap(layer);
             let mut wanted = P::WANTED && pieces.wants_union(at.cell());
             if wanted && at.is_closed(layer) {
-                pieces.set_union(at.cell(), UnionSurface::default());
+                pieces.set_union(at.cell(), UnionSurface { exact: true, ..UnionSurface::default() });
                 wanted = false;
             }
             if !(open > known() || wanted) {
@@ -361,6 +361,7 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
         })?;
         if P::WANTED {
             surface.sides = Some([0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]));
+            surface.exact = found.error <= known();
         }
         let error = found.error;
         let refined = Refined::from_union(found);

@@ -186,7 +186,8 @@ impl<'a, V: Vector> Layers<'a, V> {
             (0..3).for_each(|axis| wanted.lower.faces_mut(axis).fill(V::Scalar::ZERO));
             wanted.lower.cell = cell;
         }
-        let mut report = solid_bounds(&mut shared, &site, &mut wanted, &mut scratch, room.reborrow(), pieces, each_body);
+        let mut report =
+            solid_bounds(&mut shared, &site, &mut wanted, &mut scratch, room.reborrow(), pieces, each_body);
         count_cells(&site, &wanted, solid_end, &mut report);
         to_open_fractions(&mut wanted, areas, bounds.as_mut(), solid_end, &mut report.max_gap);
         if !top.is_empty() {

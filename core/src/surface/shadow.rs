@@ -33,15 +33,18 @@ pub struct ShadowEdge<R> {
     covering: i32,
     /// In how many more solids lines begin there.
     starting: i32,
+    /// Its places along the line at the beginning and at the end of a step.
+    step: [R; 2],
 }
 
 impl<R: Real> ShadowEdge<R> {
     /// From `a` to `b`, with counts that hold if it leads upwards; none along the sweeping line.
     fn new(a: [R; 2], b: [R; 2], [covering, starting]: [i32; 2]) -> Option<Self> {
+        let step = [R::ZERO; 2];
         if a[1] < b[1] {
-            Some(ShadowEdge { low: a, high: b, covering, starting })
+            Some(ShadowEdge { low: a, high: b, covering, starting, step })
         } else {
-            (a[1] > b[1]).then_some(ShadowEdge { low: b, high: a, covering: -covering, starting: -starting })
+            (a[1] > b[1]).then_some(ShadowEdge { low: b, high: a, covering: -covering, starting: -starting, step })
         }
     }
 
@@ -62,10 +65,18 @@ impl<R: Real> ShadowEdge<R> {
     }
 
     /// Is it to be sorted after another?
+    #[inline(always)]
     fn follows(&self, other: &Self) -> bool {
-        let key = |e: &Self| [e.low[1], e.low[0], e.high[1], e.high[0]];
-        let (own, other) = (key(self), key(other));
-        own.iter().zip(other).find(|(a, b)| **a != *b).is_some_and(|(a, b)| *a > b)
+        if self.low[1] != other.low[1] {
+            return self.low[1] > other.low[1];
+        }
+        if self.low[0] != other.low[0] {
+            return self.low[0] > other.low[0];
+        }
+        if self.high[1] != other.high[1] {
+            return self.high[1] > other.high[1];
+        }
+        self.high[0] > other.high[0]
     }
 }
 
@@ -168,7 +179,7 @@ impl<'m, R: Real> Outlines<'m, R> {
     pub fn shadow(&mut self, axis: usize) -> Option<R> {
         let outline = self.axes.get_mut(axis.min(2))?;
         let count = joined(outline.edges.get_mut(..outline.count)?);
-        let edges = outline.edges.get(..count)?;
+        let edges = outline.edges.get_mut(..count)?;
         Sweep { edges, crossed: self.crossed, count: 0, starting: outline.starting }.shadow()
     }
 }
@@ -238,6 +249,8 @@ pub(super) struct CellFaces<'m, R: Real> {
     /// The number of the solid whose faces are added, from 1.
     solid: usize,
     sheet: bool,
+    /// A sheet is among them.
+    has_sheet: bool,
 }
 
 /// Faces whose planes make an angle with a smaller sine may be the sides of a slit.
@@ -246,12 +259,12 @@ const LEAST_SINE: f64 = 0.05;
 impl<'m, R: Real> CellFaces<'m, R> {
     /// Of nothing yet.
     pub fn new(faces: &'m mut [ShadowFace<R>]) -> Self {
-        CellFaces { faces, count: 0, solid: 0, sheet: false }
+        CellFaces { faces, count: 0, solid: 0, sheet: false, has_sheet: false }
     }
 
     /// Of nothing again.
     pub fn clear(&mut self) {
-        (self.count, self.solid) = (0, 0);
+        (self.count, self.solid, self.has_sheet) = (0, 0, false);
     }
 
     /// The faces that follow are of another solid, or of a sheet.
@@ -264,10 +277,11 @@ impl<'m, R: Real> CellFaces<'m, R> {
         self.faces.get_mut(self.count).map(|face| &mut face.polygon)
     }
 
-    /// Add the face that has been written.
-    pub fn push(&mut self) {
+    /// Add the face that has been written, by twice its area vector.
+    pub fn push(&mut self, doubled: [R; 3]) {
         if let Some(face) = self.faces.get_mut(self.count) {
-            (face.doubled, face.solid, face.sheet) = (face.polygon.doubled_area(), self.solid, self.sheet);
+            (face.doubled, face.solid, face.sheet) = (doubled, self.solid, self.sheet);
+            self.has_sheet |= self.sheet;
             self.count += 1;
         }
     }
@@ -279,11 +293,13 @@ impl<'m, R: Real> CellFaces<'m, R> {
     /// The mean place of all faces along an axis (0, 1, otherwise 2), each part counted by its area as seen along it; one half if nothing is seen.
     pub fn place(&self, axis: usize) -> R {
         let (axis, mut seen, mut moment) = (axis.min(2), R::ZERO, R::ZERO);
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         for face in self.all() {
             let [first, second, others @ ..] = face.polygon.corners() else { continue };
             let mut last = second;
             for corner in others {
-                let area = cross(sub(*last, *first), sub(*corner, *first))[axis].abs();
+                let (a, b) = ([last[u] - first[u], last[v] - first[v]], [corner[u] - first[u], corner[v] - first[v]]);
+                let area = (a[0] * b[1] - a[1] * b[0]).abs();
                 seen += area;
                 moment += area * (first[axis] + last[axis] + corner[axis]);
                 last = corner;
@@ -292,12 +308,16 @@ impl<'m, R: Real> CellFaces<'m, R> {
         if seen > R::ZERO { moment / (R::from_f64(3.0) * seen) } else { R::HALF }
     }
 
-    /// The area on which lines along an axis (0, 1, otherwise 2) enter solid, and that on which they leave it, if all is of one solid and no line
-    /// enters it after it has left it: as seen along the axis, whatever is entered does not lie beyond the plane of what is left.
+    /// Are all faces those of one solid?
+    pub fn is_one_solid(&self) -> bool {
+        self.all().first().map(|face| face.solid) == self.all().last().map(|face| face.solid)
+    }
+
+    /// The area on which lines along an axis (0, 1, otherwise 2) enter solid, and that on which they leave it, if no line enters after it has left:
+    /// as seen along the axis, no face that is entered lies beyond one that is left.
     pub fn passed_once(&self, axis: usize) -> Option<[R; 2]> {
         let (axis, faces) = (axis.min(2), self.all());
-        let (first, last) = (faces.first()?, faces.last()?);
-        if first.solid != last.solid || first.sheet {
+        if self.has_sheet {
             return None;
         }
         let (mut areas, mut entered_to, mut left_from) = ([R::ZERO; 2], -R::INFINITY, R::INFINITY);
@@ -312,13 +332,26 @@ impl<'m, R: Real> CellFaces<'m, R> {
             }
         }
         let seen = |sign: R| faces.iter().filter(move |face| face.doubled[axis] * sign > thickness());
-        let once = entered_to <= left_from || seen(R::ONE).all(|left| seen(-R::ONE).all(|entered| left.is_beyond(entered)));
-        once.then_some(areas)
+        let never_again = |left: &ShadowFace<R>| {
+            let around = [0, 1, 2].map(|axis| left.polygon.extent(axis));
+            seen(-R::ONE).all(|entered| left.hides_from(around, entered, axis))
+        };
+        (entered_to <= left_from || seen(R::ONE).all(never_again)).then_some(areas)
     }
 }
 
 impl<R: Real> ShadowFace<R> {
-    /// Does another face lie behind the plane of this one, so that who leaves here does not come to it? They may meet at an edge.
+    /// Does no line along an axis that leaves solid by this face, which lies within `around`, come to another?
+    fn hides_from(&self, around: [(R, R); 3], other: &Self, axis: usize) -> bool {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let beside = |a: usize| {
+            let (low, high) = other.polygon.extent(a);
+            high <= around[a].0 || low >= around[a].1
+        };
+        beside(u) || beside(v) || other.polygon.extent(axis).1 <= around[axis].0 || self.is_beyond(other)
+    }
+
+    /// Does another face lie behind the plane of this one? They may meet at an edge.
     fn is_beyond(&self, other: &Self) -> bool {
         let Some(&corner) = self.polygon.corners().first() else { return true };
         let height = |c: &[R; 3]| dot(self.doubled, sub(*c, corner));
@@ -384,7 +417,7 @@ fn sort<R: Real>(edges: &mut [ShadowEdge<R>]) {
 /// A line that sweeps over edges.
 struct Sweep<'m, R> {
     /// By their low ends.
-    edges: &'m [ShadowEdge<R>],
+    edges: &'m mut [ShadowEdge<R>],
     crossed: &'m mut [u32],
     /// So many edges are crossed.
     count: usize,
@@ -397,19 +430,20 @@ impl<R: Real> Sweep<'_, R> {
     fn shadow(&mut self) -> Option<R> {
         let (mut next, mut steps, mut v, mut area) = (0, 0_usize, R::ZERO, R::ZERO);
         while v < R::ONE {
-            self.drop_passed(v);
+            let nearest_end = self.drop_passed(v);
+            let mut top = nearest_end;
             while let Some(edge) = self.edges.get(next).filter(|e| e.low[1] <= v) {
                 if edge.high[1] > v {
+                    top = top.smaller(edge.high[1]);
                     *self.crossed.get_mut(self.count)? = next as u32;
                     self.count += 1;
                 }
                 next += 1;
             }
-            let start = self.edges.get(next).map_or(R::ONE, |e| e.low[1]);
-            let top = self.nearest_end().smaller(start);
+            top = top.smaller(self.edges.get(next).map_or(R::ONE, |e| e.low[1]));
             self.arrange(v, top);
             let stop = self.first_crossing(v, top);
-            area += self.strips(v, stop);
+            area += self.strips(v, stop, top);
             v = stop;
             steps += self.count + 1;
             if steps > MOST_STEPS {
@@ -419,50 +453,46 @@ impl<R: Real> Sweep<'_, R> {
         Some(area)
     }
 
-    fn edge(&self, nth: usize) -> Option<&ShadowEdge<R>> {
-        self.edges.get(*self.crossed.get(nth)? as usize)
+    /// The crossed edges, in their order.
+    #[inline(always)]
+    fn crossed(&self) -> impl Iterator<Item = &ShadowEdge<R>> {
+        self.crossed.iter().take(self.count).filter_map(|&id| self.edges.get(id as usize))
     }
 
-    /// Forget the edges that end at or before `v`.
-    fn drop_passed(&mut self, v: R) {
-        let mut kept = 0;
+    /// Forget the edges that end at or before `v`; where the first of the others ends.
+    fn drop_passed(&mut self, v: R) -> R {
+        let (mut kept, mut nearest) = (0, R::INFINITY);
         for nth in 0..self.count {
-            if !self.edge(nth).is_some_and(|e| e.high[1] > v) {
-                continue;
-            }
             let Some(&id) = self.crossed.get(nth) else { continue };
+            let Some(end) = self.edges.get(id as usize).map(|e| e.high[1]).filter(|end| *end > v) else { continue };
+            nearest = nearest.smaller(end);
             if let Some(place) = self.crossed.get_mut(kept) {
                 *place = id;
                 kept += 1;
             }
         }
         self.count = kept;
+        nearest
     }
 
-    /// Where the first of the crossed edges ends.
-    fn nearest_end(&self) -> R {
-        (0..self.count).filter_map(|nth| self.edge(nth)).fold(R::INFINITY, |end, e| end.smaller(e.high[1]))
-    }
-
-    /// Put the crossed edges in order, as the line meets them just beyond `v`.
+    /// Find the places of the crossed edges at `v` and at `top`, and put them in order, as the line meets them just beyond `v`.
     fn arrange(&mut self, v: R, top: R) {
-        for start in 1..self.count {
+        for start in 0..self.count {
             let Some(&id) = self.crossed.get(start) else { continue };
-            let Some(edge) = self.edges.get(id as usize) else { continue };
-            let place = [edge.at(v), edge.at(top)];
-            let mut at = start;
+            let Some(edge) = self.edges.get_mut(id as usize) else { continue };
+            edge.step = [edge.at(v), edge.at(top)];
+            let (step, mut at) = (edge.step, start);
             while let Some(before) = at.checked_sub(1) {
-                let Some(other) = self.edge(before) else { break };
-                if !is_before(place, [other.at(v), other.at(top)]) {
+                let Some(&other) = self.crossed.get(before) else { break };
+                if !self.edges.get(other as usize).is_some_and(|other| is_before(step, other.step)) {
                     break;
                 }
-                let moved = self.crossed.get(before).copied().unwrap_or_default();
                 if let Some(place) = self.crossed.get_mut(at) {
-                    *place = moved;
+                    *place = other;
                 }
                 at = before;
             }
-            if let Some(place) = self.crossed.get_mut(at) {
+            if let Some(place) = self.crossed.get_mut(at).filter(|_| at < start) {
                 *place = id;
             }
         }
@@ -470,14 +500,15 @@ impl<R: Real> Sweep<'_, R> {
 
     /// Where two neighbours first change places between `v` and `top`, or `top`.
     fn first_crossing(&self, v: R, top: R) -> R {
-        let mut stop = top;
-        for nth in 1..self.count {
-            let (Some(a), Some(b)) = (self.edge(nth - 1), self.edge(nth)) else { continue };
-            let (before, after) = (b.at(v) - a.at(v), b.at(top) - a.at(top));
-            if before > thickness() && after < R::ZERO {
-                let crossing = v + (top - v) * (before / (before - after));
-                if crossing > v {
-                    stop = stop.smaller(crossing);
+        let (mut stop, mut last) = (top, None);
+        for &ShadowEdge { step: [b_low, b_top], .. } in self.crossed() {
+            if let Some([a_low, a_top]) = last.replace([b_low, b_top]) {
+                let (before, after) = (b_low - a_low, b_top - a_top);
+                if before > thickness() && after < R::ZERO {
+                    let crossing = v + (top - v) * (before / (before - after));
+                    if crossing > v {
+                        stop = stop.smaller(crossing);
+                    }
                 }
             }
         }
@@ -485,21 +516,22 @@ impl<R: Real> Sweep<'_, R> {
     }
 
     /// What is covered or solid between `v` and `stop`, where no edges change places.
-    fn strips(&self, v: R, stop: R) -> R {
+    fn strips(&self, v: R, stop: R, top: R) -> R {
         let (mut covering, mut starting, mut width) = (0_i32, self.starting, R::ZERO);
         let mut last = [R::ZERO; 2];
-        for nth in 0..=self.count {
-            let edge = self.edge(nth).filter(|_| nth < self.count);
-            let here = edge.map_or([R::ONE; 2], |e| [e.at(v), e.at(stop)]);
+        let mut add = |here: [R; 2], more: [i32; 2]| {
             if covering > 0 || starting > 0 {
                 width += ((here[0] - last[0]) + (here[1] - last[1])).max(R::ZERO) * R::HALF;
             }
-            if let Some(edge) = edge {
-                covering = covering.saturating_add(edge.covering);
-                starting = starting.saturating_add(edge.starting);
-            }
+            covering = covering.saturating_add(more[0]);
+            starting = starting.saturating_add(more[1]);
             last = here;
+        };
+        for edge in self.crossed() {
+            let end = if stop < top { edge.at(stop) } else { edge.step[1] };
+            add([edge.step[0], end], [edge.covering, edge.starting]);
         }
+        add([R::ONE; 2], [0; 2]);
         width * (stop - v)
     }
 }

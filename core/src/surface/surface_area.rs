@@ -93,8 +93,12 @@ impl<R: Real> CellSurface<R> {
     pub(super) fn of_union(&self) -> UnionSurface<R> {
         let alone = UnionSurface { area: self.inside, ..UnionSurface::default() };
         match self.bodies {
-            Bodies::Several => self.union.unwrap_or(UnionSurface { doubt: self.inside.wetted, ..alone }),
-            _ => alone,
+            Bodies::Several if self.inside.wetted > R::ZERO => {
+                self.union.unwrap_or(UnionSurface { doubt: self.inside.wetted, ..alone })
+            }
+            // Without surface inside, a cell that is not closed is open up to its sides.
+            Bodies::Several => UnionSurface { exact: true, sides: Some([[R::ZERO; 2]; 3]), ..alone },
+            _ => UnionSurface { exact: true, ..alone },
         }
     }
 }
@@ -114,6 +118,8 @@ pub(super) struct UnionSurface<R> {
     pub area: SurfaceArea<R>,
     /// How much of its wetted area is in doubt.
     pub doubt: R,
+    /// It is known to rounding.
+    pub exact: bool,
     /// Solid fractions of the cell's sides as seen from inside, low and high along each axis, if they are known.
     pub sides: Option<[[R; 2]; 3]>,
 }

@@ -331,20 +331,28 @@ impl<R: Real> Frame<R> {
         Frame { origin: lo, scale: size, thickness: R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach }
     }
 
-    /// What a triangle has inside a cell, in the frame; false if it has nothing there or lies in the plane of a side.
+    /// What a triangle has inside a cell, in the frame, and twice its area vector; none if it has nothing there or lies in the plane of a side.
     pub fn inside<V: Vector<Scalar = R>>(
         &self,
         triangle: &[[R; 3]; 3],
         cell: Aabb<V>,
         scratch: &mut [Polygon<R>; 2],
         part: &mut Polygon<R>,
-    ) -> bool {
+    ) -> Option<[R; 3]> {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
-        if !reaches(triangle, lo, hi) || !self.part(triangle, lo, hi, scratch, part) {
-            return false;
+        if !reaches(triangle, lo, hi) {
+            return None;
         }
-        let [a, b, c] = triangle.map(|c| self.framed(c));
-        dot(part.doubled_area(), cross(sub(b, a), sub(c, a))) > R::ZERO
+        if triangle.iter().all(|p| (0..3).all(|axis| p[axis] >= lo[axis] && p[axis] <= hi[axis])) {
+            part.clear();
+            triangle.iter().for_each(|p| drop(part.push(self.framed(*p))));
+        } else if !self.part(triangle, lo, hi, scratch, part) {
+            return None;
+        }
+        let (doubled, [a, b, c], [x, y, z]) = (part.doubled_area(), *triangle, self.scale);
+        let whole = cross(sub(b, a), sub(c, a));
+        let seen = dot(doubled, [whole[0] * x, whole[1] * y, whole[2] * z]);
+        (seen > R::ZERO).then_some(doubled)
     }
 
     fn framed(&self, p: [R; 3]) -> [R; 3] {

@@ -39,7 +39,7 @@ pub struct Summary {
     pub leaks: Vec<(usize, f64)>,
     /// What is told about areas.
     pub areas: AreaReport<f64>,
-    /// Sides of cells whose areas ask for all faces.
+    /// What is told beside the areas of some cells.
     pub sides: Vec<CellSides<f64>>,
 }
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
 use voidage_core::grid::fields::ShapeMismatch;
-use voidage_core::surface::layer::{LayerError, Layers, OpenLayer};
+use voidage_core::surface::layer::{CellSides, LayerError, Layers, OpenLayer};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 use voidage_core::surface::surface_area::SurfaceArea;
 
@@ -39,9 +39,14 @@ pub struct HiddenPassages {
 pub const HIDDEN: f64 = 0.95;
 
 impl Shadows {
-    /// Of bodies in layers, whose open fractions and areas of surface are known.
+    /// Of bodies in layers, whose open fractions and areas of surface are known, with what is told beside the areas for each layer.
     #[must_use]
-    pub fn of_layers(grid: &Grid<f64>, layers: &Layers<DVec3>, beta: &FieldSet, areas: &[SurfaceArea<f64>]) -> Self {
+    pub fn of_layers(
+        grid: &Grid<f64>,
+        layers: &Layers<DVec3>,
+        beta: &FieldSet,
+        (areas, sides): (&[SurfaceArea<f64>], &[&[CellSides<f64>]]),
+    ) -> Self {
         let [nx, ny, nz] = grid.cells();
         let fields = |value: f64| [0; 3].map(|_| vec![value; nx * ny * nz]);
         let (mut tau, mut place) = (fields(0.0), fields(0.5));
@@ -55,7 +60,7 @@ impl Shadows {
         let buffers = Mutex::new(Vec::new());
         let layer = |(k, slices): (usize, ShadowSlices<f64>)| {
             let mut own = buffers.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_else(Buffers::new);
-            let areas = &areas[k * nx * ny..(k + 1) * nx * ny];
+            let areas = (&areas[k * nx * ny..(k + 1) * nx * ny], sides[k]);
             let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), areas), slices);
             buffers.lock().unwrap_or_else(PoisonError::into_inner).push(own);
             too_full
@@ -122,7 +127,7 @@ impl Buffers {
         &mut self,
         layers: &Layers<DVec3>,
         k: usize,
-        (open, areas): (&OpenLayer<f64>, &[SurfaceArea<f64>]),
+        (open, areas): (&OpenLayer<f64>, (&[SurfaceArea<f64>], &[CellSides<f64>])),
         mut into: ShadowSlices<f64>,
     ) -> usize {
         loop {

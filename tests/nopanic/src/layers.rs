@@ -67,13 +67,14 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let of = |count: usize| open.get(..count).unwrap_or(&open);
     let known = OpenLayer { cell: of(at), x: of(at + 1), y: of(at + 2), z: of(at), top: of(at) };
     let finished = layers.finish_areas(at, &known, sides.get(..used).unwrap_or_default(), union.get_mut(..at).unwrap_or_default());
-    porosity ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, union.get(..at), at)
+    let areas = union.get(..at).zip(sides.get(..used));
+    porosity ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, areas, at)
 }
 
 fn shadowed<V: Vector>(
     layers: &Layers<V>,
     open: &OpenLayer<V::Scalar>,
-    areas: Option<&[SurfaceArea<V::Scalar>]>,
+    areas: Option<(&[SurfaceArea<V::Scalar>], &[CellSides<V::Scalar>])>,
     at: usize,
 ) -> usize {
     let (mut edges, mut crossed, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);

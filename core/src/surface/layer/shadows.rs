@@ -2,11 +2,11 @@
 
 use super::Layers;
 use super::error::LayerError;
-use super::surface_areas::OpenLayer;
+use super::surface_areas::{CellSides, OpenLayer};
 use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::{Bins, CellLists};
+use crate::surface::bins::CellLists;
 use crate::surface::cell_unions::{known, side_areas};
 use crate::surface::clip::Polygon;
 use crate::surface::shadow::{CellFaces, Outlines, ShadowMemory, ShadowSlices};
@@ -22,7 +22,7 @@ impl<V: Vector> Layers<'_, V> {
 
     /// The shadows of the union in the cells of layer `k`, and how many cells hold more than the memory: what is given for them are the blocked
     /// shares of their sides. `open` holds the layer's open fractions, `areas` those of [`Layers::finish_areas`], if they are known: where they
-    /// prove that no surface hides what a side of the cell shows, nothing is searched. Sheets cast shadows.
+    /// prove that no surface hides behind what a side of the cell shows, nothing is searched. Sheets cast shadows.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length, too few lists.
@@ -30,7 +30,7 @@ impl<V: Vector> Layers<'_, V> {
         &self,
         k: usize,
         open: &OpenLayer<V::Scalar>,
-        areas: Option<&[SurfaceArea<V::Scalar>]>,
+        areas: Option<(&[SurfaceArea<V::Scalar>], &[CellSides<V::Scalar>])>,
         shadows: ShadowSlices<V::Scalar>,
         memory: ShadowMemory<V::Scalar>,
     ) -> Result<usize, LayerError> {
@@ -40,20 +40,17 @@ impl<V: Vector> Layers<'_, V> {
         }
         open.check(&self.grid)?;
         let ShadowSlices { mut share, mut place } = shadows;
-        for found in share.iter().chain(&place).map(|field| field.len()).chain(areas.map(<[_]>::len)) {
+        let areas_found = areas.map(|(areas, _)| areas.len());
+        for found in share.iter().chain(&place).map(|field| field.len()).chain(areas_found) {
             exactly(nx * ny, found)?;
         }
-        let at = |c: usize| [c.checked_rem(nx).unwrap_or(0), c.checked_div(nx).unwrap_or(0)];
-        let seen = |c: usize| {
-            let [i, j] = at(c);
-            let surface = || Some((areas?.get(c)?.frontal, side_areas(self.grid.cell_box([i, j, k])?)));
-            Seen::new(open, [i, j], nx, surface)
-        };
+        show_sides(open, nx, &mut share);
+        place.iter_mut().for_each(|field| field.fill(V::Scalar::HALF));
+        let here = LayerWithFaces { layers: self, k, open, areas };
         let is_doubtful = |c: usize| {
-            let seen = seen(c);
+            let Some(seen) = here.seen(c) else { return false };
             for axis in 0..3 {
-                set(&mut share[axis], c, seen.share[axis]);
-                set(&mut place[axis], c, V::Scalar::HALF);
+                set(share[axis], c, seen.share[axis]);
             }
             seen.doubtful != [false; 3]
         };
@@ -62,18 +59,30 @@ impl<V: Vector> Layers<'_, V> {
         let mut work = Work::new(Outlines::new(edges, crossed), CellFaces::new(faces));
         let mut too_full = 0;
         for c in 0..nx * ny {
-            let (Some(entries), [i, j]) = (lists.of(c), at(c)) else { continue };
-            let Some(cell) = self.grid.cell_box([i, j, k]) else { continue };
-            let here = CellOfLayer { bins: &self.bins, k, cell, entries };
-            let mut found = seen(c);
-            too_full += usize::from(here.shadow(&mut work, &mut found).is_none());
+            let Some(entries) = lists.of(c) else { continue };
+            let (Some(cell), Some(mut found)) = (here.cell_box(c), here.seen(c)) else { continue };
+            too_full += usize::from(here.shadow(cell, entries, &mut work, &mut found).is_none());
             for axis in 0..3 {
-                set(&mut share[axis], c, found.share[axis]);
-                set(&mut place[axis], c, found.place[axis]);
+                set(share[axis], c, found.share[axis]);
+                set(place[axis], c, found.place[axis]);
             }
         }
         Ok(too_full)
     }
+}
+
+/// Write what the sides of the cells show: the larger of both solid fractions.
+fn show_sides<R: Real>(open: &OpenLayer<R>, nx: usize, [x, y, z]: &mut [&mut [R]; 3]) {
+    let show = |share: &mut [R], low: &[R], high: &[R]| {
+        for ((share, low), high) in share.iter_mut().zip(low).zip(high) {
+            *share = R::ONE - low.smaller(*high);
+        }
+    };
+    for (share, open) in x.chunks_exact_mut(nx.max(1)).zip(open.x.chunks_exact(nx + 1)) {
+        show(share, open, open.get(1..).unwrap_or_default());
+    }
+    show(y, open.y, open.y.get(nx..).unwrap_or_default());
+    show(z, open.z, open.top);
 }
 
 /// Set an entry, if there is one.
@@ -93,6 +102,8 @@ struct Seen<R> {
     place: [R; 3],
     /// There may be more than that.
     doubtful: [bool; 3],
+    /// Frontal areas over areas of sides, if they are known.
+    frontal: Option<[R; 3]>,
 }
 
 /// Frontal area and side fit as well as this, in sides of the cell: 10⁻¹², more in `f32`.
@@ -101,51 +112,166 @@ fn fit<R: Real>() -> R {
 }
 
 impl<R: Real> Seen<R> {
+    /// All is blocked.
+    fn closed() -> Self {
+        let (blocked, place) = ([[R::ONE; 2]; 3], [R::HALF; 3]);
+        Seen { blocked, share: [R::ONE; 3], place, doubtful: [false; 3], frontal: None }
+    }
+
     /// Raise a share to a shadow.
     fn raise(&mut self, axis: usize, shadow: R) {
         let share = self.share[axis].max(shadow);
         self.share[axis] = if R::ONE - share <= known() { R::ONE } else { share };
     }
 
-    /// Of a cell; `surface` gives the frontal areas of the union in it and the areas of its sides, if they are known.
-    ///
-    /// Lines enter solid in the cell on an area e and leave it on an area l. The share of lines that meet solid is at least the larger of the two blocked
-    /// sides, and at most that plus the smaller of e and l. Their mean is the frontal area, their difference that of the sides.
-    #[inline(always)]
-    fn new(open: &OpenLayer<R>, at: [usize; 2], nx: usize, surface: impl FnOnce() -> Option<([R; 3], [R; 3])>) -> Self {
-        let nothing = Seen { blocked: [[R::ZERO; 2]; 3], share: [R::ZERO; 3], place: [R::HALF; 3], doubtful: [false; 3] };
-        let Some(blocked) = open.blocked(at, nx) else { return nothing };
-        if !open.cell.get(at[1] * nx + at[0]).is_some_and(|&share| share > R::ZERO) {
-            return Seen { share: [R::ONE; 3], ..nothing };
-        }
-        let mut seen = Seen { blocked, share: blocked.map(|[low, high]| low.larger(high)), ..nothing };
-        let Some((frontal, sides)) = surface() else { return Seen { doubtful: [true; 3], ..seen } };
-        if frontal == [R::ZERO; 3] {
-            return seen;
-        }
+    /// Doubt where surface may hide. Lines enter solid in the cell on an area e and leave it on an area l. The share of lines that meet solid is at least
+    /// the larger of the two blocked sides, and at most that plus the smaller of e and l. The mean of e and l is the frontal area, their difference that
+    /// of the sides.
+    fn doubt(&mut self) {
+        let Some(frontal) = self.frontal else {
+            self.doubtful = [true; 3];
+            return;
+        };
         for axis in 0..3 {
-            let [low, high] = blocked[axis];
-            let hidden = frontal[axis] / sides[axis] - (high - low).abs() * R::HALF;
             if frontal[axis] == R::ZERO {
                 continue;
             }
-            if R::ONE - seen.share[axis] <= known() {
-                seen.share[axis] = R::ONE;
-            } else {
-                seen.doubtful[axis] = !(hidden.abs() <= fit());
+            if R::ONE - self.share[axis] <= known() {
+                self.share[axis] = R::ONE;
+                continue;
             }
+            let [low, high] = self.blocked[axis];
+            let hidden = frontal[axis] - (high - low).abs() * R::HALF;
+            self.doubtful[axis] = !(hidden.abs() <= fit());
         }
-        seen
     }
 }
 
-/// A cell, and which triangles reach it.
-struct CellOfLayer<'a, V: Vector> {
-    bins: &'a Bins<'a, V>,
+/// A layer whose open fractions are known.
+struct LayerWithFaces<'a, V: Vector> {
+    layers: &'a Layers<'a, V>,
     k: usize,
-    cell: Aabb<V>,
-    /// Position of a group in the layer and number of a triangle.
-    entries: &'a [[u32; 2]],
+    open: &'a OpenLayer<'a, V::Scalar>,
+    areas: Option<(&'a [SurfaceArea<V::Scalar>], &'a [CellSides<V::Scalar>])>,
+}
+
+impl<V: Vector> LayerWithFaces<'_, V> {
+    fn at(&self, c: usize) -> [usize; 2] {
+        let nx = self.layers.grid.cells()[0];
+        [c.checked_rem(nx).unwrap_or(0), c.checked_div(nx).unwrap_or(0)]
+    }
+
+    fn cell_box(&self, c: usize) -> Option<Aabb<V>> {
+        let [i, j] = self.at(c);
+        self.layers.grid.cell_box([i, j, self.k])
+    }
+
+    /// What the sides of a cell show if it has surface, or is closed; none where they show all.
+    #[inline(always)]
+    fn seen(&self, c: usize) -> Option<Seen<V::Scalar>> {
+        let zero = V::Scalar::ZERO;
+        let area = self.areas.and_then(|(areas, _)| areas.get(c));
+        if !self.open.cell.get(c).is_some_and(|&share| share > zero) {
+            return Some(Seen::closed());
+        }
+        if area.is_some_and(|area| area.frontal == [zero; 3]) {
+            return None;
+        }
+        self.seen_surface(c, area)
+    }
+
+    /// The same of a cell with surface.
+    fn seen_surface(&self, c: usize, area: Option<&SurfaceArea<V::Scalar>>) -> Option<Seen<V::Scalar>> {
+        let nx = self.layers.grid.cells()[0];
+        let (blocked, cell) = (self.open.blocked(self.at(c), nx)?, self.cell_box(c)?);
+        let listed = self.areas.and_then(|(_, sides)| {
+            sides.binary_search_by_key(&c, |side| side.cell as usize).ok().and_then(|n| sides.get(n))
+        });
+        let (across, known) = (side_areas(cell), listed.is_none_or(|side| side.exact));
+        let frontal = area.filter(|_| known).map(|area| {
+            let [x, y, z] = area.frontal;
+            [x / across[0], y / across[1], z / across[2]]
+        });
+        let share = blocked.map(|[low, high]| low.larger(high));
+        let mut seen = Seen { blocked, share, frontal, ..Seen::closed() };
+        seen.doubt();
+        Some(seen)
+    }
+
+    /// Raise the doubtful shares of `found` to the shadows; none if there is no room.
+    fn shadow(
+        &self,
+        cell: Aabb<V>,
+        entries: impl Iterator<Item = [u32; 2]>,
+        work: &mut Work<V::Scalar>,
+        found: &mut Seen<V::Scalar>,
+    ) -> Option<()> {
+        self.load(cell, entries, work)?;
+        for axis in 0..3 {
+            if !found.doubtful[axis] {
+                continue;
+            }
+            found.place[axis] = work.faces.place(axis);
+            let all = if work.walls[axis] { None } else { self.passed_once(axis, work, found) };
+            if V::Scalar::ONE - found.share[axis] <= known() || all.is_some() {
+                found.raise(axis, all.unwrap_or_default());
+                found.doubtful[axis] = false;
+            }
+        }
+        let doubtful = found.doubtful;
+        if doubtful == [false; 3] {
+            return Some(());
+        }
+        work.outlines.clear();
+        work.outlines.add(&work.faces, doubtful)?;
+        if !work.outlines.is_empty() {
+            for axis in 0..3 {
+                if doubtful[axis] {
+                    found.raise(axis, work.outlines.shadow(axis)?);
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// The shadow along an axis where no line enters solid again: the section with the low side and all that is entered, which is the frontal area and the
+    /// mean of the sections with both sides.
+    fn passed_once(&self, axis: usize, work: &Work<V::Scalar>, found: &Seen<V::Scalar>) -> Option<V::Scalar> {
+        let ([low, high], [entered, left]) = (found.blocked[axis], work.faces.passed_once(axis)?);
+        if work.faces.is_one_solid() {
+            // A surface that is not closed proves nothing.
+            let fits = ((entered - left) - (high - low)).abs() <= fit();
+            return fits.then_some(low + entered);
+        }
+        found.frontal.map(|frontal| frontal[axis] + (low + high) * V::Scalar::HALF)
+    }
+
+    /// Take in what all bodies have of surface inside a cell; none if there is no room.
+    fn load(&self, cell: Aabb<V>, entries: impl Iterator<Item = [u32; 2]>, work: &mut Work<V::Scalar>) -> Option<()> {
+        let bins = &self.layers.bins;
+        let (groups, frame) = (bins.groups(self.k), Frame::of(cell));
+        let sides = [cell.min.to_array(), cell.max.to_array()];
+        let mut last = None;
+        work.faces.clear();
+        work.walls = [false; 3];
+        for [n, id] in entries {
+            let Some(group) = groups.get(n as usize) else { continue };
+            let Some(triangle) = bins.triangles(group).get(id as usize) else { continue };
+            if last.replace(n) != Some(n) {
+                work.faces.begin_solid(group.is_sheet());
+            }
+            let triangle = triangle.map(Vector::to_array);
+            if let Some(doubled) = frame.inside(&triangle, cell, &mut work.scratch, work.faces.next()?) {
+                work.faces.push(doubled);
+                continue;
+            }
+            for axis in 0..3 {
+                let [a, b, c] = triangle.map(|p| p[axis]);
+                work.walls[axis] |= a == b && b == c && sides.iter().any(|side| side[axis] == a);
+            }
+        }
+        Some(())
+    }
 }
 
 /// Memory for one cell at a time.
@@ -160,63 +286,5 @@ struct Work<'m, R: Real> {
 impl<'m, R: Real> Work<'m, R> {
     fn new(outlines: Outlines<'m, R>, faces: CellFaces<'m, R>) -> Self {
         Work { outlines, faces, walls: [false; 3], scratch: [Polygon::default(), Polygon::default()] }
-    }
-}
-
-impl<V: Vector> CellOfLayer<'_, V> {
-    /// Raise the doubtful shares of `found` to the shadows; none if there is no room.
-    fn shadow(&self, work: &mut Work<V::Scalar>, found: &mut Seen<V::Scalar>) -> Option<()> {
-        self.load(work)?;
-        for axis in (0..3).filter(|&axis| found.doubtful[axis]) {
-            found.place[axis] = work.faces.place(axis);
-        }
-        for axis in 0..3 {
-            let [low, high] = found.blocked[axis];
-            let once = (found.doubtful[axis] && !work.walls[axis]).then(|| work.faces.passed_once(axis));
-            let Some([entered, left]) = once.flatten() else { continue };
-            // A surface that is not closed proves nothing.
-            if ((entered - left) - (high - low)).abs() <= fit() {
-                found.raise(axis, low + entered);
-                found.doubtful[axis] = false;
-            }
-        }
-        let doubtful = found.doubtful;
-        if doubtful == [false; 3] {
-            return Some(());
-        }
-        work.outlines.clear();
-        work.outlines.add(&work.faces, doubtful)?;
-        if !work.outlines.is_empty() {
-            for axis in (0..3).filter(|&axis| doubtful[axis]) {
-                found.raise(axis, work.outlines.shadow(axis)?);
-            }
-        }
-        Some(())
-    }
-
-    /// Take in what all bodies have of surface inside the cell; none if there is no room.
-    fn load(&self, work: &mut Work<V::Scalar>) -> Option<()> {
-        let (groups, frame) = (self.bins.groups(self.k), Frame::of(self.cell));
-        let sides = [self.cell.min.to_array(), self.cell.max.to_array()];
-        let mut last = None;
-        work.faces.clear();
-        work.walls = [false; 3];
-        for &[n, id] in self.entries {
-            let Some(group) = groups.get(n as usize) else { continue };
-            let Some(triangle) = self.bins.triangles(group).get(id as usize) else { continue };
-            if last.replace(n) != Some(n) {
-                work.faces.begin_solid(group.is_sheet());
-            }
-            let triangle = triangle.map(Vector::to_array);
-            if frame.inside(&triangle, self.cell, &mut work.scratch, work.faces.next()?) {
-                work.faces.push();
-                continue;
-            }
-            for (axis, wall) in work.walls.iter_mut().enumerate() {
-                let [a, b, c] = triangle.map(|p| p[axis]);
-                *wall |= a == b && b == c && sides.iter().any(|side| side[axis] == a);
-            }
-        }
-        Some(())
     }
 }

@@ -77,17 +77,20 @@ pub struct AreaReport<R> {
 pub struct AreaSlices<'a, R> {
     /// Areas of the union, without what [`Layers::finish_areas`] adds, `ny*nx`, x fastest, in the unit of the grid. Sheets count as they are.
     pub union: &'a mut [SurfaceArea<R>],
-    /// Cells that several bodies share with surface in the planes of their sides, `ny*nx` at most.
+    /// Cells whose areas are not all that there is to know, in ascending order, `ny*nx` at most.
     pub sides: &'a mut [CellSides<R>],
     /// Memory, `ny*nx`.
     pub cells: &'a mut [CellSurface<R>],
 }
 
-/// A cell, and the solid fractions of its sides as seen from inside. The default serves as memory.
+/// A cell that several bodies share. The default serves as memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellSides<R> {
-    cell: u32,
-    solid: Sides<R>,
+    pub(super) cell: u32,
+    /// The areas in it are known to rounding.
+    pub(super) exact: bool,
+    /// The solid fractions of its sides as seen from inside, if surface lies in their planes.
+    solid: Option<Sides<R>>,
 }
 
 impl<V: Vector> Layers<'_, V> {
@@ -132,8 +135,8 @@ impl<V: Vector> Layers<'_, V> {
         }
         open.check(&self.grid)?;
         exactly(nx * ny, union.len())?;
-        for CellSides { cell, solid } in sides {
-            let c = *cell as usize;
+        for CellSides { cell, solid, .. } in sides {
+            let (c, Some(solid)) = (*cell as usize, solid) else { continue };
             let at = [c.checked_rem(nx).unwrap_or(0), c.checked_div(nx).unwrap_or(0)];
             let (Some(blocked), Some(cell)) = (open.blocked(at, nx), self.grid.cell_box([at[0], at[1], k])) else {
                 continue;
@@ -174,13 +177,14 @@ fn summed<R: Real>(
             report.unproved += 1;
             report.max_doubt = report.max_doubt.max(found.doubt);
         }
-        if surface.in_plane > R::ZERO {
-            match (found.sides, sides.get_mut(report.sides)) {
-                (Some(solid), Some(place)) => {
-                    *place = CellSides { cell, solid };
-                    report.sides += 1;
-                }
-                _ => union.wetted += surface.in_plane,
+        let solid = found.sides.filter(|_| surface.in_plane > R::ZERO);
+        if solid.is_none() {
+            union.wetted += surface.in_plane;
+        }
+        if solid.is_some() || !found.exact {
+            if let Some(place) = sides.get_mut(report.sides) {
+                *place = CellSides { cell, exact: found.exact, solid };
+                report.sides += 1;
             }
         }
     }
@@ -212,7 +216,8 @@ impl<V: Vector> Layers<'_, V> {
 
 impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
     fn wants_union(&self, cell: usize) -> bool {
-        self.cells().get(cell).is_some_and(|surface| surface.bodies == Bodies::Several)
+        let shared = |s: &CellSurface<V::Scalar>| s.bodies == Bodies::Several && s.inside.wetted > V::Scalar::ZERO;
+        self.cells().get(cell).is_some_and(shared)
     }
 
     fn set_union(&mut self, cell: usize, found: UnionSurface<V::Scalar>) {
@@ -233,12 +238,13 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         let layers = site.k..site.k + 1;
         let inside = with_effort(shared, site, layers, |shared| parts_of(shared, site, cell, room.reborrow()));
         let (area, doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
-        let middles = |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
+        let middles =
+            |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
         let sides = match refined {
             None if surface.in_plane > V::Scalar::ZERO => divide(shared, site, cell, room).as_ref().map(middles),
             refined => refined.map(middles),
         };
-        surface.union = Some(UnionSurface { area, doubt, sides });
+        surface.union = Some(UnionSurface { area, doubt, sides, exact: false });
     }
 }
 
