@@ -20,6 +20,7 @@ pub mod shadows;
 pub mod snap;
 mod solid;
 pub mod surface_fields;
+mod surface_layers;
 mod targets;
 pub mod throat;
 
@@ -34,7 +35,7 @@ use rayon::prelude::*;
 pub use result::{CellCounts, Gjk, Leak, Porosity};
 use road::{Road, Roads};
 use std::sync::Arc;
-use surface_fields::{SurfaceFields, no_areas};
+use surface_layers::{finish, no_areas};
 use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
@@ -181,7 +182,7 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
         first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
     }
     let total = summaries.iter().fold(Summary::default(), Summary::join);
-    let surface = areas.map(|areas| Arc::new(SurfaceFields::finish(grid, &layers, &beta, areas, &summaries)));
+    let surface = areas.map(|areas| Arc::new(finish(grid, &layers, &beta, areas, &summaries)));
     let porosity = Porosity {
         beta,
         bounds,

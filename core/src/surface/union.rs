@@ -345,7 +345,9 @@ impl<R: Real> Frame<R> {
         }
         if triangle.iter().all(|p| (0..3).all(|axis| p[axis] >= lo[axis] && p[axis] <= hi[axis])) {
             part.clear();
-            triangle.iter().for_each(|p| drop(part.push(self.framed(*p))));
+            for p in triangle {
+                part.push(self.framed(*p));
+            }
         } else if !self.part(triangle, lo, hi, scratch, part) {
             return None;
         }

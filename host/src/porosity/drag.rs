@@ -83,7 +83,7 @@ pub fn drag(
         own => [1.0, 0.0, own.cd.unwrap_or(coefficients.sharp)],
     };
     let weights: Vec<[f64; 3]> = bodies.bodies.iter().zip(&round).map(weight).collect();
-    let sums = with_solid_layers(grid, bodies, options, |layers| {
+    let sums = with_solid_layers(grid, bodies, options, |grid, layers| {
         let [nx, ny, nz] = grid.cells();
         let mut sums = vec![[[0.0; 3]; 3]; nx * ny * nz];
         sums.par_chunks_mut(nx * ny).enumerate().for_each(|(k, sums)| {

@@ -1,7 +1,8 @@
 //! The layers of the bodies that are solid, for what is measured beside their porosity.
 
 use super::surface_fields::SurfaceFields;
-use super::{FieldSet, Options, Porosity, levels, porosity, snap, surfaces};
+use super::surface_layers::of_layers;
+use super::{FieldSet, Options, Porosity, levels, local, porosity, snap, surfaces};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
 use glam::DVec3;
@@ -22,9 +23,7 @@ pub(super) fn with_solid_surface<T>(
     let alone = solid_alone(grid, bodies, options);
     let Porosity { beta, surface, .. } = alone.as_ref().unwrap_or(result);
     let found = surface.clone().unwrap_or_else(|| {
-        with_solid_layers(grid, bodies, options, |layers| {
-            Arc::new(SurfaceFields::of_layers(grid, layers, options, beta))
-        })
+        with_solid_layers(grid, bodies, options, |grid, layers| Arc::new(of_layers(grid, layers, options, beta)))
     });
     work(&found, beta)
 }
@@ -38,16 +37,33 @@ fn solid_alone(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Option<Po
     })
 }
 
-/// Work with the layers of the bodies that are solid, those without triangles as facets.
+/// Work with the layers of the bodies that are solid, those without triangles as facets; both as seen from the grid's corner, if that is far.
 pub(super) fn with_solid_layers<T>(
     grid: &Grid<f64>,
     bodies: &Bodies,
     options: Options,
+    work: impl FnOnce(&Grid<f64>, &Layers<DVec3>) -> T,
+) -> T {
+    let moved = snap::into_planes(grid, bodies);
+    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
+    match local::from_corner(grid, bodies, triangles) {
+        Some((edges, seen)) => {
+            let near = edges.grid(None).expect("edges apart stay apart");
+            with_layers_of(&near, &seen, &seen.triangles, options, |layers| work(&near, layers))
+        }
+        None => with_layers_of(grid, bodies, triangles, options, |layers| work(grid, layers)),
+    }
+}
+
+/// Work with the layers of the solid bodies, whose corners are in the planes of the grid.
+fn with_layers_of<T>(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    triangles: &[[DVec3; 3]],
+    options: Options,
     work: impl FnOnce(&Layers<DVec3>) -> T,
 ) -> T {
     let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
-    let moved = snap::into_planes(grid, bodies);
-    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
     let curved: Vec<Vec<[DVec3; 3]>> =
         bodies.bodies.par_iter().map(|body| facets::of_body(body).unwrap_or_default()).collect();
     let own_triangles = |n: usize, body: &Body| match &curved[n][..] {

@@ -1,0 +1,61 @@
+//! The surface in the cells of layers, found on the way to their porosity and finished when all faces are known.
+
+use super::Options;
+use super::fields::FieldSet;
+use super::layers::{Summary, Workers};
+use super::road::Road;
+use super::shadows::Shadows;
+use super::surface_fields::SurfaceFields;
+use super::targets::targets;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::Arc;
+use voidage_core::grid::Grid;
+use voidage_core::surface::layer::Layers;
+use voidage_core::surface::surface_area::SurfaceArea;
+
+/// Of bodies in layers, whose open fractions are known otherwise.
+#[must_use]
+pub fn of_layers(grid: &Grid<f64>, layers: &Layers<DVec3>, options: Options, beta: &FieldSet) -> SurfaceFields {
+    let (mut own, mut areas) = (FieldSet::new(grid, true), no_areas(grid));
+    let (workers, road) = (Workers::new(), Road::new(Vec::new(), options));
+    let summaries: Vec<Summary> = targets(grid, &mut own, None, Some(&mut areas))
+        .into_par_iter()
+        .enumerate()
+        .map(|(k, target)| workers.layer(grid, layers, &road, k, target))
+        .collect();
+    finish(grid, layers, beta, areas, &summaries)
+}
+
+/// From the areas that layers have given, now that all faces are known.
+#[must_use]
+pub fn finish(
+    grid: &Grid<f64>,
+    layers: &Layers<DVec3>,
+    beta: &FieldSet,
+    mut areas: Vec<SurfaceArea<f64>>,
+    summaries: &[Summary],
+) -> SurfaceFields {
+    let [nx, ny, _] = grid.cells();
+    areas.par_chunks_mut(nx * ny).zip(summaries).enumerate().for_each(|(k, (areas, summary))| {
+        let open = beta.open_layer(grid, k);
+        layers.finish_areas(k, &open, &summary.sides, areas).expect("slices of a layer fit its grid");
+    });
+    let sides: Vec<_> = summaries.iter().map(|summary| &summary.sides[..]).collect();
+    let shadows = Arc::new(Shadows::of_layers(grid, layers, beta, (&areas, &sides)));
+    let reports = summaries.iter().map(|summary| summary.areas);
+    SurfaceFields {
+        // In the order of layers, so that the bits do not depend on the number of threads.
+        sum: reports.clone().fold(SurfaceArea::default(), |sum, r| sum.plus(r.sum)),
+        unproved: reports.clone().map(|r| r.unproved).sum(),
+        max_doubt: reports.fold(0.0, |most, r| r.max_doubt.max(most)),
+        areas,
+        shadows,
+    }
+}
+
+/// Room for the areas of all cells.
+#[must_use]
+pub fn no_areas(grid: &Grid<f64>) -> Vec<SurfaceArea<f64>> {
+    vec![SurfaceArea::default(); grid.cell_count()]
+}
