@@ -258,11 +258,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             let at = At { i, j, cells: [nx, ny] };
             resolved.ambiguous += usize::from(at.cell_gap(layer) > V::Scalar::ZERO);
             let open = at.largest_gap(layer);
-            let mut wanted = P::WANTED && pieces.wants_union(at.cell());
-            if wanted && at.is_closed(layer) {
-                pieces.set_union(at.cell(), UnionSurface { exact: true, ..UnionSurface::default() });
-                wanted = false;
-            }
+            let wanted = P::WANTED && at.wants_union(layer, pieces);
             if !(open > known() || wanted) {
                 continue;
             }
@@ -337,6 +333,9 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
     surfaces.chain(others.map(|b| (b, false)))
 }
 
+/// Bounds of a cell, and what its union has of surface.
+type WithSurface<R> = (Refined<R>, UnionSurface<R>);
+
 /// The union in a cell: exact, or with the least blur that gives a proof; of triangles only. What it has of surface is found if `P` wants it.
 fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
@@ -344,7 +343,7 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     cell: Aabb<V>,
     row: &Row<V>,
     believed: impl Fn(&Refined<V::Scalar>) -> bool,
-) -> Option<(Refined<V::Scalar>, UnionSurface<V::Scalar>)> {
+) -> Option<WithSurface<V::Scalar>> {
     if shared.others.reach(cell) {
         return None;
     }
@@ -481,9 +480,14 @@ impl At {
         self.j * self.cells[0] + self.i
     }
 
-    /// Does one body fill it?
-    fn is_closed<R: Real>(self, layer: &Layer<R>) -> bool {
-        layer.lower.cell.get(self.cell()).is_some_and(|&lower| lower >= R::ONE)
+    /// Is the surface of the union in the cell asked for? If one body fills it, that is told at once.
+    fn wants_union<V: Vector, P: UnionSums<V>>(self, layer: &Layer<V::Scalar>, pieces: &mut P) -> bool {
+        let wanted = pieces.wants_union(self.cell());
+        let closed = layer.lower.cell.get(self.cell()).is_some_and(|&lower| lower >= V::Scalar::ONE);
+        if wanted && closed {
+            pieces.set_union(self.cell(), UnionSurface { exact: true, ..UnionSurface::default() });
+        }
+        wanted && !closed
     }
 
     /// The faces that the cell decides: its low ones, and at the upper ends of the grid the high ones; axis, position, and whether high.

@@ -382,7 +382,10 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         let (min, max) = b.row.extent(0);
         let mut c = self.x.cell(min);
         if min == max && self.x.opens(c, min) {
-            return if P::WANTED && place == Place::InPlane { () } else { self.wall_x(row, c, &b.row) };
+            if !P::WANTED || place == Place::Inside {
+                self.wall_x(row, c, &b.row);
+            }
+            return;
         }
         while c < self.x.count && max > self.x.upper(c) {
             split(&b.row, 0, self.x.upper(c), &mut b.cell, &mut b.spare);

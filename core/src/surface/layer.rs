@@ -21,7 +21,7 @@ pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};
 pub use report::{CellKinds, LayerReport};
 pub use slices::LayerSlices;
-pub use surface_areas::{AreaReport, AreaSlices, CellSides, OpenLayer};
+pub use surface_areas::{AreaReport, AreaSlices, CellSides, KnownAreas, LayerReports, OpenLayer};
 
 use crate::grid::Grid;
 use crate::grid::fields::{Fields, Layer};
@@ -55,6 +55,9 @@ impl<R: Real> Default for LayerOptions<R> {
         LayerOptions { tol: R::from_f64(1e-4), depth: 6, areas: true, solid_end: R::HALF }
     }
 }
+
+/// Where the values of a layer go, and their bounds, lower and upper, if wanted.
+type BetaAndBounds<'a, R> = (LayerSlices<'a, R>, Option<[LayerSlices<'a, R>; 2]>);
 
 /// Bodies in a grid, sorted by layer. Threads may share it.
 #[derive(Clone, Copy, Debug)]
@@ -160,7 +163,7 @@ impl<'a, V: Vector> Layers<'a, V> {
     fn measure<O: OtherBodies<V>, P: UnionSums<V>>(
         &self,
         k: usize,
-        (beta, mut bounds): (LayerSlices<V::Scalar>, Option<[LayerSlices<V::Scalar>; 2]>),
+        (beta, mut bounds): BetaAndBounds<V::Scalar>,
         memory: &mut LayerMemory<V>,
         (others, pieces): (&mut O, &mut P),
         each_body: impl FnMut(usize, Defects<V::Scalar>),

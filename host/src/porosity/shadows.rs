@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
 use voidage_core::grid::fields::ShapeMismatch;
-use voidage_core::surface::layer::{CellSides, LayerError, Layers, OpenLayer};
+use voidage_core::surface::layer::{CellSides, KnownAreas, LayerError, Layers, OpenLayer};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 use voidage_core::surface::surface_area::SurfaceArea;
 
@@ -127,7 +127,7 @@ impl Buffers {
         &mut self,
         layers: &Layers<DVec3>,
         k: usize,
-        (open, areas): (&OpenLayer<f64>, (&[SurfaceArea<f64>], &[CellSides<f64>])),
+        (open, areas): (&OpenLayer<f64>, KnownAreas<f64>),
         mut into: ShadowSlices<f64>,
     ) -> usize {
         loop {

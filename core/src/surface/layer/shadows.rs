@@ -2,7 +2,7 @@
 
 use super::Layers;
 use super::error::LayerError;
-use super::surface_areas::{CellSides, OpenLayer};
+use super::surface_areas::{KnownAreas, OpenLayer};
 use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
@@ -30,7 +30,7 @@ impl<V: Vector> Layers<'_, V> {
         &self,
         k: usize,
         open: &OpenLayer<V::Scalar>,
-        areas: Option<(&[SurfaceArea<V::Scalar>], &[CellSides<V::Scalar>])>,
+        areas: Option<KnownAreas<V::Scalar>>,
         shadows: ShadowSlices<V::Scalar>,
         memory: ShadowMemory<V::Scalar>,
     ) -> Result<usize, LayerError> {
@@ -152,7 +152,7 @@ struct LayerWithFaces<'a, V: Vector> {
     layers: &'a Layers<'a, V>,
     k: usize,
     open: &'a OpenLayer<'a, V::Scalar>,
-    areas: Option<(&'a [SurfaceArea<V::Scalar>], &'a [CellSides<V::Scalar>])>,
+    areas: Option<KnownAreas<'a, V::Scalar>>,
 }
 
 impl<V: Vector> LayerWithFaces<'_, V> {

@@ -83,6 +83,12 @@ pub struct AreaSlices<'a, R> {
     pub cells: &'a mut [CellSurface<R>],
 }
 
+/// What is told of the porosity of a layer, and of its areas.
+pub type LayerReports<R> = (LayerReport<R>, AreaReport<R>);
+
+/// Areas of the union in a layer, and what is told beside them of some cells.
+pub type KnownAreas<'a, R> = (&'a [SurfaceArea<R>], &'a [CellSides<R>]);
+
 /// A cell that several bodies share. The default serves as memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellSides<R> {
@@ -106,7 +112,7 @@ impl<V: Vector> Layers<'_, V> {
         areas: AreaSlices<V::Scalar>,
         memory: &mut LayerMemory<V>,
         each_body: impl FnMut(usize, Defects<V::Scalar>),
-    ) -> Result<(LayerReport<V::Scalar>, AreaReport<V::Scalar>), LayerError> {
+    ) -> Result<LayerReports<V::Scalar>, LayerError> {
         let [nx, ny, _] = self.grid.cells();
         let AreaSlices { union, sides, cells } = areas;
         for found in [union.len(), sides.len(), cells.len()] {
@@ -181,11 +187,9 @@ fn summed<R: Real>(
         if solid.is_none() {
             union.wetted += surface.in_plane;
         }
-        if solid.is_some() || !found.exact {
-            if let Some(place) = sides.get_mut(report.sides) {
-                *place = CellSides { cell, exact: found.exact, solid };
-                report.sides += 1;
-            }
+        if let Some(place) = sides.get_mut(report.sides).filter(|_| solid.is_some() || !found.exact) {
+            *place = CellSides { cell, exact: found.exact, solid };
+            report.sides += 1;
         }
     }
     report
