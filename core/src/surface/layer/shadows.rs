@@ -238,10 +238,12 @@ impl<V: Vector> LayerWithFaces<'_, V> {
     /// mean of the sections with both sides.
     fn passed_once(&self, axis: usize, work: &Work<V::Scalar>, found: &Seen<V::Scalar>) -> Option<V::Scalar> {
         let ([low, high], [entered, left]) = (found.blocked[axis], work.faces.passed_once(axis)?);
+        // A surface that is not closed proves nothing, nor do sides that are not its own.
+        if !(((entered - left) - (high - low)).abs() <= fit()) {
+            return None;
+        }
         if work.faces.is_one_solid() {
-            // A surface that is not closed proves nothing.
-            let fits = ((entered - left) - (high - low)).abs() <= fit();
-            return fits.then_some(low + entered);
+            return Some(low + entered);
         }
         found.frontal.map(|frontal| frontal[axis] + (low + high) * V::Scalar::HALF)
     }
