@@ -2,7 +2,7 @@
 
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
 use crate::geometry::repair::crossing::{self, Found};
-use crate::geometry::repair::nesting::{Closed, Doubt};
+use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
 use crate::geometry::repair::regions::{self, Regions};
 use crate::geometry::repair::sets::Sets;
 use glam::DVec3;
@@ -75,8 +75,17 @@ fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], file: &[[DVec3; 3]], mixed: b
     regions::look(own, bounds, file, mixed).map(Seen::Divided)
 }
 
+/// Two walls may have more between them than the shell winds around: then fronts and backs of parts that touch were joined to one shell.
+const MORE: f64 = 1.0 + 1e-9;
+
 fn look_at_one(part: &Part, file: &[[DVec3; 3]]) -> Seen {
     match look(&part.shell) {
+        Found::Simple { walls: true } if !part.guessed => {
+            let middle = (part.shell.bounds[0] + part.shell.bounds[1]) * 0.5;
+            regions::look(part.own(), part.shell.bounds, file, false)
+                .filter(|r| signed_volume(&r.solid, middle).abs() > MORE * part.shell.volume.abs())
+                .map_or(Seen::As(Found::Simple { walls: true }), Seen::Divided)
+        }
         // Which of several parts that were joined is turned cannot be told.
         Found::Resolved(made) if made.touches && !part.guessed => {
             divided(part.own(), part.shell.bounds, file, made.both_ways)
@@ -153,7 +162,7 @@ impl<'a> Grouping<'a> {
                 Seen::As(Found::Simple { walls }) => (*walls && !self.parts[n].shell.is_sheet(), false),
                 Seen::As(Found::Resolved(made)) => (made.both_ways, true),
                 Seen::As(Found::Doubtful(_)) => (false, false),
-                Seen::Divided(_) => (true, true),
+                Seen::Divided(regions) => (!regions.perhaps.is_empty(), true),
             };
             if !odd {
                 continue;

@@ -17,7 +17,8 @@ type Corners = HashMap<u64, Vec<u32>>;
 /// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
 pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
     let odd: Vec<u64> = uses.each().filter(|uses| is_odd(mesh, uses)).map(|uses| uses[0].0).collect();
-    let corners = corners_on(mesh, &beside(&odd, uses), &straight(mesh, &odd), rounding);
+    let beside = beside(&odd, uses);
+    let corners = corners_on(mesh, &beside, &straight(mesh, &beside), rounding);
     if corners.is_empty() {
         return 0;
     }
