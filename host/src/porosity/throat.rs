@@ -15,7 +15,7 @@ pub enum Faces {
     Throat,
 }
 
-/// A face is lowered only by more than this: less is rounding.
+/// A face is lowered only by more than this, and the high one only if nearer by more: less is rounding.
 const LEAST: f64 = 1e-9;
 
 /// Lower, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass; ties go to the low face.
@@ -31,7 +31,7 @@ pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usiz
             if !(passes < before[faces[0]].min(before[faces[1]]) - LEAST) {
                 continue;
             }
-            let face = faces[usize::from(shadows.place[axis][n] > 0.5)];
+            let face = faces[usize::from(shadows.place[axis][n] > 0.5 + LEAST)];
             let fields = bounds.iter_mut().flatten().chain([&mut *beta]);
             for field in fields.map(|set| set.faces_mut(axis)) {
                 field[face] = field[face].min(passes);
