@@ -84,6 +84,27 @@ pub fn solid_angle(triangle: &[DVec3; 3], point: DVec3) -> f64 {
     a.dot(b.cross(c)).atan2(below) / (2.0 * std::f64::consts::PI)
 }
 
+/// An edge by its lower and higher point, a triangle that has it, and which of its sides it is.
+pub type SideUse = ([u32; 2], u32, usize);
+
+/// The uses of all edges of some triangles, sorted.
+#[must_use]
+pub fn edges(triangles: &[[DVec3; 3]]) -> Vec<SideUse> {
+    let mut numbers: HashMap<[u64; 3], u32> = HashMap::default();
+    let mut number = |p: DVec3| {
+        let next = numbers.len() as u32;
+        *numbers.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert(next)
+    };
+    let mut edges = Vec::with_capacity(3 * triangles.len());
+    for (n, t) in triangles.iter().enumerate() {
+        let [a, b, c] = t.map(&mut number);
+        let sides = [[a, b], [b, c], [c, a]].into_iter().enumerate();
+        edges.extend(sides.map(|(side, [p, q])| ([p.min(q), p.max(q)], n as u32, side)));
+    }
+    edges.sort_unstable();
+    edges
+}
+
 /// Triangles, and where they meet.
 pub struct Meetings<'a> {
     triangles: &'a [[DVec3; 3]],
@@ -140,9 +161,9 @@ impl<'a> Meetings<'a> {
     }
 
     /// Pairs of triangles that no other meets, across edges that they alone use and that lie on no other.
-    pub fn neighbours(&self, edges: &[([u32; 2], u32, usize)]) -> Vec<[u32; 2]> {
-        let free = |&(_, n, side): &([u32; 2], u32, usize)| !self.meets(n) && !self.resting.contains(&(n, side));
-        let pair = |uses: &[([u32; 2], u32, usize)]| match uses {
+    pub fn neighbours(&self, edges: &[SideUse]) -> Vec<[u32; 2]> {
+        let free = |&(_, n, side): &SideUse| !self.meets(n) && !self.resting.contains(&(n, side));
+        let pair = |uses: &[SideUse]| match uses {
             [a, b] if free(a) && free(b) => Some([a.1, b.1]),
             _ => None,
         };
@@ -152,7 +173,7 @@ impl<'a> Meetings<'a> {
     /// The triangles that no other meets, in groups of [neighbours](Self::neighbours).
     fn patches(&self) -> Vec<Vec<u32>> {
         let mut sets = Sets::new(self.triangles.len());
-        self.neighbours(&self.edges()).into_iter().for_each(|[a, b]| sets.join(a as usize, b as usize));
+        self.neighbours(&edges(self.triangles)).into_iter().for_each(|[a, b]| sets.join(a as usize, b as usize));
         let mut at: HashMap<usize, usize> = HashMap::default();
         let mut patches: Vec<Vec<u32>> = Vec::new();
         for n in (0..self.triangles.len()).filter(|&n| !self.met.contains_key(&(n as u32))) {
@@ -175,24 +196,6 @@ impl<'a> Meetings<'a> {
     pub fn covering(&self, n: u32) -> impl Iterator<Item = u32> {
         let met = self.met.get(&n).into_iter().flatten();
         met.filter(|(_, found)| *found == Crossing::Cover).map(|(m, _)| *m)
-    }
-
-    /// The uses of all edges, sorted: lower and higher point, triangle, and which of its sides.
-    #[must_use]
-    pub fn edges(&self) -> Vec<([u32; 2], u32, usize)> {
-        let mut numbers: HashMap<[u64; 3], u32> = HashMap::default();
-        let mut number = |p: DVec3| {
-            let next = numbers.len() as u32;
-            *numbers.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert(next)
-        };
-        let mut edges = Vec::with_capacity(3 * self.triangles.len());
-        for (n, t) in self.triangles.iter().enumerate() {
-            let [a, b, c] = t.map(&mut number);
-            let sides = [[a, b], [b, c], [c, a]].into_iter().enumerate();
-            edges.extend(sides.map(|(side, [p, q])| ([p.min(q), p.max(q)], n as u32, side)));
-        }
-        edges.sort_unstable();
-        edges
     }
 
     /// The sides of a part with this middle of triangle `n`; `own` are the triangles that lie there, itself too. None if there is doubt.
@@ -299,7 +302,7 @@ pub fn tolerance([lo, hi]: [DVec3; 2]) -> f64 {
 pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let on = tolerance([lo, hi]);
     let shell = Meetings::new(triangles, on);
-    let many = || shell.edges().chunk_by(|a, b| a.0 == b.0).find(|uses| uses.len() > 2).map(|uses| uses[0].1);
+    let many = || edges(triangles).chunk_by(|a, b| a.0 == b.0).find(|uses| uses.len() > 2).map(|uses| uses[0].1);
     let Some(n) = shell.met.keys().min().copied().or_else(many) else {
         return Found::Simple { walls: false };
     };

@@ -11,7 +11,7 @@
 //!
 //! **Proof.** The surfaces found must be closed: their areas cancel and their volumes along x, y and z agree, else there is no answer.
 
-use crate::geometry::repair::crossing::{Meetings, is_closed, tolerance};
+use crate::geometry::repair::crossing::{Meetings, SideUse, edges, is_closed, tolerance};
 use crate::geometry::repair::face::{Face, push_parts};
 use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::sets::Sets;
@@ -127,13 +127,9 @@ impl<'a> Complex<'a> {
         &self.meetings.faces[triangle]
     }
 
-    /// Join the sides of whole triangles across edges that only two of them use. False if an edge has only one.
-    fn join_neighbours(&mut self) -> bool {
-        let edges = self.meetings.edges();
-        if edges.chunk_by(|a, b| a.0 == b.0).any(|uses| uses.len() == 1) {
-            return false;
-        }
-        for [a, b] in self.meetings.neighbours(&edges) {
+    /// Join the sides of whole triangles across edges that only two of them use.
+    fn join_neighbours(&mut self, edges: &[SideUse]) {
+        for [a, b] in self.meetings.neighbours(edges) {
             let (a, b) = (a as usize, b as usize);
             let (p, q) = (self.sided[a].corners, self.sided[b].corners);
             let runs = |t: [DVec3; 3], from: DVec3, to: DVec3| (0..3).any(|i| t[i] == from && t[(i + 1) % 3] == to);
@@ -142,7 +138,6 @@ impl<'a> Complex<'a> {
                 self.sets.join(side(self.of[a][0], before), side(self.of[b][0], before != same));
             }
         }
-        true
     }
 
     /// The part of a triangle that holds a point of its plane, not on its rim.
@@ -416,11 +411,13 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]],
     let sided = sided(triangles);
     let corners: Vec<[DVec3; 3]> = sided.iter().map(|t| t.corners).collect();
     let on = tolerance([lo, hi]);
-    let meetings = Meetings::new(&corners, on);
-    let mut complex = Complex::new(&sided, &meetings, on);
-    if !complex.join_neighbours() {
+    let edges = edges(&corners);
+    if edges.chunk_by(|a, b| a.0 == b.0).any(|uses| uses.len() == 1) {
         return None;
     }
+    let meetings = Meetings::new(&corners, on);
+    let mut complex = Complex::new(&sided, &meetings, on);
+    complex.join_neighbours(&edges);
     complex.join_layers();
     if !complex.join_visible() {
         return None;
