@@ -160,9 +160,9 @@ impl<'a> Grouping<'a> {
         for n in 0..self.parts.len() {
             let (odd, both_ways) = match &seen[n] {
                 Seen::As(Found::Simple { walls }) => (*walls && !self.parts[n].shell.is_sheet(), false),
-                Seen::As(Found::Resolved(made)) => (made.both_ways, true),
+                Seen::As(Found::Resolved(made)) => (true, made.both_ways),
                 Seen::As(Found::Doubtful(_)) => (false, false),
-                Seen::Divided(regions) => (!regions.perhaps.is_empty(), true),
+                Seen::Divided(regions) => (true, !regions.perhaps.is_empty()),
             };
             if !odd {
                 continue;
