@@ -78,7 +78,7 @@ fn show_sides<R: Real>(open: &OpenLayer<R>, nx: usize, [x, y, z]: &mut [&mut [R]
             *share = R::ONE - low.smaller(*high);
         }
     };
-    for (share, open) in x.chunks_exact_mut(nx.max(1)).zip(open.x.chunks_exact(nx + 1)) {
+    for (share, open) in x.chunks_exact_mut(nx.max(1)).zip(open.x.chunks_exact(nx.saturating_add(1))) {
         show(share, open, open.get(1..).unwrap_or_default());
     }
     show(y, open.y, open.y.get(nx..).unwrap_or_default());
