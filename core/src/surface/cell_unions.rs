@@ -6,7 +6,7 @@ use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group, Row, cells_touched};
-use crate::surface::surface_area::{PieceSums, SurfaceArea, UnionSurface};
+use crate::surface::surface_area::{KeptSurface, PieceSums, SurfaceArea};
 use crate::surface::union::{CellFractions, CellUnion, NoProof, UnionMemory};
 use core::ops::Range;
 use heapless::Vec;
@@ -44,10 +44,12 @@ impl<V: Vector> OtherBodies<V> for () {
 
 /// What else is made of the surface of unions. The unit type makes nothing of it.
 pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
+    /// What it wants to know of a union.
+    type Found: KeptSurface<V::Scalar>;
     /// Is the surface of the union in a cell of the layer asked for?
     fn wants_union(&self, cell: usize) -> bool;
     /// What the union has of surface in a cell.
-    fn set_union(&mut self, cell: usize, found: UnionSurface<V::Scalar>);
+    fn set_union(&mut self, cell: usize, found: Self::Found);
     /// The same where there is no proof for the cell as a whole, whose bounds may have been `refined`.
     fn divide_union<O: OtherBodies<V>>(
         &mut self,
@@ -60,12 +62,13 @@ pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
 }
 
 impl<V: Vector> UnionSums<V> for () {
+    type Found = ();
     #[inline(always)]
     fn wants_union(&self, _: usize) -> bool {
         false
     }
     #[inline(always)]
-    fn set_union(&mut self, _: usize, _: UnionSurface<V::Scalar>) {}
+    fn set_union(&mut self, _: usize, (): ()) {}
     #[inline(always)]
     fn divide_union<O: OtherBodies<V>>(
         &mut self,
@@ -333,9 +336,6 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
     surfaces.chain(others.map(|b| (b, false)))
 }
 
-/// Bounds of a cell, and what its union has of surface.
-type WithSurface<R> = (Refined<R>, UnionSurface<R>);
-
 /// The union in a cell: exact, or with the least blur that gives a proof; of triangles only. What it has of surface is found if `P` wants it.
 fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
@@ -343,24 +343,22 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     cell: Aabb<V>,
     row: &Row<V>,
     believed: impl Fn(&Refined<V::Scalar>) -> bool,
-) -> Option<WithSurface<V::Scalar>> {
+) -> Option<(Refined<V::Scalar>, P::Found)> {
     if shared.others.reach(cell) {
         return None;
     }
     let across = side_areas(cell);
     with_least_blur(shared.tol, |blur| {
         let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
-        let mut surface = UnionSurface::default();
+        let mut surface = P::Found::default();
         let found = bodies.cell_and_surface(|kept| {
             if P::WANTED {
                 let [x, y, z] = kept.doubled_area();
-                let area = SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]);
-                surface.area = surface.area.plus(area);
+                surface.keep(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));
             }
         })?;
         if P::WANTED {
-            surface.sides = Some([0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]));
-            surface.exact = found.error <= known();
+            surface.settle([0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]), found.error <= known());
         }
         let error = found.error;
         let refined = Refined::from_union(found);
@@ -485,7 +483,7 @@ impl At {
         let wanted = pieces.wants_union(self.cell());
         let closed = layer.lower.cell.get(self.cell()).is_some_and(|&lower| lower >= V::Scalar::ONE);
         if wanted && closed {
-            pieces.set_union(self.cell(), UnionSurface { exact: true, ..UnionSurface::default() });
+            pieces.set_union(self.cell(), P::Found::closed());
         }
         wanted && !closed
     }

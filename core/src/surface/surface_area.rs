@@ -124,6 +124,37 @@ pub(super) struct UnionSurface<R> {
     pub sides: Option<[[R; 2]; 3]>,
 }
 
+/// What is kept of the surface of a union while it is made: all of it in a [`UnionSurface`], nothing in a unit.
+pub(super) trait KeptSurface<R>: Default {
+    /// Of a cell that one body fills.
+    fn closed() -> Self;
+    /// A fragment counts.
+    fn keep(&mut self, fragment: SurfaceArea<R>);
+    /// Solid fractions of the sides, and whether they are known to rounding.
+    fn settle(&mut self, sides: [[R; 2]; 3], exact: bool);
+}
+
+impl<R> KeptSurface<R> for () {
+    #[inline(always)]
+    fn closed() {}
+    #[inline(always)]
+    fn keep(&mut self, _: SurfaceArea<R>) {}
+    #[inline(always)]
+    fn settle(&mut self, _: [[R; 2]; 3], _: bool) {}
+}
+
+impl<R: Real> KeptSurface<R> for UnionSurface<R> {
+    fn closed() -> Self {
+        UnionSurface { exact: true, ..UnionSurface::default() }
+    }
+    fn keep(&mut self, fragment: SurfaceArea<R>) {
+        self.area = self.area.plus(fragment);
+    }
+    fn settle(&mut self, sides: [[R; 2]; 3], exact: bool) {
+        (self.sides, self.exact) = (Some(sides), exact);
+    }
+}
+
 /// The surfaces in the cells of a layer, gathered piece by piece.
 pub(super) struct LayerSurface<'a, R> {
     /// `ny*nx`, x fastest.

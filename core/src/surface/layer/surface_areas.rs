@@ -219,6 +219,8 @@ impl<V: Vector> Layers<'_, V> {
 }
 
 impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
+    type Found = UnionSurface<V::Scalar>;
+
     fn wants_union(&self, cell: usize) -> bool {
         let shared = |s: &CellSurface<V::Scalar>| s.bodies == Bodies::Several && s.inside.wetted > V::Scalar::ZERO;
         self.cells().get(cell).is_some_and(shared)
