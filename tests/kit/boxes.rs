@@ -165,7 +165,8 @@ impl Scene {
             _ => (2f64.powi(rng.below(61) as i32 - 30), 1 << rng.below(24)),
         };
         let mut scene = Scene { bricks, edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
-        let in_parts = rng.below(4) == 0;
+        // Where parts touch and have two sides as well, T-junctions are beyond what is defined here.
+        let in_parts = rng.below(4) == 0 && (scene.bricks.len() == 1 || double == 0);
         for n in 0..scene.bricks.len() {
             let brick = scene.bricks[n];
             for quad in scene.surface(&brick).chunks_exact(4) {

@@ -159,7 +159,8 @@ impl<'a, V: Vector> Layers<'a, V> {
         self.measure(k, (beta, bounds), memory, (others, &mut ()), each_body)
     }
 
-    /// Open fractions of layer `k`, and what `pieces` makes of the surface in it.
+    /// Open fractions of layer `k`, and what `pieces` makes of the surface in it. Inline: a call would hold all slices twice on the stack.
+    #[inline(always)]
     fn measure<O: OtherBodies<V>, P: UnionSums<V>>(
         &self,
         k: usize,

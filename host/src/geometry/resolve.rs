@@ -5,6 +5,7 @@ use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
 use crate::geometry::repair::regions::{self, Regions};
 use crate::geometry::repair::sets::Sets;
+use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet as HashSet;
@@ -53,7 +54,9 @@ fn have_backs(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = bool> {
         [t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]]
     };
     let all: HashSet<_> = triangles.iter().map(key).collect();
-    triangles.iter().map(move |&[a, b, c]| all.contains(&key(&[a, c, b])))
+    // A triangle with two equal corners is its own reverse.
+    let distinct = |[a, b, c]: [DVec3; 3]| a != b && b != c && c != a;
+    triangles.iter().map(move |&[a, b, c]| distinct([a, b, c]) && all.contains(&key(&[a, c, b])))
 }
 
 fn look(shell: &Closed) -> Found {
@@ -106,11 +109,36 @@ struct Group {
     doubtful: Vec<usize>,
 }
 
-/// Parts that must be looked at together, by three signs that triangles were joined to the wrong shells:
-///
-/// - parts whose edges do not tell whose they are; if some look inward, with all that overlap them;
-/// - a part that is folded, with those in its box that look the other way; one that winds both ways, with all in its box;
-/// - a part that had to be capped in a mesh that had backs, with those beside it.
+/// Signs that triangles were joined to the wrong shells.
+#[derive(Clone, Copy, Default)]
+struct Signs {
+    /// It is of parts whose edges do not tell whose they are, some of which look inward: all that overlap it may be concerned.
+    mixed: bool,
+    /// It is folded, or was resolved: those in its box that look the other way are concerned, …
+    odd: bool,
+    /// … or all in its box, if it winds forward and backward.
+    both_ways: bool,
+    /// It had to be capped in a mesh that has backs: those beside it are concerned.
+    capped: bool,
+}
+
+impl Signs {
+    fn new(part: &Part, seen: &Seen, has_backs: bool) -> Self {
+        let (odd, both_ways) = match seen {
+            Seen::As(Found::Simple { walls }) => (*walls && !part.shell.is_sheet(), false),
+            Seen::As(Found::Resolved(made)) => (true, made.both_ways),
+            Seen::As(Found::Doubtful(_)) => (false, false),
+            Seen::Divided(regions) => (true, !regions.perhaps.is_empty()),
+        };
+        Signs { mixed: false, odd, both_ways, capped: has_backs && part.is_capped() }
+    }
+
+    fn any(&self) -> bool {
+        self.mixed || self.odd || self.capped
+    }
+}
+
+/// Parts that must be looked at together.
 struct Grouping<'a> {
     parts: &'a [Part],
     sets: Sets,
@@ -128,18 +156,12 @@ impl<'a> Grouping<'a> {
         self.parts[n].shell.volume
     }
 
-    /// All other parts of which this holds.
-    fn others(&self, n: usize, holds: impl Fn(&Closed, &Closed) -> bool) -> Vec<usize> {
-        let shell = &self.parts[n].shell;
-        (0..self.parts.len()).filter(|&m| m != n && holds(shell, &self.parts[m].shell)).collect()
-    }
-
     fn join(&mut self, a: usize, b: usize) {
         (self.grouped[a], self.grouped[b]) = (true, true);
         self.sets.join(a, b);
     }
 
-    fn by_edges(&mut self) {
+    fn by_edges(&mut self, signs: &mut [Signs]) {
         let mut clusters: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (n, part) in self.parts.iter().enumerate().filter(|(_, part)| part.guessed) {
             clusters.entry(part.cluster).or_default().push(n);
@@ -149,36 +171,22 @@ impl<'a> Grouping<'a> {
             for &n in members {
                 self.doubtful[n] = true;
                 self.join(members[0], n);
-                if forward > 0 && forward < members.len() {
-                    self.others(n, Closed::overlaps).into_iter().for_each(|m| self.join(n, m));
-                }
+                signs[n].mixed = forward > 0 && forward < members.len();
             }
         }
     }
 
-    fn by_winding(&mut self, seen: &[Seen]) {
-        for n in 0..self.parts.len() {
-            let (odd, both_ways) = match &seen[n] {
-                Seen::As(Found::Simple { walls }) => (*walls && !self.parts[n].shell.is_sheet(), false),
-                Seen::As(Found::Resolved(made)) => (true, made.both_ways),
-                Seen::As(Found::Doubtful(_)) => (false, false),
-                Seen::Divided(regions) => (true, !regions.perhaps.is_empty()),
-            };
-            if !odd {
-                continue;
-            }
-            for m in self.others(n, |own, other| own.is_around(other) && !other.is_sheet()) {
-                if both_ways || self.volume(m) * self.volume(n) < 0.0 {
-                    (self.doubtful[n], self.doubtful[m]) = (true, true);
-                    self.join(n, m);
-                }
-            }
+    /// Joins a part that has signs of a doubt with another beside it.
+    fn by_signs(&mut self, n: usize, of: Signs, other: usize) {
+        let (own, beside) = (&self.parts[n].shell, &self.parts[other].shell);
+        let within = own.is_around(beside) && own.overlaps(beside) && !beside.is_sheet();
+        let against = of.both_ways || own.volume * beside.volume < 0.0;
+        let holds = of.odd && within && against;
+        if holds {
+            (self.doubtful[n], self.doubtful[other]) = (true, true);
         }
-    }
-
-    fn by_caps(&mut self) {
-        for n in (0..self.parts.len()).filter(|&n| self.parts[n].is_capped()) {
-            self.others(n, Closed::touches).into_iter().for_each(|m| self.join(n, m));
+        if holds || of.capped || (of.mixed && own.overlaps(beside)) {
+            self.join(n, other);
         }
     }
 
@@ -196,11 +204,20 @@ impl<'a> Grouping<'a> {
 }
 
 fn groups(parts: &[Part], seen: &[Seen], file: &[[DVec3; 3]]) -> Vec<Group> {
+    let has_backs = parts.iter().any(Part::is_capped) && have_backs(file).any(|back| back);
+    let mut signs: Vec<Signs> = parts.iter().zip(seen).map(|(part, seen)| Signs::new(part, seen, has_backs)).collect();
     let mut all = Grouping::new(parts);
-    all.by_edges();
-    all.by_winding(seen);
-    if parts.iter().any(Part::is_capped) && have_backs(file).any(|back| back) {
-        all.by_caps();
+    all.by_edges(&mut signs);
+    if signs.iter().any(Signs::any) {
+        let boxes: Vec<[DVec3; 3]> =
+            parts.iter().map(|p| [p.shell.bounds[0], p.shell.bounds[1], p.shell.bounds[1]]).collect();
+        Tree::new(&boxes).touching_pairs(|m, n| {
+            for (m, n) in [(m as usize, n as usize), (n as usize, m as usize)] {
+                if signs[m].any() {
+                    all.by_signs(m, signs[m], n);
+                }
+            }
+        });
     }
     all.groups()
 }

@@ -247,6 +247,11 @@ impl<'a> Meetings<'a> {
         };
         for patch in patches {
             let largest = patch.iter().copied().max_by(|&a, &b| area(a).total_cmp(&area(b)))?;
+            if self.faces[largest as usize].normal == DVec3::ZERO {
+                // Slivers without an area are no surface, but hold edges together.
+                made.surface.extend(patch.iter().map(|&n| self.triangles[n as usize]));
+                continue;
+            }
             let [a, b, c] = self.triangles[largest as usize];
             let sides = self.sides((a + b + c) / 3.0, largest, &[largest])?;
             let (keep, turn) = (sides.is_surface(), (sides.behind == 0) != inverted);

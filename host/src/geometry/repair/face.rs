@@ -102,6 +102,9 @@ const TOUCH: f64 = 16.0;
 /// The sides of `other`, from each of its corners to the next, that lie on `face` for some length and are not sides of it.
 #[must_use]
 pub fn sides_on(face: &Face, other: &Face, on: f64) -> [bool; 3] {
+    if face.normal == DVec3::ZERO || other.normal == DVec3::ZERO {
+        return [false; 3];
+    }
     let shared = other.corners.map(|p| face.corners.contains(&p));
     let in_plane = [0, 1, 2].map(|i| shared[i] || face.height(other.corners[i]).abs() <= on);
     [0, 1, 2].map(|i| {

@@ -17,8 +17,10 @@ type Corners = HashMap<u64, Vec<u32>>;
 /// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
 pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
     let odd: Vec<u64> = uses.each().filter(|uses| is_odd(mesh, uses)).map(|uses| uses[0].0).collect();
-    let beside = beside(&odd, uses);
-    let corners = corners_on(mesh, &beside, &straight(mesh, &beside), rounding);
+    let two_sided = uses.each().any(|uses| has_back(mesh, uses));
+    // Of double-sided parts most whole edges have the right partners, and cutting them would join what is apart.
+    let cut = if two_sided { odd.clone() } else { beside(&odd, uses) };
+    let corners = corners_on(mesh, &cut, &straight(mesh, &odd), rounding);
     if corners.is_empty() {
         return 0;
     }
@@ -76,6 +78,16 @@ fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
     all.sort_unstable();
     all.dedup();
     all.len() % 2 == 1
+}
+
+/// Is one of the triangles at an edge the reverse of another?
+fn has_back(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
+    let corners = |u: &Use| {
+        let mut t = mesh.triangles[u.triangle as usize];
+        t.sort_unstable();
+        t
+    };
+    (0..uses.len()).any(|i| (0..i).any(|j| uses[i].1.up != uses[j].1.up && corners(&uses[i].1) == corners(&uses[j].1)))
 }
 
 /// Corners at which two of these edges run straight on.

@@ -73,12 +73,6 @@ impl Closed {
         self.bounds[0].cmplt(other.bounds[1]).all() && other.bounds[0].cmplt(self.bounds[1]).all()
     }
 
-    /// Have the boxes around both a point in common?
-    #[must_use]
-    pub fn touches(&self, other: &Closed) -> bool {
-        self.bounds[0].cmple(other.bounds[1]).all() && other.bounds[0].cmple(self.bounds[1]).all()
-    }
-
     /// Does the box around it hold that around the other?
     #[must_use]
     pub fn is_around(&self, other: &Closed) -> bool {

@@ -108,7 +108,8 @@ impl<'a> Complex<'a> {
     fn new(sided: &'a [Sided], meetings: &'a Meetings<'a>, on: f64) -> Self {
         let mut elements = Vec::new();
         let mut of = vec![Vec::new(); sided.len()];
-        for n in 0..sided.len() {
+        // What has no area has no sides.
+        for n in (0..sided.len()).filter(|&n| meetings.faces[n].normal != DVec3::ZERO) {
             for corners in meetings.parts(n as u32) {
                 let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
                 of[n].push(elements.len());
@@ -131,11 +132,12 @@ impl<'a> Complex<'a> {
     fn join_neighbours(&mut self, edges: &[SideUse]) {
         for [a, b] in self.meetings.neighbours(edges) {
             let (a, b) = (a as usize, b as usize);
+            let (&[own, ..], &[other, ..]) = (&self.of[a][..], &self.of[b][..]) else { continue };
             let (p, q) = (self.sided[a].corners, self.sided[b].corners);
             let runs = |t: [DVec3; 3], from: DVec3, to: DVec3| (0..3).any(|i| t[i] == from && t[(i + 1) % 3] == to);
             let same = (0..3).any(|i| runs(q, p[i], p[(i + 1) % 3]));
             for before in [false, true] {
-                self.sets.join(side(self.of[a][0], before), side(self.of[b][0], before != same));
+                self.sets.join(side(own, before), side(other, before != same));
             }
         }
     }
