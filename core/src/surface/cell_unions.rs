@@ -351,7 +351,7 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     with_least_blur(shared.tol, |blur| {
         let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
         let mut surface = P::Found::default();
-        let found = bodies.cell_and_surface(|kept| {
+        let found = bodies.cell_and_surface(&mut |kept| {
             if P::WANTED {
                 let [x, y, z] = kept.doubled_area();
                 surface.keep(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));

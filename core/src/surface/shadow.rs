@@ -505,10 +505,9 @@ impl<R: Real> Sweep<'_, R> {
             if let Some([a_low, a_top]) = last.replace([b_low, b_top]) {
                 let (before, after) = (b_low - a_low, b_top - a_top);
                 if before > thickness() && after < R::ZERO {
-                    let crossing = v + (top - v) * (before / (before - after));
-                    if crossing > v {
-                        stop = stop.smaller(crossing);
-                    }
+                    // Of edges nearly along the line the places differ by more than rounding where they cross but for rounding.
+                    let crossing = (v + (top - v) * (before / (before - after))).max(v + R::EPSILON);
+                    stop = stop.smaller(crossing);
                 }
             }
         }

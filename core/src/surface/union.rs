@@ -238,7 +238,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// # Errors
     /// [`NoProof`]: divide the cell.
     pub fn cell(&mut self) -> Result<CellFractions<R>, NoProof> {
-        self.cell_and_surface(|_| ())
+        self.cell_and_surface(&mut |_| ())
     }
 
     /// As [`CellUnion::cell`]; hands over the surface of the union inside the cell, in its frame. Without a proof what was handed over
@@ -246,7 +246,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
     ///
     /// # Errors
     /// [`NoProof`]: divide the cell.
-    pub fn cell_and_surface(&mut self, mut each: impl FnMut(&Polygon<R>)) -> Result<CellFractions<R>, NoProof> {
+    pub fn cell_and_surface(&mut self, each: &mut dyn FnMut(&Polygon<R>)) -> Result<CellFractions<R>, NoProof> {
         self.build_trees()?;
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         let (mut descent, pieces) = self.descent();

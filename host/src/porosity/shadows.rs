@@ -102,7 +102,7 @@ fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> Hidden
 const MAX_EDGES: usize = 1 << 15;
 
 /// Faces that a cell may hold.
-const MAX_FACES: usize = MAX_EDGES / 4;
+const MAX_FACES: usize = MAX_EDGES;
 
 /// A thread's memory.
 struct Buffers {
