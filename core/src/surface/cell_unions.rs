@@ -347,13 +347,12 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     if shared.others.reach(cell) {
         return None;
     }
-    let across = side_areas(cell);
     with_least_blur(shared.tol, |blur| {
         let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
         let mut surface = P::Found::default();
         let found = bodies.cell_and_surface(&mut |kept| {
             if P::WANTED {
-                let [x, y, z] = kept.doubled_area();
+                let ([x, y, z], across) = (kept.doubled_area(), side_areas(cell));
                 surface.keep(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));
             }
         })?;
