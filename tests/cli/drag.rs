@@ -31,12 +31,13 @@ fn bars(at: &Scratch) {
     fs::write(at.file("bars.toml"), (0..11).map(bar).collect::<String>()).expect("written");
 }
 
-/// Bars that cover 36.7 % of the section: by C_D = 2 the closed form is 0.733; for rows the plate of Idelchik loses 1.58.
+/// Bars that cover 36.7 % of the section: by C_D = 2 the closed form is 0.733; for rows the plate of Idelchik loses 1.58. The closed form knows no
+/// contraction, so faces do not see the bars there: with throats the loss is 0.753 if the low faces are lowered and 0.700 if the high ones are.
 #[test]
 fn bars_exert_their_force() {
     let at = Scratch::new();
     bars(&at);
-    solved(&at, &channel("bars.toml", "[drag]\nlaw = \"bluff\"\ncd = 2"), "bluff", &["-q"]);
+    solved(&at, &channel("bars.toml", "faces = \"plane\"\n[drag]\nlaw = \"bluff\"\ncd = 2"), "bluff", &["-q"]);
     let bluff = loss(&at, "bluff");
     assert!((bluff - 0.733).abs() < 0.01, "{bluff}");
     solved(&at, &channel("bars.toml", "[drag]\nlaw = \"pdr\""), "pdr", &["-q"]);
