@@ -7,7 +7,7 @@
 //! T. A. Ottmann, *Algorithms for Reporting and Counting Geometric Intersections*, IEEE Transactions on Computers C-28, 1979.
 //!
 //! No sweep is needed where a line enters solid at most once: the shadow is then the section with the low side and the area of all faces that are
-//! entered, as they are seen along the axis ([`CellFaces::passed_once`]).
+//! entered, as they are seen along the axis (`CellFaces::passed_once`).
 //!
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
