@@ -25,7 +25,7 @@
 //! 5. [`problem`]: what stays the same during a step, and its contracts; [`step_report`]: what a step did; [`fallback`]: what happens
 //!    to unphysical states
 //! 6. `kernel`: one slab of one step, row by row
-//! 7. [`step`]: the calls: a slab, merging, the whole step with its fallbacks
+//! 7. [`step`]: the calls: a slab, merging, the whole step with its fallbacks; [`mod@stable_step`]: how long a step may be
 //!
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.
@@ -46,6 +46,7 @@ pub mod limiter;
 pub mod porosity;
 pub mod problem;
 pub mod riemann;
+pub mod stable_step;
 pub mod state;
 pub mod step;
 pub mod step_report;
@@ -60,6 +61,7 @@ pub use porosity::fractions::Mesh;
 pub use porosity::prepare::{Fractions, Merging, Prepared, PreparedView, Tidied, Treatment, prepare};
 pub use problem::{PressureForm, Problem, Scheme};
 pub use riemann::Riemann;
+pub use stable_step::{StableStep, stable_step};
 pub use state::{Conserved, Fields, FieldsMut, Gas, Primitive};
 pub use step::scratch_needed;
 pub use step_report::Report;

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use slabs::step;
 use voidage_core::flow::{
     Boundary, Conserved, Drag, Error, Feed, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive,
-    Problem, Report, Scheme, cluster_scratch, prepare,
+    Problem, Report, Scheme, cluster_scratch, prepare, stable_step,
 };
 
 pub use field::{Field, Scalar};
@@ -77,9 +77,6 @@ pub struct Flow<R: Scalar, const D: usize> {
     /// Steps repeated with a smaller dt to avoid a floor.
     pub repeated: usize,
 }
-
-/// How often a step that needed floors is repeated with half the step before the floors stand.
-const REPEATS: usize = 4;
 
 /// Share of the stable step that careful steps take.
 const CAREFUL_SHARE: f64 = 0.2;
@@ -458,15 +455,20 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// One step of `dt`, whatever its stability. Returns what it did.
     pub fn step(&mut self, dt: R) -> Result<Report<R, D>, Error> {
         self.rate()?;
-        let report =
-            self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
-        self.accept(dt, &report);
+        let report = self.attempt(dt)?;
+        self.accept(self.time + dt, &report);
         Ok(report)
     }
 
-    fn accept(&mut self, dt: R, report: &Report<R, D>) {
+    /// The next state by a step of `dt`.
+    fn attempt(&mut self, dt: R) -> Result<Report<R, D>, Error> {
+        self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))
+    }
+
+    /// The next state, at a time, becomes the present one.
+    fn accept(&mut self, time: R, report: &Report<R, D>) {
         std::mem::swap(&mut self.state, &mut self.next);
-        self.time += dt;
+        self.time = time;
         self.steps += 1;
         self.rate = Some(report.rate);
         let mut total = self.total.and(report);
@@ -476,27 +478,11 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
 
     /// One stable step that does not pass `end`; a step that would need floors is repeated with less.
     pub fn advance(&mut self, cfl: R, end: R) -> Result<R, Error> {
-        let mut dt = self.stable_dt(cfl)?;
-        let left = end - self.time;
-        let last = !(dt < left);
-        if last {
-            dt = left;
-        }
-        let mut repeats = 0;
-        loop {
-            let report =
-                self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))?;
-            if report.floored == 0 || repeats == REPEATS {
-                self.accept(dt, &report);
-                self.repeated += repeats;
-                if last && repeats == 0 {
-                    self.time = end;
-                }
-                return Ok(dt);
-            }
-            repeats += 1;
-            dt = R::HALF * dt;
-        }
+        let longest = self.stable_dt(cfl)?;
+        let done = stable_step(self.time, end, longest, |dt| self.attempt(dt))?;
+        self.accept(done.time, &done.report);
+        self.repeated += done.repeated;
+        Ok(done.dt)
     }
 
     /// Stable steps until `end`.

@@ -6,11 +6,12 @@
 //! - `areas`: open areas along one axis at the cells of a row
 //! - `mark`: the flags from the open fractions
 //! - [`throat`], `jump`: fluxes where the porosity jumps
-//! - [`clusters`]: small cells that share one state with a neighbour
+//! - [`clusters`]: small cells that share one state with a neighbour; `cluster_averages`: that state
 //! - [`mod@prepare`]: all of that in one call
 
 pub(crate) mod areas;
 pub(crate) mod cell_walls;
+pub(crate) mod cluster_averages;
 pub mod clusters;
 pub mod flags;
 pub mod fractions;

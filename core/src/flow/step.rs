@@ -6,7 +6,7 @@ use crate::flow::kernel::flux_choice::{AnyFlux, FluxChoice};
 use crate::flow::kernel::scratch::{PIECE, Sizes, in_pieces};
 use crate::flow::kernel::slab::Part;
 use crate::flow::kernel::{long_line, sweep};
-use crate::flow::porosity::clusters;
+use crate::flow::porosity::cluster_averages;
 use crate::flow::problem::Problem;
 use crate::flow::state::{Fields, FieldsMut};
 use crate::flow::step_report::Report;
@@ -92,9 +92,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     pub fn start(&self, field: &mut FieldsMut<'_, R, D>) -> Result<R, Error> {
         self.check_fields(&field.as_fields())?;
         if let Some(p) = &self.porosity {
-            clusters::average_unequal(self.clusters, &self.mesh, p.volume, self.gas, field);
+            cluster_averages::average_unequal(self.clusters, &self.mesh, p.volume, self.gas, field);
             if self.gas.is_mixed() {
-                clusters::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, field);
+                cluster_averages::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, field);
             }
         }
         self.rate(&field.as_fields())
@@ -113,9 +113,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(old)?;
         self.fits(&new.as_fields(), self.mesh.len())?;
         let Some(p) = &self.porosity else { return Ok(()) };
-        clusters::apply(self.clusters, &self.mesh, p.volume, old, new);
+        cluster_averages::apply(self.clusters, &self.mesh, p.volume, old, new);
         if self.gas.is_mixed() {
-            clusters::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, new);
+            cluster_averages::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, new);
         }
         for cell in self.clusters.cells() {
             if self.holds(&new.as_fields(), cell) {
@@ -128,7 +128,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     }
 
     /// One step on one thread: slab, merging, and, if a state came out unphysical, again with first order around it, then with positive
-    /// fluxes, at last with floors. `marks` is one byte per cell of scratch. A caller with threads does the same with its own slabs.
+    /// fluxes, at last with floors. `marks` is one byte per cell of scratch. For a caller with threads there is [`Problem::step_in_slabs`].
     ///
     /// `old` must be physical; it is untouched, so a caller may repeat a step that had to be floored with a smaller `dt`.
     pub fn step(
@@ -155,9 +155,26 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         marks: &mut [u8],
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
-        fits(self.mesh.len(), marks.len())?;
         let all = 0..self.mesh.cells()[D - 1];
-        let mut report = self.advance_slab_by::<F>(old, new, all.clone(), dt, None, scratch)?;
+        self.step_in_slabs(old, new, marks, |new, first_order| {
+            self.advance_slab_by::<F>(old, new, all.clone(), dt, first_order, scratch)
+        })
+    }
+
+    /// The same for a caller with threads: `attempt` advances all slabs by one and the same time ([`Problem::advance_slab_by`]), with the marks
+    /// that it is given, and joins their reports; it is called again for each fallback.
+    ///
+    /// # Errors
+    /// As of [`Problem::step`], and those of `attempt`.
+    pub fn step_in_slabs(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        marks: &mut [u8],
+        mut attempt: impl FnMut(&mut FieldsMut<'_, R, D>, Option<&[u8]>) -> Result<Report<R, D>, Error>,
+    ) -> Result<Report<R, D>, Error> {
+        fits(self.mesh.len(), marks.len())?;
+        let mut report = attempt(new, None)?;
         self.merge(old, new, &mut report)?;
         if report.unphysical == 0 {
             return Ok(report);
@@ -167,7 +184,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             if self.mark_troubled(&new.as_fields(), marks)? == 0 {
                 break;
             }
-            report = self.advance_slab_by::<F>(old, new, all.clone(), dt, Some(marks), scratch)?;
+            report = attempt(new, Some(marks))?;
             self.merge(old, new, &mut report)?;
             if report.unphysical == 0 {
                 return Ok(report);

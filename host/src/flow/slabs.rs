@@ -5,7 +5,7 @@ use crate::huge::HugeVec;
 use rayon::prelude::*;
 use voidage_core::flow::{AnyGas, Error, Problem, Report};
 
-/// One step on rayon's threads: slabs side by side, merging, fallback, floors, as [`Problem::step`].
+/// One step on rayon's threads, slabs side by side.
 pub(super) fn step<R: Scalar, const D: usize>(
     problem: &Problem<'_, R, D>,
     old: &Field<R, D>,
@@ -26,44 +26,25 @@ pub(super) fn step<R: Scalar, const D: usize>(
     if let [one] = scratch {
         return problem.step_by::<AnyGas>(&old.view(), &mut new.view_mut(), dt, marks, one);
     }
-    let attempt =
-        |new: &mut Field<R, D>, scratch: &mut [HugeVec<R>], marks: Option<&[u8]>| -> Result<Report<R, D>, Error> {
-            let layer = problem.mesh().layer();
-            let mut rest = new.view_mut();
-            let mut slabs = Vec::with_capacity(threads);
-            let mut begin = 0;
-            for t in 0..threads {
-                let end = layers * (t + 1) / threads;
-                let (slab, above) = rest.split_at((end - begin) * layer);
-                slabs.push((begin..end, slab));
-                rest = above;
-                begin = end;
-            }
-            let reports: Result<Vec<_>, Error> = slabs
-                .into_par_iter()
-                .zip(scratch.par_iter_mut())
-                .map(|((range, mut slab), scratch)| {
-                    problem.advance_slab_by::<AnyGas>(&old.view(), &mut slab, range, dt, marks, scratch)
-                })
-                .collect();
-            let mut report = reports?.iter().fold(Report::new(), |a, b| a.and(b));
-            problem.merge(&old.view(), &mut new.view_mut(), &mut report)?;
-            Ok(report)
-        };
-    let mut report = attempt(new, scratch, None)?;
-    if report.unphysical == 0 {
-        return Ok(report);
-    }
-    marks.fill(0);
-    for _ in 0..voidage_core::flow::fallback::FALLBACKS {
-        if problem.mark_troubled(&new.view(), marks)? == 0 {
-            break;
+    let layer = problem.mesh().layer();
+    problem.step_in_slabs(&old.view(), &mut new.view_mut(), marks, |new, marks| {
+        let mut rest = new.reborrow();
+        let mut slabs = Vec::with_capacity(threads);
+        let mut begin = 0;
+        for t in 0..threads {
+            let end = layers * (t + 1) / threads;
+            let (slab, above) = rest.split_at((end - begin) * layer);
+            slabs.push((begin..end, slab));
+            rest = above;
+            begin = end;
         }
-        report = attempt(new, scratch, Some(marks))?;
-        if report.unphysical == 0 {
-            return Ok(report);
-        }
-    }
-    problem.apply_floors(&old.view(), &mut new.view_mut(), &mut report)?;
-    Ok(report)
+        let reports: Result<Vec<_>, Error> = slabs
+            .into_par_iter()
+            .zip(scratch.par_iter_mut())
+            .map(|((range, mut slab), scratch)| {
+                problem.advance_slab_by::<AnyGas>(&old.view(), &mut slab, range, dt, marks, scratch)
+            })
+            .collect();
+        Ok(reports?.iter().fold(Report::new(), |a, b| a.and(b)))
+    })
 }

@@ -6,6 +6,7 @@ pub mod edges;
 pub mod face;
 pub mod join;
 pub mod junctions;
+pub mod lines;
 pub mod nesting;
 pub mod regions;
 pub mod rims;

@@ -3,7 +3,7 @@
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
-use crate::geometry::repair::regions::{self, Regions};
+use crate::geometry::repair::regions::{self, Regions, SourceTriangles};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
@@ -74,28 +74,28 @@ fn look(shell: &Closed) -> Found {
 }
 
 /// The regions of a surface of which all parts look the same way, or not.
-fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], file: &[[DVec3; 3]], mixed: bool) -> Option<Seen> {
-    regions::look(own, bounds, file, mixed).map(Seen::Divided)
+fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], source: &SourceTriangles<'_>, mixed: bool) -> Option<Seen> {
+    regions::look(own, bounds, source, mixed).map(Seen::Divided)
 }
 
 /// Two walls may have more between them than the shell winds around: then fronts and backs of parts that touch were joined to one shell.
 const MORE: f64 = 1.0 + 1e-9;
 
-fn look_at_one(part: &Part, file: &[[DVec3; 3]]) -> Seen {
+fn look_at_one(part: &Part, source: &SourceTriangles<'_>) -> Seen {
     match look(&part.shell) {
         Found::Simple { walls: true } if !part.guessed => {
             let middle = (part.shell.bounds[0] + part.shell.bounds[1]) * 0.5;
-            regions::look(part.own(), part.shell.bounds, file, false)
+            regions::look(part.own(), part.shell.bounds, source, false)
                 .filter(|r| signed_volume(&r.solid, middle).abs() > MORE * part.shell.volume.abs())
                 .map_or(Seen::As(Found::Simple { walls: true }), Seen::Divided)
         }
         // Which of several parts that were joined is turned cannot be told.
         Found::Resolved(made) if made.touches && !part.guessed => {
-            divided(part.own(), part.shell.bounds, file, made.both_ways)
+            divided(part.own(), part.shell.bounds, source, made.both_ways)
                 .unwrap_or(Seen::As(Found::Doubtful(made.place)))
         }
         Found::Doubtful(place) if !part.guessed => {
-            divided(part.own(), part.shell.bounds, file, false).unwrap_or(Seen::As(Found::Doubtful(place)))
+            divided(part.own(), part.shell.bounds, source, false).unwrap_or(Seen::As(Found::Doubtful(place)))
         }
         seen => Seen::As(seen),
     }
@@ -203,8 +203,8 @@ impl<'a> Grouping<'a> {
     }
 }
 
-fn groups(parts: &[Part], seen: &[Seen], file: &[[DVec3; 3]]) -> Vec<Group> {
-    let has_backs = parts.iter().any(Part::is_capped) && have_backs(file).any(|back| back);
+fn groups(parts: &[Part], seen: &[Seen], source: &SourceTriangles<'_>) -> Vec<Group> {
+    let has_backs = parts.iter().any(Part::is_capped) && have_backs(source.triangles()).any(|back| back);
     let mut signs: Vec<Signs> = parts.iter().zip(seen).map(|(part, seen)| Signs::new(part, seen, has_backs)).collect();
     let mut all = Grouping::new(parts);
     all.by_edges(&mut signs);
@@ -228,7 +228,7 @@ fn look_together(
     group: &Group,
     parts: &[Part],
     seen: &[Seen],
-    file: &[[DVec3; 3]],
+    source: &SourceTriangles<'_>,
 ) -> Option<(Vec<usize>, Closed, Seen)> {
     let positive = |&n: &usize| parts[n].shell.volume > 0.0;
     let simple = |members: &[usize]| {
@@ -242,7 +242,7 @@ fn look_together(
     let by_regions = |members: &[usize]| {
         let own: Vec<[DVec3; 3]> = members.iter().flat_map(|&n| parts[n].own().iter().copied()).collect();
         let (whole, mixed) = (whole(members), !members.iter().all(positive));
-        let seen = divided(&own, whole.bounds, file, mixed && members.iter().any(positive))?;
+        let seen = divided(&own, whole.bounds, source, mixed && members.iter().any(positive))?;
         Some((members.to_vec(), whole, seen))
     };
     if simple(&group.members) {
@@ -266,10 +266,10 @@ fn look_together(
 /// surface of their regions, unless each by itself is simple. `file` is all
 /// triangles as they were read.
 pub(super) fn resolve(parts: Vec<Part>, file: &[[DVec3; 3]], d: &mut Diagnosis, report: &mut Reporter) -> Vec<Part> {
-    let mut parts = parts;
-    let mut seen: Vec<Seen> = parts.par_iter().map(|part| look_at_one(part, file)).collect();
-    let groups = groups(&parts, &seen, file);
-    let together: Vec<_> = groups.par_iter().map(|group| look_together(group, &parts, &seen, file)).collect();
+    let (mut parts, source) = (parts, &SourceTriangles::new(file));
+    let mut seen: Vec<Seen> = parts.par_iter().map(|part| look_at_one(part, source)).collect();
+    let groups = groups(&parts, &seen, source);
+    let together: Vec<_> = groups.par_iter().map(|group| look_together(group, &parts, &seen, source)).collect();
     let mut gone = vec![false; parts.len()];
     for (members, whole, all) in together.into_iter().flatten() {
         members[1..].iter().for_each(|&n| gone[n] = true);

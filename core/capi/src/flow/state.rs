@@ -8,7 +8,7 @@ use crate::status::{Answer, Status};
 use crate::types::{self, StepReport};
 use voidage_core::flow::{
     Boundary, Conserved, Drag, Error, Fields, FieldsMut, Fractions, Gas, Merging, Mesh, Prepared, Primitive, Problem,
-    Report, Scheme, Treatment, cluster_scratch, prepare, scratch_needed,
+    Report, Scheme, Treatment, cluster_scratch, prepare, scratch_needed, stable_step,
 };
 use voidage_core::number::real::Real;
 
@@ -95,9 +95,6 @@ pub struct State<R: Real, const D: usize> {
     rate: Option<R>,
     time: R,
 }
-
-/// How often a step that needed floors is repeated with half the time before the floors stand.
-const REPEATS: u32 = 4;
 
 /// A copy of a slice in the caller's memory.
 fn copied<R: Real, M: Memory<'static>>(memory: &mut M, from: &[R]) -> Block<R> {
@@ -208,10 +205,10 @@ impl<R: Real, const D: usize> State<R, D> {
         Ok(problem.step(&old.view(), &mut new.view_mut(), dt, self.flags, self.scratch)?)
     }
 
-    /// The next field becomes the present one.
-    fn accept(&mut self, dt: R, report: &Report<R, D>, total: &mut StepReport<R>) -> Answer {
+    /// The next field, at a time and after a step of `dt`, becomes the present one.
+    fn accept(&mut self, time: R, dt: R, report: &Report<R, D>, total: &mut StepReport<R>) -> Answer {
         self.fields.swap(0, 1);
-        self.time += dt;
+        self.time = time;
         self.rate = Some(report.rate);
         (total.time, total.dt, total.rate) = (self.time, dt, report.rate);
         total.steps += 1;
@@ -229,7 +226,7 @@ impl<R: Real, const D: usize> State<R, D> {
     pub fn step(&mut self, dt: R, total: &mut StepReport<R>) -> Answer {
         self.rate()?;
         let report = self.attempt(dt);
-        self.accept(dt, report.as_ref().map_err(|&refusal| refusal)?, total)
+        self.accept(self.time + dt, dt, report.as_ref().map_err(|&refusal| refusal)?, total)
     }
 
     /// Stable steps until `end`, or until `most` have been done; what has been done counts whatever the answer.
@@ -244,28 +241,13 @@ impl<R: Real, const D: usize> State<R, D> {
 
     /// One stable step that does not pass `end`; one that would need floors is repeated with half the time.
     fn stable_step(&mut self, end: R, cfl: R, total: &mut StepReport<R>) -> Answer {
-        let (rate, left) = (self.rate()?, end - self.time);
-        let mut dt = if rate > R::ZERO { cfl / rate } else { left };
-        let last = !(dt < left);
-        if last {
-            dt = left;
-        }
-        for repeat in 0..=REPEATS {
-            if !(self.time + dt > self.time) {
-                return Err(Status::Stalled.of(c"dt"));
-            }
-            let report = self.attempt(dt)?;
-            if report.floored == 0 || repeat == REPEATS {
-                self.accept(dt, &report, total)?;
-                if last && repeat == 0 {
-                    (self.time, total.time) = (end, end);
-                }
-                break;
-            }
-            total.repeated += 1;
-            dt = R::HALF * dt;
-        }
-        Ok(())
+        let (rate, time) = (self.rate()?, self.time);
+        let longest = if rate > R::ZERO { cfl / rate } else { R::INFINITY };
+        let done = stable_step(time, end, longest, |dt| {
+            if time + dt > time { self.attempt(dt) } else { Err(Status::Stalled.of(c"dt")) }
+        })?;
+        total.repeated += done.repeated as u64;
+        self.accept(done.time, done.dt, &done.report, total)
     }
 
     /// Mass, momentum along x, y, z and energy in the domain.

@@ -4,7 +4,7 @@ use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Span};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::slab::{RowAt, Slab};
-use crate::flow::porosity::clusters::least_volume;
+use crate::flow::porosity::fractions::least_volume;
 use crate::flow::porosity::flags::{SMALL, break_high, break_low, is, marked};
 use crate::flow::state::{Fields, FieldsMut};
 use crate::flow::step_report::Report;

@@ -137,6 +137,11 @@ pub(in crate::flow) struct Porosity<'a, R, const D: usize> {
 /// whose area goes with r²), which needs no neighbour.
 pub const SMALL_SHARE: f64 = 0.33;
 
+/// The least volume a cell is counted with. Its change is its flux over this volume: huge, and undone by the averaging.
+pub(in crate::flow) fn least_volume<R: Real>() -> R {
+    R::EPSILON * R::EPSILON
+}
+
 /// Porosity as the kernel asks for it at single cells and faces.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::flow) struct Medium<'a, R, const D: usize> {

@@ -1,13 +1,14 @@
 //! Shells that meet themselves: found once, independent of any grid, and made the surface of what they wind around.
 //!
 //! Inside is where the winding number is not 0, however often a shell winds. Triangles that other triangles of the shell cut or cover are
-//! divided along them; of every part the winding numbers on both sides tell whether it is surface of the solid. The winding
-//! number in the middle of a part, without the triangles that lie there, is the mean of those on both sides, and the triangles that
-//! lie there are the difference: no point beside the surface needs to be chosen.
+//! divided along them; of every part the winding numbers on both sides tell whether it is surface of the solid. The one before it counts what a
+//! line from its middle passes through; the triangles that lie there are the difference. Where all lines pass close to edges, the solid
+//! angles of all other triangles tell the mean of both.
 //!
 //! **Proof.** The new surface must be closed: its areas cancel and its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
 use crate::geometry::repair::face::{Crossing, Face, beside, cut, meeting, push_parts, sides_on};
+use crate::geometry::repair::lines::Lines;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
@@ -22,7 +23,7 @@ const ON_ULPS: f64 = 16.0;
 /// Largest difference of the volumes along x, y and z, as a share of the volume that the shell's box holds.
 const SPREAD: f64 = 1e-9;
 
-/// So many solid angles may be computed for one shell: some seconds.
+/// So many solid angles may be computed for one shell, where lines tell nothing: some seconds.
 const BUDGET: usize = 100_000_000;
 
 /// What a look at a shell says.
@@ -110,6 +111,7 @@ pub struct Meetings<'a> {
     triangles: &'a [[DVec3; 3]],
     /// Their planes.
     pub faces: Vec<Face>,
+    tree: Tree,
     /// For each triangle that others meet, these others.
     met: HashMap<u32, Vec<(u32, Crossing)>>,
     /// Triangles and their sides that lie on others: there the surface on both sides of an edge may be in different regions.
@@ -143,7 +145,8 @@ impl<'a> Meetings<'a> {
         let faces: Vec<Face> = triangles.iter().map(|&t| Face::new(t)).collect();
         let mut met: HashMap<u32, Vec<(u32, Crossing)>> = HashMap::default();
         let mut resting = HashSet::default();
-        Tree::new(triangles).touching_pairs(|m, n| {
+        let tree = Tree::new(triangles);
+        tree.touching_pairs(|m, n| {
             let (a, b) = (&faces[m as usize], &faces[n as usize]);
             if beside(a, b, on) || beside(b, a, on) {
                 return;
@@ -157,7 +160,13 @@ impl<'a> Meetings<'a> {
                 resting.extend((0..3).filter(|&side| sides[side]).map(|side| (n, side)));
             }
         });
-        Meetings { triangles, faces, met, resting, on }
+        Meetings { triangles, faces, tree, met, resting, on }
+    }
+
+    /// Lines through the triangles.
+    #[must_use]
+    pub fn lines(&self) -> Lines<'_> {
+        Lines::new(&self.faces, &self.tree, self.on)
     }
 
     /// Pairs of triangles that no other meets, across edges that they alone use and that lie on no other.
@@ -199,13 +208,18 @@ impl<'a> Meetings<'a> {
     }
 
     /// The sides of a part with this middle of triangle `n`; `own` are the triangles that lie there, itself too. None if there is doubt.
-    fn sides(&self, middle: DVec3, n: u32, own: &[u32]) -> Option<Sides> {
+    fn sides(&self, middle: DVec3, n: u32, own: &[u32], spent: &mut usize) -> Option<Sides> {
         let normal = self.faces[n as usize].normal;
-        let sheets: f64 = own.iter().map(|&m| self.faces[m as usize].normal.dot(normal).signum()).sum();
-        let others = self.triangles.iter().enumerate().filter(|(m, _)| !own.contains(&(*m as u32)));
-        let mean: f64 = others.map(|(_, t)| solid_angle(t, middle)).sum();
-        let whole = |w: f64| ((w - w.round()).abs() < 0.05).then_some(w.round() as i32);
-        Some(Sides { behind: whole(mean + 0.5 * sheets)?, before: whole(mean - 0.5 * sheets)? })
+        let sheets: i32 = own.iter().map(|&m| if self.faces[m as usize].normal.dot(normal) > 0.0 { 1 } else { -1 }).sum();
+        let by_angles = || {
+            *spent += self.triangles.len();
+            let others = self.triangles.iter().enumerate().filter(|(m, _)| !own.contains(&(*m as u32)));
+            let mean: f64 = others.map(|(_, t)| solid_angle(t, middle)).sum();
+            let before = mean - 0.5 * f64::from(sheets);
+            ((before - before.round()).abs() < 0.05 && *spent <= BUDGET).then_some(before.round() as i32)
+        };
+        let before = self.lines().winding(middle, normal, own).or_else(by_angles)?;
+        Some(Sides { behind: before + sheets, before })
     }
 
     /// The convex parts into which others divide triangle `n`.
@@ -238,9 +252,7 @@ impl<'a> Meetings<'a> {
     fn resolved(&self, inverted: bool) -> Option<Made> {
         let mut made = Made::default();
         let patches = self.patches();
-        if patches.len().saturating_mul(self.triangles.len()) > BUDGET {
-            return None;
-        }
+        let mut spent = 0;
         let area = |n: u32| {
             let [a, b, c] = self.triangles[n as usize];
             (b - a).cross(c - a).length_squared()
@@ -253,7 +265,7 @@ impl<'a> Meetings<'a> {
                 continue;
             }
             let [a, b, c] = self.triangles[largest as usize];
-            let sides = self.sides((a + b + c) / 3.0, largest, &[largest])?;
+            let sides = self.sides((a + b + c) / 3.0, largest, &[largest], &mut spent)?;
             let (keep, turn) = (sides.is_surface(), (sides.behind == 0) != inverted);
             made.see(sides, keep, turn);
             if keep {
@@ -263,16 +275,14 @@ impl<'a> Meetings<'a> {
         }
         let mut met: Vec<u32> = self.met.keys().copied().collect();
         met.sort_unstable();
-        let mut spent = 0;
         for n in met {
             let parts = self.parts(n);
             let mut wanted = Vec::with_capacity(parts.len());
             for part in &parts {
-                spent += self.triangles.len();
                 let middle = part.iter().sum::<DVec3>() / part.len() as f64;
                 let holds = |m: u32| self.faces[m as usize].inward(middle).iter().all(|&d| d > 0.0);
                 let own: Vec<u32> = self.covering(n).filter(|&m| holds(m)).chain([n]).collect();
-                let sides = self.sides(middle, n, &own)?;
+                let sides = self.sides(middle, n, &own, &mut spent)?;
                 let first = own.iter().all(|&m| m >= n);
                 let wall = sides.is_wall() && own.len() > 1;
                 let turn = !wall && (sides.behind == 0) != inverted;
@@ -282,9 +292,6 @@ impl<'a> Meetings<'a> {
             }
             let parts = parts.iter().map(|part| &part[..]).zip(wanted.iter().copied());
             push_parts(&mut made.surface, self.triangles[n as usize], parts);
-            if spent > BUDGET {
-                return None;
-            }
         }
         Some(made)
     }

@@ -13,25 +13,16 @@
 
 use crate::geometry::repair::crossing::{Meetings, SideUse, edges, is_closed, tolerance};
 use crate::geometry::repair::face::{Face, push_parts};
+use crate::geometry::repair::lines::{FLAT, directions};
 use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::sets::Sets;
+use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
-
-/// Lines from each side of a part of the surface.
-const LINES: usize = 8;
+use std::sync::OnceLock;
 
 /// Parts connected by edges of their own are asked at so many places.
 const PLACES: usize = 8;
-
-/// So many lines may be tried on triangles: some seconds.
-const BUDGET: usize = 200_000_000;
-
-/// A line flatter to a plane than this, as the sine of its angle, tells nothing.
-const FLAT: f64 = 1e-4;
-
-/// Lines clear of edges by so many tolerances of points on planes tell where they pass.
-const CLEAR: f64 = 64.0;
 
 /// Surfaces of what is solid, counter-clockwise seen from outside; from inside if the whole surface looks inward.
 #[derive(Debug, Default)]
@@ -42,6 +33,33 @@ pub struct Regions {
     pub perhaps: Vec<[DVec3; 3]>,
     /// So many triangles were the backs of others.
     pub backs: usize,
+}
+
+/// All triangles of a source as they were read: those that lie on a surface tell where it has a back.
+pub struct SourceTriangles<'a> {
+    triangles: &'a [[DVec3; 3]],
+    tree: OnceLock<Tree>,
+}
+
+impl<'a> SourceTriangles<'a> {
+    /// Of these triangles.
+    #[must_use]
+    pub fn new(triangles: &'a [[DVec3; 3]]) -> Self {
+        SourceTriangles { triangles, tree: OnceLock::new() }
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn triangles(&self) -> &'a [[DVec3; 3]] {
+        self.triangles
+    }
+
+    /// Those whose boxes are as near to a point as `on`. Most files never ask.
+    fn near(&self, p: DVec3, on: f64) -> impl Iterator<Item = Face> {
+        let mut found = Vec::new();
+        self.tree.get_or_init(|| Tree::new(self.triangles)).touching([p - on, p + on], |n| found.push(n));
+        found.into_iter().map(|n| Face::new(self.triangles[n as usize]))
+    }
 }
 
 /// A triangle, and how often it is there from the front and from the back.
@@ -101,7 +119,6 @@ struct Complex<'a> {
     of: Vec<Vec<usize>>,
     sets: Sets,
     on: f64,
-    clear: f64,
 }
 
 impl<'a> Complex<'a> {
@@ -117,7 +134,7 @@ impl<'a> Complex<'a> {
             }
         }
         let sets = Sets::new(2 * elements.len() + 1);
-        Complex { sided, meetings, elements, of, sets, on, clear: CLEAR * on }
+        Complex { sided, meetings, elements, of, sets, on }
     }
 
     fn outside(&self) -> usize {
@@ -144,12 +161,12 @@ impl<'a> Complex<'a> {
 
     /// The part of a triangle that holds a point of its plane, not on its rim.
     fn part_at(&self, triangle: usize, p: DVec3) -> Option<usize> {
-        let face = self.face(triangle);
+        let (face, clear) = (self.face(triangle), self.meetings.lines().clear);
         let within = |e: &&usize| {
             let corners = &self.elements[**e].corners;
             (0..corners.len()).all(|i| {
                 let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
-                face.normal.cross(b - a).normalize_or_zero().dot(p - a) > self.clear
+                face.normal.cross(b - a).normalize_or_zero().dot(p - a) > clear
             })
         };
         self.of[triangle].iter().find(within).copied()
@@ -180,45 +197,20 @@ impl<'a> Complex<'a> {
     /// Follow a line from an element to what it meets first; joins nothing if that cannot be told.
     fn follow(&mut self, element: usize, before: bool, direction: DVec3) {
         let from = self.elements[element].middle;
-        let own = self.layers(element);
-        let (mut first, mut hits, mut unclear) = (f64::INFINITY, Vec::new(), f64::INFINITY);
-        for m in (0..self.sided.len()).filter(|m| !own.contains(m)) {
-            let face = self.face(m);
-            if face.normal == DVec3::ZERO {
-                continue;
-            }
-            let (slope, height) = (face.normal.dot(direction), face.height(from));
-            if slope.abs() < FLAT {
-                if height.abs() < self.clear {
-                    return;
-                }
-                continue;
-            }
-            let along = -height / slope;
-            if along < -self.clear / FLAT {
-                continue;
-            }
-            let room = face.inward(from + direction * along).into_iter().fold(f64::INFINITY, f64::min);
-            let doubt = self.clear / slope.abs();
-            if room < -doubt {
-                continue;
-            }
-            if room < doubt || along < doubt {
-                unclear = unclear.min(along);
-            } else {
-                first = first.min(along);
-                hits.push((along, m));
-            }
-        }
-        if unclear.is_finite() && unclear <= first + self.clear / FLAT {
+        let own: Vec<u32> = self.layers(element).into_iter().map(|m| m as u32).collect();
+        let lines = self.meetings.lines();
+        let way = lines.follow(from, direction, &own);
+        let first = way.through.iter().fold(f64::INFINITY, |first, hit| first.min(hit.0));
+        let here = first + lines.slack();
+        if way.unclear.is_some_and(|unclear| unclear <= here) {
             return;
         }
         let own = side(element, before);
-        if hits.is_empty() {
+        if way.through.is_empty() {
             let outside = self.outside();
             return self.sets.join(own, outside);
         }
-        let hits: Vec<usize> = hits.iter().filter(|h| h.0 <= first + self.clear / FLAT).map(|h| h.1).collect();
+        let hits: Vec<usize> = way.through.iter().filter(|hit| hit.0 <= here).map(|hit| hit.1 as usize).collect();
         let normal = self.face(hits[0]).normal;
         if hits.iter().any(|&m| self.face(m).normal.dot(normal).abs() < 1.0 - FLAT) {
             return;
@@ -228,8 +220,8 @@ impl<'a> Complex<'a> {
         }
     }
 
-    /// Join the sides that see each other, or the open. False if that takes too long.
-    fn join_visible(&mut self) -> bool {
+    /// Join the sides that see each other, or the open.
+    fn join_visible(&mut self) {
         let mut size = vec![0_usize; 2 * self.elements.len() + 1];
         let roots: Vec<usize> = (0..self.elements.len()).map(|e| self.sets.find(side(e, true))).collect();
         roots.iter().for_each(|&r| size[r] += 1);
@@ -241,32 +233,22 @@ impl<'a> Complex<'a> {
                 n % step == 0
             })
             .collect();
-        if asked.len().saturating_mul(2 * LINES).saturating_mul(self.sided.len()) > BUDGET {
-            return false;
-        }
         for e in asked {
             let normal = self.face(self.elements[e].triangle as usize).normal;
-            let (u, v) = normal.any_orthonormal_pair();
             for before in [false, true] {
-                let ahead = if before { normal } else { -normal };
-                for n in 0..LINES {
+                for direction in directions(if before { normal } else { -normal }, e) {
                     let outside = self.outside();
                     if self.sets.find(side(e, before)) == self.sets.find(outside) {
                         break;
                     }
-                    // The golden angle spreads the directions; no two lines of a lattice are alike.
-                    let turn = 2.399_963 * n as f64 + 0.7 * e as f64 + 0.3;
-                    let lean = 0.11 + 0.41 * n as f64;
-                    let across = u * turn.cos() + v * turn.sin();
-                    self.follow(e, before, (ahead + across * lean).normalize());
+                    self.follow(e, before, direction);
                 }
             }
         }
-        true
     }
 
     /// Is an element there from the front, and from the back? Also counts what else lies there.
-    fn looks(&self, element: usize, beside: &[Face]) -> [bool; 2] {
+    fn looks(&self, element: usize, source: &SourceTriangles<'_>) -> [bool; 2] {
         let Element { triangle, middle, .. } = self.elements[element];
         let normal = self.face(triangle as usize).normal;
         let mut looks = [false; 2];
@@ -278,12 +260,12 @@ impl<'a> Complex<'a> {
         for m in self.layers(element) {
             see(self.face(m), self.sided[m].front > 0, self.sided[m].back > 0);
         }
-        let lies_here = |f: &&Face| {
+        let lies_here = |f: &Face| {
             f.normal.dot(normal).abs() > 1.0 - FLAT
                 && f.height(middle).abs() <= self.on
                 && f.inward(middle).iter().all(|&d| d > 0.0)
         };
-        beside.iter().filter(lies_here).for_each(|face| see(face, true, false));
+        source.near(middle, self.on).filter(lies_here).for_each(|face| see(&face, true, false));
         looks
     }
 
@@ -406,10 +388,9 @@ impl<'a> Complex<'a> {
     }
 }
 
-/// The regions of a surface; none if they cannot be told. Of `file`, all triangles of the same source, those count
-/// that lie on the surface: they tell where it has a back. `mixed`: some parts look inward, others outward.
+/// The regions of a surface, a part of `source`; none if they cannot be told. `mixed`: some parts look inward, others outward.
 #[must_use]
-pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]], mixed: bool) -> Option<Regions> {
+pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], source: &SourceTriangles<'_>, mixed: bool) -> Option<Regions> {
     let sided = sided(triangles);
     let corners: Vec<[DVec3; 3]> = sided.iter().map(|t| t.corners).collect();
     let on = tolerance([lo, hi]);
@@ -421,18 +402,8 @@ pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], file: &[[DVec3; 3]],
     let mut complex = Complex::new(&sided, &meetings, on);
     complex.join_neighbours(&edges);
     complex.join_layers();
-    if !complex.join_visible() {
-        return None;
-    }
-    let near = |t: &&[DVec3; 3]| {
-        let (a, b) = (t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2]));
-        a.cmple(hi).all() && b.cmpge(lo).all()
-    };
-    let beside: Vec<Face> = file.iter().filter(near).map(|&t| Face::new(t)).collect();
-    if beside.len().saturating_mul(complex.elements.len()) > BUDGET {
-        return None;
-    }
-    let looks: Vec<[bool; 2]> = (0..complex.elements.len()).map(|e| complex.looks(e, &beside)).collect();
+    complex.join_visible();
+    let looks: Vec<[bool; 2]> = (0..complex.elements.len()).map(|e| complex.looks(e, source)).collect();
     let two_sided = looks.contains(&[true, true]);
     let (kinds, inverted) = if two_sided { complex.by_sides(&looks, mixed)? } else { complex.by_winding()? };
     let mut of = |kind: Kind| complex.surface(|region| kinds[region] == kind);

@@ -1,4 +1,4 @@
-//! Pairs of triangles whose boxes touch: a tree of boxes over the triangles.
+//! Triangles whose boxes touch, in pairs, near a box or along a line: a tree of boxes over the triangles.
 
 use glam::DVec3;
 
@@ -70,6 +70,52 @@ impl Tree {
                     pairs.extend([(h, b), (h + 1, b)]);
                 }
                 (_, h) => pairs.extend(h.into_iter().flat_map(|h| [(a, h), (a, h + 1)])),
+            }
+        }
+    }
+
+    /// Visit the triangles whose boxes touch the box `lo..hi`.
+    pub fn touching(&self, [lo, hi]: [DVec3; 2], mut visit: impl FnMut(u32)) {
+        let touches = |[min, max]: [DVec3; 2]| (min.cmple(hi).all() && max.cmpge(lo).all()).then_some(());
+        self.visit(touches, |n, ()| visit(n));
+    }
+
+    /// Visit the triangles whose boxes, grown by a margin, a line from a point in a direction of length 1 meets, and how far from the point it enters
+    /// them.
+    pub fn along(&self, from: DVec3, direction: DVec3, margin: f64, visit: impl FnMut(u32, f64)) {
+        let enters = |[min, max]: [DVec3; 2]| {
+            let (mut first, mut last) = (-margin, f64::INFINITY);
+            for axis in 0..3 {
+                let (low, high) = (min[axis] - margin - from[axis], max[axis] + margin - from[axis]);
+                if direction[axis] == 0.0 {
+                    if low > 0.0 || high < 0.0 {
+                        return None;
+                    }
+                } else {
+                    let (a, b) = (low / direction[axis], high / direction[axis]);
+                    (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+                }
+            }
+            (first <= last).then_some(first)
+        };
+        self.visit(enters, visit);
+    }
+
+    /// Visit the triangles whose boxes are wanted, with what is wanted of them.
+    fn visit<T>(&self, wanted: impl Fn([DVec3; 2]) -> Option<T>, mut visit: impl FnMut(u32, T)) {
+        let mut open = vec![0_u32];
+        while let Some(n) = open.pop() {
+            let node = &self.nodes[n as usize];
+            match node.halves {
+                _ if wanted([node.min, node.max]).is_none() => {}
+                Some(half) => open.extend([half, half + 1]),
+                None => {
+                    for (n, bounds) in &self.members[node.first as usize..node.end as usize] {
+                        if let Some(found) = wanted(*bounds) {
+                            visit(*n, found);
+                        }
+                    }
+                }
             }
         }
     }

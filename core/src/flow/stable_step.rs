@@ -1,0 +1,49 @@
+//! One stable step on the way to a time: not past it, and repeated with half the time where it would need floors.
+
+use crate::flow::step_report::Report;
+use crate::number::real::Real;
+
+/// How often a step that needed floors is repeated with half the time before the floors stand.
+const REPEATS: usize = 4;
+
+/// A step that was accepted.
+#[derive(Clone, Copy, Debug)]
+pub struct StableStep<R, const D: usize> {
+    /// Its length.
+    pub dt: R,
+    /// The time reached.
+    pub time: R,
+    /// What it did.
+    pub report: Report<R, D>,
+    /// How many longer steps were tried before it and given up.
+    pub repeated: usize,
+}
+
+/// Steps from `time` by `longest`, but not past `end`. `attempt(dt)` computes the next field and leaves the present one alone, as [`Problem::step`]
+/// does: where its report counts floors, it is called again with half the time. The field of the last call is the one to go on with.
+///
+/// [`Problem::step`]: crate::flow::Problem::step
+///
+/// # Errors
+/// Those of `attempt`.
+pub fn stable_step<R: Real, const D: usize, E>(
+    time: R,
+    end: R,
+    longest: R,
+    mut attempt: impl FnMut(R) -> Result<Report<R, D>, E>,
+) -> Result<StableStep<R, D>, E> {
+    let left = end - time;
+    let last = !(longest < left);
+    let mut dt = if last { left } else { longest };
+    let mut repeated = 0;
+    loop {
+        let report = attempt(dt)?;
+        if report.floored == 0 || repeated == REPEATS {
+            // The end itself, whatever the sum of time and step rounds to.
+            let time = if last && repeated == 0 { end } else { time + dt };
+            return Ok(StableStep { dt, time, report, repeated });
+        }
+        repeated += 1;
+        dt = R::HALF * dt;
+    }
+}

@@ -1,0 +1,101 @@
+//! What straight lines meet of a surface: clear of the edges of its triangles, or nothing is said.
+
+use crate::geometry::repair::face::Face;
+use crate::geometry::repair::tree::Tree;
+use glam::DVec3;
+
+/// A line flatter to a plane than this, as the sine of its angle, tells nothing of its triangle.
+pub const FLAT: f64 = 1e-4;
+
+/// Lines clear of edges by so many tolerances of points on planes tell where they pass.
+const CLEAR: f64 = 64.0;
+
+/// So many lines are tried from a point.
+const TRIES: usize = 8;
+
+/// Triangles, and how far a line must be from their edges.
+pub struct Lines<'a> {
+    faces: &'a [Face],
+    tree: &'a Tree,
+    /// Lines pass an edge at this distance at least.
+    pub clear: f64,
+}
+
+/// What a line meets.
+#[derive(Debug, Default)]
+pub struct Way {
+    /// The distance of each triangle that it passes through, and its number.
+    pub through: Vec<(f64, u32)>,
+    /// From this distance on it is not known what the line meets.
+    pub unclear: Option<f64>,
+}
+
+impl<'a> Lines<'a> {
+    /// Through triangles, in their tree; points closer than `on` to a plane or line are on it.
+    #[must_use]
+    pub fn new(faces: &'a [Face], tree: &'a Tree, on: f64) -> Self {
+        Lines { faces, tree, clear: CLEAR * on }
+    }
+
+    /// Distances along a line are known to this.
+    #[must_use]
+    pub fn slack(&self) -> f64 {
+        self.clear / FLAT
+    }
+
+    /// What a line from a point in a direction of length 1 meets, without the triangles `own`. Triangles without an area count as nothing.
+    #[must_use]
+    pub fn follow(&self, from: DVec3, direction: DVec3, own: &[u32]) -> Way {
+        let mut way = Way::default();
+        let mut unclear = |along: f64| way.unclear = Some(way.unclear.map_or(along, |u| u.min(along)));
+        self.tree.along(from, direction, self.slack(), |m, enters| {
+            let face = &self.faces[m as usize];
+            if own.contains(&m) || face.normal == DVec3::ZERO {
+                return;
+            }
+            let slope = face.normal.dot(direction);
+            if slope.abs() < FLAT {
+                return unclear(enters);
+            }
+            let along = -face.height(from) / slope;
+            if along < -self.slack() {
+                return;
+            }
+            let room = face.inward(from + direction * along).into_iter().fold(f64::INFINITY, f64::min);
+            let doubt = self.clear / slope.abs();
+            if room < -doubt {
+                return;
+            }
+            if room < doubt || along < doubt {
+                unclear(along);
+            } else {
+                way.through.push((along, m));
+            }
+        });
+        way
+    }
+
+    /// How often the surface winds around what lies just before a point of it, on the side towards which `normal` looks; `own` are the triangles that lie
+    /// there. The surface must be closed. None if all lines that were tried pass too close to an edge.
+    #[must_use]
+    pub fn winding(&self, from: DVec3, normal: DVec3, own: &[u32]) -> Option<i32> {
+        let crossing = |direction: DVec3, m: u32| {
+            if self.faces[m as usize].normal.dot(direction) > 0.0 { 1 } else { -1 }
+        };
+        directions(normal, 0).find_map(|direction| {
+            let way = self.follow(from, direction, own);
+            way.unclear.is_none().then(|| way.through.iter().map(|&(_, m)| crossing(direction, m)).sum())
+        })
+    }
+}
+
+/// Directions of length 1 about a normal, each leaning more; others for another number.
+pub fn directions(ahead: DVec3, number: usize) -> impl Iterator<Item = DVec3> {
+    let (u, v) = ahead.any_orthonormal_pair();
+    (0..TRIES).map(move |n| {
+        // The golden angle spreads the directions; no two lines of a lattice are alike.
+        let turn = 2.399_963 * n as f64 + 0.7 * number as f64 + 0.3;
+        let lean = 0.11 + 0.41 * n as f64;
+        (ahead + (u * turn.cos() + v * turn.sin()) * lean).normalize()
+    })
+}
