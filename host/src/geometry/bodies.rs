@@ -276,7 +276,7 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
         let whole = Closed::new(group.iter().flat_map(|&n| cavities[n].triangles.iter().copied()).collect());
         match group.len() {
             1 => whole,
-            _ => match crossing::look(&whole.triangles, whole.bounds) {
+            _ => match crossing::untangle(&whole.triangles, whole.bounds) {
                 Found::Simple { .. } => whole,
                 Found::Resolved(made) => Closed::of_parts(made.surface),
                 Found::Doubtful(_) => {

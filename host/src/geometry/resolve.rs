@@ -59,33 +59,33 @@ fn have_backs(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = bool> {
     triangles.iter().map(move |&[a, b, c]| distinct([a, b, c]) && all.contains(&key(&[a, c, b])))
 }
 
-fn look(shell: &Closed) -> Found {
+fn untangle(shell: &Closed) -> Found {
     if !shell.is_sheet() {
-        return crossing::look(&shell.triangles, shell.bounds);
+        return crossing::untangle(&shell.triangles, shell.bounds);
     }
     // What winds forward in one place and backward in another may have no volume, either.
     match have_backs(&shell.triangles).all(|back| back) {
         true => Found::Simple { walls: true },
-        false => match crossing::look(&shell.triangles, shell.bounds) {
+        false => match crossing::untangle(&shell.triangles, shell.bounds) {
             Found::Resolved(made) if made.both_ways => Found::Resolved(made),
             _ => Found::Simple { walls: true },
         },
     }
 }
 
-/// The regions of a surface of which all parts look the same way, or not.
+/// The regions of a surface. `mixed`: some of its parts look inward, others outward.
 fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], source: &SourceTriangles<'_>, mixed: bool) -> Option<Seen> {
-    regions::look(own, bounds, source, mixed).map(Seen::Divided)
+    regions::arrangement(own, bounds, source, mixed).map(Seen::Divided)
 }
 
 /// Two walls may have more between them than the shell winds around: then fronts and backs of parts that touch were joined to one shell.
 const MORE: f64 = 1.0 + 1e-9;
 
-fn look_at_one(part: &Part, source: &SourceTriangles<'_>) -> Seen {
-    match look(&part.shell) {
+fn resolve_alone(part: &Part, source: &SourceTriangles<'_>) -> Seen {
+    match untangle(&part.shell) {
         Found::Simple { walls: true } if !part.guessed => {
             let middle = (part.shell.bounds[0] + part.shell.bounds[1]) * 0.5;
-            regions::look(part.own(), part.shell.bounds, source, false)
+            regions::arrangement(part.own(), part.shell.bounds, source, false)
                 .filter(|r| signed_volume(&r.solid, middle).abs() > MORE * part.shell.volume.abs())
                 .map_or(Seen::As(Found::Simple { walls: true }), Seen::Divided)
         }
@@ -105,20 +105,20 @@ fn look_at_one(part: &Part, source: &SourceTriangles<'_>) -> Seen {
 #[derive(Default)]
 struct Group {
     members: Vec<usize>,
-    /// Of these it is not known whose triangles are whose; of the others, what they are to these.
+    /// Those members whose triangles may belong to other members.
     doubtful: Vec<usize>,
 }
 
-/// Signs that triangles were joined to the wrong shells.
+/// Signs that triangles were joined to the wrong shells. They say which other shells a shell is looked at together with.
 #[derive(Clone, Copy, Default)]
 struct Signs {
-    /// It is of parts whose edges do not tell whose they are, some of which look inward: all that overlap it may be concerned.
+    /// Its cluster holds shells of both orientations: with all that overlap it.
     mixed: bool,
-    /// It is folded, or was resolved: those in its box that look the other way are concerned, …
+    /// It is folded, or was resolved: with those in its box that look the other way.
     odd: bool,
-    /// … or all in its box, if it winds forward and backward.
+    /// It winds forward and backward: if it is odd, with all in its box.
     both_ways: bool,
-    /// It had to be capped in a mesh that has backs: those beside it are concerned.
+    /// It was capped in a mesh that has backs: with all whose boxes touch its own.
     capped: bool,
 }
 
@@ -224,7 +224,7 @@ fn groups(parts: &[Part], seen: &[Seen], source: &SourceTriangles<'_>) -> Vec<Gr
 
 /// What parts are together, all their triangles, and which they are. None if each by itself is simple and all look the same way, or
 /// nothing better can be told and none is doubtful.
-fn look_together(
+fn resolve_together(
     group: &Group,
     parts: &[Part],
     seen: &[Seen],
@@ -262,14 +262,13 @@ fn look_together(
     })
 }
 
-/// Make every surface that crosses itself the surface of what it winds around; and parts that overlap where they share edges the
-/// surface of their regions, unless each by itself is simple. `file` is all
-/// triangles as they were read.
+/// Makes every surface that crosses itself the surface of what it winds around, and parts that overlap where they share edges the surface of
+/// their regions, unless each by itself is simple. `file`: all triangles as they were read.
 pub(super) fn resolve(parts: Vec<Part>, file: &[[DVec3; 3]], d: &mut Diagnosis, report: &mut Reporter) -> Vec<Part> {
     let (mut parts, source) = (parts, &SourceTriangles::new(file));
-    let mut seen: Vec<Seen> = parts.par_iter().map(|part| look_at_one(part, source)).collect();
+    let mut seen: Vec<Seen> = parts.par_iter().map(|part| resolve_alone(part, source)).collect();
     let groups = groups(&parts, &seen, source);
-    let together: Vec<_> = groups.par_iter().map(|group| look_together(group, &parts, &seen, source)).collect();
+    let together: Vec<_> = groups.par_iter().map(|group| resolve_together(group, &parts, &seen, source)).collect();
     let mut gone = vec![false; parts.len()];
     for (members, whole, all) in together.into_iter().flatten() {
         members[1..].iter().for_each(|&n| gone[n] = true);

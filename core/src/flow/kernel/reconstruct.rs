@@ -7,8 +7,8 @@ use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::slab::{RowAt, Slab};
 use crate::flow::kernel::walls_and_jumps::{slopes_at_boundaries, slopes_at_breaks};
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use crate::flow::porosity::fractions::least_volume;
 use crate::flow::porosity::flags::{KIND, any_marked, break_high, break_low, marked};
+use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
 

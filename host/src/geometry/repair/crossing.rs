@@ -26,7 +26,7 @@ const SPREAD: f64 = 1e-9;
 /// So many solid angles may be computed for one shell, where lines tell nothing: some seconds.
 const BUDGET: usize = 100_000_000;
 
-/// What a look at a shell says.
+/// What is found of a shell.
 #[derive(Debug)]
 pub enum Found {
     /// It winds once around what it holds.
@@ -210,7 +210,8 @@ impl<'a> Meetings<'a> {
     /// The sides of a part with this middle of triangle `n`; `own` are the triangles that lie there, itself too. None if there is doubt.
     fn sides(&self, middle: DVec3, n: u32, own: &[u32], spent: &mut usize) -> Option<Sides> {
         let normal = self.faces[n as usize].normal;
-        let sheets: i32 = own.iter().map(|&m| if self.faces[m as usize].normal.dot(normal) > 0.0 { 1 } else { -1 }).sum();
+        let sheets: i32 =
+            own.iter().map(|&m| if self.faces[m as usize].normal.dot(normal) > 0.0 { 1 } else { -1 }).sum();
         let by_angles = || {
             *spent += self.triangles.len();
             let others = self.triangles.iter().enumerate().filter(|(m, _)| !own.contains(&(*m as u32)));
@@ -309,9 +310,9 @@ pub fn tolerance([lo, hi]: [DVec3; 2]) -> f64 {
     ON * (hi - lo).max_element() + ON_ULPS * f64::EPSILON * lo.abs().max(hi.abs()).max_element()
 }
 
-/// Look at a closed shell.
+/// What a closed shell winds around.
 #[must_use]
-pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
+pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let on = tolerance([lo, hi]);
     let shell = Meetings::new(triangles, on);
     let many = || edges(triangles).chunk_by(|a, b| a.0 == b.0).find(|uses| uses.len() > 2).map(|uses| uses[0].1);

@@ -390,7 +390,12 @@ impl<'a> Complex<'a> {
 
 /// The regions of a surface, a part of `source`; none if they cannot be told. `mixed`: some parts look inward, others outward.
 #[must_use]
-pub fn look(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2], source: &SourceTriangles<'_>, mixed: bool) -> Option<Regions> {
+pub fn arrangement(
+    triangles: &[[DVec3; 3]],
+    [lo, hi]: [DVec3; 2],
+    source: &SourceTriangles<'_>,
+    mixed: bool,
+) -> Option<Regions> {
     let sided = sided(triangles);
     let corners: Vec<[DVec3; 3]> = sided.iter().map(|t| t.corners).collect();
     let on = tolerance([lo, hi]);
