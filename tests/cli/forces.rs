@@ -103,6 +103,50 @@ fn a_cube_in_gas_at_rest_feels_nothing() {
     }
 }
 
+/// Solids in cells side by side, whose faces are lowered for what stands between them: gas of one pressure pushes none of them, and where two
+/// pressures meet at a thin wall the wall feels the difference, not what stands beside it.
+#[test]
+fn a_face_lowered_to_a_throat_belongs_to_the_solid_that_lowers_it() {
+    let at = Scratch::new();
+    let pipe = |name: &str, x: f64| {
+        format!(
+            "[[solid]]\nname = \"{name}\"\nshape = \"cylinder\"\nfrom = [{x}, 0, 0.45]\nto = [{x}, 0.8, 0.45]\nradius = 0.04\n"
+        )
+    };
+    let ball = |name: &str, x: f64| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = \"sphere\"\ncenter = [{x}, 0.25, 0.25]\nradius = 0.04\n")
+    };
+    let row = [
+        pipe("a", 0.55),
+        pipe("b", 0.65),
+        pipe("c", 0.85),
+        ball("d", 1.95),
+        ball("e", 2.05),
+        cube("f", [2.11, 0.22, 0.21], 0.05),
+    ];
+    let wall = "[[solid]]\nname = \"wall\"\nshape = \"box\"\nmin = [1.23, -1, -1]\nmax = [1.24, 2, 2]\n";
+    let scene = row.concat() + wall + &pipe("before", 1.14) + &pipe("behind", 1.35);
+    fs::write(at.file("scene.toml"), scene).expect("written");
+    let more = |initial: &str| {
+        format!("{initial}[time]\nmax_steps = 2\n[output]\nformats = []\nambient = 1\nforces = [\"*\"]\n")
+    };
+    solved(&at, &case(0.0, &more("")), "rest", &["-q"]);
+    let rest = log(&at, "rest");
+    let forces: Vec<_> = rest.iter().filter(|(name, _)| name.contains(" force_")).collect();
+    assert_eq!(forces.len(), 30);
+    for (name, values) in forces {
+        assert!(values.iter().all(|f| f.abs() < 1e-8), "{name}: {values:?}");
+    }
+    let high = "[[initial.regions]]\nmin = [0, 0, 0]\nmax = [1.2, 0.8, 0.8]\np = 2e5\nrho = 1.2\n";
+    solved(&at, &case(0.0, &more(high)), "tanks", &["-q"]);
+    let tanks = log(&at, "tanks");
+    for name in ["a", "b", "c", "d", "e", "f", "wall", "before", "behind"] {
+        let wanted = if name == "wall" { 1e5 * 0.64 } else { 0.0 };
+        let found = tanks[&format!("{name} force_x")][0];
+        assert!((found - wanted).abs() < 1e-8 * 6.4e4, "{name}: {found} N");
+    }
+}
+
 /// Two cubes 14 cells apart, for six steps, which reach two cells each: each as alone.
 #[test]
 fn two_cubes_apart_feel_what_each_feels_alone() {

@@ -77,6 +77,11 @@ impl<'a, const D: usize> Solids<'a, D> {
         (low - high) * flow.area(d, at)
     }
 
+    /// The closed fraction of a face of a cell.
+    pub(super) fn closed(&self, flow: &Flow<f64, D>, d: usize, at: [usize; D], side: usize) -> f64 {
+        self.faces[d].map_or(0.0, |faces| 1.0 - faces[flow.face(d, at, side)])
+    }
+
     /// Something in a cell drags.
     pub(super) fn drags(&self, cell: usize) -> bool {
         self.drag.iter().flatten().any(|c| c.get(cell).is_some_and(|c| *c > 0.0))

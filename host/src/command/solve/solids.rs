@@ -1,8 +1,9 @@
 //! Forces on single solids: the force on all that stands in the gas (`force`), shared out by what each solid has in a cell.
 //!
-//! Each solid is measured alone, on the cells that it reaches. The vector area of its own walls in a cell is A⁻β⁻ − A⁺β⁺ with its own fractions;
-//! what the walls of all together have besides (where solids share a cell or hide each other, and at faces lowered to a throat) goes by
-//! how much of the cell and of its faces each takes, and so does the drag. So the forces on all solids add up to the force on all.
+//! Each solid is measured alone, on the cells that it reaches, as all of them are measured together: with faces lowered to a throat, if theirs are. What
+//! it closes of a face is its wall on both sides of the face. What the walls of all together have besides (where solids share a cell or hide each
+//! other) goes, face by face, by how much of the two cells each takes, and the drag by how much of the cell. So the forces on all solids add up to
+//! the force on all, and gas of one pressure all around pushes none of them that it surrounds.
 
 use super::arrays::position;
 use super::force::Solids;
@@ -10,10 +11,13 @@ use crate::error::Result;
 use crate::flow::Flow;
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
+use crate::porosity::resistance::shadows;
 use crate::porosity::shadows::{cells, faces_of_cell};
+use crate::porosity::throat::{self, Faces};
 use crate::porosity::{Options, porosity};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use voidage_core::flow::Boundary;
 
 /// Name under which the force on all other solids is told.
 pub const OTHERS: &str = "others";
@@ -72,7 +76,7 @@ pub fn measure<const D: usize>(
     wanted: &[String],
     edges: &Edges,
     live: [usize; D],
-    options: Options,
+    (options, faces): (Options, Faces),
 ) -> Result<Vec<Measured<D>>> {
     let at = |name: &str| wanted.iter().position(|w| w == name);
     let group = |[own, solid]: &[&str; 2]| at(own).or_else(|| at(solid)).unwrap_or(wanted.len());
@@ -80,7 +84,7 @@ pub fn measure<const D: usize>(
     let all = wanted.iter().map(String::as_str).chain([OTHERS]).enumerate();
     all.map(|(n, name)| {
         let some = part_of(bodies, &groups, n);
-        Ok(Measured { name: name.to_owned(), cells: alone(&some, edges, live, options)? })
+        Ok(Measured { name: name.to_owned(), cells: alone(&some, edges, live, (options, faces))? })
     })
     .collect()
 }
@@ -99,7 +103,12 @@ fn part_of(bodies: &Bodies, groups: &[usize], n: usize) -> Bodies {
 }
 
 /// What bodies alone have in the cells that they reach.
-fn alone<const D: usize>(bodies: &Bodies, edges: &Edges, live: [usize; D], options: Options) -> Result<Vec<Part<D>>> {
+fn alone<const D: usize>(
+    bodies: &Bodies,
+    edges: &Edges,
+    live: [usize; D],
+    (options, faces): (Options, Faces),
+) -> Result<Vec<Part<D>>> {
     let Some([low, high]) = bodies.bounds() else { return Ok(Vec::new()) };
     let shape = edges.cells();
     // The cells between the corners, and one more on each side.
@@ -111,7 +120,12 @@ fn alone<const D: usize>(bodies: &Bodies, edges: &Edges, live: [usize; D], optio
     });
     let block = Edges(std::array::from_fn(|a| edges.0[a][ranges[a].start..=ranges[a].end].to_vec()));
     let grid = block.grid(None)?;
-    let found = porosity(&grid, bodies, options).beta;
+    let mut found = porosity(&grid, bodies, Options { resistance: faces == Faces::Throat, ..options });
+    if faces == Faces::Throat {
+        let shadows = shadows(&grid, bodies, &found, options);
+        throat::lower(&grid, &mut found, &shadows);
+    }
+    let found = found.beta;
     let mut parts = Vec::new();
     for (at, open) in cells(&grid).zip(&found.v) {
         let faces = live.map(|axis| faces_of_cell(&grid, axis, at).map(|face| found.faces(axis)[face]));
@@ -122,6 +136,78 @@ fn alone<const D: usize>(bodies: &Bodies, edges: &Edges, live: [usize; D], optio
         }
     }
     Ok(parts)
+}
+
+/// What all solids have in the cells of a flow.
+struct Parts<'a, const D: usize> {
+    flow: &'a Flow<f64, D>,
+    by_cell: BTreeMap<usize, Vec<(usize, Part<D>)>>,
+    /// The group of what belongs to nobody.
+    others: usize,
+}
+
+/// By group: the vector area of walls, and the share of the drag.
+type Areas<const D: usize> = BTreeMap<usize, ([f64; D], f64)>;
+
+impl<const D: usize> Parts<'_, D> {
+    fn of(&self, cell: usize) -> &[(usize, Part<D>)] {
+        self.by_cell.get(&cell).map_or(&[], |parts| &parts[..])
+    }
+
+    /// The cell across a face; none at an end of the domain.
+    fn across(&self, d: usize, mut at: [usize; D], side: usize) -> Option<usize> {
+        let n = self.flow.cells();
+        let periodic = self.flow.boundaries[d][0] == Boundary::Periodic;
+        at[d] = match (side, at[d]) {
+            (0, 0) => periodic.then_some(n[d] - 1)?,
+            (0, i) => i - 1,
+            (_, i) if i + 1 == n[d] => periodic.then_some(0)?,
+            (_, i) => i + 1,
+        };
+        Some((0..D).rev().fold(0, |i, a| i * n[a] + at[a]))
+    }
+
+    /// Shares by what solids take of some cells; where there is none, of the cells beside them.
+    fn shares(&self, cells: &[usize]) -> Vec<(usize, f64)> {
+        let taken = |cells: &[usize]| {
+            let mut taken: BTreeMap<usize, f64> = BTreeMap::new();
+            let parts = cells.iter().flat_map(|&cell| self.of(cell));
+            parts.for_each(|(group, part)| *taken.entry(*group).or_default() += part.taken);
+            taken
+        };
+        let mut taken_here = taken(cells);
+        if taken_here.is_empty() {
+            taken_here = taken(&cells.iter().flat_map(|&cell| self.flow.beside(cell)).collect::<Vec<_>>());
+        }
+        let all: f64 = taken_here.values().sum();
+        match all > 0.0 {
+            true => taken_here.into_iter().map(|(group, taken)| (group, taken / all)).collect(),
+            false => vec![(self.others, 1.0)],
+        }
+    }
+
+    /// The vector areas of the walls that each group has in a cell.
+    fn areas(&self, solids: &Solids<'_, D>, cell: usize) -> Areas<D> {
+        let (at, here) = (self.flow.coordinates(cell), self.of(cell));
+        let mut areas = Areas::new();
+        for (d, (side, sign)) in (0..D).flat_map(|d| [(d, (0, -1.0)), (d, (1, 1.0))]) {
+            let area = sign * self.flow.area(d, at);
+            let mut rest = solids.closed(self.flow, d, at, side);
+            for (group, part) in here {
+                let own = 1.0 - part.faces[d][side];
+                rest -= own;
+                areas.entry(*group).or_insert(([0.0; D], 0.0)).0[d] += own * area;
+            }
+            if rest != 0.0 {
+                // The same two cells from both sides, so that a wall in a face belongs to one and the same solid on both.
+                let both: Vec<usize> = self.across(d, at, side).into_iter().chain([cell]).collect();
+                for (group, share) in self.shares(&both) {
+                    areas.entry(group).or_insert(([0.0; D], 0.0)).0[d] += share * rest * area;
+                }
+            }
+        }
+        areas
+    }
 }
 
 /// Shares of each solid in the cells where the gas pushes.
@@ -146,37 +232,19 @@ impl<const D: usize> SolidShares<D> {
         let (Some(solids), Some(others)) = (Solids::of(flow), names.len().checked_sub(1)) else {
             return SolidShares { names, shares };
         };
+        let parts = Parts { flow, by_cell, others };
         for cell in (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0) {
-            let at = flow.coordinates(cell);
-            let walls: [f64; D] = std::array::from_fn(|d| solids.wall(flow, d, at));
-            let here = by_cell.get(&cell).map_or(&[][..], |parts| &parts[..]);
-            if here.is_empty() && walls == [0.0; D] && !solids.drags(cell) {
-                continue;
+            let (here, drags) = (parts.of(cell), solids.drags(cell));
+            let mut areas = parts.areas(&solids, cell);
+            if drags || !here.is_empty() {
+                parts
+                    .shares(&[cell])
+                    .into_iter()
+                    .for_each(|(group, share)| areas.entry(group).or_insert(([0.0; D], 0.0)).1 = share);
             }
-            // The part of a solid in the cell; where there is none, that in the cells beside it.
-            let taken: Vec<f64> = {
-                let mut taken = vec![0.0; names.len()];
-                here.iter().for_each(|(group, part)| taken[*group] += part.taken);
-                if here.is_empty() {
-                    let beside = flow.beside(cell).into_iter().filter_map(|c| by_cell.get(&c)).flatten();
-                    beside.for_each(|(group, part)| taken[*group] += part.taken);
-                }
-                taken
-            };
-            let all: f64 = taken.iter().sum();
-            let own = |part: &Part<D>| -> [f64; D] {
-                std::array::from_fn(|d| (part.faces[d][0] - part.faces[d][1]) * flow.area(d, at))
-            };
-            let mut rest = walls;
-            here.iter().for_each(|(_, part)| (0..D).for_each(|d| rest[d] -= own(part)[d]));
-            for (group, list) in shares.iter_mut().enumerate() {
-                let share = if all > 0.0 { taken[group] / all } else { f64::from(u8::from(group == others)) };
-                let mut area = rest.map(|r| share * r);
-                for (_, part) in here.iter().filter(|(g, _)| *g == group) {
-                    (0..D).for_each(|d| area[d] += own(part)[d]);
-                }
+            for (group, (area, share)) in areas {
                 if share > 0.0 || area != [0.0; D] {
-                    list.push((cell, area, share));
+                    shares[group].push((cell, area, share));
                 }
             }
         }

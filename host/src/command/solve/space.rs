@@ -86,10 +86,10 @@ fn from_scene<const D: usize>(
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
     let mut result = stages::measure(&bodies, edges, Options { resistance: true, ..options }, progress)?;
-    let wanted = wanted_solids(file, &bodies)?;
+    let (wanted, faces) = (wanted_solids(file, &bodies)?, keys.faces.unwrap_or(Faces::Throat));
     let solids = match wanted.is_empty() {
         true => Vec::new(),
-        false => progress.stage("solids", |_| solids::measure(&bodies, &wanted, edges, live, options))?,
+        false => progress.stage("solids", |_| solids::measure(&bodies, &wanted, edges, live, (options, faces)))?,
     };
     let absent: Vec<String> = solids.iter().filter_map(Measured::absent).collect();
     if !absent.is_empty() {
@@ -101,12 +101,7 @@ fn from_scene<const D: usize>(
     }
     let (grid, law) = (edges.grid(None)?, law(file)?);
     let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);
-    let wanted = Wanted {
-        resistance: law.is_none() && !silent,
-        drag: law,
-        faces: keys.faces.unwrap_or(Faces::Throat),
-        warning: true,
-    };
+    let wanted = Wanted { resistance: law.is_none() && !silent, drag: law, faces, warning: true };
     let found = obstacles(&grid, &bodies, &mut result, options, wanted, progress);
     if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none()) {
         warn_of_no_force(&bodies, resistance, progress);
