@@ -27,6 +27,18 @@ pub const fn cluster_scratch(cells: usize) -> usize {
 /// fraction between. It ranks equal neighbours without regard to the side they stand on, so that clusters stay small.
 const SMOOTHING_PASSES: usize = 8;
 
+/// What speaks for growing across a face: its opening times the volume of its cell, the volume of the cluster behind it, the room there.
+const REASONS: usize = 3;
+
+/// Reasons that differ by less than this share are equal: the fractions of mirrored faces agree but for rounding.
+const EQUAL: f64 = 1e-9;
+
+/// Are the first `count` reasons of a face as good as the best?
+fn equal_up_to<R: Real>(count: usize, this: &[R; REASONS], best: &[R; REASONS]) -> bool {
+    let least = R::ONE - R::larger(R::from_f64(EQUAL), R::from_f64(64.0) * R::EPSILON);
+    this.iter().zip(best).take(count).all(|(this, best)| *this >= least * *best)
+}
+
 /// Finds the clusters; returns how many entries of `list` they fill.
 ///
 /// `list` and `parent` are one entry per cell (fewer than 2^31), `scratch` as [`cluster_scratch`]. Clusters grow across their
@@ -126,7 +138,7 @@ struct Search<'s, R> {
     held: &'s mut [R],
     wanted: &'s mut [R],
     /// Best face to grow across: its opening, the volume of the cluster behind it, and the room there.
-    best: [&'s mut [R]; 3],
+    best: [&'s mut [R]; REASONS],
     /// Room of each cell.
     room: &'s mut [R],
 }
@@ -192,7 +204,7 @@ impl<'s, R: Real> Search<'s, R> {
     }
 
     /// Every open face of a cell to another cluster: the cell behind it, and what speaks for growing across it.
-    fn each_way_out<const D: usize>(&self, space: &Space<'_, R, D>, i: usize, mut f: impl FnMut(usize, [R; 3])) {
+    fn each_way_out<const D: usize>(&self, space: &Space<'_, R, D>, i: usize, mut f: impl FnMut(usize, [R; REASONS])) {
         let own = space.whole(i);
         space.each_face(i, |_, behind, open| {
             if let Some(b) = behind.filter(|&b| b != i && self.root[b] != self.root[i]) {
@@ -201,21 +213,20 @@ impl<'s, R: Real> Search<'s, R> {
         });
     }
 
-    /// Chooses where each short cluster grows.
+    /// Chooses where each short cluster grows: the best of each reason among the faces that are equal by all reasons before it.
     fn choose<const D: usize>(&mut self, space: &Space<'_, R, D>) {
-        self.best[0].fill(R::ZERO);
-        self.best[1].fill(-R::ONE);
-        self.best[2].fill(-R::ONE);
-        for i in 0..self.root.len() {
-            let Some(r) = self.short(i) else { continue };
-            let mut best = self.best.each_ref().map(|b| b[r]);
-            self.each_way_out(space, i, |_, this| {
-                if this > best {
-                    best = this;
-                }
-            });
-            for (to, value) in self.best.iter_mut().zip(best) {
-                to[r] = value;
+        for reason in 0..REASONS {
+            self.best[reason].fill(-R::ONE);
+            for i in 0..self.root.len() {
+                let Some(r) = self.short(i) else { continue };
+                let known = self.best.each_ref().map(|b| b[r]);
+                let mut best = known[reason];
+                self.each_way_out(space, i, |_, this| {
+                    if equal_up_to(reason, &this, &known) {
+                        best = R::larger(this[reason], best);
+                    }
+                });
+                self.best[reason][r] = best;
             }
         }
     }
@@ -229,7 +240,7 @@ impl<'s, R: Real> Search<'s, R> {
             // A cell has at most six faces.
             let (mut joined, mut count) = ([0; 6], 0);
             self.each_way_out(space, i, |b, this| {
-                if this == best {
+                if equal_up_to(REASONS, &this, &best) {
                     joined[count] = b as u32;
                     count += 1;
                 }
