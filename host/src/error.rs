@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// A failure that the user can act on. Prints as `file: place: reason`, and below it the line that it is about.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct Error {
     /// The file it is about, if any.
     pub path: Option<PathBuf>,
@@ -79,6 +79,13 @@ impl fmt::Display for Error {
         }
         f.write_str(&self.reason)?;
         self.excerpt.as_ref().map_or(Ok(()), |lines| write!(f, "\n{lines}"))
+    }
+}
+
+/// The message itself: what a `main` that returns errors prints.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

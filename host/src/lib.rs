@@ -111,6 +111,7 @@ pub mod keys;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod porosity;
+pub mod text;
 
 pub use glam::DVec3;
 pub use voidage_core;

@@ -66,7 +66,8 @@ fn execute(command: Command) -> Result<()> {
 
 /// The manual page of the command, followed by those of its commands.
 fn manual(page: &mut Vec<u8>) -> std::io::Result<()> {
-    let mut whole = Cli::command().disable_help_subcommand(true);
+    // A page has its version in one line.
+    let mut whole = Cli::command().version(env!("CARGO_PKG_VERSION")).disable_help_subcommand(true);
     whole.build();
     let parts: Vec<_> = whole.get_subcommands().cloned().collect();
     std::iter::once(whole).chain(parts).try_for_each(|command| clap_mangen::Man::new(command).render(page))

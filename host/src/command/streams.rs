@@ -34,8 +34,7 @@ pub fn text_of(path: &Path) -> Result<Option<String>> {
     if !is_stream(path) {
         return Ok(None);
     }
-    let text = String::from_utf8(read_input()?);
-    text.map(Some).map_err(|_| Error::file(Path::new(INPUT), "is no text in UTF-8"))
+    crate::text::of_bytes(Path::new(INPUT), read_input()?).map(Some)
 }
 
 /// There is something at `path` that is no file: what goes there need not be a whole one.

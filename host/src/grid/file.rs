@@ -112,7 +112,7 @@ impl GridTable {
                 if let Some((key, _)) = [("origin", self.origin.is_some()), ("spacing", self.spacing.is_some())]
                     .into_iter()
                     .chain([("cells", self.cells.is_some())])
-                    .find(|(_, given)| *given && fewer_axes)
+                    .find(|(_, given)| *given && !place.is_empty())
                 {
                     return Err(wrong(key, "does not go with edges".into()));
                 }
@@ -149,6 +149,14 @@ impl GridTable {
             if n != axes || !(least..=3).contains(&n) {
                 return Err(wrong(key, format!("needs one number for each axis, not {n}")));
             }
+        }
+        for (a, &h) in spacing.iter().enumerate() {
+            if !(h > 0.0 && h.is_finite()) {
+                return Err(wrong(&format!("spacing[{a}]"), format!("must be above 0, not {h}")));
+            }
+        }
+        if let Some(a) = cells.iter().position(|&n| n == 0) {
+            return Err(wrong(&format!("cells[{a}]"), "must be at least 1, not 0".into()));
         }
         few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
             .map_err(|reason| wrong("cells", reason))?;
@@ -189,7 +197,7 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
     if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
         return Err(Error::file(path, "not a regular file"));
     }
-    parse(path, &std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))?, warnings)
+    parse(path, &crate::text::read(path)?, warnings)
 }
 
 /// Read the text of a grid file; `path` names it in messages.
@@ -257,11 +265,14 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
         AxisSpec::Edges(edges) => return Ok(edges.clone()),
         AxisSpec::Segments(segments) => segments,
     };
-    let ratios = ratios.clone().unwrap_or_else(|| vec![1.0; cells.len()]);
-    if points.len() != cells.len() + 1 || ratios.len() != cells.len() {
-        let (p, c, r) = (points.len(), cells.len(), ratios.len());
-        return Err(format!("{p} points need {} cells and ratios, not {c} and {r}", p.saturating_sub(1)));
+    let (given, needed) = (points.len(), points.len().saturating_sub(1));
+    let counts = [("cells", Some(cells.len())), ("ratios", ratios.as_ref().map(Vec::len))];
+    for (what, n) in counts.into_iter().filter_map(|(what, n)| Some((what, n?))) {
+        if points.is_empty() || n != needed {
+            return Err(format!("{given} points need {needed} {what}, not {n}"));
+        }
     }
+    let ratios = ratios.clone().unwrap_or_else(|| vec![1.0; cells.len()]);
     if cells.iter().map(|&n| n as f64).sum::<f64>() > MAX_AXIS {
         return Err(format!("more than {MAX_AXIS:e} cells along an axis"));
     }

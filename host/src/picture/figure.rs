@@ -199,7 +199,20 @@ impl Figure<'_> {
         let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
         let words = self.ends.iter().map(|w| text_width(w, SMALL)).fold(0.0, f64::max);
         let beside = 10.0 + widest + if words > 0.0 { words + 8.0 } else { 0.0 };
-        beside.max(text_width(self.name, NORMAL) - BAR as f64).ceil() as usize + 8
+        beside.max(text_width(&self.bar_name(marks.power), NORMAL) - BAR as f64).ceil() as usize + 8
+    }
+
+    /// The name of the field over its bar, with the unit of numbers from which a power of ten is taken out.
+    fn bar_name(&self, power: i32) -> String {
+        let split = self.name.split_once(" [").and_then(|(name, unit)| Some((name, unit.strip_suffix(']')?)));
+        match (split, power) {
+            (_, 0) => self.name.to_owned(),
+            (Some((name, "kPa")), -6) => format!("{name} [mPa]"),
+            (Some((name, "kPa")), -3) => format!("{name} [Pa]"),
+            (Some((name, "kPa")), 3) => format!("{name} [MPa]"),
+            (Some((name, unit)), _) => format!("{name} [1e{power} {unit}]"),
+            (None, _) => format!("{} [1e{power}]", self.name),
+        }
     }
 
     fn bar(&self, canvas: &mut Canvas, area: Area) {
@@ -221,8 +234,12 @@ impl Figure<'_> {
         for (v, word) in [low, high].into_iter().zip(self.ends) {
             canvas.text(right + 18.0 + widest, row(v) + 0.5, word, Style { colour: GREY, ..style });
         }
-        let name = if marks.power == 0 { self.name.to_owned() } else { format!("{} / 1e{}", self.name, marks.power) };
-        canvas.text(area.x as f64, area.y as f64 - 14.0, &name, Style { height: NORMAL, ..Style::default() });
+        canvas.text(
+            area.x as f64,
+            area.y as f64 - 14.0,
+            &self.bar_name(marks.power),
+            Style { height: NORMAL, ..Style::default() },
+        );
     }
 }
 

@@ -572,10 +572,7 @@ impl CaseFile {
         let path = if piped.is_some() { Path::new(INPUT) } else { path };
         let text = match piped {
             Some(text) => text,
-            None => std::fs::read_to_string(path).map_err(|e| match e.kind() {
-                std::io::ErrorKind::InvalidData => Error::file(path, "is no text; a case is a TOML file"),
-                _ => Error::io(path, "read", &e),
-            })?,
+            None => crate::text::read(path)?,
         };
         let case = parse(&Source::new(path, &text))?;
         Ok(CaseFile { path: path.to_owned(), text, case })

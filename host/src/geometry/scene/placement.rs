@@ -102,6 +102,7 @@ pub(super) fn axis(value: &DeValue) -> std::result::Result<DVec3, String> {
 }
 
 fn array(keys: &mut StrictTable) -> Result<([usize; 3], DVec3)> {
+    keys.takes_only(&["count", "step"])?;
     let count = keys.need("count", table::three(table::count))?;
     let step = keys.need("step", table::point)?;
     keys.finish()?;

@@ -22,7 +22,7 @@ pub fn read_text(path: &Path, most: u64) -> Result<String> {
     if about.len() > most {
         return Err(Error::file(path, format!("too large: {} bytes, at most {most} are read", about.len())));
     }
-    std::fs::read_to_string(path).map_err(|e| Error::io(path, "read", &e))
+    crate::text::read(path)
 }
 
 /// What a reader of values returns: the value, or what it wanted instead.
@@ -98,6 +98,23 @@ impl<'a> StrictTable<'a> {
                 None => self.fail(format!("key {key} is missing")),
             }
         })
+    }
+
+    /// Refuses a table that lacks some of the keys it takes and holds others.
+    ///
+    /// # Errors
+    /// Names both.
+    pub fn takes_only(&self, keys: &[&str]) -> Result<()> {
+        let strange: Vec<_> = self.given().into_iter().filter(|(key, _)| !keys.contains(key)).collect();
+        match &strange[..] {
+            [(_, first), ..] if keys.iter().any(|key| !self.has(key)) => {
+                let names: Vec<&str> = strange.iter().map(|(key, _)| *key).collect();
+                let subject = self.subject.rsplit(' ').next().unwrap_or_default();
+                Err(self
+                    .error_at(first.clone(), format!("{subject} takes {}; not {}", keys.join(", "), names.join(", "))))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// A key that nobody has asked for may be a slip of the pen for `key`.

@@ -1,0 +1,48 @@
+//! Texts of files, which are UTF-8.
+
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// The mark that some editors put before a text.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// The text of a file, without a byte order mark.
+///
+/// # Errors
+/// It cannot be read, or is no UTF-8.
+pub fn read(path: &Path) -> Result<String> {
+    of_bytes(path, std::fs::read(path).map_err(|e| Error::io(path, "read", &e))?)
+}
+
+/// The text in these bytes, without a byte order mark; `path` names it in messages.
+///
+/// # Errors
+/// It is no UTF-8: says where, and what it may be.
+pub fn of_bytes(path: &Path, bytes: Vec<u8>) -> Result<String> {
+    if let [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] = bytes[..] {
+        return Err(Error::file(path, "is UTF-16 (\"Unicode\" in some editors): save it as UTF-8"));
+    }
+    match String::from_utf8(bytes) {
+        Ok(mut text) => {
+            if text.starts_with(BYTE_ORDER_MARK) {
+                text.remove(0);
+            }
+            Ok(text)
+        }
+        Err(e) => {
+            let (valid, at) = (e.utf8_error().valid_up_to(), e.as_bytes());
+            let before = String::from_utf8_lossy(&at[..valid]).into_owned();
+            let (line, begin) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |n| n + 1));
+            let column = before[begin..].chars().count() + 1;
+            let reason = match at[valid] {
+                0 => "is no text".to_owned(),
+                byte @ 0xA0.. => format!(
+                    "this byte is no UTF-8 (0x{byte:02X}; in Latin-1 it is {}): save the file as UTF-8",
+                    char::from(byte)
+                ),
+                byte => format!("this byte is no UTF-8 (0x{byte:02X}): save the file as UTF-8"),
+            };
+            Err(Error::at(path, format!("line {line}, column {column}"), reason))
+        }
+    }
+}
