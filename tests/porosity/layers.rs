@@ -11,12 +11,6 @@ const CORE: [&str; 9] = ["number", "flow", "convex", "grid", "quadric", "torus",
 const HOST: [&str; 10] =
     ["error", "huge", "keys", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
-/// Files that use each other and may, each group with its reason.
-const CIRCLES: [(&[&str], &str); 1] = [(
-    &["core/surface/union.rs", "core/surface/union/bsp.rs", "core/surface/union/descent.rs"],
-    "union.rs is the door and defines the pieces that its parts sort",
-)];
-
 #[test]
 fn rooms_import_downwards_only() {
     for (package, order) in [("core", &CORE[..]), ("host", &HOST[..])] {
@@ -34,15 +28,16 @@ fn rooms_import_downwards_only() {
     }
 }
 
+/// A recursion through a function pointer is no circle of imports, and this does not see it. There is one: a cell whose union is not proved
+/// is divided, and each part is measured as a layer of its own, whose cells may be divided again. `cell_unions` calls the layers by the
+/// pointer `FindParts`; depth, effort and memory end it.
 #[test]
 fn no_files_use_each_other_in_a_circle() {
     let mut found = String::new();
     for package in ["core", "host"] {
         for circle in circles(&Sources::read(package).arrows()) {
             let files: Vec<String> = circle.iter().map(|m| format!("{package}/{}", name(m))).collect();
-            if !CIRCLES.iter().any(|(known, _)| files.iter().all(|f| known.contains(&f.as_str()))) {
-                let _ = writeln!(found, "{}", files.join(" "));
-            }
+            let _ = writeln!(found, "{}", files.join(" "));
         }
     }
     assert!(found.is_empty(), "files that use each other:\n{found}");
@@ -62,11 +57,10 @@ fn only_the_command_speaks_to_a_terminal() {
 }
 
 /// Types of the same name in different files, each with its reason.
-const SHARED_NAMES: [(&str, &str); 5] = [
+const SHARED_NAMES: [(&str, &str); 4] = [
     ("Error", "that of the flow is a value without text; that of the host names file, place and reason"),
     ("Fields", "fields of a gas and of a layer"),
     ("Mesh", "cells of a flow; triangles of a file"),
-    ("Porosity", "what a flow takes; what was found"),
     ("Report", "of a step; of a run"),
 ];
 

@@ -21,11 +21,12 @@ use crate::number::real::{Real, Vector};
 use crate::surface::clip::{Polygon, cross, dot, keep, sub};
 use bsp::{Branch, BspMemory, build_bsp};
 use descent::{Descent, DescentRule};
+use piece::NoProof::{Ambiguous, Full};
 use piece::{Ball, Plane};
 
 pub use bsp::{Node, PendingNode};
 pub use descent::{Fragment, Part};
-pub use piece::Piece;
+pub use piece::{NoProof, Piece};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
 pub const MAX_SPREAD: f64 = 1e-9;
@@ -125,18 +126,6 @@ impl<R: Real, const N: usize> UnionBuffers<R, N> {
         }
     }
 }
-
-/// Why there is no union: divide the cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum NoProof {
-    /// The workspace is too small for what the cell holds.
-    Full,
-    /// Planes too close to tell apart, or the three volumes disagree; a blur may help.
-    Ambiguous,
-}
-
-use NoProof::{Ambiguous, Full};
 
 /// How a cell is seen: 0..1 along each axis.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The binary space partition of a cell by the surface of one body.
 
-use super::NoProof::{self, Ambiguous, Full};
+use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{Piece, Place, Plane, cut};
 use crate::number::real::Real;
 use core::cell::Cell;

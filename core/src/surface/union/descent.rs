@@ -1,7 +1,7 @@
 //! Polygons on their way down the trees of a cell.
 
-use super::NoProof::{self, Ambiguous, Full};
 use super::bsp::{Branch, Node};
+use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{AMBIGUITY_BAND, Ball, Place, cut, place, span};
 use crate::number::real::Real;
 use crate::surface::clip::{Polygon, dot};

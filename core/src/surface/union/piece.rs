@@ -1,7 +1,31 @@
-//! Pieces of surface and their places relative to planes.
+//! Pieces of surface, their places relative to planes, and why a union of them may not be found.
 
 use crate::number::real::Real;
 use crate::surface::clip::{Polygon, dot, sub};
+use core::fmt;
+
+/// Why there is no union: divide the cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoProof {
+    /// The caller's memory is too small for what the cell holds.
+    Full,
+    /// Planes too close to tell apart, or the three volumes disagree; a blur may help.
+    Ambiguous,
+}
+
+impl fmt::Display for NoProof {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            NoProof::Full => "the memory for unions is too small for the surface in the cell",
+            NoProof::Ambiguous => {
+                "planes in the cell are too close to tell apart, or the volumes along x, y and z differ"
+            }
+        })
+    }
+}
+
+impl core::error::Error for NoProof {}
 
 /// Planes of two bodies between one and so many thicknesses apart are neither one nor two for certain.
 pub(super) const AMBIGUITY_BAND: f64 = 4.0;
