@@ -151,18 +151,17 @@ impl<'a, R: Real> Grid<'a, R> {
         }
     }
 
-    /// Position of a cell in a field.
+    /// Position of a cell in a field. Of a cell that the grid does not have, some number.
     #[must_use]
-    pub fn cell_index(&self, [i, j, k]: [usize; 3]) -> usize {
-        let [nx, ny, _] = self.cells();
-        (k * ny + j) * nx + i
+    pub fn cell_index(&self, at: [usize; 3]) -> usize {
+        index_in(self.cells(), at)
     }
 
-    /// Position of the face normal to `axis` in its field; `[i, j, k]` counts along the axis from the lowest plane.
+    /// Position of the face normal to `axis` in its field; `[i, j, k]` counts along the axis from the lowest plane. Of a face that the grid
+    /// does not have, some number.
     #[must_use]
-    pub fn face_index(&self, axis: usize, [i, j, k]: [usize; 3]) -> usize {
-        let [nx, ny, _] = self.face_shape(axis);
-        (k * ny + j) * nx + i
+    pub fn face_index(&self, axis: usize, at: [usize; 3]) -> usize {
+        index_in(self.face_shape(axis), at)
     }
 
     /// The box of a cell; none if the grid has no such cell.
@@ -178,6 +177,11 @@ impl<'a, R: Real> Grid<'a, R> {
     pub fn locate(&self, axis: usize, value: R) -> Located {
         locate(self.edges(axis), value)
     }
+}
+
+/// Position in a field of a shape, x fastest. It wraps where the caller's numbers are too large.
+fn index_in([nx, ny, _]: [usize; 3], [i, j, k]: [usize; 3]) -> usize {
+    k.wrapping_mul(ny).wrapping_add(j).wrapping_mul(nx).wrapping_add(i)
 }
 
 /// Where a coordinate lies along one axis.

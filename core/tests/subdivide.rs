@@ -70,6 +70,18 @@ fn halves_make_up_their_range_and_end_in_single_cells() {
 }
 
 #[test]
+fn empty_and_foreign_ranges_are_not_halved() {
+    let (whole, empty) = (CellRange { lo: [0; 3], hi: [8; 3] }, CellRange { lo: [0, 5, 0], hi: [8, 2, 8] });
+    let mut stack = RangeStack::new(whole, ());
+    assert!(!stack.push_halves(empty, ()), "a range whose end lies below its beginning");
+    while stack.push_halves(whole, ()) {}
+    assert_eq!(stack.len(), MAX_RANGES, "two at a time, until there is no place for two");
+    let edges = [0.0, 1.0];
+    let grid = Grid::new(&edges, &edges, &edges).expect("a grid");
+    let _ = (grid.cell_index([usize::MAX; 3]), grid.face_index(1, [usize::MAX; 3]));
+}
+
+#[test]
 fn ranges_around_boxes_are_cut_to_the_grid() {
     let edges = [0.0, 1.0, 2.0, 3.0];
     let grid = Grid::new(&edges, &edges, &edges).expect("a grid");

@@ -8,8 +8,7 @@ use crate::grid::cell_range::CellRange;
 /// single after 32 bisections, so at most 96 of them lie below each other, and each leaves one range behind: 96, and the one at hand.
 pub const MAX_RANGES: usize = 3 * 32 + 1;
 
-/// A stack of ranges, each with what is known of it. It never holds more than [`MAX_RANGES`] as long as only halves of the range popped
-/// last are pushed.
+/// A stack of ranges, each with what is known of it. If only halves of the range popped last are pushed, there is always a place for them.
 #[derive(Clone, Debug)]
 pub struct RangeStack<T> {
     items: Vec<(CellRange, T), MAX_RANGES>,
@@ -18,9 +17,10 @@ pub struct RangeStack<T> {
 impl<T: Copy> RangeStack<T> {
     /// A stack of one range.
     pub fn new(range: CellRange, known: T) -> Self {
-        let mut stack = RangeStack { items: Vec::new() };
-        stack.push(range, known);
-        stack
+        let mut items = Vec::new();
+        let pushed = items.push((range, known)).is_ok();
+        debug_assert!(pushed, "an empty stack has a place");
+        RangeStack { items }
     }
 
     /// How many ranges it holds.
@@ -39,20 +39,16 @@ impl<T: Copy> RangeStack<T> {
     }
 
     /// Pushes the halves of the range popped last, cut across its longest side, the lower half on top. Pushes nothing and returns false
-    /// for a single cell or face.
+    /// for a single cell or face, for an empty range, and for one popped elsewhere if the stack has no place for two more.
     pub fn push_halves(&mut self, range: CellRange, known: T) -> bool {
+        if range.is_empty() {
+            return false;
+        }
         let (axis, length) = range.longest_side();
         if length <= 1 {
             return false;
         }
         let [low, high] = range.halves(axis);
-        self.push(high, known);
-        self.push(low, known);
-        true
-    }
-
-    fn push(&mut self, range: CellRange, known: T) {
-        let pushed = self.items.push((range, known)).is_ok();
-        debug_assert!(pushed, "a bisection of three sides of 32 bits leaves at most 96 ranges behind");
+        self.items.extend_from_slice(&[(high, known), (low, known)]).is_ok()
     }
 }

@@ -13,16 +13,16 @@ pub const fn is(mark: u8, kind: u8) -> bool {
     mark & KIND == kind
 }
 
-/// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall.
+/// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall. None for `d` above 2.
 #[inline(always)]
 pub const fn break_low(d: usize) -> u8 {
-    1 << (2 * d)
+    if d < 3 { 1 << (2 * d) } else { 0 }
 }
 
-/// Mark of a break at the high face of axis `d`.
+/// Mark of a break at the high face of axis `d`; none for `d` above 2.
 #[inline(always)]
 pub const fn break_high(d: usize) -> u8 {
-    2 << (2 * d)
+    if d < 3 { 2 << (2 * d) } else { 0 }
 }
 
 /// Whether any of the marks holds any of `bits`.
