@@ -10,7 +10,7 @@ use crate::convex::support::{MinkowskiDifference, Rounded, Support, Transformed}
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
-/// What [`contains`] found.
+/// What [`contains`] found. There is no fourth answer: it may be matched without a rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Containment<V> {
     /// Every point of the box belongs to the body.

@@ -11,7 +11,7 @@ use crate::convex::support::Support;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
-/// What [`box_triangle`] found.
+/// What [`box_triangle`] found. There is no fourth answer: it may be matched without a rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BoxTriangle<V> {
     /// No interior point is shared: `axis` separates them and points from the box to the triangle. No point of the box projects farther

@@ -14,6 +14,7 @@ use crate::number::real::Real;
 
 /// How the pressure acts in a cell whose faces are not as open as its volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PressureForm {
     /// `beta_f p` on the faces and the cell's own pressure on the walls inside it; in smooth media −beta_f grad p.
     Geometric,

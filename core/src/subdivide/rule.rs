@@ -2,6 +2,7 @@
 
 /// What becomes of a part that is still cut when the depth is spent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LeafRule {
     /// Its bounds are 0 and 1. The paper takes the upper one.
     Solid,

@@ -127,6 +127,7 @@ const FORMATS: &str =
 
 /// What `-o` asks for, by its suffix; without one, and for a stream or a device, fields for ParaView.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum OutputFormat {
     /// `.vtr`
     Fields,

@@ -9,6 +9,7 @@ use voidage_core::torus::{TorusShape, TorusSolid};
 
 /// A body in its place, in metres.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub enum Form {
     /// A ball.
     Sphere(Sphere<DVec3>),

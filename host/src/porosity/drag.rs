@@ -23,6 +23,7 @@ use voidage_core::grid::Grid;
 /// How frontal area becomes resistance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum DragLaw {
     /// CR_i = C_D a_i: bodies that do not disturb each other.
     Bluff,

@@ -20,6 +20,7 @@ pub enum Method {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Leaf {
     /// Touched counts as solid: the paper's rule, which finds too much
     Solid,

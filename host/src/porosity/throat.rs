@@ -7,6 +7,7 @@ use voidage_core::grid::Grid;
 /// What the open fraction of a face means.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Faces {
     /// What is open in the plane of the face: exact, but a wall between two planes is not seen.
     #[default]

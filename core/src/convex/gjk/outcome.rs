@@ -3,7 +3,7 @@
 use crate::convex::simplex::Simplex;
 use crate::number::real::{Real, Vector};
 
-/// What [`intersect`](super::intersect) found.
+/// What [`intersect`](super::intersect) found. There is no fourth answer: it may be matched without a rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Intersection<V: Vector> {
     /// The bodies share no interior point: proved by [`separates`](super::separates).
@@ -27,6 +27,7 @@ pub enum Intersection<V: Vector> {
 
 /// A proof that two bodies overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum OverlapProof<V: Vector> {
     /// Four pairs of points: [`Simplex::holds_origin`].
     Inside(Simplex<V>),
@@ -53,7 +54,7 @@ pub enum Reason {
     Iterations,
 }
 
-/// What [`distance`](super::distance) found.
+/// What [`distance`](super::distance) found. There is no fourth answer: it may be matched without a rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distance<V: Vector> {
     /// No point is shared.

@@ -207,6 +207,7 @@ fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
     let pressure = match scheme.pressure {
         PressureForm::Geometric => 0.0,
         PressureForm::Paper => 1.0,
+        _ => UNNAMED,
     };
     [riemann, limiter, pressure]
 }

@@ -18,6 +18,7 @@ use voidage_core::torus::{TorusShape, TorusSolid};
 
 /// A shape as the scene describes it, before it is placed. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Shape {
     /// `center`, `radius`
     Sphere {
