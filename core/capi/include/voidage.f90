@@ -57,6 +57,7 @@ module voidage
   integer(c_int32_t), parameter :: vdg_riemann_hllc = 0
   integer(c_int32_t), parameter :: vdg_riemann_hlle = 1
   integer(c_int32_t), parameter :: vdg_riemann_rusanov = 2
+  integer(c_int32_t), parameter :: vdg_riemann_hllc_low_mach = 3
   integer(c_int32_t), parameter :: vdg_limiter_steep = 0
   integer(c_int32_t), parameter :: vdg_limiter_monotonized_central = 1
   integer(c_int32_t), parameter :: vdg_limiter_van_leer = 2

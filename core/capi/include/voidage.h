@@ -147,6 +147,8 @@ enum {
   VDG_RIEMANN_HLLE = 1,
   /* One speed. */
   VDG_RIEMANN_RUSANOV = 2,
+  /* Three waves, softened where the gas is slow and no sound passes, so that slow vortices live; along one axis as HLLC. */
+  VDG_RIEMANN_HLLC_LOW_MACH = 3,
 };
 
 /* Limiter of the slopes. */

@@ -261,6 +261,8 @@ pub enum Riemann {
     Hlle = 1,
     /// One speed.
     Rusanov = 2,
+    /// Three waves, softened where the gas is slow and no sound passes, so that slow vortices live; along one axis as HLLC.
+    HllcLowMach = 3,
 }
 
 /// Limiter of the slopes.

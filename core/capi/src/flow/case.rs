@@ -137,7 +137,7 @@ fn choose<T: Copy>(number: i32, list: &[T], name: &'static CStr) -> Answer<T> {
 }
 
 fn scheme<R>(case: &Case<R>) -> Answer<Scheme> {
-    let solvers = [Riemann::Hllc, Riemann::Hlle, Riemann::Rusanov];
+    let solvers = [Riemann::Hllc, Riemann::Hlle, Riemann::Rusanov, Riemann::HllcLowMach];
     let limiters = [
         Limiter::Steep,
         Limiter::MonotonizedCentral,

@@ -273,7 +273,7 @@ fn flow<R: Api>(s: &mut Source) {
         gravity: core::array::from_fn(|_| s.number()),
         cr: [array(s, 1, porous), null(), array(s, 2, porous)],
         linear: [null(), array(s, 1, porous), null()],
-        riemann: s.kind(3),
+        riemann: s.kind(4),
         limiter: s.kind(6),
         pressure: s.kind(2),
     };

@@ -17,8 +17,10 @@ _CONTACTS = ("apart", "overlapping", "undecided", "touching")
 _SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 _KINDS = ("wall", "periodic", "zero-gradient", "far-field", "inlet", "outlet", "reservoir")
 _GASES = ("ideal", "isothermal", "isentropic")
-_RIEMANN = ("hllc", "hlle", "rusanov")
+_RIEMANN = ("hllc", "hlle", "rusanov", "hllc-low-mach")
 _LIMITERS = ("steep", "monotonized-central", "van-leer", "minmod", "unlimited", "first-order")
+# The words of a case file for two of them.
+_LIMITERS_OF_CASES = {"mc": "monotonized-central", "none": "unlimited"}
 _PRESSURES = ("geometric", "paper")
 
 
@@ -158,7 +160,8 @@ class Flow:
 
     beta: the dict of porosity(), or None. boundary: a dict of sides, x_min to z_max, each a dict with type (wall, periodic, zero-gradient,
     far-field, inlet, outlet, reservoir) and rho, u, p, relax as it needs; sides that are not named are walls. cr, linear: arrays of drag along x, y, z,
-    or None.
+    or None. riemann: hllc, hllc-low-mach, hlle, rusanov. limiter: steep, monotonized-central, van-leer, minmod, unlimited or first-order; a case file's
+    mc is monotonized-central, its none is unlimited. pressure: geometric, paper.
     """
 
     def __init__(self, grid, *, beta=None, gas="ideal", gamma=1.4, sound_speed=0.0, rho0=0.0, p0=0.0, boundary=None, gravity=(0.0, 0.0, 0.0),
@@ -169,6 +172,7 @@ class Flow:
             raise ValueError(f"no side is called {next(iter(boundary))!r}: {', '.join(_SIDES)}")
         arrays = [_field(None if beta is None else beta[name]) for name in ("beta_v", "beta_x", "beta_y", "beta_z")]
         drag = [[_field(c) for c in along] for along in (cr, linear)]
+        limiter = _LIMITERS_OF_CASES.get(limiter, limiter)
         scheme = [_number(riemann, _RIEMANN, "riemann"), _number(limiter, _LIMITERS, "limiter"), _number(pressure, _PRESSURES, "pressure")]
         numbers = (_number(gas, _GASES, "gas"), [gamma, sound_speed, rho0, p0])
         edges = _edges(grid)

@@ -93,8 +93,8 @@ class Flow:
         cr: Sequence[Union[ArrayLike, None]] = ...,
         linear: Sequence[Union[ArrayLike, None]] = ...,
         jump: float = ...,
-        riemann: Literal["hllc", "hlle", "rusanov"] = ...,
-        limiter: Literal["steep", "monotonized-central", "van-leer", "minmod", "unlimited", "first-order"] = ...,
+        riemann: Literal["hllc", "hllc-low-mach", "hlle", "rusanov"] = ...,
+        limiter: Literal["steep", "monotonized-central", "mc", "van-leer", "minmod", "unlimited", "none", "first-order"] = ...,
         pressure: Literal["geometric", "paper"] = ...,
     ) -> None: ...
     def set(

@@ -14,10 +14,12 @@ use crate::keys::source::another;
 use crate::keys::value::Value;
 use crate::keys::{self, PlacedValue, Source};
 use crate::porosity::throat::Faces;
+use clap::ValueEnum;
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 use std::path::{Path, PathBuf};
+use voidage_core::flow::{Limiter, Riemann};
 
 /// Names of the velocities along x, y, z.
 pub const VELOCITIES: [&str; 3] = ["u", "v", "w"];
@@ -392,8 +394,8 @@ pub enum Pressure {
     Paper,
 }
 
-/// Limiter.
-#[derive(Debug, Clone, Copy, Deserialize)]
+/// Limiter, as a case and a study write it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum LimiterName {
     /// Monotonised central, with contacts kept steep.
@@ -408,8 +410,22 @@ pub enum LimiterName {
     None,
 }
 
-/// Riemann solver.
-#[derive(Debug, Clone, Copy, Deserialize)]
+impl LimiterName {
+    /// The limiter of the solver.
+    #[must_use]
+    pub fn meaning(self) -> Limiter {
+        match self {
+            LimiterName::Steep => Limiter::Steep,
+            LimiterName::Mc => Limiter::MonotonizedCentral,
+            LimiterName::VanLeer => Limiter::VanLeer,
+            LimiterName::Minmod => Limiter::Minmod,
+            LimiterName::None => Limiter::Unlimited,
+        }
+    }
+}
+
+/// Riemann solver, as a case and a study write it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum RiemannName {
     /// HLLC.
@@ -420,6 +436,19 @@ pub enum RiemannName {
     Hlle,
     /// Rusanov.
     Rusanov,
+}
+
+impl RiemannName {
+    /// The Riemann solver meant.
+    #[must_use]
+    pub fn meaning(self) -> Riemann {
+        match self {
+            RiemannName::Hllc => Riemann::Hllc,
+            RiemannName::HllcLowMach => Riemann::HllcLowMach,
+            RiemannName::Hlle => Riemann::Hlle,
+            RiemannName::Rusanov => Riemann::Rusanov,
+        }
+    }
 }
 
 /// `[time]`: at least one of the two.

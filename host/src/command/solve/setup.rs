@@ -16,7 +16,7 @@ use crate::flow::{Flow, Tidied, Treatment};
 use crate::grid::{AXES, Edges};
 use serde::Serialize;
 use std::path::Path;
-use voidage_core::flow::{Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
+use voidage_core::flow::{Gas, Limiter, PressureForm, Primitive, Scheme};
 
 /// A flow with what the run needs to know about it.
 #[derive(Debug)]
@@ -225,21 +225,10 @@ fn scheme(file: &CaseFile) -> Result<(Scheme, usize)> {
     let limiter = match (keys.order, keys.limiter) {
         (Some(1), None) => Limiter::FirstOrder,
         (Some(1), Some(_)) => return Err(file.wrong("scheme.limiter", "order 1 has no slopes to limit")),
-        (None | Some(2), name) => match name.unwrap_or(LimiterName::Mc) {
-            LimiterName::Steep => Limiter::Steep,
-            LimiterName::Mc => Limiter::MonotonizedCentral,
-            LimiterName::VanLeer => Limiter::VanLeer,
-            LimiterName::Minmod => Limiter::Minmod,
-            LimiterName::None => Limiter::Unlimited,
-        },
+        (None | Some(2), name) => name.unwrap_or(LimiterName::Mc).meaning(),
         (Some(order), _) => return Err(file.wrong("scheme.order", format!("is 1 or 2, not {order}"))),
     };
-    let riemann = match keys.riemann.unwrap_or(RiemannName::Hllc) {
-        RiemannName::Hllc => Riemann::Hllc,
-        RiemannName::HllcLowMach => Riemann::HllcLowMach,
-        RiemannName::Hlle => Riemann::Hlle,
-        RiemannName::Rusanov => Riemann::Rusanov,
-    };
+    let riemann = keys.riemann.unwrap_or(RiemannName::Hllc).meaning();
     let pressure = match keys.pressure.unwrap_or(Pressure::Geometric) {
         Pressure::Geometric => PressureForm::Geometric,
         Pressure::Paper => PressureForm::Paper,

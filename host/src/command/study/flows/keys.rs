@@ -1,31 +1,13 @@
 //! The flows of a study: the lists of a table `[[flow]]` multiply out.
 
 use super::problems::{FlowChoice, FlowProblem};
+use crate::command::solve::case::{LimiterName, RiemannName};
 use crate::command::study::recipe::Precision;
 use crate::command::study::values::{choice, few, many, product, some, varied, word};
 use crate::error::Result;
 use crate::geometry::scene::table::{self, StrictTable};
-use clap::ValueEnum;
 use toml::de::DeValue;
-use voidage_core::flow::{Limiter, PressureForm, Riemann, Scheme};
-
-/// Riemann solver, by the words of a case of `voidage solve`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Flux {
-    Hllc,
-    Hlle,
-    Rusanov,
-}
-
-/// Limiter, by the words of a case of `voidage solve`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SlopeRule {
-    Steep,
-    Mc,
-    VanLeer,
-    Minmod,
-    None,
-}
+use voidage_core::flow::{Limiter, PressureForm, Scheme};
 
 /// A problem and how it is computed.
 #[derive(Debug, Clone)]
@@ -72,8 +54,8 @@ pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
     let name = keys.named()?;
     let name = if given || problems.len() > 1 { name } else { problems.first().map_or(name, |p| word(*p)) };
     let cells = keys.need("cells", some(cells))?;
-    let fluxes = keys.get("riemann", some(choice::<Flux>))?.unwrap_or_else(|| vec![Flux::Hllc]);
-    let limiters = keys.get("limiter", some(choice::<SlopeRule>))?.unwrap_or_else(|| vec![SlopeRule::Steep]);
+    let fluxes = keys.get("riemann", some(choice::<RiemannName>))?.unwrap_or_else(|| vec![RiemannName::Hllc]);
+    let limiters = keys.get("limiter", some(choice::<LimiterName>))?.unwrap_or_else(|| vec![LimiterName::Steep]);
     let orders = keys.get("order", some(order))?.unwrap_or_else(|| vec![2]);
     let precisions = keys.get("precision", some(choice::<Precision>))?.unwrap_or_else(|| vec![Precision::F64]);
     let threads = keys.get("threads", some(few))?.unwrap_or_else(|| vec![1]);
@@ -94,7 +76,9 @@ pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
                 if all.iter().any(|r| r.name == name && r.choice.cells == cells) {
                     continue;
                 }
-                let choice = FlowChoice { scheme: scheme(flux, limiter, order), cells };
+                let slope = if order == 2 { limiter.meaning() } else { Limiter::FirstOrder };
+                let scheme = Scheme { riemann: flux.meaning(), limiter: slope, pressure: PressureForm::Geometric };
+                let choice = FlowChoice { scheme, cells };
                 let slopes = if order == 2 { word(limiter) } else { "no slopes".to_owned() };
                 let words = [word(flux), slopes];
                 all.push(FlowRecipe { name, problem, choice, words, order, precision, threads: count });
@@ -102,23 +86,6 @@ pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
         }
     }
     Ok(all)
-}
-
-fn scheme(flux: Flux, limiter: SlopeRule, order: usize) -> Scheme {
-    let limiter = match limiter {
-        _ if order == 1 => Limiter::FirstOrder,
-        SlopeRule::Steep => Limiter::Steep,
-        SlopeRule::Mc => Limiter::MonotonizedCentral,
-        SlopeRule::VanLeer => Limiter::VanLeer,
-        SlopeRule::Minmod => Limiter::Minmod,
-        SlopeRule::None => Limiter::Unlimited,
-    };
-    let riemann = match flux {
-        Flux::Hllc => Riemann::Hllc,
-        Flux::Hlle => Riemann::Hlle,
-        Flux::Rusanov => Riemann::Rusanov,
-    };
-    Scheme { riemann, limiter, pressure: PressureForm::Geometric }
 }
 
 /// Cells along an axis: enough for slopes, few enough for memory.
