@@ -1,12 +1,13 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`places`] and [`case`], the file as typed; `arrays`, [`regions`], [`state`], [`mixture`], [`space`], [`inlet`], [`sides`], [`units`] and
+//! In reading order: [`output_keys`], [`case`], [`places`] and [`case_file`], the file as typed; `arrays`, [`regions`], [`state`], [`mixture`], [`space`], [`inlet`], [`sides`], [`units`] and
 //! [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`], [`force_peaks`], [`table`], [`series`],
 //! [`checkpoint`], [`lock`], [`report`], what it writes; [`limits`] and [`stepping`], how far it goes and each step; [`refine`], the same case on half
 //! the cells; [`run`].
 
 mod arrays;
 pub mod case;
+pub mod case_file;
 pub mod checkpoint;
 pub mod force;
 pub mod force_peaks;
@@ -17,6 +18,7 @@ pub mod lock;
 pub mod maxima;
 pub mod mixture;
 pub mod monitors;
+pub mod output_keys;
 pub mod pictures;
 pub mod places;
 pub mod refine;

@@ -1,24 +1,17 @@
-//! The case file of `voidage solve`, as typed. Every key that is not known is an error.
+//! The keys of a case of `voidage solve`, as typed; those of `[output]` in [`super::output_keys`]. Every key that is not known is an error.
 //!
 //! Lengths in metres, times in seconds, any consistent units. A state is `rho`, `u`, `v`, `w`, `p`: density, velocity
 //! along x, y, z, pressure; velocities left out are 0; `gamma` is that of another gas than `[gas]` tells. With `gas.gas_constant` a temperature `T` may stand for `rho`.
 
-use super::places;
-use crate::command::streams::{INPUT, text_of};
-use crate::error::{Error, Result};
-use crate::files::csv::needs_quotes;
-use crate::grid::file::{self, GridTable};
-use crate::grid::{AXES, Edges};
-use crate::keys::reader::misfit;
-use crate::keys::source::another;
-use crate::keys::value::Value;
-use crate::keys::{self, PlacedValue, Source};
+use super::output_keys::OutputKeys;
+use crate::grid::AXES;
+use crate::grid::file::GridTable;
 use crate::porosity::throat::Faces;
 use clap::ValueEnum;
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, SeqAccess, Visitor};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use voidage_core::flow::{Limiter, Riemann};
 
 /// Names of the velocities along x, y, z.
@@ -459,199 +452,4 @@ pub struct TimeKeys {
     pub end: Option<f64>,
     /// Steps after which to stop.
     pub max_steps: Option<usize>,
-}
-
-/// `[output]`.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OutputKeys {
-    /// Time between frames; the first and the last state are always frames.
-    pub every: Option<f64>,
-    /// Files of a frame; `["vtr"]` if left out.
-    pub formats: Option<Vec<Format>>,
-    /// Points whose state is kept at every step.
-    #[serde(default)]
-    pub probes: Vec<Probe>,
-    /// Planes whose flow is kept at every step.
-    #[serde(default)]
-    pub monitors: Vec<MonitorKeys>,
-    /// Solids whose forces are kept, by name; `*` stands for all.
-    #[serde(default)]
-    pub forces: Vec<String>,
-    /// Point through which pictures are cut.
-    pub slice: Option<[f64; 3]>,
-    /// Ends of the colours of pictures.
-    #[serde(default)]
-    pub range: RangeKeys,
-    /// Largest values over time, if they are wanted.
-    pub maxima: Option<MaximaKeys>,
-    /// Pressure that overpressures are counted from.
-    pub ambient: Option<f64>,
-    /// Steps between lines of the log.
-    pub log_every: Option<usize>,
-    /// Seconds of work between checkpoints.
-    pub checkpoint_every: Option<f64>,
-}
-
-/// `range` of `[output]`; what is left out is the range of the whole run.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RangeKeys {
-    /// In m/s.
-    pub speed: Option<[f64; 2]>,
-    /// In kPa.
-    pub overpressure: Option<[f64; 2]>,
-}
-
-/// `maxima` of `[output]`.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MaximaKeys {
-    /// Overpressure whose arrival is told.
-    pub threshold: Option<f64>,
-}
-
-/// Files of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Format {
-    /// ParaView, with a `flow.pvd` over all frames.
-    Vtr,
-    /// NumPy arrays.
-    Npy,
-    /// Pictures of velocity and pressure.
-    Png,
-}
-
-/// A point whose state is kept.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Probe {
-    /// Name in the file; its number, if left out.
-    pub name: Option<String>,
-    /// The point.
-    pub at: [f64; 3],
-}
-
-/// A plane of the grid whose flow is kept: one of `x`, `y`, `z` tells its place.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MonitorKeys {
-    /// Name in the file; its number, if left out.
-    pub name: Option<String>,
-    /// Place along x of a plane across x.
-    pub x: Option<f64>,
-    /// Place along y of a plane across y.
-    pub y: Option<f64>,
-    /// Place along z of a plane across z.
-    pub z: Option<f64>,
-    /// Lowest corner of a box that the plane ends at; missing axes reach to infinity.
-    pub min: Option<Vec<f64>>,
-    /// Highest corner.
-    pub max: Option<Vec<f64>>,
-}
-
-impl Probe {
-    /// The name, or that of the `n`-th probe without one.
-    #[must_use]
-    pub fn name(&self, n: usize) -> String {
-        self.name.clone().unwrap_or_else(|| format!("probe {}", n + 1))
-    }
-}
-
-/// A case file with its place, for errors and for the paths in it.
-#[derive(Debug, Clone)]
-pub struct CaseFile {
-    /// Where it is.
-    pub path: PathBuf,
-    /// Its text.
-    text: String,
-    /// What it says.
-    pub case: Case,
-}
-
-fn parse(source: &Source) -> Result<Case> {
-    let table = source.toml()?;
-    let node = PlacedValue::of_table(table.get_ref(), 0..0).map_err(|e| misfit(source, e))?;
-    if let Value::Table(entries) = &node.value {
-        let of = |key: &str| entries.iter().find(|e| e.key == key);
-        if let Some((_, reason)) = another("a case", |key| of(key).is_some()) {
-            return Err(Error::file(source.path, reason));
-        }
-        if let Some(entry) = of("region").or_else(|| of("regions")) {
-            let reason = format!("key {}: regions stand in the table initial: [[initial.regions]]", entry.key);
-            return Err(misfit(source, (entry.span.clone(), reason)));
-        }
-        if let Some(entry) = of("grid").filter(|e| matches!(e.node.value, Value::List(_))) {
-            let reason = "a case has one table [grid]; tables [[grid]] belong to a study";
-            return Err(misfit(source, (entry.span.clone(), reason.into())));
-        }
-    }
-    places::check(&node).map_err(|wrong| misfit(source, wrong))?;
-    keys::read(source, &PlacedValue { span: None, ..node }, "")
-}
-
-impl CaseFile {
-    /// Reads a case.
-    ///
-    /// # Errors
-    /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
-    pub fn read(path: &Path) -> Result<Self> {
-        let piped = text_of(path)?;
-        let path = if piped.is_some() { Path::new(INPUT) } else { path };
-        let text = match piped {
-            Some(text) => text,
-            None => crate::text::read(path)?,
-        };
-        let case = parse(&Source::new(path, &text))?;
-        Ok(CaseFile { path: path.to_owned(), text, case })
-    }
-
-    /// A path of the case file, which counts from the file's own directory.
-    #[must_use]
-    pub fn resolve(&self, path: &Path) -> PathBuf {
-        self.path.parent().map_or_else(|| path.to_owned(), |dir| dir.join(path))
-    }
-
-    /// An error at a key.
-    #[must_use]
-    pub fn wrong(&self, key: &str, reason: impl Into<String>) -> Error {
-        Source::new(&self.path, &self.text).at_key(key, reason)
-    }
-
-    /// `reason` unless `value` is left out or `holds`.
-    ///
-    /// # Errors
-    /// Names key, reason and value.
-    pub fn demand(&self, key: &str, value: Option<f64>, holds: impl Fn(f64) -> bool, reason: &str) -> Result<()> {
-        match value {
-            Some(v) if !holds(v) => Err(self.wrong(key, format!("{reason}, not {v}"))),
-            _ => Ok(()),
-        }
-    }
-
-    /// `name` heads columns of a table, and is none of the `others`.
-    ///
-    /// # Errors
-    /// It is one, or cannot head a column.
-    pub fn column_name<'a>(&self, key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
-        if name.is_empty() || needs_quotes(name) {
-            return Err(self.wrong(key, "needs a name without commas, quotes and line ends"));
-        }
-        match others.any(|other| other == name) {
-            true => Err(self.wrong(key, format!("\"{name}\" is the name of another"))),
-            false => Ok(()),
-        }
-    }
-
-    /// Cell edges along x, y, z.
-    ///
-    /// # Errors
-    /// No grid.
-    pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
-        match self.case.grid.elsewhere() {
-            Some(file) => file::read(&self.resolve(file), warnings),
-            None => self.case.grid.clone().edges(&Source::new(&self.path, &self.text), "grid.", true),
-        }
-    }
 }

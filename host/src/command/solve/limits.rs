@@ -1,6 +1,6 @@
 //! When a run ends, and when it tells, draws and saves.
 
-use super::case::CaseFile;
+use super::case_file::CaseFile;
 use crate::error::Result;
 use std::time::Duration;
 

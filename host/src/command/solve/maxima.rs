@@ -3,8 +3,8 @@
 //! The overpressure is p − p₀, p₀ being the ambient pressure. Its integral over time is taken by the trapezoidal rule from step to step;
 //! the impulse is the largest value that this integral reaches. The moment of arrival is interpolated within a step.
 
-use super::case::MaximaKeys;
 use super::frames::create;
+use super::output_keys::MaximaKeys;
 use crate::error::Result;
 use crate::files::npy;
 use crate::files::vtr::{CellField, NamedField, Vtr};

@@ -1,7 +1,8 @@
 //! The gas of a case whose states give ratios of specific heats of their own: burnt gas beside fresh gas.
 
 use super::arrays;
-use super::case::{CaseFile, Model};
+use super::case::Model;
+use super::case_file::CaseFile;
 use super::units::states;
 use crate::error::Result;
 use crate::grid::Edges;

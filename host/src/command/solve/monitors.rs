@@ -4,7 +4,8 @@
 //! domain there is one cell. The fluxes of a step are not kept, so that sums over time agree with the drift of contents to first order of the step.
 
 use super::arrays::{index, position};
-use super::case::{CaseFile, MonitorKeys};
+use super::case_file::CaseFile;
+use super::output_keys::MonitorKeys;
 use super::regions::Region;
 use super::setup::Setup;
 use crate::command::progress::Progress;

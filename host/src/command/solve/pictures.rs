@@ -3,8 +3,9 @@
 //! A frame is drawn when it is reached, with the range that the run has had so far, unless the case gives one; its planes are kept in `frames/slices`,
 //! and at the end of the run all frames are drawn again with the range of the whole run.
 
-use super::case::{CaseFile, RangeKeys};
+use super::case_file::CaseFile;
 use super::frames::{SLICES, Snapshot, cell_at};
+use super::output_keys::RangeKeys;
 use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::files::npy;

@@ -1,9 +1,10 @@
 //! `--refine-check`: the same case on half the cells along each axis that flows, and the largest values of both runs side by side.
 
 use super::arrays::position;
-use super::case::{CaseFile, MaximaKeys};
+use super::case_file::CaseFile;
 use super::frames::cell_at;
 use super::maxima::{Maxima, Peaks};
+use super::output_keys::MaximaKeys;
 use super::setup::setup;
 use super::stepping::step;
 use crate::command::cli::TalkArgs;

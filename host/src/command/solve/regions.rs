@@ -1,7 +1,8 @@
 //! Regions of a case, boxes and balls, and the share of each cell that they take: what a region holds does not depend on the grid.
 
 use super::arrays::index;
-use super::case::{CaseFile, StateKeys};
+use super::case::StateKeys;
+use super::case_file::CaseFile;
 use crate::command::progress::Progress;
 use crate::error::Result;
 use crate::flow::Flow;

@@ -1,6 +1,7 @@
 //! `report.json` of a flow, and its few lines for the terminal.
 
-use super::case::{CaseFile, GasKeys};
+use super::case::GasKeys;
+use super::case_file::CaseFile;
 use super::checkpoint::Journal;
 use super::force_peaks::{self, ForcePeak};
 use super::maxima::{Maxima, Peaks};

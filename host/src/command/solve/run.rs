@@ -1,12 +1,13 @@
 //! `voidage solve`: case → setup → steps → files.
 
-use super::case::{CaseFile, Format, OutputKeys};
+use super::case_file::CaseFile;
 use super::checkpoint::{self, Fingerprint, Journal};
 use super::force_peaks;
 use super::frames::{self, Snapshot, create};
 use super::limits::Limits;
 use super::lock::Lock;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
+use super::output_keys::{Format, OutputKeys};
 use super::pictures::{Pictures, check_slice};
 use super::refine;
 use super::report::{Done, Report};

@@ -1,11 +1,12 @@
 //! What a run keeps of its steps: lines of `log.csv`, `probes.csv` and `monitors.csv`.
 
 use super::arrays::position;
-use super::case::{CaseFile, OutputKeys};
+use super::case_file::CaseFile;
 use super::checkpoint::Journal;
 use super::force::Walls;
 use super::frames::cell_at;
 use super::monitors::{Monitor, MonitorReport, head, monitors};
+use super::output_keys::OutputKeys;
 use super::setup::Setup;
 use super::solids::{SolidForce, SolidShares};
 use super::table::Table;

@@ -1,7 +1,8 @@
 //! From a case to a flow that is ready to step: every value checked, nothing made that the case does not need.
 
 use super::arrays;
-use super::case::{CaseFile, GasKeys, LimiterName, Model, Pressure, RiemannName};
+use super::case::{GasKeys, LimiterName, Model, Pressure, RiemannName};
+use super::case_file::CaseFile;
 use super::inlet::Inlet;
 use super::mixture::mixture;
 use super::regions::{self, RegionReport};

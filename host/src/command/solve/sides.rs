@@ -1,7 +1,8 @@
 //! The sides of the domain, and patches on them: from the keys of a case to what stands there.
 
 use super::arrays;
-use super::case::{CaseFile, Kind, SideName, StateKeys, side_word};
+use super::case::{Kind, SideName, StateKeys, side_word};
+use super::case_file::CaseFile;
 use super::inlet::Inlet;
 use super::places::STATE;
 use super::regions::Region;

@@ -1,7 +1,8 @@
 //! Where the open fractions of a case come from: a scene through the porosity stage, a directory of arrays, or nowhere.
 
 use super::arrays;
-use super::case::{CaseFile, LawName, Paths, PorosityKeys};
+use super::case::{LawName, Paths, PorosityKeys};
+use super::case_file::CaseFile;
 use super::solids::{self, Measured, OTHERS};
 use crate::command::cli::SceneArgs;
 use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_no_force};

@@ -1,7 +1,8 @@
 //! States of a case: from the keys of a table, and of all cells at the beginning.
 
 use super::arrays;
-use super::case::{CaseFile, StateKeys, VELOCITIES};
+use super::case::{StateKeys, VELOCITIES};
+use super::case_file::CaseFile;
 use super::mixture;
 use super::places::STATE;
 use super::regions::Region;

@@ -4,7 +4,8 @@
 //! only where the case itself says that it is in SI units, by a gas constant in J/(kg K) beside a temperature; and the ambient pressure
 //! where it is at odds with every pressure of the beginning, in whatever unit.
 
-use super::case::{CaseFile, StateKeys, side_word};
+use super::case::{StateKeys, side_word};
+use super::case_file::CaseFile;
 
 /// Gas constants in J/(kg K): from heavy refrigerants to hydrogen, with room on both sides.
 const SI_GASES: [f64; 2] = [40.0, 6000.0];

@@ -1,0 +1,111 @@
+//! A case file of `voidage solve`: reading it, errors that name its keys, paths that count from its directory.
+
+use super::case::Case;
+use super::places;
+use crate::command::streams::{INPUT, text_of};
+use crate::error::{Error, Result};
+use crate::files::csv::needs_quotes;
+use crate::grid::Edges;
+use crate::grid::file;
+use crate::keys::reader::misfit;
+use crate::keys::source::another;
+use crate::keys::value::Value;
+use crate::keys::{self, PlacedValue, Source};
+use std::path::{Path, PathBuf};
+
+/// A case file with its place, for errors and for the paths in it.
+#[derive(Debug, Clone)]
+pub struct CaseFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its text.
+    text: String,
+    /// What it says.
+    pub case: Case,
+}
+
+fn parse(source: &Source) -> Result<Case> {
+    let table = source.toml()?;
+    let node = PlacedValue::of_table(table.get_ref(), 0..0).map_err(|e| misfit(source, e))?;
+    if let Value::Table(entries) = &node.value {
+        let of = |key: &str| entries.iter().find(|e| e.key == key);
+        if let Some((_, reason)) = another("a case", |key| of(key).is_some()) {
+            return Err(Error::file(source.path, reason));
+        }
+        if let Some(entry) = of("region").or_else(|| of("regions")) {
+            let reason = format!("key {}: regions stand in the table initial: [[initial.regions]]", entry.key);
+            return Err(misfit(source, (entry.span.clone(), reason)));
+        }
+        if let Some(entry) = of("grid").filter(|e| matches!(e.node.value, Value::List(_))) {
+            let reason = "a case has one table [grid]; tables [[grid]] belong to a study";
+            return Err(misfit(source, (entry.span.clone(), reason.into())));
+        }
+    }
+    places::check(&node).map_err(|wrong| misfit(source, wrong))?;
+    keys::read(source, &PlacedValue { span: None, ..node }, "")
+}
+
+impl CaseFile {
+    /// Reads a case.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
+    pub fn read(path: &Path) -> Result<Self> {
+        let piped = text_of(path)?;
+        let path = if piped.is_some() { Path::new(INPUT) } else { path };
+        let text = match piped {
+            Some(text) => text,
+            None => crate::text::read(path)?,
+        };
+        let case = parse(&Source::new(path, &text))?;
+        Ok(CaseFile { path: path.to_owned(), text, case })
+    }
+
+    /// A path of the case file, which counts from the file's own directory.
+    #[must_use]
+    pub fn resolve(&self, path: &Path) -> PathBuf {
+        self.path.parent().map_or_else(|| path.to_owned(), |dir| dir.join(path))
+    }
+
+    /// An error at a key.
+    #[must_use]
+    pub fn wrong(&self, key: &str, reason: impl Into<String>) -> Error {
+        Source::new(&self.path, &self.text).at_key(key, reason)
+    }
+
+    /// `reason` unless `value` is left out or `holds`.
+    ///
+    /// # Errors
+    /// Names key, reason and value.
+    pub fn demand(&self, key: &str, value: Option<f64>, holds: impl Fn(f64) -> bool, reason: &str) -> Result<()> {
+        match value {
+            Some(v) if !holds(v) => Err(self.wrong(key, format!("{reason}, not {v}"))),
+            _ => Ok(()),
+        }
+    }
+
+    /// `name` heads columns of a table, and is none of the `others`.
+    ///
+    /// # Errors
+    /// It is one, or cannot head a column.
+    pub fn column_name<'a>(&self, key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
+        if name.is_empty() || needs_quotes(name) {
+            return Err(self.wrong(key, "needs a name without commas, quotes and line ends"));
+        }
+        match others.any(|other| other == name) {
+            true => Err(self.wrong(key, format!("\"{name}\" is the name of another"))),
+            false => Ok(()),
+        }
+    }
+
+    /// Cell edges along x, y, z.
+    ///
+    /// # Errors
+    /// No grid.
+    pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
+        match self.case.grid.elsewhere() {
+            Some(file) => file::read(&self.resolve(file), warnings),
+            None => self.case.grid.clone().edges(&Source::new(&self.path, &self.text), "grid.", true),
+        }
+    }
+}
