@@ -6,7 +6,7 @@ use crate::status::{Answer, Status};
 use crate::types::{self, Case};
 use core::ffi::CStr;
 use core::ops::Deref;
-use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
+use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme, Treatment};
 use voidage_core::grid::Grid;
 use voidage_core::number::real::Real;
 
@@ -50,9 +50,6 @@ pub struct Checked<'a, R> {
     pub drag: [[&'a [R]; 3]; 2],
 }
 
-/// Differences of this share are jumps unless the case says otherwise.
-const USUAL_JUMP: f64 = 0.1;
-
 impl<'a, R: Real> Checked<'a, R> {
     /// # Safety
     /// As of [`Arrays::read`].
@@ -64,7 +61,7 @@ impl<'a, R: Real> Checked<'a, R> {
         }
         all(&case.gravity, Real::is_finite, c"case.gravity")?;
         all(&[case.jump], |jump| jump >= R::ZERO, c"case.jump")?;
-        let jump = if case.jump > R::ZERO { case.jump } else { R::from_f64(USUAL_JUMP) };
+        let jump = if case.jump > R::ZERO { case.jump } else { Treatment::default().jump };
         let (beta, drag) = unsafe { (fractions(arrays, case, &grid, live)?, drag(arrays, case, &grid)?) };
         let (gas, scheme, gravity) = (gas(case)?, scheme(case)?, case.gravity);
         Ok(Checked { grid, live, gas, scheme, gravity, side: case.side, jump, beta, drag })
