@@ -20,8 +20,8 @@
 //! 1. [`state`]: the gas, one cell, a field
 //! 2. [`limiter`]: slopes; [`face_gas`], [`riemann`]: the flux through a face; [`drag`]: resistance of the obstacles, at any stiffness;
 //!    [`boundary`]: the sides of the domain
-//! 3. [`mod@porosity`]: open fractions made ready: jumps, walls, small cells
-//! 4. [`error`]: what a caller may get wrong
+//! 3. [`error`]: what a caller may get wrong
+//! 4. [`mod@porosity`]: open fractions made ready: jumps, walls, small cells
 //! 5. [`problem`]: what stays the same during a step, and its contracts; [`step_report`]: what a step did; [`fallback`]: what happens
 //!    to unphysical states
 //! 6. `kernel`: one slab of one step, row by row

@@ -2,6 +2,10 @@
 //!
 //! A layer of cells depends on no other, and what a thread writes depends only on the layer: the bits are the same for
 //! any number of threads.
+//!
+//! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
+//! is measured; `targets`, `layers`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `surface_layers`,
+//! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`congestion`], [`throat`], what follows from it.
 
 pub mod congestion;
 pub mod convex;
