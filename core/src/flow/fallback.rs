@@ -11,7 +11,8 @@ use crate::number::real::Real;
 /// steps.
 const FLOOR_SHARE: f64 = 1e-3;
 
-/// Rounds of the fallback: the marked region grows by one cell each, and what a round did not help gets the next mark.
+/// Most repetitions of a step by the fallback. Before each, troubled cells and their neighbours are marked for first order; a troubled cell that has
+/// this mark already is marked for positive fluxes.
 pub const FALLBACKS: usize = 6;
 
 /// Mark of a cell whose reconstruction is of first order.

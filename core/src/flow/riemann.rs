@@ -54,12 +54,12 @@ pub enum Riemann {
     Rusanov,
 }
 
-/// What a solver that is kind to slow flow needs to know of a face besides its two states.
+/// Input of [`Riemann::HllcLowMach`] at a face, beside both states.
 #[derive(Clone, Copy, Debug)]
 pub struct Slowness<R> {
-    /// By how much the pressures at the face exceed those in the middle of their cells, in all.
+    /// Pressure at the face less that in the middle of the cell, summed over both sides.
     pub bend: R,
-    /// Time step over the width of the cells, times open area over open volume.
+    /// Time step over the width of the cells, times open area over open volume: 1/velocity. Infinite asks for the flux of [`Riemann::Hllc`].
     pub pace: R,
 }
 

@@ -95,7 +95,8 @@ impl<R: Real, const D: usize> Conserved<R, D> {
     }
 }
 
-/// Roundings by which the capacity of a cell may leave the bounds of its gas and is put back. Larger: less of what a bad step does is seen.
+/// A capacity beyond its bounds by at most this many ε of the upper one is rounding and put back; farther out it stays, and the cell is unphysical.
+/// Larger: less of what a bad step does is seen.
 const ROUNDINGS: f64 = 64.0;
 
 /// Where the pressure comes from.

@@ -3,7 +3,8 @@
 use super::wall::hypotenuse;
 use crate::number::plane::P2;
 
-/// Where a plane of the grid meets the plane of an end: a linear function, not negative inside, and the chord that the disc has there.
+/// The line in which the plane of a flat end meets a plane of the grid, as f = 0 of `f(p) = constant + slope·(p − shift)`, which is not negative on the
+/// inner side of the end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EndLine {
     /// The value in the plane's own foot of the end's centre.
@@ -12,6 +13,7 @@ pub(super) struct EndLine {
     pub slope: P2,
     /// The end's centre in the plane, from the part's origin.
     pub shift: P2,
+    /// What the end's disc has of the line, by its ends; none if the disc does not reach it.
     pub chord: Option<[P2; 2]>,
 }
 

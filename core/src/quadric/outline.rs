@@ -101,7 +101,7 @@ pub(super) struct Piece {
     pub side: u8,
 }
 
-/// An arc may go more than half around an ellipse: that is so small that half of it fits the polygon.
+/// Whether an arc may go more than half around its ellipse: only if half the area of the ellipse fits the box around the polygon.
 pub(super) type MayBeMajor = bool;
 
 /// What a solid has of a rectangle.
@@ -113,7 +113,7 @@ pub(super) enum Region {
     Whole,
     /// An ellipse inside it.
     Ellipse(Ellipse),
-    /// A polygon with arcs between some of its corners. More than half of an ellipse may be among them only if that is small.
+    /// A polygon with arcs between some of its corners.
     Pieces(Vec<Piece, MAX_CORNERS>, MayBeMajor),
 }
 

@@ -320,14 +320,15 @@ fn angle_of_cone(normals: &[[f64; 3]]) -> f64 {
     }
 }
 
-/// Below this size, in radii, a face farther from the centre than that is taken as far away from it.
+/// A face counts as far from the centre if its size, in radii, is below this and its middle is farther from the centre than that size. Its solid angle
+/// is then summed over triangles from one of its own points, else over triangles from the foot of the centre in its plane.
 const FAR: f64 = 0.25;
 
 fn is_far(size: f64, middle: [f64; 3]) -> bool {
     size < FAR && middle.iter().map(|x| x * x).sum::<f64>() > size * size
 }
 
-/// What may have been lost by rounding in the place of an end.
+/// Share of its radius and of its distance by which the reach of an end's disc is enlarged, against rounding of its place.
 const MARGIN: f64 = 1e-12;
 
 /// The solid angle of what is in front of some coordinate planes through a point, and of another plane.

@@ -123,8 +123,8 @@ fn pairs(parts: &[OnePart], flat: Option<Axis>) -> usize {
     parts.iter().enumerate().map(|(n, b)| parts.iter().take(n).filter(|a| meets(a, b)).count()).sum()
 }
 
-/// How far apart the bounds of a set with `others` beside its last part may be: of the tolerance that is left, half is for the pairs to come,
-/// each in turn.
+/// How far apart the bounds of a set may be, out of the tolerance that is `left`; `others` counts its parts but the last. Three parts or more get an
+/// eighth; a pair gets three quarters, divided by the number of pairs still to come, itself included.
 fn share(left: f64, others: usize, pairs_left: &mut usize) -> f64 {
     if others > 1 {
         return 0.125 * left;

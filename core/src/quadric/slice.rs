@@ -96,7 +96,8 @@ pub(super) struct Slice<'a, const N: usize> {
     rows: P2,
     /// Lengths that rounding may make.
     noise: f64,
-    /// Ends closer than this count as one; wider where curves run so close to each other that no number of rows would do.
+    /// Ends of rows closer than this length count as one. Raised while an area is measured in which two curves stay closer than any number of rows
+    /// can tell.
     tie: Cell<f64>,
 }
 

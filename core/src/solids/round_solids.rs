@@ -246,7 +246,7 @@ fn by_sections<V: Vector>(
     (bounds.upper - bounds.lower <= real(2.0) * rule.tol).then_some(bounds)
 }
 
-/// Are any two of some shapes proved to be apart?
+/// Is every pair of these shapes proved apart by GJK? False at the first pair that overlaps or is undecided.
 fn all_apart<V: Vector>(shapes: &[RoundShape<V>], queries: &mut QueryCount) -> bool {
     let mut rest = shapes;
     while let Some((a, others)) = rest.split_first() {

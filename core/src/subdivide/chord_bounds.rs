@@ -71,15 +71,17 @@ impl<R: Real> Columns<R> {
     }
 }
 
-/// A body in a box.
+/// A box `lo..hi` whose filled share is wanted, and the body that fills it.
 struct BoxInBody<'a, B: Chords> {
     body: &'a B,
+    /// Facets of the body that matter in the box.
     near: &'a [u32],
     lo: [ScalarOf<B>; 3],
     hi: [ScalarOf<B>; 3],
-    /// A box around the body.
+    /// The box `min..max` around the body.
     min: [ScalarOf<B>; 3],
     max: [ScalarOf<B>; 3],
+    /// By this length the body is shrunk for lower and grown for upper bounds, against the rounding of chords.
     grow: ScalarOf<B>,
 }
 

@@ -95,9 +95,8 @@ pub(super) struct Shared<'s, V: Vector, O> {
     pub effort: Effort,
 }
 
-/// So many triangles may be sorted for the parts of one cell, or so many times those of its first part, if these are more. Where so much
-/// surface meets in one place that halving does not thin it, a cell would take longer with each level of division; beyond this it keeps the
-/// bounds that it has.
+/// Most triangles sorted while one cell is divided; or [`MOST_TIMES`] those of its first part, if these are more. Where surface meets so densely that
+/// halving does not thin it, division stops here and the cell keeps the bounds that it has.
 const MOST_EFFORT: usize = 1 << 17;
 
 /// Where halving thins a cell, six levels sort each triangle some thirty times, which is some sixty times those of its first part.

@@ -35,13 +35,13 @@ struct Spot {
 /// The longest step, in radians.
 const STEP: f64 = PI / 24.0;
 
-/// Where a step must be shorter than this, θ is followed.
+/// Where a step along φ would have to be shorter than this, in radians, θ is followed.
 const STEEP: f64 = 1e-3;
 
 /// More steps than any plane needs.
 const MOST_STEPS: usize = 600;
 
-/// How far θ may turn in one step: the square of its chord.
+/// Largest square of the way that (cos θ, sin θ) may go in one step along φ; a longer step is shortened.
 const TURN: f64 = 0.09;
 
 impl Lines {

@@ -27,7 +27,7 @@ impl Drop for Watch {
     }
 }
 
-/// A second signal within this time is one with the first: shells and supervisors send two at once.
+/// Signals within this time of the first count as that one: shells and supervisors send two at once.
 const ONE: Duration = Duration::from_secs(2);
 
 /// When the first signal came, and whether the run was watched then.
@@ -39,8 +39,9 @@ pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// For the signal handler: whether the run will stop by itself. A second interrupt, two seconds later, does not wait for that; sooner it is
-/// one with the first, even if the run has stopped stepping by then and is about to say so.
+/// For the signal handler: asks the run to stop, and returns whether it will do so by itself. False, so that the program ends at once, if the run was
+/// not watched when the first signal came, or if that was two seconds ago or more. A sooner signal counts as the first, even if the run has
+/// stopped stepping by then and is about to say so.
 #[must_use]
 pub fn interrupt() -> bool {
     ASKED.store(true, Ordering::SeqCst);

@@ -1,8 +1,9 @@
 //! Bodies of which it cannot be told where they are solid.
 //!
-//! What is either solid or open counts as solid; the bounds are those with it and those without. Of other bodies not even that is known: their cells
-//! and faces keep the fractions that their surfaces give as they wind. But such a body may as well be a cavity of another, or count a part
-//! twice, so all that is certain within its box is that fractions lie between closed and open.
+//! - [`Doubt::Perhaps`]: all that the body holds is solid, or all is open. It counts as solid; the lower bounds are those with it, the upper ones those
+//!   without it.
+//! - [`Doubt::Unknown`]: not even that is known. Values are what its surface gives as it winds. The body may as well be a cavity of another, or count
+//!   a part twice, so the bounds of all cells and faces in its box are 0 and 1.
 
 use super::{FieldSet, Options, Porosity};
 use crate::geometry::bodies::{Bodies, Body, Doubt};

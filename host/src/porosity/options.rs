@@ -10,9 +10,9 @@ pub enum Method {
     /// The cheapest for every body: sums over its surface, if it has triangles, else closed forms, and subdivision where those meet.
     #[default]
     Auto,
-    /// Sums over the surface: exact for any closed surface of triangles
+    /// Sums over the surface: exact for any closed surface of triangles.
     Surface,
-    /// Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close
+    /// Subdivision by GJK, as in the paper: bounds; by leaf plane for convex bodies, by the others for any that close.
     Gjk,
 }
 
@@ -22,11 +22,11 @@ pub enum Method {
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Leaf {
-    /// Touched counts as solid: the paper's rule, which finds too much
+    /// A part that a body touches counts as solid: the paper's rule, which finds too much.
     Solid,
-    /// Touched counts half
+    /// A part that a body touches counts half.
     Half,
-    /// Bounded by planes and points: certified, of second order
+    /// A part is bounded by planes and points: certified, of second order.
     #[default]
     Plane,
 }

@@ -1,4 +1,4 @@
-//! Which body takes which road, and bodies that enter a layer beside surfaces.
+//! How each body is measured, and bodies that enter a layer beside surfaces.
 //!
 //! By `auto`, bodies of triangles go by their surface and solids by formula by closed forms ([`super::formulas`]). By `gjk`, convex bodies are
 //! subdivided, as in the paper. What enters beside surfaces is the union of each kind, as one interval a cell and face.
@@ -21,12 +21,12 @@ use voidage_core::subdivide::{
 };
 use voidage_core::surface::OtherBodies;
 
-/// Which body takes which road, and the memory of those that take this one.
+/// How each body is measured: subdivided if its entry in `convex` is some, by closed form if `formulas` lists it, else by its surface.
 #[derive(Debug, Default)]
 pub struct Roads {
-    /// One entry a body: by subdivision, or otherwise.
+    /// One entry a body: what is subdivided.
     convex: Vec<Option<Known>>,
-    /// Those that go by closed forms, by their numbers.
+    /// The solids measured by closed forms, each with the number of its body.
     formulas: Vec<FormulaSolid>,
 }
 

@@ -62,7 +62,7 @@ where
     into_distance(pair, &found)
 }
 
-/// A walk's result in the words of the caller: radii taken off, scale undone.
+/// Turns the closest points of the cores into the distance of the bodies: subtracts the radii, undoes the scale, widens the bounds by rounding.
 fn into_distance<A, B, const SCALED: bool>(
     pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     found: &Closest<A::Vector>,

@@ -7,7 +7,7 @@ use crate::convex::support::{ScalarOf, Support, SupportPoint, magnitude};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
-/// Up to this many vertices a scan is as fast as a climb, and needs no second look.
+/// Up to this many vertices all are scanned, which is as fast as a climb along edges and needs no second look; a hull of more is climbed.
 const CLIMBED: usize = 64;
 
 /// The convex hull of some points; they may repeat, lie inside, in a plane or on a line.

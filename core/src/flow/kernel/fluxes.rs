@@ -148,8 +148,9 @@ fn middle<R: Real, const D: usize>(side: &Boundary<R, D>, inside: R, ghost: &Pri
     if *side == Boundary::Wall { inside } else { ghost.pressure }
 }
 
-/// The pace of the faces of a row along or across axis `d`, whose open fractions are `face`; `at` names the cell above the first of them.
-/// What comes from beyond the domain, walls and periodic sides apart, is given: no pace is too fast for it.
+/// Writes the pace of each face normal to axis `d` in a row: the time step over the smaller width beside it, times its open fraction `face` over the
+/// smaller open fraction of both cells. Infinite on sides of the domain that are neither walls nor periodic, so that the plain flux acts there. `at`
+/// is the cell above the first face.
 fn paces<R: Real, const D: usize>(slab: &Slab<'_, R, D>, d: usize, at: [usize; D], face: Option<&[R]>, pace: &mut [R]) {
     let (mesh, n) = (&slab.problem.mesh, slab.size.n);
     let widths = mesh.widths[d];

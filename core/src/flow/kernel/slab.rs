@@ -151,11 +151,11 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
     }
 }
 
-/// Open fraction of a cell below which no pace is slow: what flows in dust follows from its rounding. Larger: the flux in small cells
-/// is the plain one.
+/// Open fraction of a cell up to which its faces get an infinite pace, and so the flux of plain HLLC: states there are rounding. Larger: more
+/// small cells get the plain flux.
 const DUST: f64 = 1e-6;
 
-/// A pace through a face of an open fraction between two cells of open fractions.
+/// The pace of a face of open fraction `open`, between cells of open fractions `low` and `high`, from that of open space.
 #[inline(always)]
 pub(in crate::flow) fn tightened<R: Real>(pace: R, open: R, low: R, high: R) -> R {
     let least = R::smaller(low, high);

@@ -18,10 +18,10 @@ use crate::flow::riemann::{Slowness, Solver};
 use crate::flow::state::Primitive;
 use crate::number::real::Real;
 
-/// Jump faces done side by side.
+/// Jump faces of one group, whose fluxes are found side by side. The number changes no result.
 const LANES: usize = 4;
 
-/// Variables of a state in three dimensions.
+/// Variables of a state in three dimensions: density, three velocities, pressure.
 const MOST: usize = 5;
 
 /// Differences along an axis for a single cell, without gravity towards its mirror images.

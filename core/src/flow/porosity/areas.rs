@@ -46,7 +46,7 @@ impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
     }
 }
 
-/// An open area and what it would grow to, by a share; all of it for a share of 1.
+/// An area between `open` (for a share of 0) and `area` (exactly that for a share of 1 or more).
 #[inline(always)]
 pub(crate) fn share<R: Real>(open: R, area: R, share: R) -> R {
     if share >= R::ONE { area } else { open + share * (area - open) }
@@ -99,7 +99,7 @@ impl<'a, R: Real> Ducts<'a, R> {
         R::larger(self.duct(i), self.volume[i])
     }
 
-    /// Area of the wall that a closed face is to the gas in a cell; a sealed one feels none.
+    /// Area that a closed face has as a wall of the cell beside it: [`Ducts::width`]; 0 in a sealed cell, where nothing moves.
     pub fn wall(&self, i: usize) -> R {
         if is(self.marks[i], SEALED) { R::ZERO } else { self.width(i) }
     }
@@ -135,8 +135,8 @@ impl<'a, R: Real> Ducts<'a, R> {
         if breaks { jump } else { open }
     }
 
-    /// Areas with which a duct meets the low and high face of its cell: at a jump it goes on behind the face, by so much as the
-    /// `contraction` of that face tells.
+    /// Areas with which the duct of a cell meets its low and high face: the open fraction of the face where nothing breaks; at a jump from that
+    /// (for a `contraction` of 0) to the duct's own (1); at a wall from 0 to that of the wall.
     #[inline(always)]
     pub fn sections(&self, i: usize, contraction: [R; 2]) -> (R, R) {
         let section = |high: bool| {

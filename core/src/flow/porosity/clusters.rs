@@ -132,7 +132,7 @@ impl<'a, R: Real, const D: usize> Space<'a, R, D> {
 struct Search<'s, R> {
     /// The next cell towards the root; the root is its own.
     parent: &'s mut [u32],
-    /// The root of each cell when the last picture was taken.
+    /// The root of each cell at the last [`Search::take_picture`].
     root: &'s mut [u32],
     /// Open volume of each cluster, and the largest of its open faces times the volume of its cell.
     held: &'s mut [R],
@@ -182,7 +182,8 @@ impl<'s, R: Real> Search<'s, R> {
         i
     }
 
-    /// Takes a picture of the clusters, so that the order of the cells does not count while they grow.
+    /// Records root, open volume and wanted volume of every cluster. `choose` and `join` judge by this record alone, so that the order of the
+    /// cells does not count while clusters grow.
     fn take_picture<const D: usize>(&mut self, space: &Space<'_, R, D>) {
         self.held.fill(R::ZERO);
         self.wanted.fill(R::ZERO);

@@ -119,8 +119,8 @@ impl<R: Real> Descent<'_, R> {
         Ok(())
     }
 
-    /// Let the fragment at `top` end in the open if no part of it reaches solid below its branch. Without that, or where it cannot be told,
-    /// false, and it is marked as one that meets the body.
+    /// Ends the fragment at `top` in the open and returns true if no part of it reaches solid below its branch. Else, also where planes coincide or
+    /// memory is spent, sets its `meets` and returns false.
     fn ends_open(&mut self, top: usize) -> bool {
         let open = self.reaches_no_solid(top) == Some(true);
         if let Some(f) = self.fragments.get_mut(top) {
