@@ -147,6 +147,29 @@ fn a_face_lowered_to_a_throat_belongs_to_the_solid_that_lowers_it() {
     }
 }
 
+/// A blast in front of a pipe, all mirrored about a plane through the middle of a row of cells: the pipe, which stands in those cells, is not pushed
+/// aside, whichever faces are lowered and whichever cells are merged.
+#[test]
+fn a_mirrored_blast_pushes_nothing_aside() {
+    let at = Scratch::new();
+    let pipe = "[[solid]]\nname = \"tank\"\nshape = \"cylinder\"\nfrom = [1.2, 0.4, 0]\nto = [1.2, 0.4, 0.53]\nradius = 0.17\n";
+    let thin =
+        "[[solid]]\nname = \"rod\"\nshape = \"cylinder\"\nfrom = [0.9, 0.4, 0]\nto = [0.9, 0.4, 0.6]\nradius = 0.02\n";
+    fs::write(at.file("scene.toml"), pipe.to_owned() + thin).expect("written");
+    let blast = "[[initial.regions]]\ncenter = [0.5, 0.4, 0.4]\nradius = 0.2\np = 8e5\nrho = 2\n";
+    let more = format!("{blast}[time]\nend = 1.5e-3\n[output]\nformats = []\nforces = [\"*\"]\n");
+    let odd =
+        case(0.0, &more).replace("y = { points = [0, 0.8], cells = [8] }", "y = { points = [0, 0.8], cells = [7] }");
+    assert!(odd.contains("cells = [7]"));
+    solved(&at, &odd, "out", &["-q"]);
+    let log = log(&at, "out");
+    for name in ["tank", "rod"] {
+        let most = |axis: &str| log[&format!("{name} force_{axis}")].iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        assert!(most("x") > 10.0, "{name}: {} N", most("x"));
+        assert!(most("y") < 1e-6 * most("x"), "{name}: {} N aside of {} N", most("y"), most("x"));
+    }
+}
+
 /// Two cubes 14 cells apart, for six steps, which reach two cells each: each as alone.
 #[test]
 fn two_cubes_apart_feel_what_each_feels_alone() {

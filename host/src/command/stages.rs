@@ -9,7 +9,8 @@ use crate::geometry::form::Form;
 use crate::geometry::read;
 use crate::geometry::scene;
 use crate::geometry::unit::Unit;
-use crate::grid::Edges;
+use crate::grid::file::UNIT_CELL;
+use crate::grid::{AXES, Edges};
 use crate::picture::ticks::{measure as number, number_to};
 use crate::porosity::snap::{self, OffPlanes};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
@@ -178,6 +179,15 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &
         format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
     };
     let extent = |p, q| format!("{} to {}", point(p), point(q));
+    let unit_cells: Vec<&str> = (0..3).filter(|&a| edges.0[a] == UNIT_CELL).map(|a| AXES[a]).collect();
+    let within = match unit_cells.is_empty() {
+        true => extent(lo, hi),
+        false => format!(
+            "{} (one cell along {}, as along an axis that a case leaves out)",
+            extent(lo, hi),
+            unit_cells.join(", ")
+        ),
+    };
     // What is flush with the grid but for rounding is within.
     let near = snap::near(grid);
     let room = |b: &Body| near + b.single.map_or(DVec3::ZERO, |s| s.error(b.bounds[0]).max(s.error(b.bounds[1])));
@@ -190,7 +200,7 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &
             "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
             bodies.files(),
             extent(min, max),
-            extent(lo, hi)
+            within
         ));
         return;
     }
@@ -199,7 +209,7 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &
             "{}: the geometry, {}, extends beyond the grid, {}; only what is inside counts",
             bodies.files(),
             extent(min, max),
-            extent(lo, hi)
+            within
         ));
     }
     let outside = |[min, max]: [DVec3; 2]| (min - near).cmpgt(hi).any() || (max + near).cmplt(lo).any();
@@ -207,7 +217,7 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &
     let files = bodies.diagnoses.iter().filter(|d| outside(d.bounds)).map(|d| d.file.clone());
     let names: Vec<String> = if bodies.solids.is_empty() { files.collect() } else { solids.collect() };
     if let Some(names) = listed(&names) {
-        progress.warn(format!("{names}: outside the grid, {}, and without effect", extent(lo, hi)));
+        progress.warn(format!("{names}: outside the grid, {within}, and without effect"));
     }
 }
 

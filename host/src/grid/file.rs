@@ -75,7 +75,7 @@ impl<'de> Visitor<'de> for AxisVisitor {
 }
 
 /// Edges of an axis that is left out: a flow that does not vary along it has one cell there, of unit width.
-const UNIT_CELL: [f64; 2] = [0.0, 1.0];
+pub const UNIT_CELL: [f64; 2] = [0.0, 1.0];
 
 impl GridTable {
     /// The file that holds the grid, if nothing but its name is given.

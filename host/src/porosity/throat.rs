@@ -12,15 +12,15 @@ pub enum Faces {
     /// What is open in the plane of the face: exact, but a wall between two planes is not seen.
     #[default]
     Plane,
-    /// What can pass: where a cell blocks more than its two faces show, the nearer one is lowered to that.
+    /// What can pass: where a cell blocks more than its two faces show, the nearer one is lowered to that, or both if they are equally near.
     Throat,
 }
 
-/// A face is lowered only by more than this, and the high one only if nearer by more: less is rounding.
+/// A face is lowered only by more than this, and one of two only if nearer by more: less is rounding.
 const LEAST: f64 = 1e-9;
 
-/// Lower, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass; ties go to the low face.
-/// How many faces were lowered.
+/// Lowers, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass: both where they are equally
+/// near, so that mirrored scenes have mirrored faces. Returns how many faces were lowered.
 pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usize {
     let mut lowered = 0;
     let Porosity { beta, bounds, .. } = result;
@@ -32,12 +32,14 @@ pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usiz
             if !(passes < before[faces[0]].min(before[faces[1]]) - LEAST) {
                 continue;
             }
-            let face = faces[usize::from(shadows.place[axis][n] > 0.5 + LEAST)];
-            let fields = bounds.iter_mut().flatten().chain([&mut *beta]);
-            for field in fields.map(|set| set.faces_mut(axis)) {
-                field[face] = field[face].min(passes);
+            let place = shadows.place[axis][n];
+            let nearer = [place <= 0.5 + LEAST, place >= 0.5 - LEAST];
+            for (face, _) in faces.into_iter().zip(nearer).filter(|(_, nearer)| *nearer) {
+                for field in bounds.iter_mut().flatten().chain([&mut *beta]).map(|set| set.faces_mut(axis)) {
+                    field[face] = field[face].min(passes);
+                }
+                lowered += 1;
             }
-            lowered += 1;
         }
     }
     lowered

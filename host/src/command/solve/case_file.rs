@@ -67,6 +67,18 @@ impl CaseFile {
         self.path.parent().map_or_else(|| path.to_owned(), |dir| dir.join(path))
     }
 
+    /// The file or directory that a key names.
+    ///
+    /// # Errors
+    /// It is not there.
+    pub fn existing(&self, key: &str, path: &Path) -> Result<PathBuf> {
+        let path = self.resolve(path);
+        match path.exists() {
+            true => Ok(path),
+            false => Err(self.wrong(key, format!("{}: cannot open: No such file or directory", path.display()))),
+        }
+    }
+
     /// An error at a key.
     #[must_use]
     pub fn wrong(&self, key: &str, reason: impl Into<String>) -> Error {
@@ -104,7 +116,7 @@ impl CaseFile {
     /// No grid.
     pub fn edges(&self, warnings: &mut Vec<String>) -> Result<Edges> {
         match self.case.grid.elsewhere() {
-            Some(file) => file::read(&self.resolve(file), warnings),
+            Some(file) => file::read(&self.existing("grid.file", file)?, warnings),
             None => self.case.grid.clone().edges(&Source::new(&self.path, &self.text), "grid.", true),
         }
     }

@@ -25,7 +25,11 @@ pub fn mixture(file: &CaseFile, gas: Gas<f64>, edges: &Edges) -> Result<Gas<f64>
         file.demand(&key, keys.gamma, |g| g > 1.0 && g.is_finite(), "needs a number above 1")?;
         found.extend(keys.gamma);
     }
-    if let Some(path) = array(file).filter(|_| matches!(gas, Gas::Ideal { .. })) {
+    if let Some(path) = array(file) {
+        if !matches!(gas, Gas::Ideal { .. }) {
+            return Err(file
+                .wrong("initial.from", "holds gamma.npy: only an ideal gas may have a gamma of its own in each cell"));
+        }
         found.extend(arrays::read(&path, edges.cells(), above_one)?);
     }
     if found.is_empty() {

@@ -294,7 +294,7 @@ fn drag<const D: usize>(
         all[0] = by_law;
     }
     if let Some(dir) = keys.from.as_deref().filter(|_| all.iter().flatten().all(Vec::is_empty)) {
-        return Err(nothing_in(&file.resolve(dir)));
+        return Err(nothing_in(&file.existing("drag.from", dir)?));
     }
     all.iter_mut().flatten().filter(|c| c.iter().all(|&x| x == 0.0)).for_each(Vec::clear);
     Ok(if all.iter().flatten().all(Vec::is_empty) { None } else { Some(all) })

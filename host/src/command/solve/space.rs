@@ -16,7 +16,6 @@ use crate::grid::{AXES, Edges};
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
-use std::path::PathBuf;
 
 /// Open fractions of all cells and of the faces of the axes that flow.
 #[derive(Debug, Clone)]
@@ -44,7 +43,7 @@ pub fn load<const D: usize>(
     let (space, solids) = match (&keys.scene, &keys.from) {
         (Some(scene), None) => from_scene(file, scene, edges, live, progress)?,
         (None, Some(dir)) => {
-            let dir = file.resolve(dir);
+            let dir = file.existing("porosity.from", dir)?;
             let read = |name: &str, shape| arrays::read(&dir.join(format!("beta_{name}.npy")), shape, arrays::fraction);
             let cells = edges.cells();
             let faces: Vec<Vec<f64>> = live
@@ -76,11 +75,10 @@ fn from_scene<const D: usize>(
     if paths.is_empty() {
         return Err(file.wrong("porosity.scene", "names no file"));
     }
-    let absent = |path: &&PathBuf| !is_stream(path) && !file.resolve(path).exists();
-    if let Some(path) = paths.iter().find(absent) {
-        let reason = format!("{}: cannot open: No such file or directory", file.resolve(path).display());
-        return Err(file.wrong("porosity.scene", reason));
-    }
+    paths
+        .iter()
+        .filter(|path| !is_stream(path))
+        .try_for_each(|path| file.existing("porosity.scene", path).map(drop))?;
     let scene = SceneArgs { scene: paths.iter().map(|p| file.resolve(p)).collect(), unit: keys.unit };
     // The flow has a grid of its own; that of a scene file is for the scene alone.
     let (bodies, _) = stages::load(&scene, progress)?;

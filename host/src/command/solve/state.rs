@@ -134,7 +134,7 @@ impl<const D: usize> States<'_, D> {
                     Some(path) => arrays::read(&path, edges.cells(), mixture::above_one)?,
                     None => vec![self.gamma(&StateKeys::default(), None); count],
                 };
-                let states = self.read(&self.file.resolve(dir), edges)?.into_iter();
+                let states = self.read(&self.file.existing("initial.from", dir)?, edges)?.into_iter();
                 states.zip(gammas).map(|(state, gamma)| whole(state, gamma)).collect()
             }
             (None, None) => vec![None; count],
