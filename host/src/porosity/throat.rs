@@ -12,20 +12,20 @@ pub enum Faces {
     /// What is open in the plane of the face: exact, but a wall between two planes is not seen.
     #[default]
     Plane,
-    /// What can pass: where a cell blocks more than its two faces show, the nearer one is lowered to that, or both if they are equally near.
+    /// What can pass: where a cell blocks more than its two faces show, the nearer one is lowered to that.
     Throat,
 }
 
 /// A face is lowered only by more than this, and one of two only if nearer by more: less is rounding.
 const LEAST: f64 = 1e-9;
 
-/// Lowers, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass: both where they are equally
-/// near, so that mirrored scenes have mirrored faces. Returns how many faces were lowered.
+/// Lowers, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass. Of two that are equally near
+/// it is the one towards the middle of the grid, and both in the middle cell: mirrored scenes have mirrored faces. Returns how many faces were lowered.
 pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usize {
     let mut lowered = 0;
     let Porosity { beta, bounds, .. } = result;
     for axis in 0..3 {
-        let before = beta.faces(axis).to_vec();
+        let (before, count) = (beta.faces(axis).to_vec(), grid.cells()[axis]);
         for (n, at) in cells(grid).enumerate() {
             let passes = 1.0 - shadows.tau[axis][n];
             let faces = faces_of_cell(grid, axis, at);
@@ -33,7 +33,11 @@ pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usiz
                 continue;
             }
             let place = shadows.place[axis][n];
-            let nearer = [place <= 0.5 + LEAST, place >= 0.5 - LEAST];
+            let (before_middle, behind_middle) = (2 * at[axis] + 1 < count, 2 * at[axis] + 1 > count);
+            let nearer = match place - 0.5 {
+                aside if aside.abs() > LEAST => [aside < 0.0, aside > 0.0],
+                _ => [!before_middle, !behind_middle],
+            };
             for (face, _) in faces.into_iter().zip(nearer).filter(|(_, nearer)| *nearer) {
                 for field in bounds.iter_mut().flatten().chain([&mut *beta]).map(|set| set.faces_mut(axis)) {
                     field[face] = field[face].min(passes);
