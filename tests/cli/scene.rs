@@ -422,3 +422,58 @@ cells = [16, 8, 8]
     let said = stderr(&output);
     assert!(said.contains("solid \"ring\": a torus is not convex") && said.contains("--method auto"), "{said}");
 }
+
+/// A text that an editor saved in another encoding is told with place and cure, whatever it describes; a byte order mark is no part of it.
+#[test]
+fn texts_are_utf_8() {
+    let dir = Scratch::new();
+    let scene = format!("{BOX}{GRID}").replace("\"b\"", "\"M\u{fc}ller\"");
+    let latin: Vec<u8> = scene.chars().map(|c| c as u8).collect();
+    let wide: Vec<u8> = [0xFF, 0xFE].into_iter().chain(scene.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    for command in ["porosity", "solve", "study"] {
+        for (bytes, words) in [
+            (
+                &latin,
+                "line 2, column 10: this byte is no UTF-8 (0xFC; in Latin-1 it is \u{fc}): save the file as UTF-8",
+            ),
+            (&wide, "is UTF-16 (\"Unicode\" in some editors): save it as UTF-8"),
+        ] {
+            let path = dir.file("text.toml");
+            fs::write(&path, bytes).expect("written");
+            let output = voidage(&[&command, &path]);
+            let said = stderr(&output);
+            assert!(output.status.code() == Some(1) && said.contains(words), "{command}: {said}");
+        }
+    }
+    let path = dir.file("marked.toml");
+    fs::write(&path, format!("\u{feff}{scene}")).expect("written");
+    assert_eq!(report(&dir, &[&path])["solids"][0]["name"], "M\u{fc}ller");
+    fs::write(&path, format!("\u{feff}nonsense\n{scene}")).expect("written");
+    let said = stderr(&voidage(&[&"porosity", &path]));
+    assert!(said.contains("line 1, column 9") && said.contains("   1 | nonsense\n"), "{said}");
+}
+
+/// Keys of a grid that do not go together, and values that make no cells, are told by the keys that were written.
+#[test]
+fn grids_that_contradict_themselves() {
+    let dir = Scratch::new();
+    let path = dir.file("scene.toml");
+    for (from, to, words) in [
+        ("[grid]\n", "[grid]\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\n", "key grid.origin: does not go with edges"),
+        ("spacing = [0.5,", "spacing = [0,", "key grid.spacing[0]: must be above 0, not 0"),
+        ("cells = [8, 6, 6]", "cells = [8, 0, 6]", "key grid.cells[1]: must be at least 1, not 0"),
+        (
+            "origin = [-1, -1, -1]\nspacing = [0.5, 0.5, 0.5]\ncells = [8, 6, 6]\n",
+            "x = { points = [0, 1, 2], cells = [1] }\ny = [0, 1]\nz = [0, 1]\n",
+            "key grid.x: 3 points need 2 cells, not 1",
+        ),
+    ] {
+        assert!(GRID.contains(from));
+        fs::write(&path, format!("{BOX}{}", GRID.replacen(from, to, 1))).expect("written");
+        let said = stderr(&voidage(&[&"porosity", &path]));
+        assert!(said.contains(words) && said.contains("scene.toml: line "), "{to}: {said}");
+    }
+    fs::write(&path, format!("{BOX}array = {{ count = [2, 1, 1], spacing = [2, 0, 0] }}\n{GRID}")).expect("written");
+    let said = stderr(&voidage(&[&"porosity", &path]));
+    assert!(said.contains("array takes count, step; not spacing"), "{said}");
+}

@@ -296,8 +296,10 @@ fn files() {
     assert!(said(&both).contains("key porosity: takes scene or from, not both"), "{}", said(&both));
 
     let from = CASE.replace("uniform = { rho = 1, u = 0.5, p = 1 }", "from = \"start\"");
-    assert!(said(&from).contains("start/rho.npy: cannot open"), "{}", said(&from));
+    let (text, place) = (said(&from), "key initial.from: ");
+    assert!(text.contains("line 9, column 8") && text.contains(place) && text.contains("start: cannot open"), "{text}");
     fs::create_dir(at.file("start")).expect("a directory");
+    assert!(said(&from).contains("start/rho.npy: cannot open"), "{}", said(&from));
     let put = |name: &str, shape: [usize; 3], values: &[f64]| {
         npy::write(&at.file(&format!("start/{name}.npy")), shape, values).expect("an array");
     };

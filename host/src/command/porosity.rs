@@ -15,6 +15,7 @@ use crate::error::Result;
 use crate::geometry::bodies::Bodies;
 use crate::grid::{self, Edges, GridSpec};
 use crate::porosity::congestion::congestion;
+use crate::porosity::throat::Faces;
 use crate::porosity::{Method, Options};
 use report::Report;
 use std::path::Path;
@@ -53,7 +54,9 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
         let resistance = args.resistance || args.zones.is_some() || args.drag.is_some();
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf, resistance };
-        let mut result = measure(&bodies, &edges, options, &mut progress)?;
+        // Throats need the surface in each cell, which porosity cuts anyway.
+        let with_surface = Options { resistance: resistance || args.faces == Faces::Throat, ..options };
+        let mut result = measure(&bodies, &edges, with_surface, &mut progress)?;
         let (grid, coefficients) = (edges.grid(None)?, args.cd.unwrap_or_default());
         let drag = args.drag.map(|law| (law, coefficients));
         let wanted = Wanted { resistance, drag, faces: args.faces, warning: false };
