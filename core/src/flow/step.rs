@@ -174,22 +174,21 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         mut attempt: impl FnMut(&mut FieldsMut<'_, R, D>, Option<&[u8]>) -> Result<Report<R, D>, Error>,
     ) -> Result<Report<R, D>, Error> {
         fits(self.mesh.len(), marks.len())?;
-        let mut report = attempt(new, None)?;
-        self.merge(old, new, &mut report)?;
-        if report.unphysical == 0 {
-            return Ok(report);
-        }
-        marks.fill(0);
-        for _ in 0..FALLBACKS {
-            if self.mark_troubled(&new.as_fields(), marks)? == 0 {
-                break;
-            }
-            report = attempt(new, Some(marks))?;
+        let mut rounds = 0;
+        let mut report = loop {
+            let mut report = attempt(new, if rounds > 0 { Some(&*marks) } else { None })?;
             self.merge(old, new, &mut report)?;
             if report.unphysical == 0 {
                 return Ok(report);
             }
-        }
+            if rounds == 0 {
+                marks.fill(0);
+            }
+            if rounds == FALLBACKS || self.mark_troubled(&new.as_fields(), marks)? == 0 {
+                break report;
+            }
+            rounds += 1;
+        };
         self.apply_floors(old, new, &mut report)?;
         Ok(report)
     }
