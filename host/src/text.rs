@@ -22,6 +22,9 @@ pub fn of_bytes(path: &Path, bytes: Vec<u8>) -> Result<String> {
     if let [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] = bytes[..] {
         return Err(Error::file(path, "is UTF-16 (\"Unicode\" in some editors): save it as UTF-8"));
     }
+    if bytes.contains(&0) {
+        return Err(Error::file(path, "is no text: it holds bytes of 0 (UTF-16 is to be saved as UTF-8)"));
+    }
     match String::from_utf8(bytes) {
         Ok(mut text) => {
             if text.starts_with(BYTE_ORDER_MARK) {
@@ -33,9 +36,8 @@ pub fn of_bytes(path: &Path, bytes: Vec<u8>) -> Result<String> {
             let (valid, at) = (e.utf8_error().valid_up_to(), e.as_bytes());
             let before = String::from_utf8_lossy(&at[..valid]).into_owned();
             let (line, begin) = (before.matches('\n').count() + 1, before.rfind('\n').map_or(0, |n| n + 1));
-            let column = before[begin..].chars().count() + 1;
+            let column = before[begin..].trim_start_matches(BYTE_ORDER_MARK).chars().count() + 1;
             let reason = match at[valid] {
-                0 => "is no text".to_owned(),
                 byte @ 0xA0.. => format!(
                     "this byte is no UTF-8 (0x{byte:02X}; in Latin-1 it is {}): save the file as UTF-8",
                     char::from(byte)

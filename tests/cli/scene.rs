@@ -460,7 +460,7 @@ fn grids_that_contradict_themselves() {
     let path = dir.file("scene.toml");
     for (from, to, words) in [
         ("[grid]\n", "[grid]\nx = [0, 1]\ny = [0, 1]\nz = [0, 1]\n", "key grid.origin: does not go with edges"),
-        ("spacing = [0.5,", "spacing = [0,", "key grid.spacing[0]: must be above 0, not 0"),
+        ("spacing = [0.5,", "spacing = [0,", "key grid.spacing[0]: takes a finite number above 0, not 0"),
         ("cells = [8, 6, 6]", "cells = [8, 0, 6]", "key grid.cells[1]: must be at least 1, not 0"),
         (
             "origin = [-1, -1, -1]\nspacing = [0.5, 0.5, 0.5]\ncells = [8, 6, 6]\n",

@@ -20,7 +20,8 @@ pub struct StableStep<R, const D: usize> {
 }
 
 /// Steps from `time` by `longest`, but not past `end`. `attempt(dt)` computes the next field and leaves the present one alone, as [`Problem::step`]
-/// does: where its report counts floors, it is called again with half the time. The field of the last call is the one to go on with.
+/// does: where its report counts floors, it is called again with half the time. The field of the last call is the one to go on with. `end` lies after
+/// `time`; a `longest` that is infinite or NaN is the whole way there.
 ///
 /// [`Problem::step`]: crate::flow::Problem::step
 ///

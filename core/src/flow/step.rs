@@ -175,7 +175,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     ) -> Result<Report<R, D>, Error> {
         fits(self.mesh.len(), marks.len())?;
         let mut rounds = 0;
-        let mut report = loop {
+        loop {
             let mut report = attempt(new, if rounds > 0 { Some(&*marks) } else { None })?;
             self.merge(old, new, &mut report)?;
             if report.unphysical == 0 {
@@ -185,11 +185,10 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
                 marks.fill(0);
             }
             if rounds == FALLBACKS || self.mark_troubled(&new.as_fields(), marks)? == 0 {
-                break report;
+                self.apply_floors(old, new, &mut report)?;
+                return Ok(report);
             }
             rounds += 1;
-        };
-        self.apply_floors(old, new, &mut report)?;
-        Ok(report)
+        }
     }
 }

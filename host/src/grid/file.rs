@@ -152,7 +152,7 @@ impl GridTable {
         }
         for (a, &h) in spacing.iter().enumerate() {
             if !(h > 0.0 && h.is_finite()) {
-                return Err(wrong(&format!("spacing[{a}]"), format!("must be above 0, not {h}")));
+                return Err(wrong(&format!("spacing[{a}]"), format!("takes a finite number above 0, not {h}")));
             }
         }
         if let Some(a) = cells.iter().position(|&n| n == 0) {
@@ -267,8 +267,11 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
     };
     let (given, needed) = (points.len(), points.len().saturating_sub(1));
     let counts = [("cells", Some(cells.len())), ("ratios", ratios.as_ref().map(Vec::len))];
+    if given < 2 {
+        return Err(format!("needs at least two points, not {given}"));
+    }
     for (what, n) in counts.into_iter().filter_map(|(what, n)| Some((what, n?))) {
-        if points.is_empty() || n != needed {
+        if n != needed {
             return Err(format!("{given} points need {needed} {what}, not {n}"));
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Each solid is measured alone, on the cells that it reaches, as all of them are measured together: with faces lowered to a throat, if theirs are. What
 //! it closes of a face is its wall on both sides of the face. What the walls of all together have besides (where solids share a cell or hide each
-//! other) goes, face by face, by how much of the two cells each takes, and the drag by how much of the cell. So the forces on all solids add up to
+//! other) goes, face by face, by how much of the two cells and their faces each takes, and the drag by how much of the cell. So the forces on all solids add up to
 //! the force on all, and gas of one pressure all around pushes none of them that it surrounds.
 
 use super::arrays::position;
@@ -44,6 +44,8 @@ struct Part<const D: usize> {
     cell: usize,
     /// Open fractions of the low and high faces of the live axes.
     faces: [[f64; 2]; D],
+    /// What is taken of the cell.
+    volume: f64,
     /// What is taken of the cell and of its faces.
     taken: f64,
 }
@@ -123,16 +125,18 @@ fn alone<const D: usize>(
     let mut found = porosity(&grid, bodies, Options { resistance: faces == Faces::Throat, ..options });
     if faces == Faces::Throat {
         let shadows = shadows(&grid, bodies, &found, options);
-        throat::lower(&grid, &mut found, &shadows);
+        let first = ranges.each_ref().map(|range| range.start);
+        throat::lower_within(&grid, &mut found, &shadows, (first, shape));
     }
     let found = found.beta;
     let mut parts = Vec::new();
     for (at, open) in cells(&grid).zip(&found.v) {
         let faces = live.map(|axis| faces_of_cell(&grid, axis, at).map(|face| found.faces(axis)[face]));
-        let taken = (1.0 - open) + faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
+        let volume = 1.0 - open;
+        let taken = volume + faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
         if taken > 0.0 {
             let [i, j, k]: [usize; 3] = std::array::from_fn(|a| ranges[a].start + at[a]);
-            parts.push(Part { cell: position([i, j, k], shape), faces, taken });
+            parts.push(Part { cell: position([i, j, k], shape), faces, volume, taken });
         }
     }
     Ok(parts)
@@ -167,22 +171,53 @@ impl<const D: usize> Parts<'_, D> {
         Some((0..D).rev().fold(0, |i, a| i * n[a] + at[a]))
     }
 
-    /// Shares by what solids take of some cells; where there is none, of the cells beside them.
+    /// Shares by what solids take of some cells and of their faces; where there is none, of the cells beside them.
     fn shares(&self, cells: &[usize]) -> Vec<(usize, f64)> {
-        let taken = |cells: &[usize]| {
-            let mut taken: BTreeMap<usize, f64> = BTreeMap::new();
-            let parts = cells.iter().flat_map(|&cell| self.of(cell));
-            parts.for_each(|(group, part)| *taken.entry(*group).or_default() += part.taken);
-            taken
-        };
-        let mut taken_here = taken(cells);
-        if taken_here.is_empty() {
-            taken_here = taken(&cells.iter().flat_map(|&cell| self.flow.beside(cell)).collect::<Vec<_>>());
-        }
-        let all: f64 = taken_here.values().sum();
-        match all > 0.0 {
-            true => taken_here.into_iter().map(|(group, taken)| (group, taken / all)).collect(),
-            false => vec![(self.others, 1.0)],
+        let beside = || cells.iter().flat_map(|&cell| self.flow.beside(cell)).collect::<Vec<_>>();
+        let found = self.shares_of(cells, |part| part.taken).or_else(|| self.shares_of(&beside(), |part| part.taken));
+        found.unwrap_or_else(|| vec![(self.others, 1.0)])
+    }
+
+    /// Shares of the drag in a cell, by the volumes of the solids in it.
+    fn drag_shares(&self, cell: usize) -> Vec<(usize, f64)> {
+        self.shares_of(&[cell], |part| part.volume).unwrap_or_else(|| self.shares(&[cell]))
+    }
+
+    /// Shares by something that solids have in some cells; none where no solid has any.
+    fn shares_of(&self, cells: &[usize], of: impl Fn(&Part<D>) -> f64) -> Option<Vec<(usize, f64)>> {
+        let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
+        let parts = cells.iter().flat_map(|&cell| self.of(cell));
+        parts.for_each(|(group, part)| *sums.entry(*group).or_default() += of(part));
+        let all: f64 = sums.values().sum();
+        (all > 0.0).then(|| sums.into_iter().map(|(group, sum)| (group, sum / all)).collect())
+    }
+
+    /// At both ends of a periodic axis the flow has the less open face of the two: what a solid closes of one it closes of both.
+    fn match_ends(&mut self) {
+        for d in (0..D).filter(|&d| self.flow.boundaries[d][0] == Boundary::Periodic) {
+            for low in (0..self.flow.len()).filter(|&cell| self.flow.coordinates(cell)[d] == 0) {
+                let Some(high) = self.across(d, self.flow.coordinates(low), 0) else { continue };
+                let ends = [(low, 0), (high, 1)];
+                let mut open: BTreeMap<usize, f64> = BTreeMap::new();
+                for (cell, side) in ends {
+                    for (group, part) in self.of(cell) {
+                        let least = open.entry(*group).or_insert(1.0);
+                        *least = least.min(part.faces[d][side]);
+                    }
+                }
+                for (group, least) in open.into_iter().filter(|(_, least)| *least < 1.0) {
+                    for (cell, side) in ends {
+                        let parts = self.by_cell.entry(cell).or_default();
+                        let at = parts.iter().position(|(other, _)| *other == group).unwrap_or_else(|| {
+                            parts.push((group, Part { cell, faces: [[1.0; 2]; D], volume: 0.0, taken: 0.0 }));
+                            parts.len() - 1
+                        });
+                        let part = &mut parts[at].1;
+                        part.taken += part.faces[d][side] - least;
+                        part.faces[d][side] = least;
+                    }
+                }
+            }
         }
     }
 
@@ -232,13 +267,13 @@ impl<const D: usize> SolidShares<D> {
         let (Some(solids), Some(others)) = (Solids::of(flow), names.len().checked_sub(1)) else {
             return SolidShares { names, shares };
         };
-        let parts = Parts { flow, by_cell, others };
+        let mut parts = Parts { flow, by_cell, others };
+        parts.match_ends();
         for cell in (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0) {
-            let (here, drags) = (parts.of(cell), solids.drags(cell));
             let mut areas = parts.areas(&solids, cell);
-            if drags || !here.is_empty() {
+            if solids.drags(cell) {
                 parts
-                    .shares(&[cell])
+                    .drag_shares(cell)
                     .into_iter()
                     .for_each(|(group, share)| areas.entry(group).or_insert(([0.0; D], 0.0)).1 = share);
             }

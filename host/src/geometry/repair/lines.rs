@@ -58,11 +58,11 @@ impl<'a> Lines<'a> {
                 return unclear(enters);
             }
             let along = -face.height(from) / slope;
-            if along < -self.slack() {
+            let doubt = self.clear / slope.abs();
+            if along < -doubt {
                 return;
             }
             let room = face.inward(from + direction * along).into_iter().fold(f64::INFINITY, f64::min);
-            let doubt = self.clear / slope.abs();
             if room < -doubt {
                 return;
             }
