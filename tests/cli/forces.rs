@@ -124,8 +124,9 @@ fn a_face_lowered_to_a_throat_belongs_to_the_solid_that_lowers_it() {
         ball("e", 2.05),
         cube("f", [2.11, 0.22, 0.21], 0.05),
     ];
+    let beam = "[[solid]]\nname = \"behind\"\nshape = \"box\"\nmin = [1.31, 0, 0.41]\nmax = [1.39, 0.8, 0.49]\n";
     let wall = "[[solid]]\nname = \"wall\"\nshape = \"box\"\nmin = [1.245, -1, -1]\nmax = [1.255, 2, 2]\n";
-    let scene = row.concat() + wall + &pipe("before", 1.14) + &pipe("behind", 1.35);
+    let scene = row.concat() + wall + &pipe("before", 1.14) + beam;
     fs::write(at.file("scene.toml"), scene).expect("written");
     let more = |initial: &str| {
         format!("{initial}[time]\nmax_steps = 2\n[output]\nformats = []\nambient = 1\nforces = [\"*\"]\n")
@@ -137,7 +138,7 @@ fn a_face_lowered_to_a_throat_belongs_to_the_solid_that_lowers_it() {
     for (name, values) in forces {
         assert!(values.iter().all(|f| f.abs() < 1e-8), "{name}: {values:?}");
     }
-    // The wall and the pipe behind it stand in the middle of their cells; both lower the face towards the middle of the grid.
+    // The wall and the beam behind it stand in the middle of their cells; both lower the face towards the middle of the grid.
     for (edge, pushed, area) in [(1.2, "wall", 0.64), (1.3, "behind", 0.064)] {
         let high = format!("[[initial.regions]]\nmin = [0, 0, 0]\nmax = [{edge}, 0.8, 0.8]\np = 2e5\nrho = 1.2\n");
         let dir = format!("edge {edge}");

@@ -114,7 +114,7 @@ struct Group {
 struct Signs {
     /// Its cluster holds shells of both orientations: with all that overlap it.
     mixed: bool,
-    /// It is folded, or was resolved, or overlaps such a shell of its cluster: with those in its box that look the other way.
+    /// It is folded, or was resolved, or is of a cluster with such a shell: with those in its box that look the other way.
     odd: bool,
     /// It winds forward and backward: if it is odd, with all in its box.
     both_ways: bool,
@@ -168,12 +168,12 @@ impl<'a> Grouping<'a> {
         }
         for members in clusters.values() {
             let forward = members.iter().filter(|&&n| self.volume(n) > 0.0).count();
-            let odd: Vec<usize> = members.iter().copied().filter(|&n| signs[n].odd).collect();
+            let odd = members.iter().any(|&n| signs[n].odd);
             for &n in members {
                 self.doubtful[n] = true;
                 self.join(members[0], n);
                 signs[n].mixed = forward > 0 && forward < members.len();
-                signs[n].odd = odd.iter().any(|&m| m == n || self.parts[m].shell.overlaps(&self.parts[n].shell));
+                signs[n].odd = odd;
             }
         }
     }
