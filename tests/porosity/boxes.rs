@@ -46,7 +46,7 @@ fn scenes_once_wrong() {
         (3_044_698, 70),
         (3_111_901, 92),
         (3_147_843, 42),
-        (4_294_952, 0),
+        (4_294_952, 86),
     ];
     for (seed, triangles) in FOUND {
         assert_eq!(Scene::random(seed).triangles.len(), triangles, "another scene has the seed {seed}");

@@ -155,9 +155,8 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         marks: &mut [u8],
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
-        let all = 0..self.mesh.cells()[D - 1];
         self.step_in_slabs(old, new, marks, |new, first_order| {
-            self.advance_slab_by::<F>(old, new, all.clone(), dt, first_order, scratch)
+            self.advance_slab_by::<F>(old, new, 0..self.mesh.cells()[D - 1], dt, first_order, scratch)
         })
     }
 
