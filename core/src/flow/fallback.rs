@@ -13,7 +13,7 @@ const FLOOR_SHARE: f64 = 1e-3;
 
 /// Most repetitions of a step by the fallback. Before each, troubled cells and their neighbours are marked for first order; a troubled cell that has
 /// this mark already is marked for positive fluxes.
-pub const FALLBACKS: usize = 6;
+pub(in crate::flow) const FALLBACKS: usize = 6;
 
 /// Mark of a cell whose reconstruction is of first order.
 pub const FIRST_ORDER: u8 = 1;

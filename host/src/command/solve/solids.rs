@@ -150,8 +150,24 @@ struct Parts<'a, const D: usize> {
     others: usize,
 }
 
-/// By group: the vector area of walls, and the share of the drag.
-type Areas<const D: usize> = BTreeMap<usize, ([f64; D], f64)>;
+/// What solids of a group have in a cell of a flow.
+#[derive(Debug, Clone, Copy)]
+struct Share<const D: usize> {
+    /// Vector area of their walls.
+    area: [f64; D],
+    /// Their share of the drag.
+    drag: f64,
+}
+
+/// Shares by group.
+#[derive(Default)]
+struct Shares<const D: usize>(BTreeMap<usize, Share<D>>);
+
+impl<const D: usize> Shares<D> {
+    fn of(&mut self, group: usize) -> &mut Share<D> {
+        self.0.entry(group).or_insert(Share { area: [0.0; D], drag: 0.0 })
+    }
+}
 
 impl<const D: usize> Parts<'_, D> {
     fn of(&self, cell: usize) -> &[(usize, Part<D>)] {
@@ -221,27 +237,30 @@ impl<const D: usize> Parts<'_, D> {
         }
     }
 
-    /// The vector areas of the walls that each group has in a cell.
-    fn areas(&self, solids: &Solids<'_, D>, cell: usize) -> Areas<D> {
+    /// What each group has in a cell.
+    fn in_cell(&self, solids: &Solids<'_, D>, cell: usize) -> Shares<D> {
         let (at, here) = (self.flow.coordinates(cell), self.of(cell));
-        let mut areas = Areas::new();
+        let mut found = Shares::default();
         for (d, (side, sign)) in (0..D).flat_map(|d| [(d, (0, -1.0)), (d, (1, 1.0))]) {
             let area = sign * self.flow.area(d, at);
             let mut rest = solids.closed(self.flow, d, at, side);
             for (group, part) in here {
                 let own = 1.0 - part.faces[d][side];
                 rest -= own;
-                areas.entry(*group).or_insert(([0.0; D], 0.0)).0[d] += own * area;
+                found.of(*group).area[d] += own * area;
             }
             if rest != 0.0 {
                 // The same two cells from both sides, so that a wall in a face belongs to one and the same solid on both.
                 let both: Vec<usize> = self.across(d, at, side).into_iter().chain([cell]).collect();
                 for (group, share) in self.shares(&both) {
-                    areas.entry(group).or_insert(([0.0; D], 0.0)).0[d] += share * rest * area;
+                    found.of(group).area[d] += share * rest * area;
                 }
             }
         }
-        areas
+        if solids.drags(cell) {
+            self.drag_shares(cell).into_iter().for_each(|(group, share)| found.of(group).drag = share);
+        }
+        found
     }
 }
 
@@ -250,8 +269,8 @@ impl<const D: usize> Parts<'_, D> {
 pub struct SolidShares<const D: usize> {
     /// Names, the others last.
     names: Vec<String>,
-    /// For each name: the cell, the vector area of its walls, its share of the drag.
-    shares: Vec<Vec<(usize, [f64; D], f64)>>,
+    /// For each name: cells, and what its solids have there.
+    shares: Vec<Vec<(usize, Share<D>)>>,
 }
 
 impl<const D: usize> SolidShares<D> {
@@ -270,16 +289,9 @@ impl<const D: usize> SolidShares<D> {
         let mut parts = Parts { flow, by_cell, others };
         parts.match_ends();
         for cell in (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0) {
-            let mut areas = parts.areas(&solids, cell);
-            if solids.drags(cell) {
-                parts
-                    .drag_shares(cell)
-                    .into_iter()
-                    .for_each(|(group, share)| areas.entry(group).or_insert(([0.0; D], 0.0)).1 = share);
-            }
-            for (group, (area, share)) in areas {
-                if share > 0.0 || area != [0.0; D] {
-                    shares[group].push((cell, area, share));
+            for (group, share) in parts.in_cell(&solids, cell).0 {
+                if share.drag > 0.0 || share.area != [0.0; D] {
+                    shares[group].push((cell, share));
                 }
             }
         }
@@ -303,11 +315,11 @@ impl<const D: usize> SolidShares<D> {
         named
             .map(|(name, cells)| {
                 let mut force = [0.0; 3];
-                for &(cell, area, share) in cells {
-                    let over = flow.get(cell).pressure - ambient;
-                    let drag = if share > 0.0 { solids.drag(flow, cell) } else { [0.0; D] };
+                for (cell, share) in cells {
+                    let over = flow.get(*cell).pressure - ambient;
+                    let drag = if share.drag > 0.0 { solids.drag(flow, *cell) } else { [0.0; D] };
                     for (d, axis) in live.into_iter().enumerate() {
-                        force[axis] += over * area[d] + share * drag[d];
+                        force[axis] += over * share.area[d] + share.drag * drag[d];
                     }
                 }
                 SolidForce { name: name.clone(), force }
