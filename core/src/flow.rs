@@ -23,7 +23,7 @@
 //! 3. [`error`]: what a caller may get wrong
 //! 4. [`mod@porosity`]: open fractions made ready: jumps, walls, small cells
 //! 5. [`problem`]: what stays the same during a step, and its contracts; [`step_report`]: what a step did; [`fallback`]: what happens
-//!    to unphysical states
+//!    to unphysical states; [`wall_forces`]: what the walls of watched cells felt
 //! 6. `kernel`: one slab of one step, row by row
 //! 7. [`step`]: the calls: a slab, merging, the whole step with its fallbacks; [`mod@stable_step`]: how long a step may be
 //!
@@ -50,6 +50,7 @@ pub mod stable_step;
 pub mod state;
 pub mod step;
 pub mod step_report;
+pub mod wall_forces;
 
 pub use boundary::{Boundary, Feed, Patch};
 pub use drag::Drag;
@@ -65,3 +66,4 @@ pub use stable_step::{StableStep, stable_step};
 pub use state::{Conserved, Fields, FieldsMut, Gas, Primitive};
 pub use step::scratch_needed;
 pub use step_report::Report;
+pub use wall_forces::{CellPush, WatchedWalls};

@@ -5,18 +5,20 @@
 
 mod field;
 mod slabs;
+mod watch;
 
 use crate::huge::HugeVec;
 use field::Compensated;
 use rayon::prelude::*;
-use slabs::step;
+use slabs::{Working, step};
 use voidage_core::flow::{
     Boundary, Conserved, Drag, Error, Feed, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive,
     Problem, Report, Scheme, cluster_scratch, prepare, stable_step,
 };
+use watch::Watch;
 
 pub use field::{Field, Scalar};
-pub use voidage_core::flow::{Tidied, Treatment};
+pub use voidage_core::flow::{CellPush, Tidied, Treatment};
 
 /// Open fractions that a flow owns.
 type Space<R, const D: usize> = Prepared<HugeVec<R>, HugeVec<u8>, Vec<u32>, D>;
@@ -65,6 +67,7 @@ pub struct Flow<R: Scalar, const D: usize> {
     next: Field<R, D>,
     marks: Vec<u8>,
     scratch: Vec<HugeVec<R>>,
+    watch: Option<Watch<R, D>>,
     rate: Option<R>,
     /// First steps to take at a fifth of the stable step: a blast starts from states whose speeds the estimate cannot know.
     pub careful_steps: usize,
@@ -100,6 +103,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             next: Field::new(cells, gas),
             marks: vec![0; cells],
             scratch: Vec::new(),
+            watch: None,
             rate: None,
             careful_steps: 0,
             time: R::ZERO,
@@ -234,13 +238,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// Runs a closure with the problem and the two fields.
     fn with_problem<T>(
         &mut self,
-        f: impl FnOnce(
-            &Problem<'_, R, D>,
-            &Field<R, D>,
-            &mut Field<R, D>,
-            &mut [u8],
-            &mut Vec<HugeVec<R>>,
-        ) -> Result<T, Error>,
+        f: impl FnOnce(&Problem<'_, R, D>, &Field<R, D>, &mut Field<R, D>, Working<'_, R, D>) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let mesh = Mesh::new(self.widths.each_ref().map(|w| w.as_slice()))?;
         let mut problem =
@@ -258,7 +256,8 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
                 linear: r.linear.each_ref().map(|q| &**q),
             })?;
         }
-        f(&problem, &self.state, &mut self.next, &mut self.marks, &mut self.scratch)
+        let working = Working { marks: &mut self.marks, scratch: &mut self.scratch, watch: self.watch.as_mut() };
+        f(&problem, &self.state, &mut self.next, working)
     }
 
     /// Sets every cell from the coordinates of its centre (the origin of the mesh is 0). A mixed gas has its lowest ratio of specific heats there.
@@ -433,7 +432,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             return Ok(rate);
         }
         let mut state = std::mem::replace(&mut self.state, Field::new(0, self.gas));
-        let rate = self.with_problem(|problem, _, _, _, _| problem.start(&mut state.view_mut()));
+        let rate = self.with_problem(|problem, _, _, _| problem.start(&mut state.view_mut()));
         self.state = state;
         let rate = rate?;
         self.rate = Some(rate);
@@ -462,7 +461,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
 
     /// The next state by a step of `dt`.
     fn attempt(&mut self, dt: R) -> Result<Report<R, D>, Error> {
-        self.with_problem(|problem, old, new, marks, scratch| step(problem, old, new, marks, scratch, dt))
+        self.with_problem(|problem, old, new, working| step(problem, old, new, working, dt))
     }
 
     /// The next state, at a time, becomes the present one.

@@ -14,4 +14,5 @@ mod reference;
 mod repairs;
 mod stress;
 mod throat;
+mod wall_forces;
 mod walls;

@@ -6,6 +6,7 @@
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
+//! - `wall_pushes`: what the walls of watched cells feel of the fluxes
 //! - `sweep`: the rows of a slab in order, in tiles that stay in a core's cache
 //! - `flux_choice`: which solvers and gases of the sweep a program links
 //! - `long_line`: a long line of cells in pieces
@@ -21,4 +22,5 @@ pub(crate) mod scratch;
 pub(crate) mod slab;
 pub(crate) mod sweep;
 pub(crate) mod update;
+pub(crate) mod wall_pushes;
 pub(crate) mod walls_and_jumps;

@@ -6,6 +6,12 @@ use crate::number::real::Real;
 /// How often a step that needed floors is repeated with half the time before the floors stand.
 const REPEATS: usize = 4;
 
+/// The last so many steps before the end share what is left of the time equally.
+const SHARING: usize = 32;
+
+/// A step may be longer than the longest by this share of it, lest rounding makes one more.
+const ROUNDING: f64 = 1e-6;
+
 /// A step that was accepted.
 #[derive(Clone, Copy, Debug)]
 pub struct StableStep<R, const D: usize> {
@@ -19,7 +25,8 @@ pub struct StableStep<R, const D: usize> {
     pub repeated: usize,
 }
 
-/// Steps from `time` by `longest`, but not past `end`. `attempt(dt)` computes the next field and leaves the present one alone, as [`Problem::step`]
+/// Steps from `time` by `longest`, but not past `end`; the last steps before it are a little shorter, all alike, lest the very last one is tiny: what acts on a
+/// wall in a step depends on its length. `attempt(dt)` computes the next field and leaves the present one alone, as [`Problem::step`]
 /// does: where its report counts floors, it is called again with half the time. The field of the last call is the one to go on with. `end` lies after
 /// `time`; a `longest` that is infinite or NaN is the whole way there.
 ///
@@ -34,8 +41,10 @@ pub fn stable_step<R: Real, const D: usize, E>(
     mut attempt: impl FnMut(R) -> Result<Report<R, D>, E>,
 ) -> Result<StableStep<R, D>, E> {
     let left = end - time;
-    let last = !(longest < left);
-    let mut dt = if last { left } else { longest };
+    let (last, mut dt) = match equal_steps(left, longest) {
+        Some((steps, dt)) => (steps == R::ONE, dt),
+        None => (false, longest),
+    };
     let mut repeated = 0;
     loop {
         let report = attempt(dt)?;
@@ -47,4 +56,18 @@ pub fn stable_step<R: Real, const D: usize, E>(
         repeated += 1;
         dt = R::HALF * dt;
     }
+}
+
+/// A time in as few equal steps as may be, how many and how long, if that takes no more than [`SHARING`] of them.
+fn equal_steps<R: Real>(left: R, longest: R) -> Option<(R, R)> {
+    let reach = longest + R::from_f64(ROUNDING) * longest;
+    let mut steps = R::ONE;
+    for _ in 0..SHARING {
+        // Not so either where a step is NaN or infinite.
+        if !(steps * reach < left) {
+            return Some((steps, left / steps));
+        }
+        steps += R::ONE;
+    }
+    None
 }

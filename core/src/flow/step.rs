@@ -4,13 +4,16 @@ use crate::flow::error::{Error, fits};
 use crate::flow::fallback::FALLBACKS;
 use crate::flow::kernel::flux_choice::{AnyFlux, FluxChoice};
 use crate::flow::kernel::scratch::{PIECE, Sizes, in_pieces};
-use crate::flow::kernel::slab::Part;
+use crate::flow::kernel::slab::{Part, Walls};
+use crate::flow::kernel::wall_pushes::{push_obstacles, push_walls};
 use crate::flow::kernel::{long_line, sweep};
 use crate::flow::porosity::cluster_averages;
 use crate::flow::problem::Problem;
 use crate::flow::state::{Fields, FieldsMut};
 use crate::flow::step_report::Report;
+use crate::flow::wall_forces::WatchedWalls;
 use crate::number::real::Real;
+use core::cell::Cell;
 use core::ops::Range;
 
 /// Scalars of scratch that one call of [`Problem::advance_slab`] or [`Problem::step`] needs on a mesh of so many cells along each axis, unless
@@ -61,6 +64,43 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         first_order: Option<&[u8]>,
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
+        self.advance_part::<F>(old, new, slab, (dt, first_order, None), scratch)
+    }
+
+    /// The same, which also tells what acts on the walls of some cells. One call writes those of its slab, so that callers with threads give each its own.
+    ///
+    /// # Errors
+    /// As of [`Problem::advance_slab_by`]; the watched cells and their results are not equally many.
+    pub fn advance_slab_watching<F: FluxChoice>(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        slab: Range<usize>,
+        (dt, first_order): (R, Option<&[u8]>),
+        watched: WatchedWalls<'_, R, D>,
+        scratch: &mut [R],
+    ) -> Result<Report<R, D>, Error> {
+        fits(watched.cells.len(), watched.pushes.len())?;
+        let walls = Walls {
+            cells: watched.cells,
+            pushes: Cell::from_mut(watched.pushes).as_slice_of_cells(),
+            reference: watched.reference,
+            first: 0,
+            all: self.mesh.len(),
+            at_faces: push_walls,
+            in_cell: push_obstacles,
+        };
+        self.advance_part::<F>(old, new, slab, (dt, first_order, Some(walls)), scratch)
+    }
+
+    fn advance_part<F: FluxChoice>(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        slab: Range<usize>,
+        (dt, first_order, walls): (R, Option<&[u8]>, Option<Walls<'_, R, D>>),
+        scratch: &mut [R],
+    ) -> Result<Report<R, D>, Error> {
         let run = F::sweep(self)?;
         self.check_fields(old)?;
         let cells = self.mesh.cells();
@@ -77,7 +117,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         if scratch.len() < needed {
             return Err(Error::ShapeMismatch { expected: needed, found: scratch.len() });
         }
-        let part = Part { old, dt, first_order, layers: slab, reported: 0..cells[0] };
+        let part = Part { old, dt, first_order, layers: slab, reported: 0..cells[0], walls };
         if in_pieces::<D>(self.mesh.len()) {
             return Ok(long_line::advance(self, &part, new, scratch, run));
         }

@@ -5,7 +5,7 @@ use crate::flow::kernel::mixed::{self, Carried};
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
-use crate::flow::kernel::slab::{RowAt, Slab, tightened};
+use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
 use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::problem::PressureForm;
@@ -92,6 +92,12 @@ fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     let flux = &*work.flux;
     count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
     count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
+    if let Some(walls) = &slab.walls {
+        let faces = FaceRow { d: 0, at: row.at, states: [work.left, work.right], flux, n: m };
+        for (face, high) in [(0, false), (1, true)] {
+            (walls.at_faces)(slab, &faces, CellsBeside { start: row.start, face, high });
+        }
+    }
     let inv = &*work.coefficients.inv_width;
     let weight = half_weight(slab, 0, 0, &mut *work.coefficients.spare);
     rows::differences::<R, D, ENERGY>(
@@ -313,7 +319,8 @@ pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, co
     at[d] = j as usize;
     let mut below = core::mem::take(&mut work.below_row);
     let changed = (j > slab.rows.start as isize).then(|| slab.place(j - 1));
-    let faces = FacesUnder { d, at, present, changed };
+    let own = present && j < slab.rows.end as isize;
+    let faces = FacesUnder { d, at, present, own, changed };
     fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, (below.state, below.flux), work, report);
     core::mem::swap(&mut below, &mut work.below_row);
 }
@@ -340,10 +347,11 @@ pub(in crate::flow) fn fluxes_across_layers<
     at[D - 1] = l as usize;
     let mut below = core::mem::take(&mut work.below_layer);
     let place = slab.place(j);
-    let own = (&mut below.state[place * f..][..f], &mut below.flux[place * f..][..f]);
+    let of_row = (&mut below.state[place * f..][..f], &mut below.flux[place * f..][..f]);
     let changed = (l > slab.layers.start as isize).then_some(place);
-    let faces = FacesUnder { d: D - 1, at, present, changed };
-    fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, own, work, report);
+    let own = present && l < slab.layers.end as isize;
+    let faces = FacesUnder { d: D - 1, at, present, own, changed };
+    fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, of_row, work, report);
     core::mem::swap(&mut below, &mut work.below_layer);
 }
 
@@ -355,6 +363,8 @@ struct FacesUnder<const D: usize> {
     at: [usize; D],
     /// The row exists; else the boundary does.
     present: bool,
+    /// The row is advanced.
+    own: bool,
     /// Place in the tile of the row below, if that is advanced: it now has the fluxes on both of its sides.
     changed: Option<usize>,
 }
@@ -363,7 +373,7 @@ struct FacesUnder<const D: usize> {
 /// in it. `below_flux` holds the fluxes under that row, and afterwards the new ones.
 fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
-    FacesUnder { d, at, present, changed }: FacesUnder<D>,
+    FacesUnder { d, at, present, own, changed }: FacesUnder<D>,
     (below_state, below_flux): (&mut [R], &mut [R]),
     work: &mut Work<'_, R, D>,
     report: &mut Report<R, D>,
@@ -389,6 +399,15 @@ fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MI
             let row = RowAt { start: mesh.index(of_row), at: of_row };
             let wall = if side == 0 { &work.right[..f] } else { &*below_state };
             count_inflow::<R, D, ENERGY>(slab, (d, side), row, (&work.flux[..f], wall), 0..n, report);
+        }
+    }
+    if let Some(walls) = &slab.walls {
+        let faces = FaceRow { d, at, states: [below_state, &work.right[..f]], flux: &work.flux[..f], n };
+        let rows = [(changed.is_some(), at[d].wrapping_sub(1), true), (own, at[d], false)];
+        for (_, k, high) in rows.into_iter().filter(|(own, ..)| *own) {
+            let mut of_row = at;
+            of_row[d] = k;
+            (walls.at_faces)(slab, &faces, CellsBeside { start: mesh.index(of_row), face: 0, high });
         }
     }
     if let Some(place) = changed {

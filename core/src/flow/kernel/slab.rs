@@ -6,7 +6,9 @@ use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::throat::ThroatGas;
 use crate::flow::problem::Problem;
 use crate::flow::state::{Fields, Gas};
+use crate::flow::wall_forces::CellPush;
 use crate::number::real::Real;
+use core::cell::Cell;
 use core::ops::Range;
 
 /// A row of cells inside the domain.
@@ -31,6 +33,67 @@ pub(in crate::flow) struct Part<'p, R, const D: usize> {
     pub layers: Range<usize>,
     /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
     pub reported: Range<usize>,
+    /// Cells whose walls are watched, if there are any.
+    pub walls: Option<Walls<'p, R, D>>,
+}
+
+/// Cells whose walls are watched, and how. What writes is held by pointers: a program that watches no walls does not link it.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct Walls<'w, R, const D: usize> {
+    /// Flat indices, ascending, and what acts on the walls there.
+    pub cells: &'w [usize],
+    pub pushes: &'w [Cell<CellPush<R, D>>],
+    /// Pressure that all others are counted from.
+    pub reference: R,
+    /// Where the first cell of the mesh stands on the line that it is a piece of, and how many cells that has; 0 and all for a whole mesh.
+    pub first: usize,
+    pub all: usize,
+    /// Writes what acts at faces: [`push_walls`](crate::flow::kernel::wall_pushes::push_walls).
+    pub at_faces: fn(&Slab<'_, R, D>, &FaceRow<'_, R, D>, CellsBeside),
+    /// Writes what drag takes: [`push_obstacles`](crate::flow::kernel::wall_pushes::push_obstacles).
+    pub in_cell: fn(&Slab<'_, R, D>, usize, [R; D]),
+}
+
+impl<'w, R, const D: usize> Walls<'w, R, D> {
+    /// The watched ones among some cells of a row that begins at `start`: place in the row, and what acts on the walls.
+    pub fn of_row(&self, start: usize, cells: Range<usize>) -> impl Iterator<Item = (usize, &'w Cell<CellPush<R, D>>)> {
+        let begin = self.first + start + cells.start;
+        let end = self.first + start + cells.end;
+        let (watched, pushes) = (self.cells, self.pushes);
+        let seam = self.all.max(begin).min(end);
+        // A piece across the seam of a periodic line goes on at its beginning.
+        let over = end - seam;
+        let place = watched.partition_point(|&cell| cell < begin);
+        let found = watched.get(place..).unwrap_or_default().iter().zip(pushes.get(place..).unwrap_or_default());
+        let before = found.map(|(cell, push)| (*cell, push)).take_while(move |(cell, _)| *cell < seam);
+        let after = watched.iter().zip(pushes).take_while(move |(cell, _)| **cell < over);
+        let turned = after.map(move |(cell, push)| (cell + seam, push));
+        before.chain(turned).map(move |(cell, push)| (cell - begin + cells.start, push))
+    }
+}
+
+/// A row of faces of axis `d` with its fluxes.
+pub(in crate::flow) struct FaceRow<'f, R, const D: usize> {
+    /// Axis of the faces.
+    pub d: usize,
+    /// The cell above the first face; `at[d]` may be one past the end.
+    pub at: [usize; D],
+    /// Face state blocks on the left and on the right, `n` long.
+    pub states: [&'f [R]; 2],
+    /// Flux block, `n` long.
+    pub flux: &'f [R],
+    pub n: usize,
+}
+
+/// Cells of a row that have faces of a [`FaceRow`] on one of their sides.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct CellsBeside {
+    /// Flat index of the first cell.
+    pub start: usize,
+    /// The first cell's face in its row of faces.
+    pub face: usize,
+    /// The faces are on the high side of the cells.
+    pub high: bool,
 }
 
 /// One slab of one step, and what it reads.
@@ -54,6 +117,8 @@ pub(in crate::flow) struct Slab<'p, R, const D: usize> {
     pub rows: Range<usize>,
     /// Cells of a row that enter the report.
     pub reported: Range<usize>,
+    /// Cells whose walls are watched.
+    pub walls: Option<Walls<'p, R, D>>,
 }
 
 impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
@@ -75,6 +140,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
             layers: part.layers.clone(),
             rows: 0..1,
             reported: part.reported.clone(),
+            walls: part.walls,
         }
     }
 

@@ -19,7 +19,7 @@ use std::path::Path;
 use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primitive, Report, Riemann, Scheme};
 
 /// First bytes of the file; the last is the version of the layout.
-const MAGIC: &[u8; 8] = b"VOIDAGE\x04";
+const MAGIC: &[u8; 8] = b"VOIDAGE\x05";
 
 /// Name of the file in the output directory.
 pub const NAME: &str = "checkpoint.bin";
@@ -87,6 +87,8 @@ struct Header {
     values: usize,
     /// Values of the largest values over time, after those of the state.
     maxima: usize,
+    /// Values of what acted on walls in the last step, after those.
+    walls: usize,
     time: f64,
     steps: usize,
     repeated: usize,
@@ -240,6 +242,7 @@ pub fn write<const D: usize>(
         journal: journal.clone(),
         values: columns(&flow.state).map(<[f64]>::len).sum(),
         maxima: maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum(),
+        walls: flow.watched_walls().1.len() * 3 * D,
         time,
         steps,
         repeated,
@@ -258,6 +261,10 @@ pub fn write<const D: usize>(
         out.write_all(&text)?;
         columns(&flow.state).try_for_each(|values| write_f64(&mut out, values))?;
         maxima.iter().flat_map(|m| m.arrays()).try_for_each(|values| write_f64(&mut out, values))?;
+        flow.watched_walls().1.iter().try_for_each(|push| {
+            write_f64(&mut out, push.sides.as_flattened())?;
+            write_f64(&mut out, &push.drag)
+        })?;
         let sum = out.hasher.finalize();
         out.inner.write_all(&sum.to_le_bytes())
     })
@@ -298,6 +305,15 @@ pub fn resume<const D: usize>(
     for array in maxima.into_iter().flat_map(|m| m.arrays_mut()) {
         array.iter_mut().zip(values.by_ref()).for_each(|(into, from)| *into = from);
     }
+    let mut pushes = setup.flow.watched_walls().1.to_vec();
+    if pushes.len() * 3 * D != header.walls {
+        return Err(wrong());
+    }
+    for push in &mut pushes {
+        let into = push.sides.as_flattened_mut().iter_mut().chain(&mut push.drag);
+        into.zip(values.by_ref()).for_each(|(into, from)| *into = from);
+    }
+    setup.flow.restore_walls(&pushes);
     let Header { time, steps, repeated, rate, first_order, floored, .. } = header;
     let mut total = Report { rate, first_order, floored, ..Report::new() };
     let lengths = header.inflow.len() == 2 * D * (D + 2) && header.floor_change.len() == D + 2;
@@ -331,7 +347,8 @@ fn parse(bytes: &[u8]) -> std::result::Result<(Header, &[u8]), String> {
     let text = rest.get(..length).ok_or_else(|| damaged("it ends too early"))?;
     let header: Header = serde_json::from_slice(text).map_err(|e| damaged(&e.to_string()))?;
     let values = &rest[length..rest.len().saturating_sub(4).max(length)];
-    if header.values.checked_add(header.maxima).and_then(|n| n.checked_mul(8)) != Some(values.len()) {
+    let count = header.values.checked_add(header.maxima).and_then(|n| n.checked_add(header.walls));
+    if count.and_then(|n| n.checked_mul(8)) != Some(values.len()) {
         return Err(damaged("it ends too early"));
     }
     Ok((header, values))

@@ -173,6 +173,8 @@ impl<'a, const D: usize> Run<'a, D> {
     ) -> Result<Self> {
         let output = &file.case.output;
         let ambient = ambient(file, &setup)?;
+        let pushed = setup.flow.watched_walls().0.to_vec();
+        setup.flow.watch_walls(pushed, ambient);
         let mut maxima = maxima(file, &setup, ambient)?;
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let watched = Watched::new(file, &setup, progress)?;
@@ -278,7 +280,7 @@ impl<'a, const D: usize> Run<'a, D> {
     /// The present forces on the solids that are asked for.
     fn forces(&self) -> Vec<SolidForce> {
         let Setup { flow, solids, live, .. } = &self.setup;
-        solids.as_ref().map_or_else(Vec::new, |solids| solids.forces(flow, *live, self.ambient))
+        solids.as_ref().map_or_else(Vec::new, |solids| solids.forces(flow, *live))
     }
 
     /// The last state, the largest values over time, and the pictures with the colours of the whole run.

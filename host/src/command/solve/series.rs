@@ -3,7 +3,7 @@
 use super::arrays::position;
 use super::case_file::CaseFile;
 use super::checkpoint::Journal;
-use super::force::Walls;
+use super::force::force_on_all;
 use super::frames::cell_at;
 use super::monitors::{Monitor, MonitorReport, head, monitors};
 use super::output_keys::OutputKeys;
@@ -44,8 +44,6 @@ pub struct Series<const D: usize> {
     /// With the cells of the probes.
     probes: Option<(Table, Vec<usize>)>,
     monitors: Option<(Table, Vec<Monitor<D>>)>,
-    /// What the force on all solids acts on.
-    walls: Walls<D>,
     /// Steps between lines of the log.
     log_every: usize,
     /// Pressure that overpressures are counted from.
@@ -83,7 +81,7 @@ impl<const D: usize> Series<D> {
             true => None,
             false => Some((table("monitors.csv", &head(&planes), journal.monitors)?, planes)),
         };
-        Ok(Series { log, probes, monitors, walls: Walls::of(&setup.flow), log_every, ambient })
+        Ok(Series { log, probes, monitors, log_every, ambient })
     }
 
     /// Lines of a moment, reached by a step of `dt`; `forces` are those on the solids that are asked for.
@@ -118,7 +116,7 @@ impl<const D: usize> Series<D> {
         let (floors, change) = (flow.total.floored, flow.total.floor_change);
         let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
         let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
-        let [x, y, z] = self.walls.force(flow, setup.live, self.ambient);
+        let [x, y, z] = force_on_all(flow, setup.live);
         let mut line = format!(
             "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
             change.density

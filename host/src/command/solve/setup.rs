@@ -3,6 +3,7 @@
 use super::arrays;
 use super::case::{GasKeys, LimiterName, Model, Pressure, RiemannName};
 use super::case_file::CaseFile;
+use super::force::pushed_cells;
 use super::inlet::Inlet;
 use super::mixture::mixture;
 use super::regions::{self, RegionReport};
@@ -131,6 +132,7 @@ pub fn setup<const D: usize>(
     }
     let (edges, cfl) = (edges.clone(), cfl(file)?);
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
+    flow.watch_walls(pushed_cells(&flow), 0.0);
     let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow));
     let regions = regions::report(file, &flow, &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress);

@@ -4,9 +4,11 @@
 //! it closes of a face is its wall on both sides of the face. What the walls of all together have besides (where solids share a cell or hide each
 //! other) goes, face by face, by how much of the two cells and their faces each takes, and the drag by how much of the cell. So the forces on all solids add up to
 //! the force on all, and gas of one pressure all around pushes none of them that it surrounds.
+//!
+//! What acts on the walls of a cell comes from the step, side by side (`CellPush`); a solid feels of each side the share of what is closed there that is its own.
 
 use super::arrays::position;
-use super::force::Solids;
+use super::force::{Weights, drags, taken_volume};
 use crate::error::Result;
 use crate::flow::Flow;
 use crate::geometry::bodies::Bodies;
@@ -150,22 +152,13 @@ struct Parts<'a, const D: usize> {
     others: usize,
 }
 
-/// What solids of a group have in a cell of a flow.
-#[derive(Debug, Clone, Copy)]
-struct Share<const D: usize> {
-    /// Vector area of their walls.
-    area: [f64; D],
-    /// Their share of the drag.
-    drag: f64,
-}
-
-/// Shares by group.
+/// Weights of what acts in a cell on each group.
 #[derive(Default)]
-struct Shares<const D: usize>(BTreeMap<usize, Share<D>>);
+struct Shares<const D: usize>(BTreeMap<usize, Weights<D>>);
 
 impl<const D: usize> Shares<D> {
-    fn of(&mut self, group: usize) -> &mut Share<D> {
-        self.0.entry(group).or_insert(Share { area: [0.0; D], drag: 0.0 })
+    fn of(&mut self, group: usize) -> &mut Weights<D> {
+        self.0.entry(group).or_insert(Weights { sides: [[0.0; 2]; D], drag: 0.0, displaced: 0.0 })
     }
 }
 
@@ -194,8 +187,8 @@ impl<const D: usize> Parts<'_, D> {
         found.unwrap_or_else(|| vec![(self.others, 1.0)])
     }
 
-    /// Shares of the drag in a cell, by the volumes of the solids in it.
-    fn drag_shares(&self, cell: usize) -> Vec<(usize, f64)> {
+    /// Shares of the drag and of the weight of the gas displaced in a cell, by the volumes of the solids in it.
+    fn volume_shares(&self, cell: usize) -> Vec<(usize, f64)> {
         self.shares_of(&[cell], |part| part.volume).unwrap_or_else(|| self.shares(&[cell]))
     }
 
@@ -237,28 +230,37 @@ impl<const D: usize> Parts<'_, D> {
         }
     }
 
-    /// What each group has in a cell.
-    fn in_cell(&self, solids: &Solids<'_, D>, cell: usize) -> Shares<D> {
+    /// What of all that acts in a cell is for each group.
+    fn in_cell(&self, faces: &[&[f64]], cell: usize) -> Shares<D> {
         let (at, here) = (self.flow.coordinates(cell), self.of(cell));
         let mut found = Shares::default();
-        for (d, (side, sign)) in (0..D).flat_map(|d| [(d, (0, -1.0)), (d, (1, 1.0))]) {
-            let area = sign * self.flow.area(d, at);
-            let mut rest = solids.closed(self.flow, d, at, side);
+        for (d, side) in (0..faces.len()).flat_map(|d| [(d, 0), (d, 1)]) {
+            let closed = 1.0 - faces[d][self.flow.face(d, at, side)];
+            if closed == 0.0 {
+                continue;
+            }
+            let area = self.flow.area(d, at) / closed;
+            let mut rest = closed;
             for (group, part) in here {
                 let own = 1.0 - part.faces[d][side];
                 rest -= own;
-                found.of(*group).area[d] += own * area;
+                found.of(*group).sides[d][side] += own * area;
             }
             if rest != 0.0 {
                 // The same two cells from both sides, so that a wall in a face belongs to one and the same solid on both.
                 let both: Vec<usize> = self.across(d, at, side).into_iter().chain([cell]).collect();
                 for (group, share) in self.shares(&both) {
-                    found.of(group).area[d] += share * rest * area;
+                    found.of(group).sides[d][side] += share * rest * area;
                 }
             }
         }
-        if solids.drags(cell) {
-            self.drag_shares(cell).into_iter().for_each(|(group, share)| found.of(group).drag = share);
+        if !drags(self.flow, cell) && self.flow.gravity.iter().all(|g| *g == 0.0) {
+            return found;
+        }
+        let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
+        for (group, share) in self.volume_shares(cell) {
+            let weights = found.of(group);
+            (weights.drag, weights.displaced) = (share * volume, share * displaced);
         }
         found
     }
@@ -269,12 +271,12 @@ impl<const D: usize> Parts<'_, D> {
 pub struct SolidShares<const D: usize> {
     /// Names, the others last.
     names: Vec<String>,
-    /// For each name: cells, and what its solids have there.
-    shares: Vec<Vec<(usize, Share<D>)>>,
+    /// For each name: places among the watched cells, and what of all that acts there is for its solids.
+    shares: Vec<Vec<(usize, Weights<D>)>>,
 }
 
 impl<const D: usize> SolidShares<D> {
-    /// From what solids have alone, in a flow around all of them.
+    /// From what solids have alone, in a flow around all of them that watches its walls.
     #[must_use]
     pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>) -> Self {
         let names: Vec<String> = measured.iter().map(|m| m.name.clone()).collect();
@@ -283,16 +285,13 @@ impl<const D: usize> SolidShares<D> {
         for (group, m) in measured.iter().enumerate() {
             m.cells.iter().for_each(|part| by_cell.entry(part.cell).or_default().push((group, *part)));
         }
-        let (Some(solids), Some(others)) = (Solids::of(flow), names.len().checked_sub(1)) else {
-            return SolidShares { names, shares };
-        };
+        let Some(others) = names.len().checked_sub(1) else { return SolidShares { names, shares } };
         let mut parts = Parts { flow, by_cell, others };
         parts.match_ends();
-        for cell in (0..flow.len()).filter(|&cell| flow.open_volume(cell) > 0.0) {
-            for (group, share) in parts.in_cell(&solids, cell).0 {
-                if share.drag > 0.0 || share.area != [0.0; D] {
-                    shares[group].push((cell, share));
-                }
+        let faces: Vec<&[f64]> = flow.faces().collect();
+        for (place, &cell) in flow.watched_walls().0.iter().enumerate() {
+            for (group, weights) in parts.in_cell(&faces, cell).0 {
+                shares[group].push((place, weights));
             }
         }
         SolidShares { names, shares }
@@ -306,24 +305,16 @@ impl<const D: usize> SolidShares<D> {
 
     /// The present forces.
     #[must_use]
-    pub fn forces(&self, flow: &Flow<f64, D>, live: [usize; D], ambient: f64) -> Vec<SolidForce> {
-        let named = self.names.iter().zip(&self.shares);
-        let Some(solids) = Solids::of(flow) else {
-            // All of the space is open: there is nothing to push.
-            return named.map(|(name, _)| SolidForce { name: name.clone(), force: [0.0; 3] }).collect();
+    pub fn forces(&self, flow: &Flow<f64, D>, live: [usize; D]) -> Vec<SolidForce> {
+        let (cells, pushes) = flow.watched_walls();
+        let of_name = |(name, shares): (&String, &Vec<(usize, Weights<D>)>)| {
+            let mut force = [0.0; 3];
+            for (place, weights) in shares {
+                let in_cell = weights.force(flow, cells[*place], &pushes[*place]);
+                live.into_iter().zip(in_cell).for_each(|(axis, f)| force[axis] += f);
+            }
+            SolidForce { name: name.clone(), force }
         };
-        named
-            .map(|(name, cells)| {
-                let mut force = [0.0; 3];
-                for (cell, share) in cells {
-                    let over = flow.get(*cell).pressure - ambient;
-                    let drag = if share.drag > 0.0 { solids.drag(flow, *cell) } else { [0.0; D] };
-                    for (d, axis) in live.into_iter().enumerate() {
-                        force[axis] += over * share.area[d] + share.drag * drag[d];
-                    }
-                }
-                SolidForce { name: name.clone(), force }
-            })
-            .collect()
+        self.names.iter().zip(&self.shares).map(of_name).collect()
     }
 }

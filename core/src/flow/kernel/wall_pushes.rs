@@ -1,0 +1,70 @@
+//! What the fluxes of a step do to the walls of watched cells.
+//!
+//! Both cells beside a face know a flux of momentum through it, each counted from the pressure on the walls inside it. For a face without a break
+//! they agree on what passes the open part. At a closed face nothing passes. At a jump of porosity the stationary wave between them leaves momentum to the
+//! walls of both cells; what passes the throat is then taken from the cell that has less wall there.
+
+use crate::flow::kernel::rows::var;
+use crate::flow::kernel::slab::{CellsBeside, FaceRow, Slab};
+use crate::flow::porosity::areas::Ducts;
+use crate::flow::porosity::fractions::least_volume;
+use crate::number::real::Real;
+
+/// Writes what acts at the faces of a row on the walls of watched cells on one side of them.
+pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    faces: &FaceRow<'_, R, D>,
+    cells: CellsBeside,
+) {
+    let (Some(walls), Some(medium)) = (&slab.walls, &slab.medium) else { return };
+    for (i, push) in walls.of_row(cells.start, slab.reported.clone()) {
+        let ducts = medium.ducts(faces.d, faces.at, slab.periodic[faces.d]);
+        let mut now = push.get();
+        now.sides[faces.d][usize::from(cells.high)] = at_face(slab, faces, &ducts, cells.face + i, cells.high);
+        push.set(now);
+    }
+}
+
+/// Pressure times closed fraction at face `i` of a row, on the left (`high`) or right of it.
+fn at_face<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    faces: &FaceRow<'_, R, D>,
+    ducts: &Ducts<'_, R>,
+    i: usize,
+    high: bool,
+) -> R {
+    let (d, n) = (faces.d, faces.n);
+    let value = |block: &[R], v: usize| var(block, v, n).get(i).copied().unwrap_or(R::ZERO);
+    let open = ducts.face(i);
+    let ambient = slab.walls.as_ref().map_or(R::ZERO, |walls| walls.reference);
+    let above = faces.states.map(|block| value(block, D + 2) - ambient);
+    // Momentum through the open part of the face and into the walls beside it, as each of the two cells sees it.
+    let seen = [value(faces.flux, 1) + open * above[0], value(faces.flux, D + 2) + open * above[1]];
+    let own = usize::from(!high);
+    let place = if d == 0 { i } else { faces.at[d] };
+    let inside = slab.periodic[d] || (place > 0 && place < slab.problem.mesh.cells()[d]);
+    let passes = if !(open > R::ZERO) {
+        R::ZERO
+    } else if inside {
+        let (left, right) = ducts.beside(i, false);
+        let walls = [left - open, right - open];
+        let sum = walls[0] + walls[1];
+        if sum > R::ZERO { (walls[1] * seen[0] + walls[0] * seen[1]) / sum } else { R::HALF * (seen[0] + seen[1]) }
+    } else {
+        seen[own]
+    };
+    (R::ONE - open) * above[own] + (seen[own] - passes)
+}
+
+/// Writes what drag takes from the gas of a cell: `lost` per open volume.
+pub(in crate::flow) fn push_obstacles<R: Real, const D: usize>(slab: &Slab<'_, R, D>, cell: usize, lost: [R; D]) {
+    let Some(walls) = &slab.walls else { return };
+    let volume = slab.medium.as_ref().map(|m| m.porosity.volume.get(cell).copied().unwrap_or(R::ZERO));
+    // A cell of no volume counts as its cluster counts it.
+    let open = volume.map_or(R::ONE, |volume| R::larger(volume, least_volume()));
+    for (_, push) in walls.of_row(cell, 0..1) {
+        let mut now = push.get();
+        now.drag = lost.map(|m| open * m / slab.dt);
+        push.set(now);
+    }
+}
