@@ -1,7 +1,8 @@
 //! Files of keys and values (TOML, JSON) as the types of the program, with messages in the words of whoever wrote the file.
 //!
-//! In reading order: [`slips`], what is wrong with its spelling; [`source`], a file's text and places in it; [`value`], what stands there; [`reader`], from values to types.
+//! In reading order: [`slips`], what is wrong with its spelling; [`value`], what stands there; [`json`], values of JSON; [`source`], a file's text and places in it; [`reader`], from values to types.
 
+pub mod json;
 pub mod reader;
 pub mod slips;
 pub mod source;

@@ -10,7 +10,7 @@ use super::{Edges, MAX_AXIS, few_enough};
 use crate::error::{Error, Result};
 use crate::keys::reader::{meant, misfit, nearest, not_known};
 use crate::keys::value::{Entry, Value};
-use crate::keys::{self, PlacedValue, Source};
+use crate::keys::{self, PlacedValue, Source, json};
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -207,12 +207,8 @@ pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
 pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edges> {
     let text = text.trim_start_matches('\u{feff}');
     let source = Source::new(path, text);
-    let json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) || text.trim_start().starts_with('{');
-    let node = if json {
-        let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
-        PlacedValue::of_json(
-            serde_json::from_str(text).map_err(|e| Error::at(path, place(&e), format!("this is no JSON: {e}")))?,
-        )
+    let node = if source.is_json() {
+        json::placed(text).map_err(|e| misfit(&source, e))?
     } else {
         let table = source.toml()?;
         PlacedValue::of_table(table.get_ref(), table.span()).map_err(|e| misfit(&source, e))?
@@ -228,13 +224,13 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
     let strange: Vec<Entry> =
         entries.extract_if(.., |e| !KEYS.contains(&&e.key[..])).filter(|e| !HARMLESS.contains(&&e.key[..])).collect();
     if let Some((entry, key)) = slip(&strange, &entries) {
-        let quoted = || text.find(&format!("\"{}\"", entry.key)).map(|at| at..at + entry.key.len() + 2);
         let reason = format!("key {} is not known here; did you mean {key}?", entry.key);
-        return Err(misfit(&source, (entry.span.clone().or_else(quoted), reason)));
+        return Err(misfit(&source, (entry.span.clone(), reason)));
     }
     for entry in strange {
         let meant = meant(&entry.key, &KEYS);
-        warnings.push(format!("{}: key {}: not known, ignored{meant}", path.display(), entry.key));
+        let reason = format!("key {}: not known, ignored{meant}", entry.key);
+        warnings.push(misfit(&source, (entry.span, reason)).to_string());
     }
     let table = PlacedValue { value: Value::Table(entries), span: node.span };
     let spec: GridTable = keys::read(&source, &table, "")?;

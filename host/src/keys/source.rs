@@ -1,5 +1,6 @@
 //! The text of a file, for messages that show the place: line, column, the line itself with a mark.
 
+use super::json;
 use super::slips::in_words;
 use super::value::{PlacedValue, Value};
 use crate::error::{Error, Result, excerpt};
@@ -40,6 +41,13 @@ impl<'a> Source<'a> {
         })
     }
 
+    /// The text is JSON rather than TOML: the file is called so, or begins as no TOML does.
+    #[must_use]
+    pub fn is_json(&self) -> bool {
+        let named = self.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        named || self.text.trim_start().starts_with('{')
+    }
+
     /// The line that a byte of the text is in, from 1.
     #[must_use]
     pub fn line(&self, at: usize) -> usize {
@@ -59,7 +67,8 @@ impl<'a> Source<'a> {
     #[must_use]
     pub fn at_key(&self, key: &str, reason: impl Into<String>) -> Error {
         let reason = format!("key {key}: {}", reason.into());
-        let table = self.toml().ok().and_then(|table| PlacedValue::of_table(table.get_ref(), table.span()).ok());
+        let toml = || self.toml().ok().and_then(|table| PlacedValue::of_table(table.get_ref(), table.span()).ok());
+        let table = if self.is_json() { json::placed(self.text).ok() } else { toml() };
         match table.and_then(|table| deepest(&table, key)) {
             Some(span) => self.error(span, reason),
             None => Error::file(self.path, reason),

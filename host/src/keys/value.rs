@@ -103,24 +103,4 @@ impl PlacedValue {
         entries.sort_by_key(|e| e.span.as_ref().map(|s| s.start));
         Ok(PlacedValue { value: Value::Table(entries), span: Some(span) })
     }
-
-    /// Of a value of JSON, which does not tell places.
-    #[must_use]
-    pub fn of_json(value: serde_json::Value) -> Self {
-        use serde_json::Value as Json;
-        let value = match value {
-            Json::Null => Value::Null,
-            Json::Bool(truth) => Value::Truth(truth),
-            Json::Number(n) => {
-                let whole = n.as_i64().map(i128::from).or(n.as_u64().map(i128::from));
-                whole.map_or(Value::Number(n.as_f64().unwrap_or(f64::NAN)), Value::Whole)
-            }
-            Json::String(text) => Value::Text(text),
-            Json::Array(items) => Value::List(items.into_iter().map(PlacedValue::of_json).collect()),
-            Json::Object(map) => Value::Table(
-                map.into_iter().map(|(key, v)| Entry { key, span: None, node: PlacedValue::of_json(v) }).collect(),
-            ),
-        };
-        PlacedValue { value, span: None }
-    }
 }
