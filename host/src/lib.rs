@@ -112,6 +112,7 @@ pub mod keys;
 pub mod picture;
 pub mod porosity;
 pub mod text;
+mod words;
 
 pub use glam::DVec3;
 pub use voidage_core;

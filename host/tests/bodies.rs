@@ -349,7 +349,7 @@ fn a_room_turned_inward_is_told_from_a_body_with_cavities() {
     let part = cuboid(DVec3::splat(1.0), DVec3::splat(2.0), false);
     let room = bodies(&[&cuboid(DVec3::ZERO, DVec3::splat(10.0), true), &part]);
     assert!(
-        room.warnings.iter().any(|w| w.contains("1 shells that look outward became cavities")),
+        room.warnings.iter().any(|w| w.contains("1 shell that looks outward became a cavity")),
         "{:?}",
         room.warnings
     );

@@ -89,7 +89,7 @@ fn what_is_farther_than_half_a_unit_in_the_last_place_stays_and_is_said() {
         assert_eq!(blocked_and_open(&field("z")), (100, 1000), "only the panel at 0.6");
         assert_eq!(report["sheets_off_planes"]["sheets"], 1);
         assert!((report["sheets_off_planes"]["area"].as_f64().expect("an area") - 1.0).abs() < 1e-12);
-        assert!(said.contains("of 2 sheets without thickness, 1 block nothing with 1 m²"), "{said}");
+        assert!(said.contains("of 2 sheets without thickness, 1 blocks nothing with 1 m²"), "{said}");
     }
 }
 

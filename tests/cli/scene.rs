@@ -85,7 +85,7 @@ fn warnings_name_the_solid() {
     let scene = dir.file("scene.toml");
     fs::write(&scene, "[[solid]]\nname = \"lid\"\nshape = \"file\"\npath = \"open.stl\"\n").expect("written");
     let said = stderr(&voidage(&[&"inspect", &scene]));
-    assert!(said.contains("scene.toml: solid \"lid\": ") && said.contains("holes, closed with caps"), "{said}");
+    assert!(said.contains("scene.toml: solid \"lid\": ") && said.contains("1 hole, closed with a cap"), "{said}");
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.

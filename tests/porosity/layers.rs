@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 const CORE: [&str; 9] = ["number", "flow", "convex", "grid", "quadric", "torus", "surface", "subdivide", "solids"];
 
 /// Rooms and single files of the host likewise.
-const HOST: [&str; 11] =
-    ["error", "text", "huge", "keys", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
+const HOST: [&str; 12] =
+    ["error", "text", "words", "huge", "keys", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 #[test]
 fn rooms_import_downwards_only() {

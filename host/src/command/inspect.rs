@@ -7,6 +7,7 @@ use crate::command::streams::{check_place, check_suffix, is_stream, replaces, wr
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
 use crate::picture::ticks::{measure, plain_to};
+use crate::words::counted;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -135,10 +136,10 @@ impl Inspection<'_> {
             progress.say(line(row));
             self.solids.iter().for_each(|s| progress.say(line(s.row())));
         }
-        progress.say(format!("body boxes that overlap: {} pairs", self.overlapping_boxes));
+        progress.say(format!("body boxes that overlap: {}", counted(self.overlapping_boxes, "pair", "pairs")));
         if let Some(t) = self.thin.first() {
             progress.say(format!(
-                "thin bodies: {}; the thinnest is {} \"{}\", about {} m over {} m",
+                "thin bodies: {}; the thinnest is body {} \"{}\" (counted from 0), about {} m over {} m",
                 self.thin.len(),
                 t.body,
                 t.name,

@@ -14,6 +14,7 @@ use crate::grid::{AXES, Edges};
 use crate::picture::ticks::{measure as number, number_to};
 use crate::porosity::snap::{self, OffPlanes};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
+use crate::words::{counted, either};
 use glam::DVec3;
 use std::path::Path;
 use voidage_core::grid::Grid;
@@ -93,7 +94,7 @@ pub fn command_line() -> String {
 pub fn threads(count: Option<u16>) -> Result<rayon::ThreadPool> {
     let count = count.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-    pool.map_err(|e| Error::new(format!("cannot start {count} threads: {e}")))
+    pool.map_err(|e| Error::new(format!("cannot start {}: {e}", counted(count, "thread", "threads"))))
 }
 
 /// Porosity of bodies on a grid, with a warning for whatever makes it less certain.
@@ -113,11 +114,14 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
     report_sheets(bodies, result.sheets_off_planes, progress);
     if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
         let why = match options.leaf {
-            Leaf::Plane => "are not convex, or not surely so: measured by their surface, exactly",
-            _ => "do not close edge by edge, or are sheets: measured by their surface",
+            Leaf::Plane => ["is not convex, or not surely so", "are not convex, or not surely so"],
+            _ => ["does not close edge by edge, or is a sheet", "do not close edge by edge, or are sheets"],
         };
         let (count, all) = (bodies.bodies.len() - result.subdivided, bodies.bodies.len());
-        progress.warn(format!("{count} of {all} bodies {why}"));
+        let (all, why) = (counted(all, "body", "bodies"), either(count, why[0], why[1]));
+        let exactly = if options.leaf == Leaf::Plane { ", exactly" } else { "" };
+        progress
+            .warn(format!("{count} of {all} {why}: measured by {} surface{exactly}", either(count, "its", "their")));
     }
     if options.leaf != Leaf::Plane && result.subdivided == 0 {
         progress.warn("--leaf has no effect: every body was measured by its surface (--method gjk subdivides)");
@@ -246,8 +250,8 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
         let body = &bodies.bodies[worst.body];
         let files = bodies.files();
         progress.warn(format!(
-            "{files}: the surface of {} bodies leaks: in layer {} of body {} \"{}\" a row ends {:.3e} of a face away from zero",
-            leaks.len(),
+            "{files}: the surface of {} leaks: in layer {} of body {} \"{}\" (both counted from 0) a row ends {:.3e} of a face away from zero",
+            counted(leaks.len(), "body", "bodies"),
             worst.layer,
             worst.body,
             body.name,
@@ -266,10 +270,10 @@ fn report_leaks(bodies: &Bodies, result: &Porosity, progress: &mut Progress) {
 fn report_sheets(bodies: &Bodies, off: OffPlanes, progress: &mut Progress) {
     if off.sheets > 0 {
         progress.warn(format!(
-            "{}: of {} sheets without thickness, {} block nothing with {} m² in all, which lie in no plane of the grid",
+            "{}: of {} without thickness, {} nothing with {} m² in all, which lie in no plane of the grid",
             bodies.files(),
-            bodies.bodies.iter().filter(|b| b.sheet).count(),
-            off.sheets,
+            counted(bodies.bodies.iter().filter(|b| b.sheet).count(), "sheet", "sheets"),
+            counted(off.sheets, "blocks", "block"),
             number(off.area)
         ));
     }

@@ -14,6 +14,7 @@ use crate::command::cli::StressArgs;
 use crate::command::progress::{Progress, print};
 use crate::command::streams::{check_place, check_suffix, is_stream, write_json};
 use crate::error::{Error, Result};
+use crate::words::counted;
 use case::{Effort, StressCase};
 use report::StressSummary;
 use std::time::Instant;
@@ -47,9 +48,12 @@ pub fn stress(args: &StressArgs) -> Result<()> {
     args.json.iter().try_for_each(|path| write_json(path, &summary))?;
     match summary.failed_names() {
         failed if failed.is_empty() => Ok(()),
-        failed => {
-            Err(Error::new(format!("{} of {} cases failed: {}", failed.len(), outcomes.len(), failed.join(", "))))
-        }
+        failed => Err(Error::new(format!(
+            "{} of {} failed: {}",
+            failed.len(),
+            counted(outcomes.len(), "case", "cases"),
+            failed.join(", ")
+        ))),
     }
 }
 

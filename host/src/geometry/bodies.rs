@@ -19,6 +19,7 @@ use crate::geometry::repair::shells::{self, Shell};
 use crate::geometry::repair::weld::{self, Indexed};
 use crate::geometry::resolve::{Part, resolve};
 use crate::geometry::single::SingleSource;
+use crate::words::{counted, either};
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 
@@ -159,7 +160,7 @@ impl Bodies {
         let rounding = rounding(d.bounds, mesh.single_precision);
         let indexed = clean(&scaled, solid_of, rounding, &mut d, &mut report);
         let Some((indexed, shells)) = indexed else {
-            let reason = format!("all {} triangles are degenerate (no area): nothing solid", d.triangles);
+            let reason = format!("all triangles ({}) are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
         let name_of =
@@ -238,15 +239,20 @@ impl Bodies {
 fn say_roles(bodies: &[Body], inverted: impl Iterator<Item = bool>, d: &Diagnosis, report: &mut Reporter) {
     if d.inside_out > 0 {
         report.warn(format!(
-            "{} of {} bodies are inside out (normals point inward); taken as solid",
-            d.inside_out, d.bodies
+            "{} of {} inside out (normals point inward); taken as solid",
+            d.inside_out,
+            counted(d.bodies, "body is", "bodies are")
         ));
     }
     if let Some((body, _)) = bodies.iter().zip(inverted).find(|(b, inverted)| b.cavities > 0 && *inverted) {
         report.warn(format!(
-            "{} shells that look outward became cavities of a body that is inside out (from {} to {}); if it is a room with parts in it, \
+            "{} of a body that is inside out (from {} to {}); if it is a room with parts in it, \
              give it a wall or leave it out",
-            body.cavities,
+            counted(
+                body.cavities,
+                "shell that looks outward became a cavity",
+                "shells that look outward became cavities"
+            ),
             show(body.bounds[0]),
             show(body.bounds[1])
         ));
@@ -254,8 +260,8 @@ fn say_roles(bodies: &[Body], inverted: impl Iterator<Item = bool>, d: &Diagnosi
     if d.sheets > 0 {
         let place = bodies.iter().find(|b| b.sheet).map_or(DVec3::ZERO, |b| b.bounds[0]);
         report.warn(format!(
-            "{} sheets have no thickness (the first at {}); they hold no volume and block a face only where they lie in its plane",
-            d.sheets,
+            "{} no thickness (the first at {}); what has none holds no volume and blocks a face only where it lies in its plane",
+            counted(d.sheets, "sheet has", "sheets have"),
             show(place)
         ));
     }
@@ -311,7 +317,11 @@ fn clean(
         return None;
     }
     if d.degenerate > 0 {
-        report.warn(format!("{} degenerate triangles (no area) are ignored", d.degenerate));
+        report.warn(format!(
+            "{} (no area) {} ignored",
+            counted(d.degenerate, "degenerate triangle", "degenerate triangles"),
+            either(d.degenerate, "is", "are")
+        ));
     }
     let mut all = distinct(&mesh);
     let mut alive = all.clone();
@@ -334,13 +344,18 @@ fn clean(
     d.shells = shells.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {
-        report.warn(format!("{} triangles had the wrong orientation (winding) and were turned", d.turned));
+        report.warn(format!(
+            "{} had the wrong orientation (winding) and {} turned",
+            counted(d.turned, "triangle", "triangles"),
+            either(d.turned, "was", "were")
+        ));
     }
     d.one_sided = shells.iter().filter(|s| s.one_sided).count();
     if d.one_sided > 0 {
         report.warn(format!(
-            "{} shells are one-sided (no consistent orientation); results near them are unreliable",
-            d.one_sided
+            "{} one-sided (no consistent orientation); results near {} are unreliable",
+            counted(d.one_sided, "shell is", "shells are"),
+            either(d.one_sided, "it", "them")
         ));
     }
     Some((mesh, shells))
@@ -358,10 +373,18 @@ fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, rounding: f64, d: &mut D
 /// Tell of surface that was there more than once.
 fn say_copies(d: &Diagnosis, report: &mut Reporter) {
     if d.repeated > 0 {
-        report.warn(format!("{} triangles repeat others (duplicate surface) and were dropped", d.repeated));
+        report.warn(format!(
+            "{} others (duplicate surface) and {} dropped",
+            counted(d.repeated, "triangle repeats", "triangles repeat"),
+            either(d.repeated, "was", "were")
+        ));
     }
     if d.doubled > 0 {
-        report.warn(format!("{} triangles are the backs of others (double-sided surface) and were dropped", d.doubled));
+        report.warn(format!(
+            "{} of others (double-sided surface) and {} dropped",
+            counted(d.doubled, "triangle is the back", "triangles are the backs"),
+            either(d.doubled, "was", "were")
+        ));
     }
 }
 
@@ -432,13 +455,17 @@ fn close(
         closed.push(Part { name, shell: Closed::new(triangles), cluster, guessed, own });
     }
     if d.t_junction_edges > 0 {
-        report.warn(format!("{} edges have no partner (T-junctions), but the surface closes", d.t_junction_edges));
+        report.warn(format!(
+            "{} no partner (T-junctions), but the surface closes",
+            counted(d.t_junction_edges, "edge has", "edges have")
+        ));
     }
     if let Some((area, place)) = largest_hole {
         report.warn(format!(
-            "the surface is open: {} boundary edges around {} holes, closed with caps (the largest, area {area:.6}, at {})",
-            d.boundary_edges - d.t_junction_edges,
-            d.holes,
+            "the surface is open: {} around {}, closed with {} (the largest, area {area:.6}, at {})",
+            counted(d.boundary_edges - d.t_junction_edges, "boundary edge", "boundary edges"),
+            counted(d.holes, "hole", "holes"),
+            either(d.holes, "a cap", "caps"),
             show(place)
         ));
     }

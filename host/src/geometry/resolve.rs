@@ -6,6 +6,7 @@ use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
 use crate::geometry::repair::regions::{self, Regions, SourceTriangles};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
+use crate::words::{counted, either};
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet as HashSet;
@@ -327,9 +328,10 @@ impl Places {
     fn say(&self, d: &Diagnosis, report: &mut Reporter) {
         if let Some(place) = self.resolved {
             report.warn(format!(
-                "{} surfaces cross themselves (the first near {}); what they wind around counts once",
-                d.crossing - d.doubtful,
-                show(place)
+                "{} (the first near {}); what {} around counts once",
+                counted(d.crossing - d.doubtful, "surface crosses itself", "surfaces cross themselves"),
+                show(place),
+                either(d.crossing - d.doubtful, "it winds", "they wind")
             ));
         }
         if let Some(place) = self.perhaps {
@@ -340,8 +342,8 @@ impl Places {
         }
         if let Some(place) = self.unknown {
             report.warn(format!(
-                "{} surfaces cross themselves (the first near {}) so that what they hold cannot be told; they are measured as they wind, and the bounds of all cells within their boxes are 0 and 1",
-                d.doubtful,
+                "{} (the first near {}) so that what is inside cannot be told; such a surface is measured as it winds, and the bounds of all cells within its box are 0 and 1",
+                counted(d.doubtful, "surface crosses itself", "surfaces cross themselves"),
                 show(place)
             ));
         }

@@ -3,6 +3,7 @@
 use crate::command::stress::case::{Allowed, Criterion, StressCase};
 use crate::command::stress::runner::StressOutcome;
 use crate::command::version::VERSION;
+use crate::words::counted;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -98,7 +99,7 @@ impl StressSummary {
     #[must_use]
     pub fn sentence(&self) -> String {
         let StressSummary { passed, failed, seconds, cases, .. } = self;
-        format!("{} cases, {passed} passed, {failed} failed, {seconds:.0} s", cases.len())
+        format!("{}, {passed} passed, {failed} failed, {seconds:.0} s", counted(cases.len(), "case", "cases"))
     }
 
     /// The cases that failed.

@@ -16,6 +16,7 @@ use crate::geometry::bodies::Bodies;
 use crate::geometry::scene::{Scene, load};
 use crate::grid::Edges;
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
+use crate::words::counted;
 use std::path::Path;
 
 /// What other points are compared with.
@@ -168,7 +169,8 @@ impl Site<'_> {
     fn run(&self, recipe: &Recipe, threads: usize) -> Result<Row> {
         let Site { case, subject, bodies, edges, .. } = *self;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|e| Error::new(format!("cannot start {threads} threads: {e}")))?;
+        let pool =
+            pool.map_err(|e| Error::new(format!("cannot start {}: {e}", counted(threads, "thread", "threads"))))?;
         let Options { method, leaf, depth, tol, .. } = recipe.options;
         let row = Row {
             scene: subject.name.clone(),

@@ -9,6 +9,7 @@ use super::values::unique;
 use super::{left_out, points, scaling};
 use crate::picture::panels::Panels;
 use crate::picture::svg::escape;
+use crate::words::{counted, either};
 use std::fmt::Write;
 
 /// A limit on errors, and its name in a table.
@@ -201,7 +202,11 @@ fn absent(found: &StudyFindings) -> Vec<String> {
         ("cells", found.rows.iter().filter(|r| r.cell.is_none()).count()),
     ] {
         if missing > 0 {
-            words.push(format!("{missing} of {count} points have no error of the {of} and stand in no picture of it: nothing is known to count it from."));
+            words.push(format!(
+                "{missing} of {} no error of the {of} and {} in no picture of it: nothing is known to count it from.",
+                counted(count, "point has", "points have"),
+                either(missing, "stands", "stand")
+            ));
         }
     }
     if found.quick {
@@ -296,8 +301,11 @@ pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String 
 fn about(found: &StudyFindings) -> Vec<String> {
     let quick = if found.quick { " A quick look: one run of each, the smallest grids." } else { "" };
     let mut lines = vec![format!(
-        "Made by `{}`, {}, on {} processors; medians of {} runs, the fastest and the slowest beside them.{quick}",
-        found.command, found.program, found.processors, found.repeats
+        "Made by `{}`, {}, on {}; medians of {}, the fastest and the slowest beside them.{quick}",
+        found.command,
+        found.program,
+        counted(found.processors, "processor", "processors"),
+        counted(found.repeats, "run", "runs")
     )];
     lines.extend(found.note.iter().cloned());
     lines

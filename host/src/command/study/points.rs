@@ -2,6 +2,7 @@
 
 use super::row::Row;
 use super::table::{Cell, Listing, Reading, readable};
+use crate::words::either;
 
 /// Columns, and whether people see them.
 const COLUMNS: [(&str, bool); 31] = [
@@ -95,5 +96,6 @@ pub fn line(row: &Row) -> String {
     let (seconds, volume) = (readable(row.seconds.median, Reading::Seconds), readable(row.volume, Reading::Volume));
     let error = row.error.map_or_else(String::new, |e| readable(e, Reading::Percent));
     let grid = grid(row);
-    format!("{scene:<24} {grid:>12} {method:<16} {threads:>2} threads {seconds:>9} s {volume:>18} m³ {error:>12}")
+    let words = either(*threads, "thread", "threads");
+    format!("{scene:<24} {grid:>12} {method:<16} {threads:>2} {words:<7} {seconds:>9} s {volume:>18} m³ {error:>12}")
 }

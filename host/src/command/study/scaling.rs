@@ -12,6 +12,7 @@ use crate::geometry::scene::table::StrictTable;
 use crate::grid::Edges;
 use crate::picture::panels::{Line, Mark, Panel, Panels};
 use crate::porosity::{self, Options};
+use crate::words::either;
 use clap::ValueEnum;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -206,7 +207,13 @@ fn ball(centre: DVec3, radius: f64, rings: usize) -> Vec<[DVec3; 3]> {
 
 fn line(row: &ScalingRow) -> String {
     let seconds = readable(row.seconds.median, Reading::Seconds);
-    format!("scaling with {:<10} {:>10} {:>2} threads {seconds:>9} s", row.along, row.count, row.threads)
+    format!(
+        "scaling with {:<10} {:>10} {:>2} {:<7} {seconds:>9} s",
+        row.along,
+        row.count,
+        row.threads,
+        either(row.threads, "thread", "threads")
+    )
 }
 
 /// The rows as a table.

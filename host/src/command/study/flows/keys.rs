@@ -6,6 +6,7 @@ use crate::command::study::recipe::Precision;
 use crate::command::study::values::{choice, few, many, product, some, varied, word};
 use crate::error::Result;
 use crate::geometry::scene::table::{self, StrictTable};
+use crate::words::counted;
 use toml::de::DeValue;
 use voidage_core::flow::{Limiter, PressureForm, Scheme};
 
@@ -70,7 +71,7 @@ pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
                     (if order == 2 { limiters.len() } else { 1 }, word(limiter)),
                     (orders.len(), format!("order {order}")),
                     (precisions.len(), precision.name().to_owned()),
-                    (threads.len(), format!("{count} threads")),
+                    (threads.len(), counted(count, "thread", "threads")),
                 ];
                 let name = varied(&name, &parts);
                 if all.iter().any(|r| r.name == name && r.choice.cells == cells) {

@@ -12,6 +12,7 @@ use crate::command::study::table::{Cell, Listing, Reading, readable};
 use crate::command::study::values::word;
 use crate::error::{Error, Result};
 use crate::flow::Scalar;
+use crate::words::either;
 use serde::{Deserialize, Serialize};
 
 /// A run of a flow.
@@ -125,7 +126,14 @@ fn outcome<R: Scalar>(recipe: &FlowRecipe, fine: Option<&FineDensity>) -> Result
 
 fn line(row: &FlowRow) -> String {
     let (seconds, error) = (readable(row.seconds.median, Reading::Seconds), readable(row.error, Reading::Small));
-    format!("{:<32} N {:>6} {:>2} threads {seconds:>9} s  {} {error}", row.flow, row.n, row.threads, row.quantity)
+    format!(
+        "{:<32} N {:>6} {:>2} {:<7} {seconds:>9} s  {} {error}",
+        row.flow,
+        row.n,
+        row.threads,
+        either(row.threads, "thread", "threads"),
+        row.quantity
+    )
 }
 
 /// Order of convergence: how fast the error falls with N.

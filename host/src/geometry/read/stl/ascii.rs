@@ -23,6 +23,7 @@ use glam::DVec3;
 use crate::error::{Error, Result};
 use crate::geometry::mesh::{Mesh, Solid};
 use crate::geometry::read::text::{OddityCount, SingleDigits, Token, Tokens, quote};
+use crate::words::{counted, either};
 
 /// Reads all solids of a text.
 pub fn read(path: &Path, text: &[u8]) -> Result<Mesh> {
@@ -225,7 +226,11 @@ impl<'a> Reader<'a> {
             return Err(self.unexpected("`solid`", Some(token)));
         }
         let (bytes, line) = (self.tokens.len() - token.at, self.tokens.line(token.at));
-        self.mesh.warn(format_args!("{bytes} bytes after the last `endsolid`, from {line} on, are not STL; ignored"));
+        self.mesh.warn(format_args!(
+            "{} after the last `endsolid`, from {line} on, {} not STL; ignored",
+            counted(bytes, "byte", "bytes"),
+            either(bytes, "is", "are")
+        ));
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::mesh::{Mesh, Solid};
+use crate::words::counted;
 
 /// Bytes of the header, free text.
 const HEADER: usize = 80;
@@ -84,10 +85,11 @@ fn check_rest(path: &Path, mesh: &mut Mesh, count: u32, follows: &[u8], len: u64
     let is_padding = follows.iter().all(|byte| Some(byte) == follows.first());
     if rest.is_multiple_of(RECORD as u64) && !is_padding {
         let held = u64::from(count) + rest / RECORD as u64;
-        return Err(Error::file(path, format!("its count says {count} triangles, but the file holds {held}")));
+        return Err(Error::file(path, format!("its count of triangles is {count}, but the file holds {held}")));
     }
+    let triangles = counted(count as usize, "triangle", "triangles");
     let bytes = if rest == 1 { "byte follows" } else { "bytes follow" };
-    mesh.warn(format_args!("{rest} {bytes} the last of {count} triangles; ignored"));
+    mesh.warn(format_args!("{rest} {bytes} the last of {triangles}; ignored"));
     Ok(())
 }
 
