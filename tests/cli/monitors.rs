@@ -56,7 +56,7 @@ fn solids_close_faces() {
     fs::write(at.file("box.toml"), solid).expect("a file");
     let planes = "{ name = \"gap\", x = 1 }, { name = \"wall\", x = 1, max = [9, 0.5] }";
     let text = stderr(&solved(&at, &case("[porosity]\nscene = \"box.toml\"\n", planes), "out", &[]));
-    assert!(text.contains("output.monitors[1] \"wall\" has no open face: nothing passes it"), "{text}");
+    assert!(text.contains("key output.monitors[1]: \"wall\" has no open face: nothing passes it"), "{text}");
     let report = json(&at.file("out/report.json"));
     assert_eq!(report["monitors"][0]["area"].as_f64(), Some(0.5));
     assert_eq!(report["monitors"][1]["faces"].as_u64(), Some(0));

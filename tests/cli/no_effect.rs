@@ -19,15 +19,15 @@ fn regions_in_solids_are_named() {
     for (region, words) in [
         (
             "{ min = [0.3, 0.3], max = [0.5, 0.5], p = 2 }",
-            Some("initial.regions[0] lies wholly in solid: it has no effect"),
+            Some("key initial.regions[0]: lies wholly in solid: it has no effect"),
         ),
         (
             "{ center = [0.4, 0.4], radius = 0.03, p = 2 }",
-            Some("initial.regions[0] lies wholly in solid: it has no effect"),
+            Some("key initial.regions[0]: lies wholly in solid: it has no effect"),
         ),
         (
             "{ min = [0.4, 0.3], max = [0.7, 0.5], p = 2 }",
-            Some("initial.regions[0] is 33.33 % open, the rest is solid"),
+            Some("key initial.regions[0]: is 33.33 % open, the rest is solid"),
         ),
         ("{ min = [0.7, 0.3], max = [0.9, 0.5], p = 2 }", None),
     ] {
@@ -35,7 +35,11 @@ fn regions_in_solids_are_named() {
         fs::write(at.file("box.toml"), BOX).expect("a file");
         let text = stderr(&solved(&at, &case(region, "", ""), "out", &[]));
         match words {
-            Some(words) => assert!(text.contains(words) && !text.contains("smaller than a cell"), "{region}: {text}"),
+            Some(words) => assert!(
+                text.contains(&format!("case.toml: line 11, column 12: {words}"))
+                    && !text.contains("smaller than a cell"),
+                "{region}: {text}"
+            ),
             None => assert!(!text.contains("regions"), "{region}: {text}"),
         }
         let report = json(&at.file("out/report.json"));
@@ -55,7 +59,7 @@ fn patches_behind_solids_are_named() {
     fs::write(at.file("box.toml"), BOX).expect("a file");
     let patch = "[[boundary.patch]]\nside = \"x_min\"\nmin = [0, 0.3]\nmax = [0, 0.5]\ntype = \"outlet\"\np = 1\n";
     let text = stderr(&solved(&at, &case("", patch, ""), "out", &[]));
-    assert!(text.contains("boundary.patch[0] covers faces that solids close: it has no effect"), "{text}");
+    assert!(text.contains("key boundary.patch[0]: covers faces that solids close: it has no effect"), "{text}");
 }
 
 #[test]
@@ -65,8 +69,8 @@ fn probes_in_solids_have_no_values() {
     let output =
         "maxima = {}\nprobes = [{ name = \"in\", at = [0.45, 0.45, 0] }, { name = \"beside\", at = [0.85, 0.85, 0] }]";
     let text = stderr(&solved(&at, &case("", "", output), "out", &[]));
-    let words = "output.probes[0] \"in\": the cell of its point [0.45, 0.45, 0.0] is solid: it has no values";
-    assert!(text.contains(words) && !text.contains("beside"), "{text}");
+    let words = "key output.probes[0].at: the cell of the point [0.45, 0.45, 0.0] of \"in\" is solid: it has no values";
+    assert!(text.contains(words) && !text.contains("of \"beside\""), "{text}");
     let report = json(&at.file("out/report.json"));
     let probes = &report["maxima"]["probes"];
     assert!(probes[0]["overpressure"].is_null() && probes[1]["overpressure"].is_number(), "{probes}");

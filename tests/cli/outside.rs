@@ -51,9 +51,9 @@ fn regions_outside_are_named() {
         )
     };
     for (region, words) in [
-        ("{ min = [1.5], rho = 2, p = 1 }", Some("initial.regions[0] lies outside the grid")),
-        ("{ center = [-1.0], radius = 0.5, rho = 2, p = 1 }", Some("initial.regions[0] lies outside the grid")),
-        ("{ min = [0.51], max = [0.54], rho = 2, p = 1 }", Some("initial.regions[0] is smaller than a cell")),
+        ("{ min = [1.5], rho = 2, p = 1 }", Some("key initial.regions[0]: lies outside the grid")),
+        ("{ center = [-1.0], radius = 0.5, rho = 2, p = 1 }", Some("key initial.regions[0]: lies outside the grid")),
+        ("{ min = [0.51], max = [0.54], rho = 2, p = 1 }", Some("key initial.regions[0]: is smaller than a cell")),
         ("{ min = [0.5], rho = 2, p = 1 }", None),
     ] {
         let at = Scratch::new();

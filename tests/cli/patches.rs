@@ -77,5 +77,5 @@ fn patches_that_cannot_be_are_told() {
     );
     assert_eq!(says("side = \"x_min\"\ntype = \"periodic\"", "a part of a side cannot be periodic"), Some(1));
     let nothing = "side = \"x_min\"\ntype = \"zero-gradient\"\nmin = [0, 3, 0]";
-    assert_eq!(says(nothing, "boundary.patch[0] covers the middle of no face"), Some(0));
+    assert_eq!(says(nothing, "key boundary.patch[0]: covers the middle of no face"), Some(0));
 }

@@ -20,7 +20,9 @@ const AIR: &str = "gas_constant = 287";
 fn kilopascals_in_a_case_with_temperatures_are_doubted() {
     let wall = "\"wall\"";
     let text = said(AIR, "T = 288, p = 101.325", wall, "");
-    assert!(text.contains("case.toml: key initial.uniform.p: 101.325 Pa is less than a hundredth of"), "{text}");
+    let place = "case.toml: line 8, column 26: key initial.uniform.p: 101.325 Pa is less than a hundredth of";
+    let mark = "\n   8 | uniform = { T = 288, p = 101.325 }\n     |                          ^^^^^^^\n";
+    assert!(text.contains(place) && text.contains(mark), "{text}");
     assert!(text.contains("not in kPa or bar"), "{text}");
     let text = said(AIR, "T = 288, p = 101325", "{ type = \"outlet\", p = 1.013 }", "");
     assert!(text.contains("key boundary.x_max.p: 1.013 Pa"), "{text}");

@@ -85,6 +85,12 @@ impl CaseFile {
         Source::new(&self.path, &self.text).at_key(key, reason)
     }
 
+    /// A warning about a key, with the place that an error would have.
+    #[must_use]
+    pub fn remark(&self, key: &str, reason: impl Into<String>) -> String {
+        self.wrong(key, reason).to_string()
+    }
+
     /// `reason` unless `value` is left out or `holds`.
     ///
     /// # Errors

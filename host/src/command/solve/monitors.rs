@@ -62,8 +62,8 @@ pub fn monitors<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mu
         file.column_name(&format!("{key}.name"), &name, all.iter().map(|m| &m.report.name[..]))?;
         let monitor = Monitor::new(file, &key, name, keys, setup)?;
         if monitor.faces.is_empty() {
-            let (path, name) = (file.path.display(), &monitor.report.name);
-            progress.warn(format!("{path}: {key} \"{name}\" has no open face: nothing passes it"));
+            let reason = format!("\"{}\" has no open face: nothing passes it", monitor.report.name);
+            progress.warn(file.remark(&key, reason));
         }
         all.push(monitor);
     }

@@ -219,7 +219,7 @@ pub fn report<const D: usize>(
             _ => String::new(),
         };
         if !trouble.is_empty() {
-            progress.warn(format!("{}: {key} {trouble}", file.path.display()));
+            progress.warn(file.remark(&key, trouble));
         }
         all.push(report);
     }

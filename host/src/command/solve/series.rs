@@ -189,9 +189,8 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
         })?;
         let cell = position(at, setup.edges.cells());
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
-            let (path, point) = (file.path.display(), probe.at);
-            progress
-                .warn(format!("{path}: {key} \"{name}\": the cell of its point {point:?} is solid: it has no values"));
+            let reason = format!("the cell of the point {:?} of \"{name}\" is solid: it has no values", probe.at);
+            progress.warn(file.remark(&format!("{key}.at"), reason));
         }
         cells.push(cell);
     }

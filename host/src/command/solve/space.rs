@@ -8,7 +8,7 @@ use crate::command::cli::SceneArgs;
 use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_no_force};
 use crate::command::progress::Progress;
 use crate::command::stages;
-use crate::command::streams::is_stream;
+use crate::command::streams::{INPUT, is_stream};
 use crate::error::Result;
 use crate::files::csv::needs_quotes;
 use crate::geometry::bodies::Bodies;
@@ -16,6 +16,7 @@ use crate::grid::{AXES, Edges};
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
+use std::path::{Path, PathBuf};
 
 /// Open fractions of all cells and of the faces of the axes that flow.
 #[derive(Debug, Clone)]
@@ -79,7 +80,11 @@ fn from_scene<const D: usize>(
         .iter()
         .filter(|path| !is_stream(path))
         .try_for_each(|path| file.existing("porosity.scene", path).map(drop))?;
-    let scene = SceneArgs { scene: paths.iter().map(|p| file.resolve(p)).collect(), unit: keys.unit };
+    if paths.iter().any(|path| is_stream(path)) && file.path == Path::new(INPUT) {
+        return Err(file.wrong("porosity.scene", "the standard input can be read once, and the case came from it"));
+    }
+    let place = |path: &PathBuf| if is_stream(path) { path.clone() } else { file.resolve(path) };
+    let scene = SceneArgs { scene: paths.iter().map(place).collect(), unit: keys.unit };
     // The flow has a grid of its own; that of a scene file is for the scene alone.
     let (bodies, _) = stages::load(&scene, progress)?;
     let usual = Options::default();
@@ -93,10 +98,8 @@ fn from_scene<const D: usize>(
     let absent: Vec<String> = solids.iter().filter_map(Measured::absent).collect();
     if !absent.is_empty() {
         let names = absent.join(", ");
-        progress.warn(format!(
-            "{}: {names}: without a part in the grid that no other name has: all forces on them are 0",
-            file.path.display()
-        ));
+        let reason = format!("{names}: without a part in the grid that no other name has: all forces on them are 0");
+        progress.warn(file.remark("output.forces", reason));
     }
     let (grid, law) = (edges.grid(None)?, law(file)?);
     let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);
@@ -183,6 +186,9 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
         ("porosity.depth", keys.depth.is_some()),
         ("porosity.faces", keys.faces.is_some()),
         ("drag.law", file.case.drag.law.is_some()),
+        ("drag.cd", file.case.drag.cd.is_some()),
+        ("drag.cd_round", file.case.drag.cd_round.is_some()),
+        ("drag.cd_sharp", file.case.drag.cd_sharp.is_some()),
         ("output.forces", !file.case.output.forces.is_empty()),
     ];
     match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {

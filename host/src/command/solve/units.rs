@@ -28,7 +28,7 @@ const FAR_BELOW: f64 = 100.0;
 /// What is to be said about the pressures of a case, of whose states at the beginning `lowest` has the least.
 #[must_use]
 pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
-    let (states, path) = (states(file), file.path.display());
+    let states = states(file);
     let within = |x: f64, [low, high]: [f64; 2]| low <= x && x <= high;
     let mut said = Vec::new();
     let first = |of: &dyn Fn(&StateKeys) -> Option<f64>| states.iter().find_map(|(key, keys)| Some((key, of(keys)?)));
@@ -36,24 +36,28 @@ pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
         let si = within(r, SI_GASES);
         if let Some((key, t)) = first(&|keys| keys.temperature.filter(|t| si && *t < COLD)) {
             let celsius = t - 273.15;
-            said.push(format!("{path}: key {key}.T: {t} K is {celsius:.2} °C; temperatures are in K, not in °C"));
+            let reason = format!("{t} K is {celsius:.2} °C; temperatures are in K, not in °C");
+            said.push(file.remark(&format!("{key}.T"), reason));
         }
         if let Some((key, p)) = first(&|keys| keys.p.filter(|p| si && *p < LEAST)) {
-            said.push(format!(
-                "{path}: key {key}.p: {p} Pa is less than a hundredth of the atmosphere's 101325 Pa; pressures are in Pa, not in kPa or bar"
-            ));
+            let reason = format!(
+                "{p} Pa is less than a hundredth of the atmosphere's 101325 Pa; pressures are in Pa, not in kPa or bar"
+            );
+            said.push(file.remark(&format!("{key}.p"), reason));
         }
         if within(KILO * r, SI_GASES) && first(&|keys| keys.p.filter(|p| *p > HIGH)).is_some() {
-            said.push(format!(
-                "{path}: key gas.gas_constant: {r} beside {key}.T makes a gas a thousand times too dense, if pressures are in Pa; \
+            let reason = format!(
+                "{r} beside {key}.T makes a gas a thousand times too dense, if pressures are in Pa; \
                  it is in J/(kg K), not in kJ/(kg K)"
-            ));
+            );
+            said.push(file.remark("gas.gas_constant", reason));
         }
     }
     if let Some(p) = file.case.output.ambient.filter(|p| *p > 0.0 && FAR_BELOW * p < lowest) {
-        said.push(format!(
-            "{path}: key output.ambient: {p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"
-        ));
+        let reason = format!(
+            "{p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"
+        );
+        said.push(file.remark("output.ambient", reason));
     }
     said
 }
