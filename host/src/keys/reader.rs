@@ -104,7 +104,7 @@ pub fn meant(typed: &str, known: &[&str]) -> String {
 }
 
 /// Words that others use, and ours.
-const OTHERS_SAY: [(&str, &str); 24] = [
+const OTHERS_SAY: [(&str, &str); 26] = [
     ("pipe", "cylinder"),
     ("tube", "cylinder"),
     ("rod", "cylinder"),
@@ -121,6 +121,8 @@ const OTHERS_SAY: [(&str, &str); 24] = [
     ("outflow", "outlet"),
     ("inflow", "inlet"),
     ("open", "far-field"),
+    ("stagnation", "reservoir"),
+    ("total-pressure", "reservoir"),
     ("freestream", "far-field"),
     ("slip", "wall"),
     ("symmetry", "wall"),

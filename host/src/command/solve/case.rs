@@ -266,6 +266,8 @@ pub enum Kind {
     FarField,
     /// Gas leaves against a given pressure.
     Outlet,
+    /// Gas enters from rest, from a tank or a calm atmosphere of a given state.
+    Reservoir,
     /// No flux, no friction.
     Wall,
     /// Outside as inside.
@@ -282,6 +284,7 @@ impl Kind {
             Kind::Inlet => "inlet",
             Kind::FarField => "far-field",
             Kind::Outlet => "outlet",
+            Kind::Reservoir => "reservoir",
             Kind::Wall => "wall",
             Kind::ZeroGradient => "zero-gradient",
             Kind::Periodic => "periodic",

@@ -143,6 +143,14 @@ fn boundary<const D: usize>(
             file.demand(&format!("{key}.p"), keys.p, positive, "needs a positive number")?;
             Boundary::Outlet { pressure: keys.p.ok_or_else(|| file.wrong(key, "an outlet needs p"))? }
         }
+        Kind::Reservoir if states.gas.is_mixed() => {
+            let reason = "a reservoir is of one gas: with a gamma in any state take an inlet or a far-field";
+            return Err(file.wrong(key, reason));
+        }
+        Kind::Reservoir => {
+            let Primitive { density, pressure, .. } = states.state(key, keys, None)?;
+            Boundary::Reservoir { density, pressure }
+        }
         Kind::Inlet => {
             let first = first_pressure(states, edges, cells, *d, *side);
             let (mut inlet, state) = Inlet::new(states, key, keys, (*d, *side), first, edges)?;
@@ -172,7 +180,7 @@ fn first_pressure<const D: usize>(
 /// An axis of one cell is no part of the flow, so nothing may come through its sides.
 fn no_flow_through(file: &CaseFile, key: &str, keys: Option<&StateKeys>) -> Result<()> {
     match keys.and_then(|k| k.kind) {
-        Some(Kind::Inlet | Kind::FarField | Kind::Outlet) => {
+        Some(Kind::Inlet | Kind::FarField | Kind::Outlet | Kind::Reservoir) => {
             Err(file.wrong(key, "the axis has one cell: only wall, zero-gradient or periodic make sense there"))
         }
         _ => Ok(()),
@@ -185,6 +193,7 @@ fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
         Kind::Inlet => &["rho", "T", "u", "v", "w", "p", "gamma", "relax"],
         Kind::FarField => &STATE,
         Kind::Outlet => &["p"],
+        Kind::Reservoir => &["rho", "T", "p"],
         Kind::Wall | Kind::ZeroGradient | Kind::Periodic => &[],
     };
     let of_patch: &[&str] = if place.patch.is_some() { &["side", "min", "max"] } else { &[] };
@@ -216,7 +225,7 @@ pub fn report<const D: usize>(
             (false, true) => "",
         };
         if !trouble.is_empty() {
-            progress.warn(format!("{}: boundary.patch[{n}] {trouble}", file.path.display()));
+            progress.warn(file.remark(&format!("boundary.patch[{n}]"), trouble));
         }
         all.push(PatchReport {
             side: keys.side.map_or_else(String::new, SideName::word),
