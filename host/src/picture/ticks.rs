@@ -73,6 +73,16 @@ pub fn measure(value: f64) -> String {
     plain_to(value, 1e-9 * value.abs())
 }
 
+/// A part of a `whole` of which only so many `digits` are known; what is no more than rounding of the whole is 0.
+#[must_use]
+pub fn part(value: f64, whole: f64, digits: i32) -> String {
+    let value = if value.abs() > ROUNDING * whole.abs() { value } else { 0.0 };
+    plain_to(value, 10f64.powi(1 - digits) * value.abs())
+}
+
+/// Sums of many terms are rounded to this share of their whole, at worst.
+const ROUNDING: f64 = 1e-12;
+
 /// As [`number_to`], with minus signs that programs read.
 #[must_use]
 pub fn plain_to(value: f64, fine: f64) -> String {

@@ -2,18 +2,19 @@
 
 use super::solids::{SolidReport, solids};
 use crate::command::cli::PorosityArgs;
-use crate::command::obstacles::Obstacles;
+use crate::command::obstacles::{Obstacles, digits_of_areas};
 use crate::command::progress::Progress;
 use crate::command::stages::command_line;
 use crate::command::version::{BUILD, Build};
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
-use crate::picture::ticks::measure;
+use crate::picture::ticks::{measure, part};
 use crate::porosity::congestion::Congestion;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::resistance::{Resistance, Totals};
 use crate::porosity::shadows::{HiddenPassages, Shadows};
 use crate::porosity::{self, Leaf, Porosity};
+use crate::words::counted;
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -41,6 +42,9 @@ pub(super) struct Report {
     skipped: Vec<&'static str>,
     seconds: BTreeMap<&'static str, f64>,
     gjk: porosity::Gjk,
+    /// Digits of areas that are known, for the terminal.
+    #[serde(skip)]
+    digits: i32,
     /// Areas in m², with `--resistance`.
     #[serde(skip_serializing_if = "Option::is_none")]
     obstacles: Option<ObstacleReport>,
@@ -166,6 +170,7 @@ impl Report {
             skipped,
             seconds: BTreeMap::new(),
             gjk: result.gjk,
+            digits: digits_of_areas(bodies),
             obstacles: obstacles
                 .resistance
                 .as_ref()
@@ -183,11 +188,12 @@ impl Report {
     pub(super) fn summary(&self, progress: &Progress) {
         let [nx, ny, nz] = self.grid.cells;
         let c = self.cells;
-        progress.say(format!("grid          {nx} × {ny} × {nz} = {} cells", nx * ny * nz));
-        progress.say(format!("bodies        {} ({} triangles)", self.bodies, self.triangles));
+        progress.say(format!("grid          {nx} × {ny} × {nz} = {}", counted(nx * ny * nz, "cell", "cells")));
+        let triangles = counted(self.triangles, "triangle", "triangles");
+        progress.say(format!("bodies        {} ({triangles})", self.bodies));
         if self.roads.subdivision > 0 {
-            progress
-                .say(format!("subdivided    {} bodies, {} queries of GJK", self.roads.subdivision, self.gjk.queries));
+            let bodies = counted(self.roads.subdivision, "body", "bodies");
+            progress.say(format!("subdivided    {bodies}, queries of GJK: {}", self.gjk.queries));
         }
         progress.say(format!("solid volume  {} m³", measure(self.solid_volume)));
         progress.say(format!(
@@ -196,8 +202,8 @@ impl Report {
         ));
         if let Some(ObstacleReport { totals, .. }) = &self.obstacles {
             let Totals { frontal_area: [x, y, z], wetted_area, .. } = *totals;
-            let [x, y, z] = [x, y, z].map(measure);
-            progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {} m²", measure(wetted_area)));
+            let [x, y, z, wetted] = [x, y, z, wetted_area].map(|area| part(area, wetted_area, self.digits));
+            progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {wetted} m²"));
         }
         progress.say(format!(
             "largest gap   {}",
