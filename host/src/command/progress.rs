@@ -7,7 +7,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Print a result to standard output, however quiet the run. A reader that closes early is no failure.
@@ -84,6 +86,34 @@ impl Meter {
     }
 }
 
+/// Tells from time to time, while it lives, that a long piece of work goes on.
+#[derive(Debug)]
+pub struct Heartbeat {
+    /// Dropped to end the thread.
+    alive: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Heartbeat {
+    /// Calls `tell` after each `pause` with the time since the beginning.
+    pub fn new(pause: Duration, tell: impl Fn(Duration) + Send + 'static) -> Self {
+        let ((alive, ended), begun) = (channel(), Instant::now());
+        let beat = move || {
+            while ended.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+                tell(begun.elapsed());
+            }
+        };
+        Heartbeat { alive: Some(alive), thread: Some(std::thread::spawn(beat)) }
+    }
+}
+
+impl Drop for Heartbeat {
+    fn drop(&mut self) {
+        self.alive = None;
+        let _ = self.thread.take().map(JoinHandle::join); // that it could not tell is no failure of the work
+    }
+}
+
 /// Messages to the terminal, warnings collected, stages timed.
 #[derive(Debug)]
 pub struct Progress {
@@ -145,6 +175,13 @@ impl Progress {
                 }
             }
         }
+    }
+
+    /// Tells that `work` goes on, unless the run is quiet, as long as what is returned lives.
+    #[must_use]
+    pub fn goes_on(&self, work: String) -> Option<Heartbeat> {
+        let tell = move |time: Duration| eprintln!("{}: {:.0} s so far", visible(&work), time.as_secs_f64());
+        (!self.quiet).then(|| Heartbeat::new(PAUSE, tell))
     }
 
     /// A bar of `steps` steps on a terminal, else a line from time to time.

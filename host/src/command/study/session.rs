@@ -3,6 +3,7 @@
 use crate::command::progress::Progress;
 use crate::command::version::BUILD;
 use crate::error::{Error, Result};
+use crate::words::counted;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -14,6 +15,9 @@ use std::time::Instant;
 
 /// The file of points that are done, in the directory of results.
 pub const POINTS: &str = "points.jsonl";
+
+/// From this share of the cost on, the time that was measured tells that of the rest.
+const ENOUGH: f64 = 0.2;
 
 /// A study on its way.
 #[derive(Debug)]
@@ -120,8 +124,8 @@ impl<'a> Session<'a> {
         self.kept = points.map(|line| (line.key, line.value)).collect();
         if !self.kept.is_empty() {
             let count = self.kept.len();
-            let words = if count == 1 { "point is" } else { "points are" };
-            self.progress.say(format!("{count} {words} kept from before (--force measures all anew)"));
+            let points = counted(count, "point is", "points are");
+            self.progress.say(format!("{points} kept from before (--force measures all anew)"));
         }
     }
 
@@ -141,7 +145,9 @@ impl<'a> Session<'a> {
             return Ok(point);
         }
         let begin = Instant::now();
+        let heartbeat = self.progress.goes_on(format!("[{}/{}] {key}", self.done.0 + 1, self.planned.0));
         let point = measure(self.progress)?;
+        drop(heartbeat);
         self.measured = (self.measured.0 + cost, self.measured.1 + begin.elapsed().as_secs_f64());
         self.done = (self.done.0 + 1, self.done.1 + cost);
         self.keep(key, &point)?;
@@ -160,12 +166,14 @@ impl<'a> Session<'a> {
         self.done = (self.done.0 + points, self.done.1 + cost);
     }
 
-    /// How long what is left will take, if it costs as much as what was measured.
+    /// How long what is left will take, if it costs as much as what was measured. Nothing, as long as little was measured: small grids
+    /// tell next to nothing of the time of large ones.
     fn left(&self) -> String {
-        let (cost, seconds) = self.measured;
-        let rest = (self.planned.1 - self.done.1).max(0.0) * seconds / cost;
+        let ((cost, seconds), rest) = (self.measured, (self.planned.1 - self.done.1).max(0.0));
+        let known = cost >= ENOUGH * (cost + rest);
+        let rest = rest * seconds / cost;
         match rest.round() {
-            _ if !(rest > 0.5) => String::new(),
+            _ if !(known && rest > 0.5) => String::new(),
             s if s < 90.0 => format!(", about {s} s left"),
             s if s < 5400.0 => format!(", about {} min left", (s / 60.0).round()),
             s => format!(", about {:.1} h left", s / 3600.0),
