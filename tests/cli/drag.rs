@@ -197,7 +197,7 @@ fn what_is_refused() {
     bars(&at);
     for (keys, reason) in [
         ("[drag]\nlaw = \"pdr\"\ncr = [1, 1, 1]", "takes law, or cr or from, not both"),
-        ("[drag]\ncd = 2", "goes with drag.law"),
+        ("[drag]\ncd = 2", "key drag.cd: goes with drag.law"),
         ("[drag]\nlaw = \"pdr\"\ncd_round = -1", "needs a number not below 0"),
     ] {
         let output = solve(&at, &channel("bars.toml", keys), "refused", &[]);
@@ -209,12 +209,16 @@ fn what_is_refused() {
     let zones = at.file("zones.toml");
     for (arguments, reason) in [
         ([&"--cd" as &dyn AsRef<OsStr>, &"2"], "--drag"),
-        ([&"--zones", &zones], "lies outside the grid"),
+        ([&"--zones", &zones], "--zones makes a table of the report: give --report FILE.json"),
+        ([&"--bounds-fields", &"-q"], "--bounds-fields makes fields: give --npy DIR or -o FILE.vtr"),
         ([&"--drag", &"dense"], "bluff"),
     ] {
         let output = voidage(&[&"porosity", &scene, &"--cells", &"4x4x4", arguments[0], arguments[1]]);
         assert!(!output.status.success() && stderr(&output).contains(reason), "{reason}: {}", stderr(&output));
     }
+    let report = at.file("report.json");
+    let output = voidage(&[&"porosity", &scene, &"--cells", &"4x4x4", &"--zones", &zones, &"--report", &report]);
+    assert!(stderr(&output).contains("lies outside the grid"), "{}", stderr(&output));
     fs::write(&scene, "[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nporosity = 0.5\ncd = 1\n")
         .expect("written");
     let output = voidage(&[&"porosity", &scene, &"--cells", &"4x4x4"]);

@@ -34,12 +34,44 @@ fn a_surface_through_a_pipe() {
     let grid = "x = [-2, 2]\ny = [-2, 2]\nz = [-2, 2]\n";
     let by_grid = piped(&["porosity", mesh.to_str().expect("a path"), "--grid", "-", "-q"], grid.as_bytes(), &at);
     assert!(by_grid.status.success(), "{}", stderr(&by_grid));
+    for (arguments, words) in [
+        (&["porosity", "-", "--grid", "-"][..], "- stands for the scene and --grid"),
+        (&["porosity", "-", "--zones", "-", "--report", "r.json"], "- stands for the scene and --zones"),
+        (&["porosity", "-", "-"], "- stands for the scene and the scene"),
+    ] {
+        let twice = piped(arguments, SCENE.as_bytes(), &at);
+        let said = stderr(&twice);
+        assert!(twice.status.code() == Some(2) && said.contains("the standard input can be read once"), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
     let wrong = piped(&["porosity", "-"], b"nothing of use\n", &at);
     assert_eq!(wrong.status.code(), Some(1));
     assert!(stderr(&wrong).contains("standard input: is neither"), "{}", stderr(&wrong));
     let empty = piped(&["inspect", "-"], b"", &at);
     assert!(stderr(&empty).contains("standard input: is empty"), "{}", stderr(&empty));
     assert!(at.names().is_empty());
+}
+
+/// Zones need no name; without one they are counted.
+#[test]
+fn zones_through_a_pipe() {
+    let at = Scratch::new();
+    fs::write(at.file("ball.toml"), SCENE).expect("a scene");
+    let corner = "min = [0, 0, 0]\nmax = [1, 1, 1]\n";
+    let zones = format!("[[zone]]\n{corner}[[zone]]\nname = \"corner\"\n{corner}[[zone]]\n{corner}");
+    let arguments = ["porosity", "ball.toml", "--spacing", "0.5", "--zones", "-", "--report", "report.json", "-q"];
+    let run = piped(&arguments, zones.as_bytes(), &at);
+    assert!(run.status.success(), "{}", stderr(&run));
+    let report = json(&at.file("report.json"));
+    let rows = report["obstacles"]["congestion"].as_array().expect("a table");
+    let names: Vec<&str> = rows.iter().filter_map(|row| row["zone"].as_str()).collect();
+    assert_eq!(names, ["zone 1", "corner", "zone 3"]);
+    let wrong = piped(&arguments, b"[[zone]]\nmin = [0, 0, 0]\n", &at);
+    assert!(
+        stderr(&wrong).contains("standard input: line 1, column 1: zone 1: key max is missing"),
+        "{}",
+        stderr(&wrong)
+    );
 }
 
 #[test]

@@ -153,7 +153,7 @@ pub struct PorosityArgs {
     /// Print a commented scene that runs, and do nothing else
     #[arg(long, exclusive = true)]
     pub template_scene: bool,
-    /// Grid file (TOML or JSON): edges x, y, z; or origin, spacing, cells
+    /// Grid file (TOML or JSON): edges x, y, z; or origin, spacing, cells; - is the standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cells", "spacing", "bounds"])]
     pub grid: Option<PathBuf>,
     /// Number of cells, such as 99x99x63
@@ -177,7 +177,7 @@ pub struct PorosityArgs {
     /// What becomes of parts still cut when a subdivision by GJK ends
     #[arg(long, value_enum, default_value_t = Leaf::Plane)]
     pub leaf: Leaf,
-    /// Also certified lower and upper bounds of all fields
+    /// Also certified lower and upper bounds of all fields; with --npy or -o FILE.vtr
     #[arg(long)]
     pub bounds_fields: bool,
     /// Only the volume porosity
@@ -195,7 +195,7 @@ pub struct PorosityArgs {
     /// Drag coefficient: a number, or round=NUMBER,sharp=NUMBER (default: round=1.2,sharp=2)
     #[arg(long, value_name = "CD", requires = "drag", value_parser = parse_cd)]
     pub cd: Option<DragCoefficients>,
-    /// Zones of the table of congestion (TOML tables "zone" with name, min, max in metres; default: the whole grid)
+    /// Zones of the report's table of congestion (TOML tables "zone" with min, max in metres and, if you like, name; default: the whole grid); with --report; - is the standard input
     #[arg(long, value_name = "FILE", conflicts_with = "no_areas")]
     pub zones: Option<PathBuf>,
     /// Number of threads (default: all cores)

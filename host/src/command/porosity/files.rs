@@ -48,18 +48,45 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     if args.png.is_none() && !args.slice.is_empty() {
         return Err(Error::usage("--slice cuts a picture: give --png FILE.png"));
     }
+    check_inputs(args)?;
+    check_use(args)?;
     check_show(args)?;
     args.png.iter().try_for_each(|path| check_suffix("--png", path, "png"))?;
     args.report.iter().try_for_each(|path| check_suffix("--report", path, "json"))?;
     for (n, output) in outputs.iter().enumerate() {
         check_place(output)?;
-        let inputs = args.scene.scene.iter().chain(&args.grid).map(|p| p.as_path());
+        let inputs = args.scene.scene.iter().chain(&args.grid).chain(&args.zones).map(|p| p.as_path());
         if inputs.chain(outputs[..n].iter().copied()).any(|other| replaces(output, other)) {
             return Err(Error::usage(format!(
                 "{}: an output would replace another file of this run",
                 output.display()
             )));
         }
+    }
+    Ok(())
+}
+
+/// The standard input can be read once.
+fn check_inputs(args: &PorosityArgs) -> Result<()> {
+    let scenes = args.scene.scene.iter().map(|path| ("the scene", path));
+    let others = [("--grid", &args.grid), ("--zones", &args.zones)];
+    let all = scenes.chain(others.into_iter().filter_map(|(what, path)| Some((what, path.as_ref()?))));
+    let piped: Vec<&str> = all.filter(|(_, path)| is_stream(path)).map(|(what, _)| what).collect();
+    if piped.len() < 2 {
+        return Ok(());
+    }
+    let reason = format!("the standard input can be read once: - stands for {}", piped.join(" and "));
+    Err(Error::usage(reason))
+}
+
+/// What is asked for must go to some file.
+fn check_use(args: &PorosityArgs) -> Result<()> {
+    let fields = args.npy.is_some() || args.output.is_some();
+    if args.bounds_fields && !fields {
+        return Err(Error::usage("--bounds-fields makes fields: give --npy DIR or -o FILE.vtr"));
+    }
+    if args.zones.is_some() && args.report.is_none() {
+        return Err(Error::usage("--zones makes a table of the report: give --report FILE.json"));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! The zones of `--zones`.
 
+use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::grid::Edges;
@@ -17,7 +18,10 @@ const LARGEST_FILE: u64 = 1 << 24;
 pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
     let whole = edges.bounds();
     let Some(path) = path else { return Ok(vec![Zone { name: "all".into(), bounds: whole }]) };
-    let text = table::read_text(path, LARGEST_FILE)?;
+    let (path, text) = match text_of(path)? {
+        Some(text) => (Path::new(INPUT), text),
+        None => (path, table::read_text(path, LARGEST_FILE)?),
+    };
     let source = Source::new(path, &text);
     let root = source.toml()?;
     let mut keys = StrictTable::new(&source, "", 0..0, root.get_ref());
@@ -28,8 +32,7 @@ pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
 }
 
 fn zone(mut keys: StrictTable<'_>, [lowest, highest]: [glam::DVec3; 2]) -> Result<Zone> {
-    let name = keys.need("name", table::text)?;
-    keys.subject = format!("zone \"{name}\"");
+    let name = keys.named()?;
     let (min, max) = (keys.need("min", table::point)?, keys.need("max", table::point)?);
     keys.finish()?;
     if !min.cmplt(max).all() {
