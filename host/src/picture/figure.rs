@@ -32,8 +32,10 @@ const LEGEND: &str = "where the other slices are";
 /// What the figure shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure<'a> {
-    /// First line.
+    /// First line; cut where it is too long.
     pub title: &'a str,
+    /// What follows it on that line, however long it is; may be empty.
+    pub moment: &'a str,
     /// Second line, smaller.
     pub note: &'a str,
     /// Cell edges along x, y, z.
@@ -92,7 +94,8 @@ impl Figure<'_> {
         };
         let layout = Layout::best(lengths, cells, &rooms);
         let note = text_width(self.note, SMALL) + legend_width();
-        let head = text_width(self.title, TITLE).max(note).min(layout::WIDTH as f64);
+        let title = text_width(&format!("{}{}", self.title, self.moment), TITLE);
+        let head = title.max(note).min(layout::WIDTH as f64);
         let (width, height) = layout.size;
         let mut canvas = Canvas::new(width.max(head.ceil() as usize) + 2 * BORDER, HEAD + height + BORDER);
         let pointers = layout.panels.len() > 1;
@@ -143,7 +146,8 @@ impl Figure<'_> {
         let room = (canvas.size().0 - 2 * BORDER) as f64;
         let x = BORDER as f64;
         let style = Style { height: TITLE, up: 1.0, ..Style::default() };
-        canvas.text(x, 16.0, &shortened(self.title, TITLE, room), style);
+        let title = shortened(self.title, TITLE, room - text_width(self.moment, TITLE)) + self.moment;
+        canvas.text(x, 16.0, &title, style);
         let style = Style { height: SMALL, up: 1.0, colour: GREY, ..style };
         let legend = if pointers { legend_width() } else { 0.0 };
         let note = shortened(self.note, SMALL, room - legend);
@@ -274,8 +278,8 @@ fn shortened(text: &str, height: f64, room: f64) -> String {
         return text.to_owned();
     }
     let mut short: Vec<char> = text.chars().collect();
-    while !short.is_empty() && text_width(&(short.iter().collect::<String>() + "..."), height) > room {
+    while !short.is_empty() && text_width(&(short.iter().collect::<String>() + "…"), height) > room {
         short.truncate(short.len() * 19 / 20);
     }
-    short.into_iter().collect::<String>() + "..."
+    short.into_iter().collect::<String>() + "…"
 }

@@ -9,6 +9,7 @@ use super::colour::ColourMap;
 use super::figure::Figure;
 use super::ticks::number;
 use crate::error::{Error, Result};
+use crate::words::either;
 
 /// Draws three slices of the open volume fraction, where each shows most: the planes of largest contrast.
 ///
@@ -35,7 +36,7 @@ pub fn picture(
     let note = note(edges, unit, open);
     let map = &ColourMap::open_fraction();
     let (name, range, ends) = ("beta_v", [0.0, 1.0], ["blocked", "open"]);
-    Figure { title, note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.draw()
+    Figure { title, moment: "", note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.draw()
 }
 
 /// The picture of another field that is not negative, cut as [`picture`] is; `name` has its unit.
@@ -53,7 +54,7 @@ pub fn picture_of(
     let most = values.iter().copied().fold(0.0, f64::max);
     let note = format!("{} · mean {}, most {}", grid_note(edges, unit), number(mean), number(most));
     let (at, range, ends, map) = (cut(edges, telling, through), [0.0, most], ["", ""], &ColourMap::density());
-    Figure { title, note: &note, edges, unit, values, at, name, range, ends, map }.draw()
+    Figure { title, moment: "", note: &note, edges, unit, values, at, name, range, ends, map }.draw()
 }
 
 /// The cells that the slices show: those at the given coordinates, else the most telling ones.
@@ -80,7 +81,8 @@ pub fn grid_note(edges: [&[f64]; 3], unit: &str) -> String {
     let sizes = if sizes[0] == sizes[1] && sizes[1] == sizes[2] { sizes[0].clone() } else { by(sizes) };
     let domain = by(edges.map(|e| number(e[e.len() - 1] - e[0])));
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    format!("{cells} cells of {sizes}{unit} · domain {domain}{unit}")
+    let words = either(edges.iter().map(|e| e.len() - 1).product(), "cell", "cells");
+    format!("{cells} {words} of {sizes}{unit} · domain {domain}{unit}")
 }
 
 /// Cell size along an axis, or its range.

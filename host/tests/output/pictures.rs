@@ -116,7 +116,7 @@ fn figures_of_other_fields_and_of_uniform_or_missing_values() {
     let map = &ColourMap::diverging();
     let figure = |values, range| {
         let (title, note, unit, at, name) = ("u", "step 12", "m", [1, 1, 1], "u [m/s]");
-        Figure { title, note, edges, unit, values, at, name, range, ends: ["", ""], map }.draw()
+        Figure { title, moment: "", note, edges, unit, values, at, name, range, ends: ["", ""], map }.draw()
     };
     let has = |canvas: &Canvas, colour| {
         let (width, height) = canvas.size();
@@ -130,6 +130,7 @@ fn figures_of_other_fields_and_of_uniform_or_missing_values() {
     assert!(has(&low, map.colour(0.0)));
     let whole = Figure {
         title: "",
+        moment: "",
         note: "",
         edges,
         unit: "",
@@ -160,6 +161,7 @@ fn each_panel_shows_its_own_slice() {
             where_cut[axis] = at;
             let figure = Figure {
                 title: "",
+                moment: "",
                 note: "",
                 edges: [&two, &three, &four],
                 unit: "m",

@@ -162,7 +162,7 @@ impl Pictures {
     ) -> Result<()> {
         let edges = setup.edges.0.each_ref().map(|e| &e[..]);
         let blocked: Option<Vec<f64>> = setup.flow.beta_v().map(|beta| beta.iter().map(|b| 1.0 - b).collect());
-        let title = format!("{} · t = {} s", self.title, number(time));
+        let (title, moment) = (&self.title[..], format!(" · t = {} s", number(time)));
         let solid = setup.space.is_some_and(|s| s.closed_cells > 0);
         let note = png::grid_note(edges, "m")
             + if solid { " · solid in mauve" } else { "" }
@@ -170,8 +170,8 @@ impl Pictures {
         let (map, unit, ends, at) = (&ColourMap::sequential(), "m", ["", ""], self.at);
         for (n, path) in paths.iter().enumerate() {
             let (name, range) = (FIELDS[n].0, self.given[n].unwrap_or(self.seen[n]));
-            let figure =
-                Figure { title: &title, note: &note, edges, unit, values: fields[n], at, name, range, ends, map };
+            let (values, moment) = (fields[n], &moment[..]);
+            let figure = Figure { title, moment, note: &note, edges, unit, values, at, name, range, ends, map };
             let canvas = match &blocked {
                 Some(blocked) => figure.draw_hatched(blocked),
                 None => figure.draw(),
