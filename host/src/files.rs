@@ -14,4 +14,4 @@ pub mod npy;
 pub mod vtr;
 pub mod whole;
 
-pub use whole::{atomically, check_target, discard_unfinished, together};
+pub use whole::{atomically, check_target, discard_unfinished, together, written};

@@ -14,6 +14,7 @@ fn main() -> ExitCode {
             return;
         }
         voidage::files::discard_unfinished();
+        eprintln!("error: {}", visible(&interrupt::cut_off()));
         std::process::exit(130);
     });
     let command = match Cli::try_parse() {

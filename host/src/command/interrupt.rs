@@ -1,5 +1,6 @@
 //! Ctrl-C: a run that can end in good order is asked to; any other ends at once.
 
+use crate::files::written;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -37,6 +38,16 @@ static FIRST: Mutex<Option<(Instant, bool)>> = Mutex::new(None);
 #[must_use]
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
+}
+
+/// What a run that ends at once leaves.
+#[must_use]
+pub fn cut_off() -> String {
+    match written() {
+        (1, Some(file)) => format!("interrupted: {} was written, and nothing else", file.display()),
+        (_, Some(last)) => format!("interrupted: files were written, each whole; the last is {}", last.display()),
+        _ => "interrupted: no file was written".to_owned(),
+    }
 }
 
 /// For the signal handler: asks the run to stop, and returns whether it will do so by itself. False, so that the program ends at once, if the run was

@@ -112,7 +112,10 @@ struct Finished {
 
 impl Finished {
     fn replace(self) -> Result<()> {
-        fs::rename(&self.temporary.path, &self.target).map_err(|cause| Error::io(&self.path, "replace", &cause))
+        fs::rename(&self.temporary.path, &self.target).map_err(|cause| Error::io(&self.path, "replace", &cause))?;
+        let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner); // a count is valid at any moment
+        *written = (written.0 + 1, Some(self.path));
+        Ok(())
     }
 }
 
@@ -128,6 +131,14 @@ pub fn discard_unfinished() {
     for path in unfinished().iter() {
         let _ = fs::remove_file(path); // it may not exist yet or any more, and there is nobody to tell
     }
+}
+
+static WRITTEN: Mutex<(usize, Option<PathBuf>)> = Mutex::new((0, None));
+
+/// How often this program has put a whole file in its place, and the last of these: for a message about a run that was cut off.
+#[must_use]
+pub fn written() -> (usize, Option<PathBuf>) {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());

@@ -14,6 +14,7 @@ use super::solids::SolidForce;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
+use crate::words::counted;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use voidage_core::flow::Gas;
@@ -46,6 +47,9 @@ pub struct Report {
     seconds_in_all: f64,
     /// Of this session.
     cell_updates_per_second: f64,
+    /// Steps and seconds of stepping of this session.
+    #[serde(skip)]
+    session: Done,
     threads: usize,
     /// Mass in the domain at the end.
     mass: f64,
@@ -173,6 +177,7 @@ impl Report {
             seconds: journal.seconds + done.seconds,
             seconds_in_all: progress.elapsed(),
             cell_updates_per_second: (flow.len() * done.steps) as f64 / done.seconds.max(1e-9),
+            session: done,
             threads: rayon::current_num_threads(),
             mass: content.density,
             mass_drift: drift(content.density, mass, entered(|c| c.density)),
@@ -236,27 +241,33 @@ impl Report {
     pub fn say(&self, progress: &Progress) {
         let [nx, ny, nz] = self.cells;
         progress.say(format!(
-            "grid          {nx} × {ny} × {nz} = {} cells, flow along {}",
-            nx * ny * nz,
+            "grid          {nx} × {ny} × {nz} = {}, flow along {}",
+            counted(nx * ny * nz, "cell", "cells"),
             self.axes.join(", ")
         ));
         if let Some(p) = &self.porosity {
             progress.say(format!(
-                "porosity      {} cells closed, {} merged, {} faces with a jump; first step {:.2} of that in open space",
-                p.closed_cells, p.merged_cells, p.jump_faces, p.step_share
+                "porosity      {} closed, {} merged, {} with a jump; first step {:.2} of that in open space",
+                counted(p.closed_cells, "cell", "cells"),
+                p.merged_cells,
+                counted(p.jump_faces, "face", "faces"),
+                p.step_share
             ));
         }
         for (n, region) in self.regions.iter().enumerate() {
             if let Some(cells) = region.cells_per_radius {
-                progress.say(format!("region {:<7}{cells:.1} cells from its middle to its side", n + 1));
+                let key = format!("regions[{n}]");
+                progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side"));
             }
         }
         progress.say(format!("steps         {} to t = {} s", self.steps, self.time));
         let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {e:.1e}"));
         progress.say(format!("drift         mass {:.1e}{energy}", self.mass_drift));
         progress.say(format!(
-            "repairs       {} fallbacks to first order, {} floors, {} steps repeated",
-            self.fallbacks, self.floors, self.repeated_steps
+            "repairs       {} to first order, {}, {} repeated",
+            counted(self.fallbacks, "fallback", "fallbacks"),
+            counted(self.floors, "floor", "floors"),
+            counted(self.repeated_steps, "step", "steps")
         ));
         if self.floors > 0 {
             let FloorChange { mass, momentum: [x, y, z], energy } = &self.floor_change;
@@ -280,11 +291,23 @@ impl Report {
                 progress.say(format!("  {:<12}{pressure}; {}", peak.name, of("impulse", "Pa s", peak.impulse)));
             }
         }
-        progress.say(format!(
-            "time          {:.3} s of stepping, {:.2} million cell updates/s; {:.3} s in all",
-            self.seconds,
-            self.cell_updates_per_second / 1e6,
-            self.seconds_in_all
-        ));
+        progress.say(format!("time          {}", self.times()));
+    }
+
+    /// What the run took; of one that went on, what this session took and what all did.
+    fn times(&self) -> String {
+        let (Done { steps, seconds }, all) = (self.session, self.seconds_in_all);
+        let speed = format!("{:.2} million cell updates/s", self.cell_updates_per_second / 1e6);
+        match steps == self.steps {
+            true => format!("{seconds:.3} s of stepping, {speed}; {all:.3} s in all"),
+            false if steps == 0 => {
+                format!("{all:.3} s, no step was left to do; {:.3} s of stepping in the sessions before", self.seconds)
+            }
+            false => format!(
+                "{seconds:.3} s of stepping in this session ({}), {speed}; {all:.3} s in all; {:.3} s of stepping with the sessions before",
+                counted(steps, "step", "steps"),
+                self.seconds
+            ),
+        }
     }
 }
