@@ -27,3 +27,4 @@ mod streams;
 mod stress;
 mod study;
 mod units;
+mod words;
