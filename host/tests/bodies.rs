@@ -259,7 +259,11 @@ fn a_bar_that_crosses_itself_counts_its_overlap_once() {
             let d = &found.diagnoses[0];
             assert_eq!((d.bodies, d.crossing, d.doubtful), (1, 1, 0), "{:?}", found.warnings);
             assert!((d.body_volume - (twice - overlap)).abs() < 1e-12, "{} of {twice}", d.body_volume);
-            assert!(found.warnings.iter().any(|w| w.contains("cross themselves")), "{:?}", found.warnings);
+            assert!(
+                found.warnings.iter().any(|w| w.contains("1 surface crosses itself (the first near ")),
+                "{:?}",
+                found.warnings
+            );
         }
     }
 }

@@ -193,6 +193,6 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
     ];
     match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {
         Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene")),
-        None => Ok(()),
+        None => law(file).map(drop),
     }
 }

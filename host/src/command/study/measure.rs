@@ -101,10 +101,11 @@ fn on_grid(
         for &threads in &case.threads {
             let [nx, ny, nz] = edges.cells();
             let key = format!("{} | {nx}x{ny}x{nz} | {} | {threads}", subject.name, recipe.name);
+            if reference.is_none() && session.before::<Row>(&key).is_none() {
+                let what = format!("reference of {} on {nx}x{ny}x{nz}", subject.name);
+                reference = Some(session.prepare(&what, || self::reference(bodies, edges, case.areas))?);
+            }
             let measure = |_: &mut Progress| {
-                if reference.is_none() {
-                    reference = Some(self::reference(bodies, edges, case.areas)?);
-                }
                 let reference = reference.as_ref().ok_or_else(|| Error::new("no reference"))?;
                 Site { case, subject, bodies, edges, reference }.run(recipe, threads)
             };

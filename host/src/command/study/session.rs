@@ -155,6 +155,18 @@ impl<'a> Session<'a> {
         Ok(point)
     }
 
+    /// Work that points need and that is none itself: told while it goes on.
+    ///
+    /// # Errors
+    /// Those of `work`.
+    pub fn prepare<T>(&mut self, what: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let begin = Instant::now();
+        let _heartbeat = self.progress.goes_on(format!("[{}/{}] {what}", self.done.0 + 1, self.planned.0));
+        let result = work()?;
+        self.measured.1 += begin.elapsed().as_secs_f64();
+        Ok(result)
+    }
+
     /// A point of a run before.
     #[must_use]
     pub fn before<T: DeserializeOwned>(&self, key: &str) -> Option<T> {

@@ -6,6 +6,7 @@ use super::{Scene, SceneSolid};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, Doubt, SolidSummary};
 use crate::geometry::read;
+use crate::words::counted;
 use glam::DVec3;
 use std::path::Path;
 
@@ -101,11 +102,13 @@ fn check_size(bodies: &mut Bodies, triangles: usize, solid: &SceneSolid) -> Resu
     let total = triangles.checked_mul(copies).and_then(|n| n.checked_add(bodies.triangles.len()));
     // A single copy is as large as its file; that is the user's own measure.
     if copies > 1 && total.is_none_or(|n| n > MOST_TRIANGLES) {
-        let reason = format!("{copies} copies of {triangles} triangles are more than {MOST_TRIANGLES} in all");
+        let triangles = counted(triangles, "triangle", "triangles");
+        let reason = format!("{copies} copies of {triangles} are more than {MOST_TRIANGLES} in all");
         return Err(Error::new(reason));
     }
     if bodies.triangles.try_reserve(triangles * copies).is_err() {
-        return Err(Error::new(format!("{copies} copies of {triangles} triangles do not fit into memory")));
+        let (copies, triangles) = (counted(copies, "copy", "copies"), counted(triangles, "triangle", "triangles"));
+        return Err(Error::new(format!("{copies} of {triangles}: more than fits into memory")));
     }
     Ok(())
 }
