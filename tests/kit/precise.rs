@@ -1,5 +1,5 @@
-//! Chords of solids by formula with twice the digits of a double: where solids are huge, those of [`crate::quadrature`] are rounded, which weighs
-//! the more the flatter a surface cuts a face.
+//! Chords of solids by formula with twice the digits of a double: those of [`crate::quadrature`] are rounded, which weighs the more
+//! the larger a solid is and the flatter its surface cuts a face.
 
 use crate::quadrature::Exact;
 use glam::DVec3;
@@ -108,7 +108,16 @@ fn surfaces(solid: &Exact, p: DVec3, m: usize, t: f64) -> Vec<(Twofold, f64)> {
             let growth = dot(&across, &cross(&e, &axis)).0 * size.0 - r * r * along.0 * dot(&e, &axis).0;
             vec![(side, 2.0 * growth), plane(base, &axis)]
         }
-        Exact::Frustum(..) => Vec::new(),
+        Exact::Frustum(from, to, [one, other]) => {
+            let (axis, w) = (apart(to, from), from_here(from));
+            let (across, size) = (cross(&w, &axis), dot(&axis, &axis));
+            let change = Twofold(other, 0.0).plus(Twofold(-one, 0.0));
+            // The radius there, times the square of the axis.
+            let radius = Twofold(one, 0.0).times(size).plus(change.times(dot(&w, &axis)));
+            let side = dot(&across, &across).times(size).plus(radius.times(radius).negated());
+            let growth = dot(&across, &cross(&e, &axis)).0 * size.0 - radius.0 * change.0 * dot(&e, &axis).0;
+            vec![(side, 2.0 * growth), plane(from, &axis), plane(to, &axis)]
+        }
     }
 }
 

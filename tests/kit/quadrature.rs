@@ -101,8 +101,9 @@ impl Exact {
             Exact::Frustum(from, to, [one, other]) => {
                 let (at, _, length) = along(from, to, 0.0);
                 let (unit, [q, lost]) = ((to - from).normalize(), apart(p, from));
-                let radius = (one + (other - one) * (at / length)).max(0.0);
-                beyond([unit.cross(q), unit.cross(lost)], radius).max(-at).max(at - length)
+                let [radius, rest] = grown(one, (other - one) * (at / length));
+                let off = beyond([unit.cross(q), unit.cross(lost)], radius.max(0.0)) - rest;
+                off.max(-at).max(at - length)
             }
         }
     }
@@ -339,15 +340,19 @@ fn within_growing(a: DVec3, [b, lost]: [DVec3; 2], [r, rest]: [f64; 2], s: f64, 
     runs.map(|w| [w[0], w[1]]).reduce(|x, y| [x[0].min(y[0]), x[1].max(y[1])])
 }
 
+/// A sum, and what rounding took from it: a radius that changes by less than its last digit still touches a plane or does not.
+fn grown(radius: f64, by: f64) -> [f64; 2] {
+    let sum = radius + by;
+    let part = sum - radius;
+    [sum, (radius - (sum - part)) + (by - part)]
+}
+
 fn frustum(p: DVec3, e: DVec3, from: DVec3, to: DVec3, [one, other]: [f64; 2]) -> Option<[f64; 2]> {
     let (axis, [q, lost]) = (to - from, apart(p, from));
     let slab = between(q, e, axis)?;
     let (unit, slope) = (axis.normalize(), (other - one) / axis.length());
-    let grown = unit.dot(q) * slope;
-    let radius = one + grown;
-    let part = radius - one;
-    let rest = (one - (radius - part)) + (grown - part);
-    within_growing(unit.cross(e), [unit.cross(q), unit.cross(lost)], [radius, rest], unit.dot(e) * slope, slab)
+    let radius = grown(one, unit.dot(q) * slope);
+    within_growing(unit.cross(e), [unit.cross(q), unit.cross(lost)], radius, unit.dot(e) * slope, slab)
 }
 
 /// Inner nodes and weights of Gauss and Lobatto, ten points; the ends have the weight 1/45. A kink between an end and the next node shows at

@@ -257,8 +257,8 @@ pub fn errors(random: &mut Random, family: Family, kinds: Kind, samples: usize) 
                 let (u, v) = (side(u, index[u]), side(v, index[v]));
                 let (at_n, size) = (edges[n][index[n]], (u[1] - u[0]) * (v[1] - v[0]));
                 let truth = closed_area(&exact, n, at_n, |at| exact.area(n, at, u, v)) / size;
-                // Chords of huge solids are rounded, which weighs the more the flatter their surface cuts the face.
-                let rounded = family == Family::Huge && (field[at] - truth).abs() > 1e-12;
+                // Chords are rounded, which weighs the more the larger a solid is and the flatter its surface cuts the face.
+                let rounded = (field[at] - truth).abs() > 3e-13;
                 let precise = |at: f64| area_by_chords(chord, &[exact], n, at, [u, v], 1e-15);
                 (if rounded { closed_area(&exact, n, at_n, precise) / size } else { truth }, &mut face)
             };

@@ -127,6 +127,133 @@ fn a_plane_that_is_touched_but_for_rounding() {
     agrees(Family::Tangent, 2_815_233_781_385_205_047).expect("right areas");
 }
 
+/// A cone whose radii differ by half a unit in the last place, beside a plane by one of them: the quadrature rounded the radius where the plane is.
+#[test]
+fn a_cone_that_is_all_but_a_cylinder_beside_a_plane() {
+    agrees_of(Family::Tangent, Kind::Frustum, 6_540_968_884_064_701_195).expect("right areas");
+}
+
+/// Pipes and cones with tiny tapers whose axes lie in planes that they touch but for rounding, askew to the other axes: slivers of faces, their shares
+/// from arithmetic of 60 digits.
+#[test]
+fn slivers_askew_in_a_plane() {
+    // Both ends, both radii, the plane's axis, the face, and its share.
+    type Case = ([f64; 6], [f64; 2], usize, [usize; 3], f64);
+    let cases: [Case; 5] = [
+        (
+            [
+                0.24999784201269182,
+                0.7995190349337498,
+                1.179360032154269,
+                0.24999784201269182,
+                0.7711253487288591,
+                1.0675446441523109,
+            ],
+            [2.157987308182946e-06, 2.157987308182946e-06],
+            0,
+            [1, 3, 3],
+            5.844_252_114_875_665e-12,
+        ),
+        (
+            [
+                1.3127158895065336,
+                1.2451677547835993,
+                2.321722606656758,
+                1.3127158895065336,
+                1.3127513988554889,
+                1.7756046650865844,
+            ],
+            [0.0627158895065337, 0.06271588950653371],
+            0,
+            [5, 6, 5],
+            2.332_723_563_683_24e-8,
+        ),
+        (
+            [
+                5.698176693395388,
+                68.58698672788375,
+                10.039343420819122,
+                -2.983743130581632,
+                68.58698672788375,
+                -8.66021388634103,
+            ],
+            [67.98698672788376, 67.98698672788375],
+            1,
+            [6, 3, 4],
+            0.0,
+        ),
+        (
+            [
+                0.5253723347851151,
+                0.9728520226706516,
+                -477.3912388406138,
+                -3.2156499900564706,
+                6.106310995558533,
+                -477.3912388406138,
+            ],
+            [477.7245721739472, 477.72457217394714],
+            2,
+            [0, 6, 1],
+            1.379_038_261_908_784_2e-5,
+        ),
+        (
+            [
+                3.2424698002098067,
+                -3.4907786206094324,
+                3.995593064808767,
+                -2.5982306461407223,
+                4.206949863185182,
+                3.995593064808767,
+            ],
+            [1.6622597314754337, 1.6622597314754342],
+            2,
+            [0, 2, 7],
+            2.046_903_925_411_467e-7,
+        ),
+    ];
+    let edges = voidage_tests::quadric::edges();
+    let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
+    for (ends, radii, n, [i, j, k], truth) in cases {
+        let solid = cone_of(ends, radii);
+        let [nx, ny, _] = grid.face_shape(n);
+        let found = shares(&solid, &grid).fields[n + 1][(k * ny + j) * nx + i];
+        assert!((found - truth).abs() < 1e-12, "{ends:?} {radii:?}: {found:e}, not {truth:e}");
+    }
+}
+
+fn cone_of([a, b, c, d, e, f]: [f64; 6], radii: [f64; 2]) -> QuadricSolid {
+    QuadricSolid::truncated_cone(DVec3::new(a, b, c), DVec3::new(d, e, f), radii).expect("a cone")
+}
+
+/// Cones that touch a plane along a line, but for rounding, which may make of it an ellipse of any size: no share leaves 0 to 1.
+#[test]
+fn cones_along_a_line_of_a_plane() {
+    let edges = voidage_tests::quadric::edges();
+    let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
+    let random = &mut Random::new(15);
+    let mut touching = 0;
+    for round in 0..4000 {
+        let n = random.below(3);
+        let size = 0.25 * 10_f64.powf(random.between(-4.0, 2.0));
+        let radii = [size * random.between(0.3, 1.0), size * random.between(0.3, 1.0)];
+        let length = size.clamp(0.05, 10.0) * random.between(0.5, 3.0);
+        let tan = (radii[1] - radii[0]) / length;
+        let cos = 1.0 / (1.0 + tan * tan).sqrt();
+        let turn = random.between(0.0, std::f64::consts::TAU);
+        let side = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        let (u, v) = ((n + 1) % 3, (n + 2) % 3);
+        let mut axis = DVec3::AXES[n] * (side * tan * cos);
+        (axis[u], axis[v]) = (turn.cos() * cos, turn.sin() * cos);
+        let mut from = random.point(DVec3::splat(0.3), DVec3::splat(1.3));
+        from[n] = edges[n][1 + random.below(4)] + side * radii[0] * cos;
+        let solid = QuadricSolid::truncated_cone(from, from + axis * length, radii).expect("a cone");
+        let found = shares(&solid, &grid);
+        assert!(found.worst < 1e-11, "{round}: {from} {axis} {length} {radii:?}: beyond by {:e}", found.worst);
+        touching += usize::from(found.fields[n + 1].iter().any(|&s| s > 0.0 && s < 1e-3));
+    }
+    assert!(touching > 1000, "{touching} cones touch a plane");
+}
+
 /// A pipe along x but for two units in the last place: a plane along it meets it in a rectangle.
 #[test]
 fn a_pipe_aligned_but_for_rounding() {

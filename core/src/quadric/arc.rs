@@ -5,13 +5,77 @@
 //!
 //! Reference: E. Lee, "The rational Bézier representation for conics", in: Geometric Modeling, SIAM 1987.
 
-use crate::number::plane::{P2, cross, dot, sub};
+use crate::number::plane::{P2, dot, on_way, sub};
 use crate::number::real::Real;
 
-/// A symmetric matrix `[uu, uv, vv]` times a vector.
-#[inline(always)]
-pub(super) fn times(s: [f64; 3], d: P2) -> P2 {
-    [s[0] * d[0] + s[1] * d[1], s[1] * d[0] + s[2] * d[1]]
+/// A conic `size (across·p)² + factor (along·p)² + 2 linear·(across·p, along·p) + c <= 0`, `across` and `along` spanning an area of one. As a sum of two
+/// squares the form keeps its digits where it all but vanishes, as along a line in which a plane touches a wall; by the entries of its matrix
+/// it would not.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conic {
+    pub size: f64,
+    pub across: P2,
+    /// Positive if the conic is an ellipse.
+    pub factor: f64,
+    pub along: P2,
+    pub linear: P2,
+    /// What the form makes of a tangent as long as half the gradient, in each point of the conic: 0 for two lines.
+    pub tau: f64,
+}
+
+impl Conic {
+    /// A circle about the origin, by the square of its radius.
+    pub fn circle(square: f64) -> Self {
+        Conic { size: 1.0, across: [1.0, 0.0], factor: 1.0, along: [0.0, 1.0], linear: [0.0; 2], tau: square }
+    }
+
+    /// An ellipse by its matrix `[uu, uv, vv]`, the determinant of that, its centre, and `tau`.
+    pub fn ellipse([uu, uv, vv]: [f64; 3], determinant: f64, center: P2, tau: f64) -> Self {
+        let (size, across, along) =
+            if uu >= vv { (uu, [1.0, uv / uu], [0.0, 1.0]) } else { (vv, [uv / vv, 1.0], [-1.0, 0.0]) };
+        let factor = determinant / size;
+        let linear = [-size * dot(across, center), -factor * dot(along, center)];
+        Conic { size, across, factor, along, linear, tau }
+    }
+
+    /// Half the gradient at a point, by its parts along `across` and `along`.
+    #[inline(always)]
+    fn parts_of_gradient(&self, p: P2) -> P2 {
+        let along = self.factor * dot(self.along, p) + self.linear[1];
+        [self.size * dot(self.across, p) + self.linear[0], along]
+    }
+
+    /// Half the gradient at a point.
+    #[inline(always)]
+    pub fn gradient(&self, p: P2) -> P2 {
+        let [s, t] = self.parts_of_gradient(p);
+        [s * self.across[0] + t * self.along[0], s * self.across[1] + t * self.along[1]]
+    }
+
+    /// The form of a vector.
+    #[inline(always)]
+    pub fn form(&self, d: P2) -> f64 {
+        let (s, t) = (dot(self.across, d), dot(self.along, d));
+        self.size * (s * s) + self.factor * (t * t)
+    }
+
+    /// Does an ellipse reach at most so far from its centre along both axes of the plane?
+    pub fn is_within(&self, reach: P2) -> bool {
+        let determinant = self.size * self.factor;
+        [(0, 1), (1, 0)].iter().all(|&(own, other)| {
+            let entry = self.size * (self.across[other] * self.across[other])
+                + self.factor * (self.along[other] * self.along[other]);
+            entry * self.tau <= determinant * determinant * (reach[own] * reach[own])
+        })
+    }
+
+    /// The vector product of half the gradient in the middle of a chord and of the form's image of the chord: positive for an arc of less than half
+    /// an ellipse.
+    #[inline(always)]
+    pub fn turn(&self, p: P2, q: P2) -> f64 {
+        let (g, d) = (self.parts_of_gradient(on_way(p, q, 0.5)), sub(q, p));
+        g[0] * (self.factor * dot(self.along, d)) - g[1] * (self.size * dot(self.across, d))
+    }
 }
 
 /// Area and first moments about a given point.
@@ -26,7 +90,7 @@ pub(super) struct Moments {
 pub(super) struct Bow {
     /// From its first to its last point.
     pub chord: P2,
-    /// Along the tangent in the first point, to the same scale as the gradients.
+    /// Along the tangent in the first point, as long as half the gradient there.
     pub tangent: P2,
     /// Three halves of the area if the arc were one of a parabola with this size.
     pub size: f64,
@@ -44,16 +108,13 @@ pub(super) enum Lens {
     Bow(Bow),
 }
 
-/// The arc from `p` to `q`, at most half an ellipse, counter-clockwise about the inside. `s` is the conic's quadratic part and `gradients` half its
-/// gradients in `p` and `q`, outward, all to one scale.
+/// The arc of a conic from `p` to `q`, at most half an ellipse, counter-clockwise about the inside, that reaches no farther than `reach`
+/// from its chord: where it would, as in a plane along a line of a cone, it is made by rounding.
 #[inline(always)]
-pub(super) fn lens_of(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Lens {
-    let chord = sub(q, p);
-    let sd = times(s, chord);
-    let tangent = [-gradients[0][1], gradients[0][0]];
-    let (kappa, tau) = (dot(chord, sd), dot(tangent, times(s, tangent)));
-    let middle = [gradients[0][0] + gradients[1][0], gradients[0][1] + gradients[1][1]];
-    let turn = (cross(middle, sd) * 0.5).abs();
+pub(super) fn lens_of(p: P2, q: P2, conic: &Conic, reach: f64) -> Lens {
+    let (chord, gradient) = (sub(q, p), conic.gradient(p));
+    let tangent = [-gradient[1], gradient[0]];
+    let (kappa, tau, turn) = (conic.form(chord), conic.tau, conic.turn(p, q).abs());
     if !(kappa > 0.0) {
         return Lens::Nothing;
     }
@@ -61,16 +122,27 @@ pub(super) fn lens_of(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Lens {
         // Two lines: what is left is the triangle of the points and the lines' crossing.
         let along = kappa / (2.0 * turn);
         let area = kappa * along * 0.25;
-        return if area < f64::INFINITY { Lens::Triangle(tangent.map(|t| t * along), area) } else { Lens::Nothing };
+        return if area * area <= dot(chord, chord) * (reach * reach) {
+            Lens::Triangle(tangent.map(|t| t * along), area)
+        } else {
+            Lens::Nothing
+        };
     }
     let ratio = Real::sqrt(kappa / tau);
-    Lens::Bow(Bow { chord, tangent, size: kappa * ratio * 0.125, ratio, w: turn * ratio / kappa })
+    let w = turn * ratio / kappa;
+    // What is no ellipse bends no more than a parabola, whatever rounding says.
+    let w = if conic.factor > 0.0 { w } else { w.max(1.0) };
+    let (size, most) = (kappa * ratio * 0.125, 3.0 * reach * w.max(1.0));
+    if !(size * size <= dot(chord, chord) * (most * most)) {
+        return Lens::Nothing;
+    }
+    Lens::Bow(Bow { chord, tangent, size, ratio, w })
 }
 
 /// Area of the lens of an arc, and its first moments about the arc's first point; arguments as those of [`lens_of`].
 #[inline]
-pub(super) fn lens(p: P2, q: P2, s: [f64; 3], gradients: [P2; 2]) -> Moments {
-    match lens_of(p, q, s, gradients) {
+pub(super) fn lens(p: P2, q: P2, conic: &Conic, reach: f64) -> Moments {
+    match lens_of(p, q, conic, reach) {
         Lens::Nothing => Moments::default(),
         Lens::Triangle(corner, area) => {
             let d = sub(q, p);

@@ -84,6 +84,7 @@ impl PlaneOfCone<'_> {
             middle: rectangle.middle(),
             along: [a[u], a[v]],
             growth: self.slope / reference.radius,
+            size,
         };
         region_of.flux(region, rectangle)
     }
@@ -99,6 +100,8 @@ struct RegionOfCone<'a> {
     along: P2,
     /// Of the radius, per height and in radii of the reference.
     growth: f64,
+    /// Of the rectangle, along both sides.
+    size: f64,
 }
 
 impl RegionOfCone<'_> {
@@ -171,8 +174,7 @@ impl RegionOfCone<'_> {
     }
 
     fn minor(&self, p: P2, q: P2) -> f64 {
-        let section = self.section;
-        match lens_of(p, q, section.quadratic, [section.gradient(p), section.gradient(q)]) {
+        match lens_of(p, q, &self.section.conic, self.size) {
             Lens::Nothing => 0.0,
             Lens::Triangle(corner, area) => {
                 let low = self.sigma(p);
@@ -192,6 +194,10 @@ impl RegionOfCone<'_> {
         let cube = square * root;
         let corner = bow.w * low + 0.5 * bow.ratio * self.rise(bow.tangent);
         let change = (corner - bow.w * less / (1.0 + root)) / root;
+        if !(bow.w + g * change > -1.0) {
+            // No shadow has such an arc: of a plane along a line of the cone only rounding is left.
+            return 0.0;
+        }
         let [rate, there] = bends(bow.w, g * change);
         let x = g * less;
         let shrunk = less * (3.0 + x * (3.0 + x)) / (cube * (1.0 + cube));

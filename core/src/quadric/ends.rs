@@ -1,6 +1,6 @@
 //! Flat ends: discs across an axis.
 
-use super::arc::{Moments, times};
+use super::arc::{Conic, Moments};
 use super::end_line::EndLine;
 use super::outline::{Rectangle, Section, Side, cut};
 use super::twofold::{Twofold, difference, difference_of_squares};
@@ -9,6 +9,11 @@ use crate::number::axis::Axis;
 use crate::number::plane::{P2, cross, sub};
 use crate::number::real::Real;
 use core::f64::consts::PI;
+
+/// The length of a unit vector seen along an axis, by its parts along and across that axis: of one across it exactly 1.
+fn beside(along: f64, [u, v]: P2) -> f64 {
+    if along.abs() < 0.7 { Real::sqrt(1.0 - along * along) } else { hypotenuse(u, v) }
+}
 
 /// A flat end of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +36,7 @@ impl End {
         let a = self.inward;
         let height = difference(coordinate, self.center[n]);
         let (slope, shift) = ([a[u], a[v]], [self.shift[u], self.shift[v]]);
-        let across = hypotenuse(a[u], a[v]);
+        let across = beside(a[n], [a[u], a[v]]);
         let mut constant = a[n] * height.value;
         if !(across > 0.0) {
             // The end lies in planes like this one: all of it is inside or outside.
@@ -86,13 +91,11 @@ impl End {
     /// The disc's outline, seen along axis `xi`.
     fn seen_along(&self, xi: Axis) -> Section {
         let [u, v] = xi.others();
-        let a = self.inward;
+        let (a, center) = (self.inward, [self.shift[u], self.shift[v]]);
         let s = [-a[u] / a[xi], -a[v] / a[xi]];
-        let quadratic = [1.0 + s[0] * s[0], s[0] * s[1], 1.0 + s[1] * s[1]];
-        let center = [self.shift[u], self.shift[v]];
-        let linear = times(quadratic, center).map(|x| -x);
-        let area = PI * self.radius * self.radius * a[xi].abs();
-        Section { quadratic, linear, ellipse: Some(Ellipse { center, area }) }
+        let (uu, vv, reach) = (s[0] * s[0], s[1] * s[1], self.radius / a[xi]);
+        let conic = Conic::ellipse([1.0 + uu, s[0] * s[1], 1.0 + vv], 1.0 + (uu + vv), center, reach * reach);
+        Section { conic, ellipse: Some(Ellipse { center, area: PI * self.radius * self.radius * a[xi].abs() }) }
     }
 
     /// What the disc, seen along axis `xi`, has of a segment.
@@ -103,7 +106,7 @@ impl End {
         let quadratic = [1.0 + s[0] * s[0], s[0] * s[1], 1.0 + s[1] * s[1]];
         let p = sub(from, [self.shift[u], self.shift[v]]);
         let d = sub(to, from);
-        let sd = times(quadratic, d);
+        let sd = [quadratic[0] * d[0] + quadratic[1] * d[1], quadratic[1] * d[0] + quadratic[2] * d[1]];
         let leading = d[0] * sd[0] + d[1] * sd[1];
         let half = p[0] * sd[0] + p[1] * sd[1];
         let aside = (cross(p, d) / a[xi]).abs();

@@ -1,6 +1,6 @@
 //! What a convex solid has of a rectangle in a grid plane: straight pieces along the rectangle's sides and along flat ends, arcs between.
 
-use super::arc::{Moments, lens, times};
+use super::arc::{Conic, Moments, lens};
 use super::end_line::EndLine;
 use super::wall::{Ellipse, Span};
 use crate::number::plane::{P2, cross, on_way, sub};
@@ -91,6 +91,17 @@ fn crossing(from: P2, to: P2, line: &EndLine, part: f64) -> P2 {
     at
 }
 
+/// Width and height of a polygon, a little enlarged.
+fn size(corners: &Corners) -> P2 {
+    let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for corner in corners {
+        for k in 0..2 {
+            (lo[k], hi[k]) = (lo[k].min(corner.at[k]), hi[k].max(corner.at[k]));
+        }
+    }
+    sub(hi, lo).map(|x| x * 1.001)
+}
+
 /// A straight piece of an outline; without `joined`, an arc leads to it from the piece before.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
@@ -117,25 +128,15 @@ pub(super) enum Region {
     Pieces(Vec<Piece, MAX_CORNERS>, MayBeMajor),
 }
 
-/// A conic in a plane: `pᵀ S p + 2 l·p + c <= 0`.
+/// What a plane cuts out of a curved surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Section {
-    /// `S` as `[uu, uv, vv]`.
-    pub quadratic: [f64; 3],
-    /// `l`.
-    pub linear: P2,
-    /// The conic itself, if it is an ellipse with an inside.
+    pub conic: Conic,
+    /// All that is inside, if it is an ellipse with an inside.
     pub ellipse: Option<Ellipse>,
 }
 
 impl Section {
-    /// Half the gradient in a point.
-    #[inline(always)]
-    pub fn gradient(&self, p: P2) -> P2 {
-        let g = times(self.quadratic, p);
-        [g[0] + self.linear[0], g[1] + self.linear[1]]
-    }
-
     /// What lies in a rectangle and inside all ends. `spans` are those of the lines along its sides, in the order of [`Rectangle::corners`];
     /// `ends` are lines of flat ends with the chord that the end's disc has on each.
     #[inline]
@@ -202,13 +203,8 @@ impl Section {
 
     /// Does half of the ellipse fit a polygon? Not if the conic is none.
     fn half_fits(&self, corners: &Corners) -> MayBeMajor {
-        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in corners {
-            for k in 0..2 {
-                (lo[k], hi[k]) = (lo[k].min(corner.at[k]), hi[k].max(corner.at[k]));
-            }
-        }
-        self.ellipse.is_some_and(|e| e.area * 0.5 <= (hi[0] - lo[0]) * (hi[1] - lo[1]) * 1.001)
+        let [width, height] = size(corners);
+        self.ellipse.is_some_and(|e| e.area * 0.5 <= width * height && self.conic.is_within([width, height]))
     }
 
     /// The whole conic, if it is an ellipse about a point of a polygon.
@@ -219,7 +215,9 @@ impl Section {
             let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
             inside &= cross(sub(next, corner.at), sub(ellipse.center, corner.at)) > 0.0;
         }
-        if inside { Region::Ellipse(ellipse) } else { Region::Empty }
+        // Of a plane that touches a cone along a line rounding may make an ellipse of any size.
+        let fits = self.conic.is_within(size(corners).map(|x| x * 0.5));
+        if inside && fits { Region::Ellipse(ellipse) } else { Region::Empty }
     }
 
     /// Area of a region, and its first moments about the middle of the rectangle.
@@ -233,11 +231,11 @@ impl Section {
             Region::Ellipse(ellipse) => {
                 Moments { area: ellipse.area, first: sub(ellipse.center, middle).map(|c| c * ellipse.area) }
             }
-            Region::Pieces(pieces, major) => self.moments_of(pieces, *major, middle),
+            Region::Pieces(pieces, major) => self.moments_of(pieces, *major, middle, (u1 - u0) + (v1 - v0)),
         }
     }
 
-    fn moments_of(&self, pieces: &[Piece], major: MayBeMajor, middle: P2) -> Moments {
+    fn moments_of(&self, pieces: &[Piece], major: MayBeMajor, middle: P2, reach: f64) -> Moments {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Moments::default() };
         let base = first.from;
         let mut total = Moments::default();
@@ -245,7 +243,7 @@ impl Section {
         let mut a = [0.0; 2];
         for piece in pieces {
             if !piece.joined {
-                let arc = self.arc(before, piece.from, major && self.is_major(before, piece.from));
+                let arc = self.arc(before, piece.from, major && self.is_major(before, piece.from), reach);
                 let shift = sub(before, base);
                 total.area += arc.area;
                 for k in 0..2 {
@@ -271,22 +269,19 @@ impl Section {
 
     /// The arc from `p` to `q` goes more than half around an ellipse.
     pub fn is_major(&self, p: P2, q: P2) -> bool {
-        let s = self.quadratic;
-        let (g, f) = (self.gradient(p), self.gradient(q));
-        s[0] * s[2] > s[1] * s[1] && cross([g[0] + f[0], g[1] + f[1]], times(s, sub(q, p))) < 0.0
+        self.conic.factor > 0.0 && self.conic.turn(p, q) < 0.0
     }
 
     /// What lies between the arc from `p` to `q` and its chord, moments about `p`.
-    fn arc(&self, p: P2, q: P2, major: bool) -> Moments {
-        let (s, gradients) = (self.quadratic, [self.gradient(p), self.gradient(q)]);
+    fn arc(&self, p: P2, q: P2, major: bool, reach: f64) -> Moments {
         if major {
             let Some(ellipse) = self.ellipse else { return Moments::default() };
-            let rest = lens(q, p, s, [gradients[1], gradients[0]]);
+            let rest = lens(q, p, &self.conic, reach);
             let first =
                 |k: usize| ellipse.area * (ellipse.center[k] - p[k]) - rest.first[k] - rest.area * (q[k] - p[k]);
             return Moments { area: ellipse.area - rest.area, first: [first(0), first(1)] };
         }
-        lens(p, q, s, gradients)
+        lens(p, q, &self.conic, reach)
     }
 }
 

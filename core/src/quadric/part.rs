@@ -77,8 +77,7 @@ impl Part {
     #[inline]
     pub fn plane(&self, n: Axis, coordinate: f64) -> Plane {
         let h = difference(coordinate, self.origin[n]);
-        let (quadratic, linear) = self.curved.conic(n, h.value);
-        let section = Section { quadratic, linear, ellipse: self.curved.ellipse(n, h) };
+        let section = Section { conic: self.curved.conic(n, h), ellipse: self.curved.ellipse(n, h) };
         let lines = self.ends.map(|end| end.map(|end| end.line(n, coordinate)));
         Plane { n, h, section, lines }
     }

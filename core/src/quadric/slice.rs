@@ -40,6 +40,9 @@ pub(super) struct Window {
     pub enough: f64,
 }
 
+/// Farther than any arc between rows reaches from its chord; its square is finite.
+const ANY_REACH: f64 = 1e150;
+
 /// Bounds that say nothing.
 const UNKNOWN: P2 = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -131,7 +134,7 @@ impl WallInPlane<'_> {
 
     /// Half the gradient of its conic in a point.
     fn gradient(&self, u: f64, v: f64) -> P2 {
-        self.section().gradient([u - self.origin[0], v - self.origin[1]])
+        self.section().conic.gradient([u - self.origin[0], v - self.origin[1]])
     }
 }
 
@@ -523,11 +526,10 @@ impl<'a, const N: usize> Slice<'a, N> {
         let Boundary::Wall(n) = boundary else { return trapezoid };
         let Some(wall) = self.walls.get(usize::from(n)) else { return trapezoid };
         let (from, to) = ([p - wall.origin[0], a.v - wall.origin[1]], [q - wall.origin[0], b.v - wall.origin[1]]);
-        let section = wall.section();
-        let gradients = [section.gradient(from), section.gradient(to)];
+        let conic = &wall.section().conic;
         let lens = match side {
-            Side::High => lens_of(from, to, section.quadratic, gradients),
-            Side::Low => lens_of(to, from, section.quadratic, [gradients[1], gradients[0]]),
+            Side::High => lens_of(from, to, conic, ANY_REACH),
+            Side::Low => lens_of(to, from, conic, ANY_REACH),
         };
         let area = match lens {
             Lens::Nothing => 0.0,

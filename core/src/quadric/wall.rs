@@ -3,6 +3,7 @@
 //! Everything is relative to the origin of a part: a point of a cylinder's or a cone's axis, a ball's centre. `a` is the unit vector of
 //! the axis. Discriminants are kept as products, so that a line that touches a surface is told from one that misses it by its distance.
 
+use super::arc::Conic;
 use super::twofold::{Twofold, difference, difference_of_squares, dot};
 use crate::number::axis::Axis;
 use crate::number::plane::P2;
@@ -118,7 +119,7 @@ impl Curved {
         let beside = [av / across, -au / across];
         let mut distance = Twofold { value: beside[0] * q[0].value + beside[1] * q[1].value, rest: 0.0 };
         if (radius - distance.value.abs()).abs() < radius * NEAR {
-            distance = dot(beside, q);
+            distance = dot(sharpened(beside), q);
         }
         let foot = self.axis[m] * ((au / across) * q[0].value + (av / across) * q[1].value) / across;
         symmetric(foot, difference_of_squares(radius, distance), across)
@@ -149,10 +150,16 @@ impl Curved {
         let root = if square > 0.0 {
             let narrow = Real::sqrt(square);
             if (there.value - narrow * off.value.abs()).abs() < there.value * NEAR {
-                off = dot(beside, q);
+                off = dot(sharpened(beside), q);
             }
             let (off, lost) = if off.value < 0.0 { (-off.value, -off.rest) } else { (off.value, off.rest) };
-            let less = (there.value - narrow * off) + (there.rest - narrow * lost);
+            // Of a cone that is all but a cylinder only the difference of the lengths says whether the line touches it.
+            let apart = if square > 0.5 {
+                (there.value - off) + slant * slant / (1.0 + narrow) * off
+            } else {
+                there.value - narrow * off
+            };
+            let less = apart + (there.rest - narrow * lost);
             let more = (there.value + narrow * off) + (there.rest + narrow * lost);
             if !(there.value > 0.0 && less > 0.0) {
                 return Span::EMPTY;
@@ -211,22 +218,26 @@ impl Curved {
             Wall::Ball { radius } => circle(*radius),
             Wall::Cylinder { radius } if !(across > 0.0) => circle(*radius),
             Wall::Cylinder { radius } => {
-                let (own, other) = (a[n] / across, -a[v] / across * h.value);
-                both(positive(radius - other, -own), positive(radius + other, own))
+                let (own, aside) = (a[n] / across, -a[v] / across);
+                let (other, lost) = (aside * h.value, aside * h.rest);
+                both(positive((radius - other) - lost, -own), positive((radius + other) + lost, own))
             }
             Wall::Cone { .. } if !(across > 0.0) => all,
             Wall::Cone { radius, slope } => {
                 // As in `span_of_cone`: the radius seen along the line, and how far it passes from the axis.
-                let (there, grows) =
-                    (radius + slope * a[n] / across * (h.value / across), slope * a[v] / (across * across));
+                let grows = slope * a[v] / (across * across);
+                let there = difference(*radius, -slope * a[n] / across * (h.value / across));
                 let slant = slope * a[u] / across;
-                let square = (1.0 - slant) * (1.0 + slant);
+                let square = if slant.abs() < 0.5 { 1.0 - slant * slant } else { (1.0 - slant) * (1.0 + slant) };
                 if !(square > 0.0) {
                     return all;
                 }
                 let narrow = Real::sqrt(square);
-                let (off, moves) = (-a[v] / across * h.value * narrow, a[n] / across * narrow);
-                both(positive(there - off, grows - moves), positive(there + off, grows + moves))
+                let (aside, moves) = (-a[v] / across * narrow, a[n] / across * narrow);
+                let (off, lost) = (aside * h.value, aside * h.rest);
+                let less = (there.value - off) + (there.rest - lost);
+                let more = (there.value + off) + (there.rest + lost);
+                both(positive(less, grows - moves), positive(more, grows + moves))
             }
             Wall::Ellipsoid(map) => {
                 let (reach, outermost) = (map.reach[n], &map.outermost[n]);
@@ -242,29 +253,42 @@ impl Curved {
         }
     }
 
-    /// The conic in a plane across axis `n` at a height: quadratic part `[uu, uv, vv]`, and the linear part.
+    /// The conic in a plane across axis `n` at a height.
     #[inline(always)]
-    pub fn conic(&self, n: Axis, h: f64) -> ([f64; 3], P2) {
+    pub fn conic(&self, n: Axis, h: Twofold) -> Conic {
         let [u, v] = n.others();
-        let a = &self.axis;
         match &self.wall {
-            Wall::Cylinder { .. } => {
-                let quadratic = [a[v] * a[v] + a[n] * a[n], -a[u] * a[v], a[u] * a[u] + a[n] * a[n]];
-                (quadratic, [-a[u] * a[n] * h, -a[v] * a[n] * h])
-            }
-            Wall::Cone { radius, slope } => {
-                let (k, kappa) = (slope * slope, 1.0 + slope * slope);
-                let square = |own: f64, other: f64| other * other + a[n] * a[n] - k * own * own;
-                let quadratic = [square(a[u], a[v]), -kappa * a[u] * a[v], square(a[v], a[u])];
-                let along = -(kappa * a[n] * h + slope * radius);
-                (quadratic, [along * a[u], along * a[v]])
-            }
-            Wall::Ball { .. } => ([1.0, 0.0, 1.0], [0.0; 2]),
+            Wall::Cylinder { radius } => self.conic_of_cone([*radius, 0.0], n, h.value),
+            Wall::Cone { radius, slope } => self.conic_of_cone([*radius, *slope], n, h.value),
+            Wall::Ball { radius } => Conic::circle(difference_of_squares(*radius, h)),
             Wall::Ellipsoid(map) => {
-                let form = &map.form;
-                ([form[u][u], form[u][v], form[v][v]], [form[u][n] * h, form[v][n] * h])
+                let (form, reach, scale) = (&map.form, map.reach[n], map.scale);
+                let center = [u, v].map(|axis| map.outermost[n][axis] * h.value);
+                let determinant = (reach / scale) * (reach / scale);
+                let tau = difference_of_squares(reach, h) / (scale * scale);
+                Conic::ellipse([form[u][u], form[u][v], form[v][v]], determinant, center, tau)
             }
         }
+    }
+
+    /// The conic of a cone, or of a cylinder with no slope: 1 across the axis as it is seen in the plane.
+    #[inline(always)]
+    fn conic_of_cone(&self, [radius, slope]: [f64; 2], n: Axis, h: f64) -> Conic {
+        let ([u, v], a, across) = (n.others(), &self.axis, self.across[n]);
+        let reach = slope * h + radius * a[n];
+        if !(across > 0.0) {
+            return Conic::circle(reach * reach);
+        }
+        let (factor, along) = (self.steeper(n, slope), [a[u] / across, a[v] / across]);
+        let linear = -((1.0 + slope * slope) * a[n] * h + slope * radius) * across;
+        Conic { size: 1.0, across: [along[1], -along[0]], factor, along, linear: [0.0, linear], tau: reach * reach }
+    }
+
+    /// By how much the square of the axis along `n` exceeds that of a cone's slope seen in a plane across: positive if that cuts an ellipse.
+    #[inline(always)]
+    fn steeper(&self, n: Axis, slope: f64) -> f64 {
+        let (along, tilt) = (self.axis[n].abs(), slope.abs() * self.across[n]);
+        (along - tilt) * (along + tilt)
     }
 
     /// The conic in a plane across axis `n`, if it is an ellipse with an inside.
@@ -279,8 +303,7 @@ impl Curved {
                 (a[n] != 0.0).then(|| Ellipse { center, area: PI * radius * radius / a[n].abs() })
             }
             Wall::Cone { radius, slope } => {
-                let tilt = slope.abs() * self.across[n];
-                let factor = (a[n].abs() - tilt) * (a[n].abs() + tilt);
+                let factor = self.steeper(n, *slope);
                 let reach = slope * h.value + radius * a[n];
                 if !(factor > 0.0 && reach * a[n] > 0.0) {
                     return None;
@@ -320,6 +343,12 @@ fn symmetric(foot: f64, square: f64, scale: f64) -> Span {
 /// All beyond a coordinate, in the direction of a sign.
 fn ray(from: f64, sign: f64) -> Span {
     if sign > 0.0 { Span { lo: from, ..Span::ALL } } else { Span { hi: from, ..Span::ALL } }
+}
+
+/// A unit vector whose length rounding changed: the longer part from the other, so that one along an axis but for 10⁻⁸ has all digits.
+fn sharpened([a, b]: P2) -> P2 {
+    let other = |x: f64| Real::sqrt(1.0 - x * x);
+    if a.abs() < b.abs() { [a, other(a).copysign(b)] } else { [other(b).copysign(a), b] }
 }
 
 /// Length of a vector; exact if one component is zero.
