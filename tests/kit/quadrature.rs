@@ -148,20 +148,21 @@ impl Exact {
 /// Area that solids have in common of a rectangle across axis `n` at a coordinate; `tolerance` is a share of the rectangle.
 #[must_use]
 pub fn common_area(solids: &[Exact], n: usize, at: f64, window: [[f64; 2]; 2], tolerance: f64) -> f64 {
-    area_by_chords(Exact::chord, solids, n, at, window, tolerance)
+    area_by_chords(Exact::chord, solids, (n, (n + 1) % 3), at, window, tolerance)
 }
 
-/// The same, with chords from elsewhere.
+/// The same, with chords from elsewhere and along either axis `m` of the rectangle; the window's first axis is the one after `n`.
 #[must_use]
 pub fn area_by_chords(
     chord_of: impl Fn(&Exact, DVec3, usize) -> Option<[f64; 2]>,
     solids: &[Exact],
-    n: usize,
+    (n, m): (usize, usize),
     at: f64,
     [u, v]: [[f64; 2]; 2],
     tolerance: f64,
 ) -> f64 {
-    let (iu, iv) = ((n + 1) % 3, (n + 2) % 3);
+    let [u, v] = if m == (n + 1) % 3 { [u, v] } else { [v, u] };
+    let (iu, iv) = (m, 3 - n - m);
     let place = |x: f64, y: f64| {
         let mut p = DVec3::ZERO;
         (p[n], p[iu], p[iv]) = (at, x, y);

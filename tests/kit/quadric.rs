@@ -258,9 +258,14 @@ pub fn errors(random: &mut Random, family: Family, kinds: Kind, samples: usize) 
                 let (at_n, size) = (edges[n][index[n]], (u[1] - u[0]) * (v[1] - v[0]));
                 let truth = closed_area(&exact, n, at_n, |at| exact.area(n, at, u, v)) / size;
                 // Chords are rounded, which weighs the more the larger a solid is and the flatter its surface cuts the face.
-                let rounded = (field[at] - truth).abs() > 3e-13;
-                let precise = |at: f64| area_by_chords(chord, &[exact], n, at, [u, v], 1e-15);
-                (if rounded { closed_area(&exact, n, at_n, precise) / size } else { truth }, &mut face)
+                let off = |truth: f64| (field[at] - truth).abs() > 3e-13;
+                let precise = |m: usize| {
+                    let area = |at: f64| area_by_chords(chord, &[exact], (n, m), at, [u, v], 1e-15);
+                    closed_area(&exact, n, at_n, area) / size
+                };
+                let truth = if off(truth) { precise((n + 1) % 3) } else { truth };
+                // A kink that hides from the nodes of one order of the axes does not from those of the other.
+                (if off(truth) { precise((n + 2) % 3) } else { truth }, &mut face)
             };
             let error = (field[at] - truth).abs();
             if !(error <= *worst) {
