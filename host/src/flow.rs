@@ -329,8 +329,8 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         })
     }
 
-    /// Watches from now on what acts on the walls of some cells and on what drags in them, with pressures counted from `reference`. Until the next
-    /// step that is the pressure of each cell, and the drag at its velocity.
+    /// Watches from now on what acts on the walls of some cells, on what drags in them, and what passes their faces, with pressures counted from
+    /// `reference`. Until the next step that is the pressure of each cell, the drag at its velocity, and the mean of both cells at a face.
     pub fn watch_walls(&mut self, mut cells: Vec<usize>, reference: R) {
         cells.sort_unstable();
         cells.dedup();
@@ -363,8 +363,18 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             let rate = coefficient(D + d) + R::HALF * coefficient(d) * speed;
             open * w.density * rate * w.velocity[d]
         };
+        let over = |d: usize, side: usize| {
+            let tilt = R::HALF * w.density * self.gravity[d] * self.widths[d][at[d]];
+            w.pressure + if side == 0 { -tilt } else { tilt } - reference
+        };
+        let passing = |d: usize, side: usize| {
+            let other = self.behind(d, at, side).map_or(w, |cell| self.get(cell));
+            let mean = R::HALF * (w.density * w.velocity[d] + other.density * other.velocity[d]);
+            (R::ONE - closed(d, side)) * mean
+        };
         CellPush {
-            sides: std::array::from_fn(|d| [0, 1].map(|side| closed(d, side) * (w.pressure - reference))),
+            sides: std::array::from_fn(|d| [0, 1].map(|side| closed(d, side) * over(d, side))),
+            mass: std::array::from_fn(|d| [0, 1].map(|side| passing(d, side))),
             drag: std::array::from_fn(drag),
         }
     }
@@ -401,6 +411,19 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             stride *= n[d];
         }
         beside
+    }
+
+    /// The cell behind the low (`side` 0) or high (1) face of a cell; none at a side of the domain that is not periodic.
+    pub fn behind(&self, d: usize, mut at: [usize; D], side: usize) -> Option<usize> {
+        let n = self.cells();
+        let periodic = self.boundaries[d][0] == Boundary::Periodic;
+        at[d] = match (side, at[d]) {
+            (0, 0) => periodic.then_some(n[d] - 1)?,
+            (0, i) => i - 1,
+            (_, i) if i + 1 == n[d] => periodic.then_some(0)?,
+            (_, i) => i + 1,
+        };
+        Some((0..D).rev().fold(0, |i, a| i * n[a] + at[a]))
     }
 
     /// Open volume of a cell.

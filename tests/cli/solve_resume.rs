@@ -239,7 +239,8 @@ fn checkpoints_that_do_not_fit_are_refused() {
         ("-9.81", "-9.8", "its gravity differs"),
         ("[time]", "[scheme]\ncfl = 0.5\n[time]", "its scheme differs"),
         ("scene = '", "jump = 0.2\nscene = '", "its treatment of the porosity differs"),
-        ("threshold = 20", "threshold = 30", "its output.maxima or output.ambient differs"),
+        ("threshold = 20", "threshold = 30", "its output.maxima differs"),
+        ("[output]\n", "[output]\nambient = 5\n", "its output.ambient differs"),
         ("maxima = { threshold = 20 }", "", "knows other largest values over time"),
     ] {
         assert!(case.contains(from), "{from}");

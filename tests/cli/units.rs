@@ -28,6 +28,10 @@ fn kilopascals_in_a_case_with_temperatures_are_doubted() {
     assert!(text.contains("key boundary.x_max.p: 1.013 Pa"), "{text}");
     let text = said("", "rho = 1.2, p = 101325", wall, "ambient = 101.325");
     assert!(text.contains("key output.ambient: 101.325 is less than a hundredth of the lowest pressure"), "{text}");
+    let text = said("", "rho = 1.2, p = 101325", wall, "ambient = 1013250");
+    assert!(text.contains("key output.ambient: 1013250 is more than the highest pressure"), "{text}");
+    let text = said("", "rho = 1.2, p = 100000", wall, "ambient = 101325");
+    assert!(!text.contains("ambient"), "{text}");
 }
 
 #[test]

@@ -201,3 +201,31 @@ fn a_study_tells_how_far_it_is() {
     let text = stdout(&voidage(&[&"study", &at.file("study.toml"), &"-o", &at.file("out")]));
     assert!(text.contains("[1/2] "), "{text}");
 }
+
+/// Memory is asked for before a study begins, at the key that asks for too much.
+#[test]
+fn a_study_that_needs_too_much_memory_is_refused() {
+    let at = Scratch::new();
+    let scene = "[[scene]]\n[[scene.solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n[[method]]\n";
+    let cells = |n: usize| format!("[[grid]]\nbounds = [-1, -1, -1, 1, 1, 1]\ncells = [{n}, {n}, {n}]\n");
+    for (text, key) in [
+        (format!("refine = 1024\n{scene}{}", cells(64)), "grid"),
+        (format!("{scene}{}", cells(30_000)), "grid"),
+        ("[[flow]]\nproblem = \"vortex\"\ncells = 100000\n".to_owned(), "cells"),
+    ] {
+        fs::write(at.file("study.toml"), &text).expect("written");
+        let output = voidage(&[&"study", &at.file("study.toml"), &"-o", &at.file("out")]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}: {said}");
+        assert!(said.contains(key) && said.contains("GB of memory"), "{text}: {said}");
+    }
+}
+
+/// The standard output takes one thing.
+#[test]
+fn two_outputs_to_the_standard_output_are_refused() {
+    let at = Scratch::new();
+    let output = ball(&at, &["--png", "-", "--report", "-"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("two outputs to -"), "{}", stderr(&output));
+}

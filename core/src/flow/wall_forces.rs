@@ -4,18 +4,20 @@
 //! the momentum through the sides of the domain balance the change of the gas to rounding. The pressure of the cell alone would not do: in slow flow a
 //! wall that stops a stream u feels rho c u more than its cell.
 
-/// What acts on the walls and obstacles of a cell, as a mean over a step.
+/// What passes the faces of a cell and acts on its walls and obstacles, as a mean over a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPush<R, const D: usize> {
     /// Along each axis, on what is closed of the low and of the high face and on the walls inside that run behind it: pressure times closed
     /// fraction, counted from [`WatchedWalls::reference`]. The force along axis d is (high − low) times the area of the cell normal to d; under gravity g
     /// less g_d times the mass of gas that the solids displace.
     pub sides: [[R; 2]; D],
+    /// Mass per time and area of the cell that passes its low and its high face upwards along each axis.
+    pub mass: [[R; 2]; D],
     /// Momentum that the drag of the cell takes per time and volume of the cell, obstacles included.
     pub drag: [R; D],
 }
 
-/// Cells whose walls are watched during a step, and where what acts on them goes.
+/// Cells whose walls and faces are watched during a step, and where what acts and passes there goes.
 #[derive(Debug)]
 pub struct WatchedWalls<'w, R, const D: usize> {
     /// Flat indices of cells, ascending.

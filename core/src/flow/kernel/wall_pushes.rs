@@ -8,19 +8,23 @@ use crate::flow::kernel::rows::var;
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, Slab};
 use crate::flow::porosity::areas::Ducts;
 use crate::flow::porosity::fractions::least_volume;
+use crate::flow::problem::PressureForm;
 use crate::number::real::Real;
 
-/// Writes what acts at the faces of a row on the walls of watched cells on one side of them.
+/// Writes what acts at the faces of a row on the walls of watched cells on one side of them, and the mass that passes.
 pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     faces: &FaceRow<'_, R, D>,
     cells: CellsBeside,
 ) {
-    let (Some(walls), Some(medium)) = (&slab.walls, &slab.medium) else { return };
+    let Some(walls) = &slab.walls else { return };
     for (i, push) in walls.of_row(cells.start, slab.reported.clone()) {
-        let ducts = medium.ducts(faces.d, faces.at, slab.periodic[faces.d]);
-        let mut now = push.get();
-        now.sides[faces.d][usize::from(cells.high)] = at_face(slab, faces, &ducts, cells.face + i, cells.high);
+        let (mut now, face, side) = (push.get(), cells.face + i, usize::from(cells.high));
+        now.mass[faces.d][side] = faces.flux.get(face).copied().unwrap_or(R::ZERO);
+        if let Some(medium) = &slab.medium {
+            let ducts = medium.ducts(faces.d, faces.at, slab.periodic[faces.d]);
+            now.sides[faces.d][side] = at_face(slab, faces, &ducts, face, cells.high);
+        }
         push.set(now);
     }
 }
@@ -43,13 +47,19 @@ fn at_face<R: Real, const D: usize>(
     let own = usize::from(!high);
     let place = if d == 0 { i } else { faces.at[d] };
     let inside = slab.periodic[d] || (place > 0 && place < slab.problem.mesh.cells()[d]);
+    let geometric = slab.problem.scheme.pressure == PressureForm::Geometric;
     let passes = if !(open > R::ZERO) {
         R::ZERO
     } else if inside {
         let (left, right) = ducts.beside(i, false);
         let walls = [left - open, right - open];
         let sum = walls[0] + walls[1];
-        if sum > R::ZERO { (walls[1] * seen[0] + walls[0] * seen[1]) / sum } else { R::HALF * (seen[0] + seen[1]) }
+        match (sum > R::ZERO, geometric) {
+            (true, _) => (walls[1] * seen[0] + walls[0] * seen[1]) / sum,
+            // No wall at all, and no more than rounding between the two.
+            (false, true) => seen[own],
+            (false, false) => R::HALF * (seen[0] + seen[1]),
+        }
     } else {
         seen[own]
     };

@@ -53,6 +53,9 @@ pub(super) fn check(args: &PorosityArgs) -> Result<()> {
     check_show(args)?;
     args.png.iter().try_for_each(|path| check_suffix("--png", path, "png"))?;
     args.report.iter().try_for_each(|path| check_suffix("--report", path, "json"))?;
+    if outputs.iter().filter(|path| is_stream(path)).count() > 1 {
+        return Err(Error::usage("two outputs to -: the standard output takes one"));
+    }
     for (n, output) in outputs.iter().enumerate() {
         check_place(output)?;
         let inputs = args.scene.scene.iter().chain(&args.grid).chain(&args.zones).map(|p| p.as_path());

@@ -21,6 +21,9 @@ use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primit
 /// First bytes of the file; the last is the version of the layout.
 const MAGIC: &[u8; 8] = b"VOIDAGE\x05";
 
+/// Values of a watched cell for each axis.
+const WATCHED: usize = 5;
+
 /// Name of the file in the output directory.
 pub const NAME: &str = "checkpoint.bin";
 
@@ -155,7 +158,7 @@ impl Fingerprint {
     pub fn with_maxima(mut self, maxima: &Maxima) -> Self {
         let mut hasher = crc32fast::Hasher::new();
         maxima.numbers().iter().for_each(|x| hasher.update(&x.to_le_bytes()));
-        self.0.push(("output.maxima or output.ambient".to_owned(), hasher.finalize()));
+        self.0.push(("output.maxima".to_owned(), hasher.finalize()));
         self
     }
 }
@@ -242,7 +245,7 @@ pub fn write<const D: usize>(
         journal: journal.clone(),
         values: columns(&flow.state).map(<[f64]>::len).sum(),
         maxima: maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum(),
-        walls: flow.watched_walls().1.len() * 3 * D,
+        walls: flow.watched_walls().1.len() * WATCHED * D,
         time,
         steps,
         repeated,
@@ -263,6 +266,7 @@ pub fn write<const D: usize>(
         maxima.iter().flat_map(|m| m.arrays()).try_for_each(|values| write_f64(&mut out, values))?;
         flow.watched_walls().1.iter().try_for_each(|push| {
             write_f64(&mut out, push.sides.as_flattened())?;
+            write_f64(&mut out, push.mass.as_flattened())?;
             write_f64(&mut out, &push.drag)
         })?;
         let sum = out.hasher.finalize();
@@ -306,11 +310,11 @@ pub fn resume<const D: usize>(
         array.iter_mut().zip(values.by_ref()).for_each(|(into, from)| *into = from);
     }
     let mut pushes = setup.flow.watched_walls().1.to_vec();
-    if pushes.len() * 3 * D != header.walls {
+    if pushes.len() * WATCHED * D != header.walls {
         return Err(wrong());
     }
     for push in &mut pushes {
-        let into = push.sides.as_flattened_mut().iter_mut().chain(&mut push.drag);
+        let into = push.sides.as_flattened_mut().iter_mut().chain(push.mass.as_flattened_mut()).chain(&mut push.drag);
         into.zip(values.by_ref()).for_each(|(into, from)| *into = from);
     }
     setup.flow.restore_walls(&pushes);

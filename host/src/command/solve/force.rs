@@ -6,6 +6,7 @@
 
 use crate::flow::{CellPush, Flow};
 use rayon::prelude::*;
+use voidage_core::flow::PressureForm;
 
 /// Cells are summed in portions of this size, whatever the number of threads.
 const PORTION: usize = 4096;
@@ -15,14 +16,15 @@ const PORTION: usize = 4096;
 #[must_use]
 pub fn pushed_cells<const D: usize>(flow: &Flow<f64, D>) -> Vec<usize> {
     let faces: Vec<&[f64]> = flow.faces().collect();
-    let weighs = flow.gravity.iter().any(|g| *g != 0.0);
+    // What solids displace counts under gravity, and for the paper's form of the pressure.
+    let in_no_face = flow.gravity.iter().any(|g| *g != 0.0) || flow.scheme.pressure == PressureForm::Paper;
     let pushed = |cell: usize| {
         let at = flow.coordinates(cell);
         let open = |d: usize| [0, 1].map(|side| faces[d][flow.face(d, at, side)]);
         let walled = |d: usize| open(d).iter().any(|b| *b < 1.0);
         let entered = |d: usize| open(d).iter().any(|b| *b > 0.0);
         let holds_gas = || flow.open_volume(cell) > 0.0 || (0..faces.len()).any(entered);
-        let displaces = || weighs && taken_volume(flow, cell) > 0.0;
+        let displaces = || in_no_face && taken_volume(flow, cell) > 0.0;
         ((0..faces.len()).any(walled) || drags(flow, cell) || displaces()) && holds_gas()
     };
     (0..flow.len()).into_par_iter().filter(|&cell| pushed(cell)).collect()

@@ -1,7 +1,7 @@
 //! Planes across the flow: how much passes them, and the overpressure there.
 //!
-//! A plane consists of faces of the grid. What passes an open face is its open area times the mean of both cells beside it; on a side of the
-//! domain there is one cell. The fluxes of a step are not kept, so that sums over time agree with the drift of contents to first order of the step.
+//! A plane consists of faces of the grid. The mass that passes them is that of the step, so that its sum over time is what the content on both sides of the
+//! plane gains and loses, to rounding; the volume is that of the gas where it comes from. Pressures are means of both cells beside a face.
 
 use super::arrays::{index, position};
 use super::case_file::CaseFile;
@@ -21,8 +21,21 @@ pub struct Monitor<const D: usize> {
     report: MonitorReport,
     /// Axis among those that flow.
     d: usize,
-    /// The cells beside each open face, the same twice at a side of the domain, and the open area.
-    faces: Vec<([usize; 2], f64)>,
+    /// Open faces.
+    faces: Vec<Face>,
+}
+
+/// An open face of a plane.
+#[derive(Debug)]
+struct Face {
+    /// The cells below and above, the same twice at a side of the domain.
+    cells: [usize; 2],
+    /// The face is on the low (0) or high (1) side of the second of them.
+    side: usize,
+    /// Its open area, in m².
+    area: f64,
+    /// Its whole area.
+    section: f64,
 }
 
 /// What a plane came to.
@@ -88,7 +101,7 @@ impl<const D: usize> Monitor<D> {
         let plane = nearest(&edges.0[axis], at);
         let window = Region::of_box(file, key, &keys.min, &keys.max)?;
         let faces = faces(flow, edges, (axis, d, plane), *live, &window);
-        let area = faces.iter().map(|(_, area)| area).sum();
+        let area = faces.iter().map(|face| face.area).sum();
         let report = MonitorReport { name, axis: AXES[axis], at: edges.0[axis][plane], faces: faces.len(), area };
         Ok(Monitor { report, d, faces })
     }
@@ -99,16 +112,23 @@ impl<const D: usize> Monitor<D> {
         self.report.clone()
     }
 
+    /// The cells above its faces; below them, where the plane is the high side of the domain.
+    pub fn cells(&self) -> impl Iterator<Item = usize> {
+        self.faces.iter().map(|face| face.cells[1])
+    }
+
     /// The columns of a moment, each after a comma: mass and volume that pass upwards along the axis in a second, mean overpressure over the
     /// open area, largest overpressure.
     pub fn line(&self, flow: &Flow<f64, D>, ambient: f64, line: &mut String) {
         let (mut mass, mut volume, mut force, mut largest) = (0.0, 0.0, 0.0, f64::NEG_INFINITY);
-        for (cells, area) in &self.faces {
+        let (watched, pushes) = flow.watched_walls();
+        for Face { cells, side, area, section } in &self.faces {
             let states = cells.map(|cell| flow.get(cell));
-            let mean = |of: &dyn Fn(usize) -> f64| 0.5 * (of(0) + of(1));
-            mass += area * mean(&|n| states[n].density * states[n].velocity[self.d]);
-            volume += area * mean(&|n| states[n].velocity[self.d]);
-            let over = mean(&|n| states[n].pressure) - ambient;
+            let place = watched.binary_search(&cells[1]);
+            let passing = place.map_or(0.0, |place| pushes[place].mass[self.d][*side] * section);
+            mass += passing;
+            volume += passing / states[usize::from(passing < 0.0)].density;
+            let over = 0.5 * (states[0].pressure + states[1].pressure) - ambient;
             force += area * over;
             largest = over.max(largest);
         }
@@ -133,7 +153,7 @@ fn faces<const D: usize>(
     (axis, d, plane): (usize, usize, usize),
     live: [usize; D],
     window: &Region,
-) -> Vec<([usize; 2], f64)> {
+) -> Vec<Face> {
     let shape = edges.cells();
     let across = edges.across(&live);
     let open = flow.faces().nth(d);
@@ -150,9 +170,10 @@ fn faces<const D: usize>(
         }
         let (here, mut below) = (live.map(|a| at[a]), at);
         below[axis] = low;
-        let share = open.map_or(1.0, |open| open[flow.face(d, here, usize::from(plane > high))]);
+        let (side, section) = (usize::from(plane > high), flow.area(d, here) * across);
+        let share = open.map_or(1.0, |open| open[flow.face(d, here, side)]);
         if share > 0.0 {
-            all.push(([position(below, shape), cell], share * flow.area(d, here) * across));
+            all.push(Face { cells: [position(below, shape), cell], side, area: share * section, section });
         }
     }
     all

@@ -173,11 +173,11 @@ impl<'a, const D: usize> Run<'a, D> {
     ) -> Result<Self> {
         let output = &file.case.output;
         let ambient = ambient(file, &setup)?;
-        let pushed = setup.flow.watched_walls().0.to_vec();
-        setup.flow.watch_walls(pushed, ambient);
         let mut maxima = maxima(file, &setup, ambient)?;
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let watched = Watched::new(file, &setup, progress)?;
+        let cells = setup.flow.watched_walls().0.iter().copied().chain(watched.cells()).collect();
+        setup.flow.watch_walls(cells, ambient);
         let pictures = pictures(file, &setup, ambient, progress)?;
         let lock = Lock::take(&dir)?;
         let journal = if resume {
@@ -381,11 +381,10 @@ fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> Result<f64> {
 
 /// What the checkpoint of a run must share with it: what decides its flow, and what its largest values are counted from.
 fn fingerprint<const D: usize>(setup: &Setup<D>, maxima: Option<&Maxima>, ambient: f64) -> Fingerprint {
-    let of_flow = Fingerprint::new(setup);
-    let with_forces = if setup.solids.is_some() { of_flow.with_ambient(ambient) } else { of_flow };
+    let of_flow = Fingerprint::new(setup).with_ambient(ambient);
     match maxima {
-        Some(maxima) => with_forces.with_maxima(maxima),
-        None => with_forces,
+        Some(maxima) => of_flow.with_maxima(maxima),
+        None => of_flow,
     }
 }
 

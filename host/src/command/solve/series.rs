@@ -28,6 +28,11 @@ pub struct Watched<const D: usize> {
 }
 
 impl<const D: usize> Watched<D> {
+    /// The cells that the flow must watch for it.
+    pub fn cells(&self) -> impl Iterator<Item = usize> {
+        self.planes.iter().flat_map(Monitor::cells)
+    }
+
     /// Of a case; what lies in solids is told.
     ///
     /// # Errors

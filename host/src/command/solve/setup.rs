@@ -93,8 +93,9 @@ pub fn setup<const D: usize>(
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
     let Beginning { cells, gammas } = progress.stage("initial", |_| states.initial(edges))?;
 
-    let lowest = cells.iter().map(|w| w.pressure).fold(f64::INFINITY, f64::min);
-    units::doubts(file, lowest).into_iter().for_each(|doubt| progress.warn(doubt));
+    let pressures = cells.iter().map(|w| w.pressure);
+    let ends = pressures.fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p), high.max(p)]);
+    units::doubts(file, ends).into_iter().for_each(|doubt| progress.warn(doubt));
     let widths = live.map(|d| edges.widths(d));
     let Sides { boundaries, patches, feed, mut inlets } = sides::sides(file, &states, edges, &cells)?;
     let mut flow = Flow::new(widths, gas, boundaries);

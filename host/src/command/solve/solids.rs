@@ -19,7 +19,7 @@ use crate::porosity::throat::{self, Faces};
 use crate::porosity::{Options, porosity};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use voidage_core::flow::Boundary;
+use voidage_core::flow::{Boundary, PressureForm};
 
 /// Name under which the force on all other solids is told.
 pub const OTHERS: &str = "others";
@@ -167,19 +167,6 @@ impl<const D: usize> Parts<'_, D> {
         self.by_cell.get(&cell).map_or(&[], |parts| &parts[..])
     }
 
-    /// The cell across a face; none at an end of the domain.
-    fn across(&self, d: usize, mut at: [usize; D], side: usize) -> Option<usize> {
-        let n = self.flow.cells();
-        let periodic = self.flow.boundaries[d][0] == Boundary::Periodic;
-        at[d] = match (side, at[d]) {
-            (0, 0) => periodic.then_some(n[d] - 1)?,
-            (0, i) => i - 1,
-            (_, i) if i + 1 == n[d] => periodic.then_some(0)?,
-            (_, i) => i + 1,
-        };
-        Some((0..D).rev().fold(0, |i, a| i * n[a] + at[a]))
-    }
-
     /// Shares by what solids take of some cells and of their faces; where there is none, of the cells beside them.
     fn shares(&self, cells: &[usize]) -> Vec<(usize, f64)> {
         let beside = || cells.iter().flat_map(|&cell| self.flow.beside(cell)).collect::<Vec<_>>();
@@ -205,7 +192,7 @@ impl<const D: usize> Parts<'_, D> {
     fn match_ends(&mut self) {
         for d in (0..D).filter(|&d| self.flow.boundaries[d][0] == Boundary::Periodic) {
             for low in (0..self.flow.len()).filter(|&cell| self.flow.coordinates(cell)[d] == 0) {
-                let Some(high) = self.across(d, self.flow.coordinates(low), 0) else { continue };
+                let Some(high) = self.flow.behind(d, self.flow.coordinates(low), 0) else { continue };
                 let ends = [(low, 0), (high, 1)];
                 let mut open: BTreeMap<usize, f64> = BTreeMap::new();
                 for (cell, side) in ends {
@@ -233,10 +220,16 @@ impl<const D: usize> Parts<'_, D> {
     /// What of all that acts in a cell is for each group.
     fn in_cell(&self, faces: &[&[f64]], cell: usize) -> Shares<D> {
         let (at, here) = (self.flow.coordinates(cell), self.of(cell));
+        let by_volume = self.flow.scheme.pressure == PressureForm::Paper;
         let mut found = Shares::default();
         for (d, side) in (0..faces.len()).flat_map(|d| [(d, 0), (d, 1)]) {
             let closed = 1.0 - faces[d][self.flow.face(d, at, side)];
             if closed == 0.0 {
+                // Walls that are in no face count in the paper's form alone.
+                let shares = if by_volume { self.volume_shares(cell) } else { Vec::new() };
+                shares
+                    .iter()
+                    .for_each(|(group, share)| found.of(*group).sides[d][side] = share * self.flow.area(d, at));
                 continue;
             }
             let area = self.flow.area(d, at) / closed;
@@ -248,7 +241,7 @@ impl<const D: usize> Parts<'_, D> {
             }
             if rest != 0.0 {
                 // The same two cells from both sides, so that a wall in a face belongs to one and the same solid on both.
-                let both: Vec<usize> = self.across(d, at, side).into_iter().chain([cell]).collect();
+                let both: Vec<usize> = self.flow.behind(d, at, side).into_iter().chain([cell]).collect();
                 for (group, share) in self.shares(&both) {
                     found.of(group).sides[d][side] += share * rest * area;
                 }
@@ -271,7 +264,7 @@ impl<const D: usize> Parts<'_, D> {
 pub struct SolidShares<const D: usize> {
     /// Names, the others last.
     names: Vec<String>,
-    /// For each name: places among the watched cells, and what of all that acts there is for its solids.
+    /// For each name: watched cells, and what of all that acts there is for its solids.
     shares: Vec<Vec<(usize, Weights<D>)>>,
 }
 
@@ -289,9 +282,9 @@ impl<const D: usize> SolidShares<D> {
         let mut parts = Parts { flow, by_cell, others };
         parts.match_ends();
         let faces: Vec<&[f64]> = flow.faces().collect();
-        for (place, &cell) in flow.watched_walls().0.iter().enumerate() {
+        for &cell in flow.watched_walls().0 {
             for (group, weights) in parts.in_cell(&faces, cell).0 {
-                shares[group].push((place, weights));
+                shares[group].push((cell, weights));
             }
         }
         SolidShares { names, shares }
@@ -309,8 +302,9 @@ impl<const D: usize> SolidShares<D> {
         let (cells, pushes) = flow.watched_walls();
         let of_name = |(name, shares): (&String, &Vec<(usize, Weights<D>)>)| {
             let mut force = [0.0; 3];
-            for (place, weights) in shares {
-                let in_cell = weights.force(flow, cells[*place], &pushes[*place]);
+            for (cell, weights) in shares {
+                let Ok(place) = cells.binary_search(cell) else { continue };
+                let in_cell = weights.force(flow, *cell, &pushes[place]);
                 live.into_iter().zip(in_cell).for_each(|(axis, f)| force[axis] += f);
             }
             SolidForce { name: name.clone(), force }

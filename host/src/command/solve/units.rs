@@ -25,9 +25,12 @@ const LEAST: f64 = 1000.0;
 /// An ambient pressure below the lowest pressure of the beginning by this factor is doubted.
 const FAR_BELOW: f64 = 100.0;
 
-/// What is to be said about the pressures of a case, of whose states at the beginning `lowest` has the least.
+/// An ambient pressure above the highest pressure of the beginning by this factor is doubted.
+const ABOVE: f64 = 1.2;
+
+/// What is to be said about the pressures of a case, whose states at the beginning have pressures from `lowest` to `highest`.
 #[must_use]
-pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
+pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
     let states = states(file);
     let within = |x: f64, [low, high]: [f64; 2]| low <= x && x <= high;
     let mut said = Vec::new();
@@ -57,6 +60,10 @@ pub fn doubts(file: &CaseFile, lowest: f64) -> Vec<String> {
         let reason = format!(
             "{p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"
         );
+        said.push(file.remark("output.ambient", reason));
+    }
+    if let Some(p) = file.case.output.ambient.filter(|p| *p > ABOVE * highest) {
+        let reason = format!("{p} is more than the highest pressure at the beginning, {highest}: all gas is below it");
         said.push(file.remark("output.ambient", reason));
     }
     said

@@ -2,7 +2,6 @@
 
 use crate::command::stress::case::{Allowed, Criterion, StressCase};
 use crate::command::stress::runner::StressOutcome;
-use crate::command::version::VERSION;
 use crate::words::counted;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -92,7 +91,15 @@ impl StressSummary {
     pub fn new(outcomes: &[StressOutcome], long: bool, threads: usize, seconds: f64) -> Self {
         let cases: Vec<CaseSummary> = outcomes.iter().map(summary).collect();
         let passed = cases.iter().filter(|case| case.passed).count();
-        StressSummary { version: VERSION, long, threads, passed, failed: cases.len() - passed, cases, seconds }
+        StressSummary {
+            version: env!("CARGO_PKG_VERSION"),
+            long,
+            threads,
+            passed,
+            failed: cases.len() - passed,
+            cases,
+            seconds,
+        }
     }
 
     /// The last line.

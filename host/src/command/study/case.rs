@@ -35,6 +35,7 @@ use super::flows::keys::{FlowRecipe, flow_recipes};
 use super::recipe::{Recipe, recipes};
 use super::scaling::{ScalingRecipe, scaling_recipe};
 use super::values::{few, some};
+use crate::command::stages::room_for;
 use crate::error::{Error, Result};
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
@@ -193,8 +194,9 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let recipes = methods.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
     let grids = keys.grids("grid")?;
     let grids: Vec<Edges> = grids.iter().flat_map(|g| refine.iter().map(|&n| g.refined(n))).collect();
-    for grid in &grids {
-        grid.grid(None).map_err(|e| keys.wrong("refine", e))?;
+    for edges in &grids {
+        let grid = edges.grid(None).map_err(|e| keys.wrong("refine", e))?;
+        room_for(grid.cell_count().saturating_mul(POROSITY_BYTES)).map_err(|e| keys.wrong("grid", e.reason))?;
     }
     keys.finish()?;
     let is_quick = false;
@@ -215,6 +217,9 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     check_complete(path, &case)?;
     Ok(case)
 }
+
+/// Bytes that the porosities of a cell and its faces take, those of the exact result beside them.
+const POROSITY_BYTES: usize = 2 * 4 * size_of::<f64>();
 
 /// A study needs something to do, and its probes cells to look at.
 fn check_complete(path: &Path, case: &StudyCase) -> Result<()> {

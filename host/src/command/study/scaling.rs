@@ -4,7 +4,7 @@ use super::session::Session;
 use super::spread::{Spread, slope, timed};
 use super::table::{Cell, Listing, Reading, readable};
 use super::values::{choice, many, some, unique, word};
-use crate::command::stages;
+use crate::command::stages::{self, room_for};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::Bodies;
 use crate::geometry::mesh::Mesh;
@@ -90,9 +90,17 @@ pub fn scaling_recipe(mut keys: StrictTable) -> Result<ScalingRecipe> {
     };
     match counts.iter().find(|n| **n > most) {
         Some(n) => Err(keys.wrong("counts", format!("must be at most {most} along {}, not {n}", word(along)))),
+        None if along == Along::Cells => {
+            let cells = counts.iter().copied().max().unwrap_or(0).saturating_pow(3);
+            room_for(cells.saturating_mul(BYTES_A_CELL)).map_err(|e| keys.wrong("counts", e.reason))?;
+            Ok(ScalingRecipe { name, along, counts })
+        }
         None => Ok(ScalingRecipe { name, along, counts }),
     }
 }
+
+/// Bytes that the porosities of a cell and its faces take.
+const BYTES_A_CELL: usize = 4 * size_of::<f64>();
 
 impl ScalingRecipe {
     /// What its steps cost, roughly, in units of cells.

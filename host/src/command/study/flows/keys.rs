@@ -2,6 +2,7 @@
 
 use super::problems::{FlowChoice, FlowProblem};
 use crate::command::solve::case::{LimiterName, RiemannName};
+use crate::command::stages::room_for;
 use crate::command::study::recipe::Precision;
 use crate::command::study::values::{choice, few, many, product, some, varied, word};
 use crate::error::Result;
@@ -61,6 +62,13 @@ pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
     let precisions = keys.get("precision", some(choice::<Precision>))?.unwrap_or_else(|| vec![Precision::F64]);
     let threads = keys.get("threads", some(few))?.unwrap_or_else(|| vec![1]);
     keys.finish()?;
+    let most = cells.iter().copied().max().unwrap_or(0);
+    for problem in &problems {
+        // Two fields.
+        let bytes = 2 * size_of::<f64>() * (problem.axes() as usize + 2);
+        let all = most.saturating_pow(problem.axes() as u32);
+        room_for(all.saturating_mul(bytes)).map_err(|e| keys.wrong("cells", e.reason))?;
+    }
     let mut all: Vec<FlowRecipe> = Vec::new();
     for (&problem, &order, &precision) in product(&problems, &orders, &precisions) {
         for (&flux, &limiter, &count) in product(&fluxes, &limiters, &threads) {
