@@ -207,10 +207,11 @@ fn a_study_tells_how_far_it_is() {
 fn a_study_that_needs_too_much_memory_is_refused() {
     let at = Scratch::new();
     let scene = "[[scene]]\n[[scene.solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n[[method]]\n";
-    let cells = |n: usize| format!("[[grid]]\nbounds = [-1, -1, -1, 1, 1, 1]\ncells = [{n}, {n}, {n}]\n");
+    let cells =
+        |n: usize| format!("[[grid]]\norigin = [-1, -1, -1]\nspacing = [0.1, 0.1, 0.1]\ncells = [{n}, {n}, {n}]\n");
     for (text, key) in [
         (format!("refine = 1024\n{scene}{}", cells(64)), "grid"),
-        (format!("{scene}{}", cells(30_000)), "grid"),
+        (format!("{scene}{}", cells(1500)), "grid"),
         ("[[flow]]\nproblem = \"vortex\"\ncells = 100000\n".to_owned(), "cells"),
     ] {
         fs::write(at.file("study.toml"), &text).expect("written");

@@ -47,23 +47,38 @@ fn at_face<R: Real, const D: usize>(
     let own = usize::from(!high);
     let place = if d == 0 { i } else { faces.at[d] };
     let inside = slab.periodic[d] || (place > 0 && place < slab.problem.mesh.cells()[d]);
-    let geometric = slab.problem.scheme.pressure == PressureForm::Geometric;
     let passes = if !(open > R::ZERO) {
         R::ZERO
     } else if inside {
-        let (left, right) = ducts.beside(i, false);
-        let walls = [left - open, right - open];
-        let sum = walls[0] + walls[1];
-        match (sum > R::ZERO, geometric) {
-            (true, _) => (walls[1] * seen[0] + walls[0] * seen[1]) / sum,
-            // No wall at all, and no more than rounding between the two.
-            (false, true) => seen[own],
-            (false, false) => R::HALF * (seen[0] + seen[1]),
-        }
+        let [left, right] = walls_beside(slab, faces, ducts, i);
+        let sum = left + right;
+        // Without any wall the two differ by rounding.
+        if sum > R::ZERO { (right * seen[0] + left * seen[1]) / sum } else { seen[own] }
     } else {
         seen[own]
     };
     (R::ONE - open) * above[own] + (seen[own] - passes)
+}
+
+/// How much wall the cells on the left and on the right of a face have beside what is open of it: of their ducts; in the paper's form of their volumes.
+fn walls_beside<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    faces: &FaceRow<'_, R, D>,
+    ducts: &Ducts<'_, R>,
+    i: usize,
+) -> [R; 2] {
+    let (problem, open) = (slab.problem, ducts.face(i));
+    let (left, right) = ducts.beside(i, false);
+    let areas = match (problem.scheme.pressure, &slab.medium) {
+        (PressureForm::Paper, Some(medium)) => {
+            let mut face = faces.at;
+            face[0] += i;
+            let volume = |cell: [usize; D]| medium.porosity.volume.get(problem.mesh.index(cell)).copied();
+            problem.mesh.beside(faces.d, face, slab.periodic[faces.d]).map(|c| c.and_then(volume).unwrap_or(open))
+        }
+        _ => [left, right],
+    };
+    areas.map(|area| (area - open).abs())
 }
 
 /// Writes what drag takes from the gas of a cell: `lost` per open volume.

@@ -5,19 +5,24 @@ use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
 use crate::number::real::Real;
 
+/// Whether a share is above a limit by more than rounding: geometry meets limits that are round numbers, and what its last bits say must not count.
+fn exceeds<R: Real>(share: R, limit: R) -> bool {
+    share > limit + R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON)
+}
+
 /// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
 /// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
 /// point has large shares of small differences: those below a fifth of the threshold do not count).
 fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
     let (least, most) = (R::smaller(left, right), R::larger(left, right));
     let difference = R::larger(most - least, least - face);
-    let narrow = difference > R::from_f64(3.0) * threshold * most && is_wall(difference, threshold);
-    difference > threshold || narrow
+    let narrow = exceeds(difference, R::from_f64(3.0) * threshold * most) && is_wall(difference, threshold);
+    exceeds(difference, threshold) || narrow
 }
 
 /// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
 fn is_wall<R: Real>(width: R, threshold: R) -> bool {
-    width > R::from_f64(0.2) * threshold
+    exceeds(width, R::from_f64(0.2) * threshold)
 }
 
 /// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
@@ -69,7 +74,7 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
         let widest = widest(at);
         if !(widest > R::ZERO) {
             bits |= SEALED;
-        } else if volume[cell] < R::from_f64(SMALL_SHARE) * widest {
+        } else if exceeds(R::from_f64(SMALL_SHARE) * widest, volume[cell]) {
             bits |= SMALL;
         }
         marks[cell] = bits;

@@ -298,12 +298,12 @@ fn newton<R: Real>(start: R, bound: R, size: impl Fn(R) -> R, f: impl Fn(R) -> (
 }
 
 /// Area of the throat at a jump face: of a plain jump the mean of both ducts, at most twice the narrower one (so that the
-/// narrow cell's time step shrinks by two at most); of a true orifice its own.
+/// narrow cell's time step shrinks by two at most); of a true orifice, narrower than both by more than rounding, its own.
 pub fn throat_area<R: Real>(area_left: R, face: R, area_right: R) -> R {
     let least = R::smaller(area_left, area_right);
     if !(face > R::ZERO) {
         R::ZERO
-    } else if face >= least {
+    } else if face >= least - R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON) * least {
         R::smaller(R::HALF * (area_left + area_right), R::TWO * least)
     } else {
         face
