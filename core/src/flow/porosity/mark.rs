@@ -5,9 +5,14 @@ use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
 use crate::number::real::Real;
 
-/// Whether a share is above a limit by more than rounding: geometry meets limits that are round numbers, and what its last bits say must not count.
-fn exceeds<R: Real>(share: R, limit: R) -> bool {
-    share > limit + R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON)
+/// Open fractions that differ by less differ by rounding: geometry meets limits that are round numbers, and what its last bits say must not count.
+fn rounding<R: Real>() -> R {
+    R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON)
+}
+
+/// Whether a fraction is above a limit by more than rounding.
+fn exceeds<R: Real>(fraction: R, limit: R) -> bool {
+    fraction > limit + rounding::<R>()
 }
 
 /// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
@@ -74,7 +79,7 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
         let widest = widest(at);
         if !(widest > R::ZERO) {
             bits |= SEALED;
-        } else if exceeds(R::from_f64(SMALL_SHARE) * widest, volume[cell]) {
+        } else if volume[cell] < (R::from_f64(SMALL_SHARE) - rounding::<R>()) * widest {
             bits |= SMALL;
         }
         marks[cell] = bits;
