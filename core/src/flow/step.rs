@@ -85,12 +85,11 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             cells: watched.cells,
             pushes: Cell::from_mut(watched.pushes).as_slice_of_cells(),
             reference: watched.reference,
-            first: 0,
             all: self.mesh.len(),
             at_faces: push_walls,
             in_cell: push_obstacles,
         };
-        self.advance_part::<F>(old, new, slab, (dt, first_order, Some(walls)), scratch)
+        self.advance_part::<F>(old, new, slab, (dt, first_order, Some(&walls)), scratch)
     }
 
     fn advance_part<F: FluxChoice>(
@@ -98,7 +97,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         old: &Fields<'_, R, D>,
         new: &mut FieldsMut<'_, R, D>,
         slab: Range<usize>,
-        (dt, first_order, walls): (R, Option<&[u8]>, Option<Walls<'_, R, D>>),
+        (dt, first_order, walls): (R, Option<&[u8]>, Option<&Walls<'_, R, D>>),
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
         let run = F::sweep(self)?;
@@ -117,7 +116,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         if scratch.len() < needed {
             return Err(Error::ShapeMismatch { expected: needed, found: scratch.len() });
         }
-        let part = Part { old, dt, first_order, layers: slab, reported: 0..cells[0], walls };
+        let part = Part { old, dt, first_order, layers: slab, reported: 0..cells[0], walls, first: 0 };
         if in_pieces::<D>(self.mesh.len()) {
             return Ok(long_line::advance(self, &part, new, scratch, run));
         }

@@ -92,11 +92,8 @@ fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     let flux = &*work.flux;
     count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
     count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
-    if let Some(walls) = &slab.walls {
-        let faces = FaceRow { d: 0, at: row.at, states: [work.left, work.right], flux, n: m };
-        for (face, high) in [(0, false), (1, true)] {
-            (walls.at_faces)(slab, &faces, CellsBeside { start: row.start, face, high });
-        }
+    if slab.walls.is_some() {
+        tell_walls(slab, (0, row.at), [work.left, work.right], flux, [true; 2]);
     }
     let inv = &*work.coefficients.inv_width;
     let weight = half_weight(slab, 0, 0, &mut *work.coefficients.spare);
@@ -114,6 +111,34 @@ fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
         let own = &slab.old.capacity[row.start..];
         let out = &mut work.change[0][slab.changes(0, place)][(D + 2) * n..];
         mixed::differences(own, carried(0), carried(1), |i| inv[i], out);
+    }
+}
+
+/// Tells the watched cells below and above a row of faces along axis `d`, as far as they are `own`, what the fluxes do to their walls. `at` is the cell
+/// above the first face. Apart, so that a step that watches nothing has no room for it on the stack.
+#[cold]
+#[inline(never)]
+fn tell_walls<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, at): (usize, [usize; D]),
+    states: [&[R]; 2],
+    flux: &[R],
+    own: [bool; 2],
+) {
+    let Some(walls) = slab.walls else { return };
+    let n = if d == 0 { slab.size.m } else { slab.size.n };
+    let faces = FaceRow { d, at, states, flux, n };
+    for high in [true, false] {
+        if !own[usize::from(!high)] {
+            continue;
+        }
+        let mut of_row = at;
+        // Along a row both cells beside a face are in it.
+        if high && d > 0 {
+            of_row[d] = at[d].wrapping_sub(1);
+        }
+        let face = usize::from(high && d == 0);
+        (walls.at_faces)(slab, &faces, CellsBeside { start: slab.problem.mesh.index(of_row), face, high });
     }
 }
 
@@ -401,14 +426,8 @@ fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MI
             count_inflow::<R, D, ENERGY>(slab, (d, side), row, (&work.flux[..f], wall), 0..n, report);
         }
     }
-    if let Some(walls) = &slab.walls {
-        let faces = FaceRow { d, at, states: [below_state, &work.right[..f]], flux: &work.flux[..f], n };
-        let rows = [(changed.is_some(), at[d].wrapping_sub(1), true), (own, at[d], false)];
-        for (_, k, high) in rows.into_iter().filter(|(own, ..)| *own) {
-            let mut of_row = at;
-            of_row[d] = k;
-            (walls.at_faces)(slab, &faces, CellsBeside { start: mesh.index(of_row), face: 0, high });
-        }
+    if slab.walls.is_some() {
+        tell_walls(slab, (d, at), [below_state, &work.right[..f]], &work.flux[..f], [changed.is_some(), own]);
     }
     if let Some(place) = changed {
         let below = at[d] - 1;

@@ -7,7 +7,7 @@
 use crate::flow::boundary::Boundary;
 use crate::flow::drag::Drag;
 use crate::flow::kernel::scratch::PIECE;
-use crate::flow::kernel::slab::{Part, Walls};
+use crate::flow::kernel::slab::Part;
 use crate::flow::kernel::sweep::{self, Sweep};
 use crate::flow::porosity::fractions::{Mesh, Porosity};
 use crate::flow::problem::Problem;
@@ -39,8 +39,8 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
         let reported = own.start - cells.start..own.end - cells.start;
         let old = part_of(whole.old, cells.clone());
         let first_order = whole.first_order.map(|f| &f[cells.clone()]);
-        let walls = whole.walls.map(|walls| Walls { first: cells.start, ..walls });
-        let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported, walls };
+        let (walls, first) = (whole.walls, cells.start);
+        let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported, walls, first };
         let mut of_piece = advance_piece(&piece(line, cells.clone()), &part, own.clone(), new, scratch, run);
         for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
             if !outer || periodic {
@@ -154,8 +154,8 @@ fn advance_seam<R: Real, const D: usize>(
     let first_order = asked.as_ref().map(|a| &a[..]);
     let (mut held, scratch) = take_field::<R, D>(scratch, SEAM, present_in(&old));
     let inner = BESIDE..SEAM - BESIDE;
-    let walls = whole.walls.map(|walls| Walls { first: n - half, ..walls });
-    let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported: inner.clone(), walls };
+    let (walls, first, reported) = (whole.walls, n - half, inner.clone());
+    let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported, walls, first };
     let mut report = sweep::advance(&seam, &part, &mut held, scratch, run);
     for i in inner {
         new.set(place(i), &held.at(i));

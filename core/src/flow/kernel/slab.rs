@@ -34,7 +34,9 @@ pub(in crate::flow) struct Part<'p, R, const D: usize> {
     /// Cells of a row that enter the report: all but the outer ones of a piece of a line.
     pub reported: Range<usize>,
     /// Cells whose walls are watched, if there are any.
-    pub walls: Option<Walls<'p, R, D>>,
+    pub walls: Option<&'p Walls<'p, R, D>>,
+    /// Where the first cell of the mesh stands on the line that it is a piece of; 0 for a whole mesh.
+    pub first: usize,
 }
 
 /// Cells whose walls are watched, and how. What writes is held by pointers: a program that watches no walls does not link it.
@@ -45,8 +47,7 @@ pub(in crate::flow) struct Walls<'w, R, const D: usize> {
     pub pushes: &'w [Cell<CellPush<R, D>>],
     /// Pressure that all others are counted from.
     pub reference: R,
-    /// Where the first cell of the mesh stands on the line that it is a piece of, and how many cells that has; 0 and all for a whole mesh.
-    pub first: usize,
+    /// Cells of the whole mesh, of which a piece of a line is a part.
     pub all: usize,
     /// Writes what acts at faces: [`push_walls`](crate::flow::kernel::wall_pushes::push_walls).
     pub at_faces: fn(&Slab<'_, R, D>, &FaceRow<'_, R, D>, CellsBeside),
@@ -55,10 +56,9 @@ pub(in crate::flow) struct Walls<'w, R, const D: usize> {
 }
 
 impl<'w, R, const D: usize> Walls<'w, R, D> {
-    /// The watched ones among some cells of a row that begins at `start`: place in the row, and what acts on the walls.
+    /// The watched ones among some cells of a row that begins at `start` of the whole mesh: place in the row, and what acts on the walls.
     pub fn of_row(&self, start: usize, cells: Range<usize>) -> impl Iterator<Item = (usize, &'w Cell<CellPush<R, D>>)> {
-        let begin = self.first + start + cells.start;
-        let end = self.first + start + cells.end;
+        let (begin, end) = (start + cells.start, start + cells.end);
         let (watched, pushes) = (self.cells, self.pushes);
         let seam = self.all.max(begin).min(end);
         // A piece across the seam of a periodic line goes on at its beginning.
@@ -118,7 +118,9 @@ pub(in crate::flow) struct Slab<'p, R, const D: usize> {
     /// Cells of a row that enter the report.
     pub reported: Range<usize>,
     /// Cells whose walls are watched.
-    pub walls: Option<Walls<'p, R, D>>,
+    pub walls: Option<&'p Walls<'p, R, D>>,
+    /// Where the first cell of the mesh stands on the line that it is a piece of.
+    pub first: usize,
 }
 
 impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
@@ -141,6 +143,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
             rows: 0..1,
             reported: part.reported.clone(),
             walls: part.walls,
+            first: part.first,
         }
     }
 

@@ -93,7 +93,7 @@ fn drag<R: Real, const D: usize>(slab: &Slab<'_, R, D>, span: Span, new: &mut Fi
             let v = coefficients.step(u, pushed, slab.dt);
             let pushed = after.momentum;
             after.momentum = v.map(|v| after.density * v);
-            if let Some(walls) = slab.walls.as_ref().filter(|_| slab.reported.contains(&i)) {
+            if let Some(walls) = slab.walls.filter(|_| slab.reported.contains(&i)) {
                 let lost = core::array::from_fn(|c| pushed[c] - after.momentum[c]);
                 (walls.in_cell)(slab, span.from + i, lost);
             }

@@ -17,8 +17,8 @@ pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
     faces: &FaceRow<'_, R, D>,
     cells: CellsBeside,
 ) {
-    let Some(walls) = &slab.walls else { return };
-    for (i, push) in walls.of_row(cells.start, slab.reported.clone()) {
+    let Some(walls) = slab.walls else { return };
+    for (i, push) in walls.of_row(slab.first + cells.start, slab.reported.clone()) {
         let (mut now, face, side) = (push.get(), cells.face + i, usize::from(cells.high));
         now.mass[faces.d][side] = faces.flux.get(face).copied().unwrap_or(R::ZERO);
         if let Some(medium) = &slab.medium {
@@ -40,7 +40,7 @@ fn at_face<R: Real, const D: usize>(
     let (d, n) = (faces.d, faces.n);
     let value = |block: &[R], v: usize| var(block, v, n).get(i).copied().unwrap_or(R::ZERO);
     let open = ducts.face(i);
-    let ambient = slab.walls.as_ref().map_or(R::ZERO, |walls| walls.reference);
+    let ambient = slab.walls.map_or(R::ZERO, |walls| walls.reference);
     let above = faces.states.map(|block| value(block, D + 2) - ambient);
     // Momentum through the open part of the face and into the walls beside it, as each of the two cells sees it.
     let seen = [value(faces.flux, 1) + open * above[0], value(faces.flux, D + 2) + open * above[1]];
@@ -83,11 +83,11 @@ fn walls_beside<R: Real, const D: usize>(
 
 /// Writes what drag takes from the gas of a cell: `lost` per open volume.
 pub(in crate::flow) fn push_obstacles<R: Real, const D: usize>(slab: &Slab<'_, R, D>, cell: usize, lost: [R; D]) {
-    let Some(walls) = &slab.walls else { return };
+    let Some(walls) = slab.walls else { return };
     let volume = slab.medium.as_ref().map(|m| m.porosity.volume.get(cell).copied().unwrap_or(R::ZERO));
     // A cell of no volume counts as its cluster counts it.
     let open = volume.map_or(R::ONE, |volume| R::larger(volume, least_volume()));
-    for (_, push) in walls.of_row(cell, 0..1) {
+    for (_, push) in walls.of_row(slab.first + cell, 0..1) {
         let mut now = push.get();
         now.drag = lost.map(|m| open * m / slab.dt);
         push.set(now);
