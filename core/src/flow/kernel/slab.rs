@@ -40,7 +40,6 @@ pub(in crate::flow) struct Part<'p, R, const D: usize> {
 }
 
 /// Cells whose walls are watched, and how. What writes is held by pointers: a program that watches no walls does not link it.
-#[derive(Clone, Copy)]
 pub(in crate::flow) struct Walls<'w, R, const D: usize> {
     /// Flat indices, ascending, and what acts on the walls there.
     pub cells: &'w [usize],

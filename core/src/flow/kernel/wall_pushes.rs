@@ -68,7 +68,6 @@ fn walls_beside<R: Real, const D: usize>(
     i: usize,
 ) -> [R; 2] {
     let (problem, open) = (slab.problem, ducts.face(i));
-    let (left, right) = ducts.beside(i, false);
     let areas = match (problem.scheme.pressure, &slab.medium) {
         (PressureForm::Paper, Some(medium)) => {
             let mut face = faces.at;
@@ -76,7 +75,7 @@ fn walls_beside<R: Real, const D: usize>(
             let volume = |cell: [usize; D]| medium.porosity.volume.get(problem.mesh.index(cell)).copied();
             problem.mesh.beside(faces.d, face, slab.periodic[faces.d]).map(|c| c.and_then(volume).unwrap_or(open))
         }
-        _ => [left, right],
+        _ => ducts.beside(i, false).into(),
     };
     areas.map(|area| (area - open).abs())
 }

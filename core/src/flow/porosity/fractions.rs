@@ -137,6 +137,11 @@ pub(in crate::flow) struct Porosity<'a, R, const D: usize> {
 /// whose area goes with r²), which needs no neighbour.
 pub const SMALL_SHARE: f64 = 0.33;
 
+/// Open fractions that differ by less differ by rounding: geometry meets limits that are round numbers, and what its last bits say must not count.
+pub(in crate::flow) fn rounding<R: Real>() -> R {
+    R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON)
+}
+
 /// The least volume a cell is counted with. Its change is its flux over this volume: huge, and undone by the averaging.
 pub(in crate::flow) fn least_volume<R: Real>() -> R {
     R::EPSILON * R::EPSILON

@@ -2,13 +2,8 @@
 
 use crate::flow::error::{Error, fits};
 use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low};
-use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
+use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE, rounding};
 use crate::number::real::Real;
-
-/// Open fractions that differ by less differ by rounding: geometry meets limits that are round numbers, and what its last bits say must not count.
-fn rounding<R: Real>() -> R {
-    R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON)
-}
 
 /// Whether a fraction is above a limit by more than rounding.
 fn exceeds<R: Real>(fraction: R, limit: R) -> bool {

@@ -8,6 +8,7 @@
 //! References: S. Clain, D. Rochette, J. Comput. Phys. 228 (2009) 8214 (regular and jump part of the porosity);
 //! D. Kröner, M. D. Thanh, SIAM J. Numer. Anal. 43 (2005) 796 (stationary waves).
 
+use crate::flow::porosity::fractions::rounding;
 use crate::flow::state::{Gas, Primitive};
 use crate::number::real::Real;
 
@@ -303,7 +304,7 @@ pub fn throat_area<R: Real>(area_left: R, face: R, area_right: R) -> R {
     let least = R::smaller(area_left, area_right);
     if !(face > R::ZERO) {
         R::ZERO
-    } else if face >= least - R::larger(R::from_f64(1e-9), R::from_f64(16.0) * R::EPSILON) * least {
+    } else if face >= least - rounding::<R>() * least {
         R::smaller(R::HALF * (area_left + area_right), R::TWO * least)
     } else {
         face

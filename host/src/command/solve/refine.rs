@@ -113,8 +113,6 @@ pub fn run<const D: usize>(
     // What there is to warn of has been said of the cells of the case.
     let mut silent = Progress::new(&TalkArgs { quiet: true, verbose: false });
     let mut setup = setup(file, &edges, live, &mut silent)?;
-    // Nobody asks for the forces of this run.
-    setup.flow.watch_walls(Vec::new(), 0.0);
     let usual = MaximaKeys::default();
     let mut maxima = Maxima::new(file.case.output.maxima.as_ref().unwrap_or(&usual), ambient, &setup.flow);
     while setup.flow.time < end {

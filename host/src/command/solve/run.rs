@@ -176,7 +176,7 @@ impl<'a, const D: usize> Run<'a, D> {
         let mut maxima = maxima(file, &setup, ambient)?;
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let watched = Watched::new(file, &setup, progress)?;
-        let cells = setup.flow.watched_walls().0.iter().copied().chain(watched.cells()).collect();
+        let cells = setup.pushed.iter().copied().chain(watched.cells()).collect();
         setup.flow.watch_walls(cells, ambient);
         let pictures = pictures(file, &setup, ambient, progress)?;
         let lock = Lock::take(&dir)?;

@@ -41,6 +41,8 @@ pub struct Setup<const D: usize> {
     pub regions: Vec<RegionReport>,
     /// What patches on the sides came to.
     pub patches: Vec<PatchReport>,
+    /// The cells in which the gas pushes something.
+    pub pushed: Vec<usize>,
     /// Shares of the solids whose forces are kept.
     pub solids: Option<SolidShares<D>>,
     /// What was left out because nothing needs it.
@@ -133,11 +135,11 @@ pub fn setup<const D: usize>(
     }
     let (edges, cfl) = (edges.clone(), cfl(file)?);
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
-    flow.watch_walls(pushed_cells(&flow), 0.0);
-    let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow));
+    let pushed = pushed_cells(&flow);
+    let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed));
     let regions = regions::report(file, &flow, &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress);
-    Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, solids, skipped })
+    Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, pushed, solids, skipped })
 }
 
 /// Gives a flow its porosity, and tells what the solver makes of it.

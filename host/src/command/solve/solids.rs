@@ -220,16 +220,17 @@ impl<const D: usize> Parts<'_, D> {
     /// What of all that acts in a cell is for each group.
     fn in_cell(&self, faces: &[&[f64]], cell: usize) -> Shares<D> {
         let (at, here) = (self.flow.coordinates(cell), self.of(cell));
-        let by_volume = self.flow.scheme.pressure == PressureForm::Paper;
+        // Walls that are in no face count in the paper's form alone.
+        let in_no_face = self.flow.scheme.pressure == PressureForm::Paper;
+        let weighs = drags(self.flow, cell) || self.flow.gravity.iter().any(|g| *g != 0.0);
+        let by_volume = if in_no_face || weighs { self.volume_shares(cell) } else { Vec::new() };
         let mut found = Shares::default();
         for (d, side) in (0..faces.len()).flat_map(|d| [(d, 0), (d, 1)]) {
             let closed = 1.0 - faces[d][self.flow.face(d, at, side)];
             if closed == 0.0 {
-                // Walls that are in no face count in the paper's form alone.
-                let shares = if by_volume { self.volume_shares(cell) } else { Vec::new() };
-                shares
-                    .iter()
-                    .for_each(|(group, share)| found.of(*group).sides[d][side] = share * self.flow.area(d, at));
+                for (group, share) in by_volume.iter().filter(|_| in_no_face) {
+                    found.of(*group).sides[d][side] = share * self.flow.area(d, at);
+                }
                 continue;
             }
             let area = self.flow.area(d, at) / closed;
@@ -247,11 +248,8 @@ impl<const D: usize> Parts<'_, D> {
                 }
             }
         }
-        if !drags(self.flow, cell) && self.flow.gravity.iter().all(|g| *g == 0.0) {
-            return found;
-        }
         let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
-        for (group, share) in self.volume_shares(cell) {
+        for (group, share) in by_volume.into_iter().filter(|_| weighs) {
             let weights = found.of(group);
             (weights.drag, weights.displaced) = (share * volume, share * displaced);
         }
@@ -269,9 +267,9 @@ pub struct SolidShares<const D: usize> {
 }
 
 impl<const D: usize> SolidShares<D> {
-    /// From what solids have alone, in a flow around all of them that watches its walls.
+    /// From what solids have alone, in a flow around all of them that pushes something in some cells.
     #[must_use]
-    pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>) -> Self {
+    pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>, pushed: &[usize]) -> Self {
         let names: Vec<String> = measured.iter().map(|m| m.name.clone()).collect();
         let mut shares = vec![Vec::new(); names.len()];
         let mut by_cell: BTreeMap<usize, Vec<(usize, Part<D>)>> = BTreeMap::new();
@@ -282,7 +280,7 @@ impl<const D: usize> SolidShares<D> {
         let mut parts = Parts { flow, by_cell, others };
         parts.match_ends();
         let faces: Vec<&[f64]> = flow.faces().collect();
-        for &cell in flow.watched_walls().0 {
+        for &cell in pushed {
             for (group, weights) in parts.in_cell(&faces, cell).0 {
                 shares[group].push((cell, weights));
             }

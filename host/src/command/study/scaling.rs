@@ -88,15 +88,14 @@ pub fn scaling_recipe(mut keys: StrictTable) -> Result<ScalingRecipe> {
         Along::Bodies | Along::Overlaps => 100_000,
         Along::Threads => 1024,
     };
-    match counts.iter().find(|n| **n > most) {
-        Some(n) => Err(keys.wrong("counts", format!("must be at most {most} along {}, not {n}", word(along)))),
-        None if along == Along::Cells => {
-            let cells = counts.iter().copied().max().unwrap_or(0).saturating_pow(3);
-            room_for(cells.saturating_mul(BYTES_A_CELL)).map_err(|e| keys.wrong("counts", e.reason))?;
-            Ok(ScalingRecipe { name, along, counts })
-        }
-        None => Ok(ScalingRecipe { name, along, counts }),
+    if let Some(n) = counts.iter().find(|n| **n > most) {
+        return Err(keys.wrong("counts", format!("must be at most {most} along {}, not {n}", word(along))));
     }
+    if along == Along::Cells {
+        let cells = counts.iter().copied().max().unwrap_or(0).saturating_pow(3);
+        room_for(cells.saturating_mul(BYTES_A_CELL)).map_err(|e| keys.wrong("counts", e.reason))?;
+    }
+    Ok(ScalingRecipe { name, along, counts })
 }
 
 /// Bytes that the porosities of a cell and its faces take.
