@@ -121,6 +121,7 @@
 struct PackagePage;
 
 pub mod convex;
+pub mod enclosure;
 pub mod flow;
 pub mod grid;
 pub mod number;

@@ -30,7 +30,8 @@
 //! 4. `part`: one curved surface between flat ends, its fluxes and its volume in a cell; `window`: the cells it may reach
 //! 5. `spread`: the shares of a part in a layer
 //! 6. `solid`: the door; `shapes`: the shapes that GJK knows, as such solids
-//! 7. `slice`: what several parts have in common of a rectangle in a plane; `shared`: what several solids share of a cell or face
+//! 7. `tangent`: planes between which a part lies in a box
+//! 8. `slice`: what several parts have in common of a rectangle in a plane; `shared`: what several solids share of a cell or face
 
 mod arc;
 mod cone;
@@ -44,6 +45,7 @@ mod slice;
 mod solid;
 mod solid_angle;
 mod spread;
+mod tangent;
 mod twofold;
 mod wall;
 mod window;

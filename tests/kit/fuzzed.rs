@@ -46,6 +46,8 @@ pub fn quadric(bytes: &[u8]) {
     crate::quadric::never_panics::<Vec3>(seed);
     crate::quadric::parts_sum_to_the_whole(seed);
     crate::meeting::bounds_agree(seed);
+    crate::meeting::planes_agree(seed);
+    crate::meeting::planes_enclose_a_torus(seed);
 }
 
 /// Booleans of both stages against the oracle.

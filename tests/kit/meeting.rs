@@ -3,7 +3,9 @@
 use crate::quadrature::Exact;
 use crate::random::Random;
 use glam::DVec3;
+use voidage_core::enclosure::{self, BoxAround, Effort, Enclosed, Enclosure};
 use voidage_core::quadric::{QuadricSolid, excess};
+use voidage_core::torus::{TorusShape, TorusSolid};
 
 /// How two or three solids lie to each other in the unit cube.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -291,5 +293,92 @@ fn extremes(random: &mut Random) {
         if let Some([low, high]) = excess(solids.iter().flatten(), cell, enough) {
             assert!(low <= high, "{low} to {high}");
         }
+        let solids: Vec<QuadricSolid> = solids.iter().flatten().cloned().collect();
+        let [low, high] = enclosure::excess(&solids, cell, Effort { tol: enough.max(1e-3), most: 1 << 16 });
+        assert!(low <= high, "{low} to {high} by planes");
     }
+}
+
+/// What solids share by planes between which they lie is what they share by sections, at any tolerance, and as close as was asked for unless surfaces coincide.
+///
+/// # Panics
+/// If not.
+pub fn planes_agree(seed: u64) {
+    let random = &mut Random::new(seed);
+    let family = FAMILIES[random.below(FAMILIES.len())];
+    let exact = solids(random, family);
+    let all: Vec<QuadricSolid> = exact.iter().map(quadric).collect();
+    let cell = cell(random);
+    let size = cell.iter().map(|[lo, hi]| if lo == hi { 1.0 } else { hi - lo }).product::<f64>();
+    let sections = excess(&all, cell, 1e-5 * size).expect("few solids").map(|x| x / size);
+    // Coordinates are rounded as a share of the cell's sizes, and of a huge solid.
+    let least = cell.iter().filter(|[lo, hi]| lo < hi).fold(1.0, |least, [lo, hi]| f64::min(least, hi - lo));
+    let rough = if family == Family::Huge { 1e-8 } else { 1e-10 } / least;
+    // Where surfaces coincide, planes are slow, and sections are there for it.
+    let coincide = matches!(family, Family::Twice | Family::OnOneAxis | Family::Touching | Family::Aligned);
+    for tol in [1e-1, 1e-3, 1e-5] {
+        let [low, high] = enclosure::excess(&all, cell, Effort { tol, most: 1 << 20 });
+        let apart = (low - sections[1]).max(sections[0] - high);
+        assert!(
+            apart <= rough,
+            "{family:?} {seed}: {low} to {high} by planes, {sections:?} by sections in {cell:?} of {exact:?}"
+        );
+        assert!(
+            coincide || high - low <= tol + rough,
+            "{family:?} {seed}: {low} to {high}, wanted {tol:e}, in {cell:?} of {exact:?}"
+        );
+    }
+}
+
+/// Points of a box are where the planes around a torus say: inside of those within it they are in the torus, and no point of it is outside of those
+/// around it. Returns how many points decided something.
+///
+/// # Panics
+/// If not.
+pub fn planes_enclose_a_torus(seed: u64) -> usize {
+    let random = &mut Random::new(seed);
+    let (axis, start) = (random.vector::<DVec3>(1.0).normalize(), random.vector::<DVec3>(1.0));
+    let radius = random.between(0.2, 2.0);
+    let tube = radius * [0.05, 0.3, 0.9, 1.0][random.below(4)];
+    let angle = [30.0, 90.0, 180.0, 217.0, 270.0, 359.0, 360.0][random.below(7)];
+    let far = [0.0, 1.0, 1e3][random.below(3)];
+    let center = random.vector::<DVec3>(far);
+    let across = (start - axis * start.dot(axis)).normalize();
+    let Some(solid) = TorusSolid::new(&TorusShape { center, axis, start, radius, tube, angle }) else { return 0 };
+    // How deep a point is: positive inside.
+    let depth = |p: DVec3| {
+        let d = p - center;
+        let (z, x, y) = (d.dot(axis), d.dot(across), d.dot(axis.cross(across)));
+        let rho = x.hypot(y);
+        let turned = y.atan2(x).to_degrees().rem_euclid(360.0);
+        let beside = (360.0 - turned).min((turned - angle).abs()).min(turned).to_radians() * rho;
+        let end = if angle == 360.0 { f64::INFINITY } else { beside * if turned <= angle { 1.0 } else { -1.0 } };
+        (tube - (rho - radius).hypot(z)).min(end)
+    };
+    let turn = random.between(0.0, angle).to_radians();
+    let on_ring =
+        center + (across * turn.cos() + axis.cross(across) * turn.sin()) * radius + random.vector::<DVec3>(tube);
+    let half =
+        DVec3::splat(radius * 10_f64.powf(random.between(-4.0, 0.3))) * random.point(DVec3::splat(0.1), DVec3::ONE);
+    let place = BoxAround { middle: on_ring.to_array(), half: half.to_array() };
+    let mut parts: Vec<Enclosure> = Vec::new();
+    solid.enclosures(&place, &mut |part| parts.push(part));
+    let mut decided = 0;
+    for _ in 0..200 {
+        let at = random.vector::<DVec3>(1.0).clamp(DVec3::NEG_ONE, DVec3::ONE);
+        let depth = depth(on_ring + half * at);
+        let within = |upper: usize| {
+            parts.iter().any(|part| match part {
+                Enclosure::Open => false,
+                Enclosure::Within(all) => {
+                    all.iter().all(|c| c.middle + DVec3::from_array(c.slope).dot(at) + c.rest[upper] <= 0.0)
+                }
+            })
+        };
+        let room = 1e-9 * (1.0 + radius);
+        assert!(!within(1) || depth > -room, "{seed}: held, but {depth} from the surface");
+        assert!(within(0) || depth < room, "{seed}: {depth} inside, but left out");
+        decided += usize::from(within(1) || !within(0));
+    }
+    decided
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use voidage_core::quadric::{QuadricSolid, excess};
-use voidage_tests::meeting::{FAMILIES, Family, bounds_agree, quadric, solids};
+use voidage_tests::meeting::{FAMILIES, Family, bounds_agree, planes_agree, planes_enclose_a_torus, quadric, solids};
 use voidage_tests::quadrature::{Exact, common_area, common_volume};
 use voidage_tests::random::Random;
 
@@ -130,4 +130,12 @@ fn crowds_are_refused() {
 #[test]
 fn bounds_of_wholes_and_parts_agree() {
     (0..500).for_each(bounds_agree);
+}
+
+/// By planes between which solids lie the same as by sections; those around a torus hold its points.
+#[test]
+fn planes_say_what_sections_say() {
+    (0..400).for_each(planes_agree);
+    let decided: usize = (0..2000).map(planes_enclose_a_torus).sum();
+    assert!(decided > 100_000, "{decided}");
 }

@@ -456,6 +456,57 @@ fn unions_with_a_torus_are_certified() {
     }
 }
 
+/// A torus, a pipe and a ball that all meet in one cell, against points: along many lines, where each enters and leaves the union.
+#[test]
+fn a_union_with_a_torus_agrees_with_lines_of_points() {
+    let center = DVec3::new(0.4, 0.45, 0.5);
+    let axis = DVec3::new(0.2, -0.1, 1.0).normalize();
+    let torus = TorusShape { center, axis, start: DVec3::X, radius: 0.35, tube: 0.12, angle: 360.0 };
+    let [from, to, thick] = [DVec3::new(-0.5, 0.3, 0.4), DVec3::new(1.5, 0.6, 0.6), DVec3::splat(0.1)];
+    let (ball, size) = (DVec3::new(0.75, 0.45, 0.55), 0.2);
+    let inside = |p: DVec3| {
+        let d = p - center;
+        let z = d.dot(axis);
+        let in_torus = ((d - axis * z).length() - 0.35).hypot(z) <= 0.12;
+        let along = (to - from).normalize();
+        in_torus || (p - from).reject_from(along).length() <= thick.x || p.distance(ball) <= size
+    };
+    const LINES: usize = 240;
+    const STEPS: usize = 120;
+    let mut sum = 0.0;
+    for n in 0..LINES * LINES {
+        let [y, z] = [n % LINES, n / LINES].map(|i| (i as f64 + 0.5) / LINES as f64);
+        let at = |x: f64| inside(DVec3::new(x, y, z));
+        for step in 0..STEPS {
+            let [mut low, mut high] = [step, step + 1].map(|s| s as f64 / STEPS as f64);
+            let (first, last) = (at(low), at(high));
+            if first == last {
+                sum += if first { high - low } else { 0.0 };
+                continue;
+            }
+            let start = low;
+            for _ in 0..20 {
+                let middle = 0.5 * (low + high);
+                if at(middle) == first { low = middle } else { high = middle }
+            }
+            sum += if first { low - start } else { (step + 1) as f64 / STEPS as f64 - low };
+        }
+    }
+    let truth = sum / (LINES * LINES) as f64;
+    let pipe = Form::Cylinder(Cylinder::new(from, to, thick.x));
+    let forms = [Form::Torus(torus), pipe, Form::Sphere(Sphere { center: ball, radius: size })];
+    let edges = Edges([0, 1, 2].map(|_| vec![0.0, 1.0]));
+    let lines = 1e-4;
+    for tol in [1e-3, 1e-6] {
+        let options = Options { tol, bounds: true, ..Options::default() };
+        let found = porosity(&edges.grid(None).expect("a grid"), &formulas(&forms), options);
+        let [low, high] = found.bounds.as_ref().expect("bounds");
+        assert!(high.v[0] - low.v[0] <= tol, "{} apart", high.v[0] - low.v[0]);
+        let open = 1.0 - truth;
+        assert!(low.v[0] - lines <= open && open <= high.v[0] + lines, "{} to {}: {open}", low.v[0], high.v[0]);
+    }
+}
+
 /// By its own facets through the surface road the same, as far as facets go; and beside a mesh that it crosses.
 #[test]
 fn meshes_of_a_torus_agree() {

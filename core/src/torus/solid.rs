@@ -115,6 +115,10 @@ impl TorusSolid {
         Some(TorusSolid { ring: Ring { center, frame, radius, tube, ends } })
     }
 
+    pub(super) fn ring(&self) -> &Ring {
+        &self.ring
+    }
+
     /// Its share of one cell, or of the face normal to an axis, and what that may be off by: of a box from `lo` to `hi`, which for a face is flat.
     /// Where no numbers come out, as of a box without end, 0 that may be off by 1.
     #[must_use]

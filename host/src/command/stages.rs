@@ -127,9 +127,12 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
         progress.warn("--leaf has no effect: every body was measured by its surface (--method gjk subdivides)");
     }
     if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
+        let deeper = result.subdivided + result.divided > 0;
         progress.warn(format!(
-            "the bounds of some values remain {:.1e} apart, more than tol, {:.1e}; a larger depth narrows them",
-            result.max_gap, options.tol
+            "the bounds of some values remain {:.1e} apart, more than tol, {:.1e}{}",
+            result.max_gap,
+            options.tol,
+            if deeper { "; a larger depth narrows them" } else { "" }
         ));
     }
     Ok(result)

@@ -12,14 +12,12 @@ mod union;
 pub use pairs::find_partners;
 pub use solid::FormulaSolid;
 
-use super::convex::Convex;
 use solid::{BELIEVED, Kind, Pair};
-use union::{box_of, by_sections, concentric, divided, ends_at, narrowed};
+use union::{box_of, concentric, ends_at, union_of};
 use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::grid::fields::Layer;
-use voidage_core::subdivide::SubdivisionRule;
 use voidage_core::torus::TorusSolid;
 
 /// Sums this near to 1 are 1, as in the core's sums over surfaces.
@@ -82,8 +80,7 @@ pub fn add(
     part: LayerPart,
     memory: &mut FormulaMemory,
     layer: &mut Layer<f64>,
-    rule: SubdivisionRule<f64>,
-    mut union: impl FnMut(&[Convex<'static>], RangeKind, CellRange) -> Bounds<f64>,
+    tol: f64,
 ) -> Vec<usize> {
     let mut doubtful = Vec::new();
     for (sums, kind) in memory.sums.iter_mut().zip(KINDS) {
@@ -124,14 +121,7 @@ pub fn add(
         return doubtful;
     }
     add_alone(sums, layer);
-    add_shared(solids, grid, part, memory, layer, rule.tol, &mut |meeting, kind, range| {
-        let convex: Option<Vec<Convex<'static>>> = meeting.iter().map(|s| s.convex()).collect();
-        match (convex, box_of(grid, kind, range)) {
-            (Some(bodies), _) => union(&bodies, kind, range),
-            (None, Some(cell)) => divided(meeting, kind, cell, rule),
-            (None, None) => Bounds::UNKNOWN,
-        }
-    });
+    add_shared(solids, grid, part, memory, layer, tol);
     doubtful
 }
 
@@ -173,7 +163,6 @@ fn add_shared(
     memory: &mut FormulaMemory,
     layer: &mut Layer<f64>,
     tol: f64,
-    union: &mut impl FnMut(&[&FormulaSolid], RangeKind, CellRange) -> Bounds<f64>,
 ) {
     let FormulaMemory { sums, entries, shared } = memory;
     entries.sort_by_key(|e| (e.0, e.1, e.2));
@@ -188,7 +177,7 @@ fn add_shared(
         let (mut found, known) = place.apart_and_meeting(alone, &mut bodies);
         if !bodies.is_empty() {
             *shared += usize::from(kind == RangeKind::Cells);
-            let known = place.together(&bodies, known, tol, union);
+            let known = place.together(&bodies, known, tol);
             (found.lower, found.upper) = (found.lower + known.lower, found.upper + known.upper);
         }
         let (lower, sum) = values(layer, kind);
@@ -244,13 +233,7 @@ impl<'a> Place<'a, '_> {
     }
 
     /// The share of the union of solids that meet here, from the largest share and the sum.
-    fn together(
-        &self,
-        bodies: &[&FormulaSolid],
-        (largest, sum): (f64, Bounds<f64>),
-        tol: f64,
-        union: &mut impl FnMut(&[&FormulaSolid], RangeKind, CellRange) -> Bounds<f64>,
-    ) -> Bounds<f64> {
+    fn together(&self, bodies: &[&FormulaSolid], (largest, sum): (f64, Bounds<f64>), tol: f64) -> Bounds<f64> {
         let Place { grid, kind, range, shares, .. } = *self;
         let known = Bounds { lower: largest, upper: sum.upper.min(1.0) };
         let all_meet = shares.iter().all(|&(n, _)| self.meets(n));
@@ -261,10 +244,10 @@ impl<'a> Place<'a, '_> {
                 let errors: f64 = shares.iter().map(|(_, [_, error])| 2.0 * error).sum();
                 Bounds { lower: largest, upper: (largest + errors + apart).min(1.0) }
             }
-            None => match box_of(grid, kind, range).and_then(|cell| by_sections(bodies, sum, cell, tol)) {
-                Some(found) if found.gap() <= 2.0 * tol => narrowed(known, found),
-                found => narrowed(found.map_or(known, |f| narrowed(known, f)), union(bodies, kind, range)),
-            },
+            None => {
+                let Some(cell) = box_of(grid, kind, range) else { return known };
+                union_of(bodies, cell, (known, sum), tol)
+            }
         }
     }
 }

@@ -262,14 +262,7 @@ impl RoadWithLists<'_, '_> {
         memory.shared = 0;
         let mut tally = QueryCount::default();
         while !solids.is_empty() {
-            let union = |bodies: &[Convex<'static>], kind: RangeKind, range: CellRange| {
-                let mut found = Bounds::UNKNOWN;
-                let mut memory = self.lists.memory(bodies);
-                let fill = |_: CellRange, bounds: Bounds<f64>| found = bounds;
-                tally = tally + subdivide(grid, kind, range, bodies, self.road.rule, &mut memory, fill).expect(FITS);
-                found
-            };
-            let doubtful = formulas::add(&solids, grid, part, &mut memory, layer, self.road.rule, union);
+            let doubtful = formulas::add(&solids, grid, part, &mut memory, layer, self.road.rule.tol);
             if doubtful.is_empty() {
                 break;
             }

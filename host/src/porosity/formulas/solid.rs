@@ -3,9 +3,8 @@
 use super::round::closed_form;
 use crate::porosity::convex::Convex;
 use glam::DVec3;
-use voidage_core::grid::Grid;
+use voidage_core::enclosure::{BoxAround, Enclosed, Enclosure};
 use voidage_core::grid::bounds::Bounds;
-use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::quadric::QuadricSolid;
 use voidage_core::torus::{TorusShape, TorusSolid};
@@ -79,16 +78,6 @@ impl FormulaSolid {
         matches!(&self.kind, Kind::Torus(solid, _) if solid.may_reach(cell.min.to_array(), cell.max.to_array()))
     }
 
-    /// Its share of one cell or face, and what that may be off by.
-    #[must_use]
-    pub fn share(&self, kind: RangeKind, cell: Aabb<DVec3>) -> Bounds<f64> {
-        let (share, error) = match &self.kind {
-            Kind::Torus(solid, _) => solid.share(kind, cell.min.to_array(), cell.max.to_array()),
-            Kind::Quadric(solid, _) => share_of_quadric(solid, kind, cell),
-        };
-        Bounds { lower: (share - error).max(0.0), upper: (share + error).min(1.0) }
-    }
-
     /// Centres of the flat ends that lie in a plane, and their radii.
     pub(super) fn ends_in_plane(&self, axis: usize, plane: f64) -> Vec<(DVec3, f64)> {
         match &self.kind {
@@ -116,25 +105,25 @@ impl FormulaSolid {
     }
 }
 
-/// What a quadric has of one cell or face.
-fn share_of_quadric(solid: &QuadricSolid, kind: RangeKind, cell: Aabb<DVec3>) -> (f64, f64) {
-    let [mut x, mut y, mut z] = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
-    if let RangeKind::Faces(axis) = kind {
-        // Of a face the cell above.
-        let size = (cell.max - cell.min).max_element();
-        let side = [&mut x, &mut y, &mut z];
-        for (n, side) in side.into_iter().enumerate() {
-            if n == axis.min(2) {
-                side[1] = side[0] + size;
-            }
+impl Enclosed for &FormulaSolid {
+    fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure)) {
+        match &self.kind {
+            Kind::Quadric(solid, _) => solid.enclosures(place, tell),
+            Kind::Torus(solid, _) => solid.enclosures(place, tell),
         }
     }
-    let Ok(grid) = Grid::new(&x, &y, &z) else { return (0.0, 1.0) };
-    let mut found = 0.0;
-    let worst = solid.layer(&grid, 0, kind != RangeKind::Cells, &mut |told, at, share| {
-        if told == kind && at == 0 {
-            found += share;
+
+    fn share(&self, place: &BoxAround) -> Bounds<f64> {
+        match &self.kind {
+            Kind::Quadric(solid, _) => Enclosed::share(solid, place),
+            Kind::Torus(solid, _) => Enclosed::share(solid, place),
         }
-    });
-    (f64::min(found, 1.0), if worst <= BELIEVED { BELIEVED * 1e-3 } else { 1.0 })
+    }
+
+    fn price(&self) -> f64 {
+        match &self.kind {
+            Kind::Quadric(solid, _) => solid.price(),
+            Kind::Torus(solid, _) => solid.price(),
+        }
+    }
 }

@@ -1,23 +1,49 @@
 //! The union of solids by formula in one cell or face in which some of them meet.
 
 use super::pairs::TOUCHING;
-use super::solid::{BELIEVED, FormulaSolid, Kind};
+use super::solid::{FormulaSolid, Kind};
 use glam::DVec3;
+use voidage_core::enclosure::{Effort, union_bounds};
 use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::quadric::{QuadricSolid, share_of_union};
-use voidage_core::subdivide::SubdivisionRule;
+
+/// How many solids are looked at in a cell before sections are tried; and at most.
+const FIRST: usize = 1 << 15;
+const MOST: usize = 1 << 21;
+
+/// Bounds of the union of some solids in one cell or face, from what is known of it and the sum of their shares; about `tol` apart. Sections of
+/// faces are exact, and best for what two solids have in common; planes for more solids, for tori and small tolerances.
+pub(super) fn union_of(
+    solids: &[&FormulaSolid],
+    cell: Aabb<DVec3>,
+    (known, sum): (Bounds<f64>, Bounds<f64>),
+    tol: f64,
+) -> Bounds<f64> {
+    let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
+    let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, Effort { tol, most }));
+    let by_sections = || by_sections(solids, sum, cell, tol);
+    let sections_first = solids.len() == 2 || cell.size().min_element() == 0.0;
+    let ways: [&dyn Fn() -> Option<Bounds<f64>>; 3] = if sections_first {
+        [&by_sections, &|| by_planes(FIRST), &|| by_planes(MOST)]
+    } else {
+        [&|| by_planes(FIRST), &by_sections, &|| by_planes(MOST)]
+    };
+    let mut found = known;
+    for way in ways {
+        found = way().map_or(found, |more| narrowed(found, more));
+        if found.gap() <= tol {
+            break;
+        }
+    }
+    found
+}
 
 /// The union of solids of which all have closed forms, by what they have in common; `sum` is that of their shares. None if there are too many of
 /// them.
-pub(super) fn by_sections(
-    solids: &[&FormulaSolid],
-    sum: Bounds<f64>,
-    cell: Aabb<DVec3>,
-    tol: f64,
-) -> Option<Bounds<f64>> {
+fn by_sections(solids: &[&FormulaSolid], sum: Bounds<f64>, cell: Aabb<DVec3>, tol: f64) -> Option<Bounds<f64>> {
     fn quadric<'s>(s: &&'s FormulaSolid) -> Option<&'s QuadricSolid> {
         match &s.kind {
             Kind::Quadric(solid, _) => Some(solid),
@@ -57,45 +83,6 @@ pub(super) fn concentric(solids: &[&FormulaSolid], grid: &Grid<f64>, kind: Range
     let area: f64 = (0..3).filter(|&n| n != axis).map(|n| size[n]).product();
     first.map(|_| beside / area)
 }
-
-/// Bounds of the union of some solids in one cell or face: shares of single ones are known, so only parts in which several have one are divided.
-pub(super) fn divided(
-    solids: &[&FormulaSolid],
-    kind: RangeKind,
-    cell: Aabb<DVec3>,
-    rule: SubdivisionRule<f64>,
-) -> Bounds<f64> {
-    let mut found = Bounds { lower: 0.0, upper: 0.0 };
-    let axes: Vec<usize> = (0..3).filter(|&n| kind != RangeKind::Faces(n)).collect();
-    let mut waiting = vec![(cell, 0_u32)];
-    let most = rule.depth.saturating_add(DEEPER);
-    while let Some((part, depth)) = waiting.pop() {
-        let weight = 0.5_f64.powi(depth as i32 * axes.len() as i32);
-        let shares = solids.iter().map(|s| s.share(kind, part));
-        let (lower, sum, several) = shares.fold((0.0_f64, 0.0, 0), |(lower, sum, several), share| {
-            (lower.max(share.lower), sum + share.upper, several + usize::from(share.upper > 0.0))
-        });
-        let upper = f64::min(sum, 1.0);
-        // Parts along a curve, two of each before: their gaps sum to about the tolerance.
-        let room = rule.tol * 0.5_f64.powi(depth as i32) / 8.0;
-        if several < 2 || lower >= 1.0 - BELIEVED || depth >= most || (upper - lower) * weight <= room {
-            (found.lower, found.upper) = (found.lower + lower * weight, found.upper + upper * weight);
-            continue;
-        }
-        let middle = (part.min + part.max) * 0.5;
-        for n in 0..1_usize << axes.len() {
-            let mut half = part;
-            for (bit, &axis) in axes.iter().enumerate() {
-                if n >> bit & 1 == 0 { half.max[axis] = middle[axis] } else { half.min[axis] = middle[axis] }
-            }
-            waiting.push((half, depth + 1));
-        }
-    }
-    Bounds { lower: found.lower, upper: found.upper.min(1.0) }
-}
-
-/// How much deeper than others the unions with tori are divided: only along the curve in which two surfaces meet.
-const DEEPER: u32 = 3;
 
 /// A single cell or face.
 pub(super) fn box_of(grid: &Grid<f64>, kind: RangeKind, range: CellRange) -> Option<Aabb<DVec3>> {

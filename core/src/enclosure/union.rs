@@ -1,0 +1,288 @@
+//! Bounds of the share of a box that a union of solids has.
+//!
+//! What is looked for is the excess: by how much the shares of the solids, which are known, sum to more than that of the union. Where one solid is alone there is
+//! none, and where one holds a part of the box it is what the others have of it.
+
+use super::constraint::{BoxAround, Constraint, Enclosure, MOST_CONSTRAINTS};
+use super::filled::filled;
+use crate::grid::bounds::Bounds;
+use crate::number::plane::P2;
+use crate::number::real::Real;
+use heapless::Vec;
+
+/// How close bounds are wanted, and what that may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Bounds this far apart will do, as a share of the box.
+    pub tol: f64,
+    /// How many solids may be looked at in all parts of the box together; then the bounds are further apart.
+    pub most: usize,
+}
+
+/// A solid that is told in boxes.
+pub trait Enclosed {
+    /// Tells what is known of each of its convex parts in a box.
+    fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure));
+
+    /// Its share of a box, as near as it is known.
+    fn share(&self, place: &BoxAround) -> Bounds<f64>;
+
+    /// As many boxes can be looked at in the time that takes.
+    fn price(&self) -> f64;
+}
+
+/// Parts of solids whose union is measured at once.
+const MOST_PARTS: usize = 3;
+
+/// How often a box is halved at most.
+const MOST_LEVELS: usize = 20;
+
+/// Solids that the lists of all levels hold; where they are full, a part of a box looks at those of the box once more.
+const MOST_LISTED: usize = 256;
+
+/// The first division is for no smaller tolerance; each further one for one so many times smaller.
+const FIRST_TOLERANCE: f64 = 1e-4;
+const FINER: f64 = 1.0 / 64.0;
+
+/// Bounds of parts along a curve are as close as this share of the tolerance asks.
+const ALONG_CURVE: f64 = 1.0 / 3.0;
+
+/// Shares of solids beside one that holds a part are as close as this share of what parts along a curve are.
+const BESIDE: f64 = 1.0 / 4.0;
+
+/// What volumes of polytopes are rounded by.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Bounds that are this close are no more divided for.
+const CLOSEST: f64 = 1e-12;
+
+/// Bounds of the share of a box that the union of some solids has, from bounds of the sum of their shares. A box that is flat along an axis is a face.
+pub fn union_bounds<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], sum: Bounds<f64>, effort: Effort) -> Bounds<f64> {
+    let [lower, upper] = excess(solids, sides, effort);
+    Bounds { lower: (sum.lower - upper).max(0.0), upper: (sum.upper - lower).min(1.0) }
+}
+
+/// Bounds of the sum of the shares that some solids have of a box, less that of their union.
+pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], Effort { tol, most }: Effort) -> [f64; 2] {
+    let place = &BoxAround::new(sides);
+    let mut found = [0.0, solids.len() as f64];
+    let mut looked_at = 0;
+    let mut enough = if tol >= FIRST_TOLERANCE { tol } else { FIRST_TOLERANCE };
+    loop {
+        let (bounds, cost) = divided(solids, place, enough * ALONG_CURVE, most.saturating_sub(looked_at));
+        let before = found[1] - found[0];
+        found = [found[0].max(bounds[0]), found[1].min(bounds[1])];
+        let gap = found[1] - found[0];
+        looked_at += cost;
+        let finer = (0.7 * tol / gap).clamp(FINER, 0.5);
+        // The number of parts grows with the cube root of the tolerance where surfaces are smooth.
+        let affordable = cost as f64 / Real::sqrt(finer) <= most.saturating_sub(looked_at) as f64;
+        if gap <= tol || gap <= CLOSEST || !affordable || !(gap < 0.75 * before) {
+            // Bounds that contradict each other do so by rounding.
+            return if gap >= 0.0 { found } else { bounds };
+        }
+        enough *= finer;
+    }
+}
+
+/// The excess in a part of a box.
+enum Looked {
+    Known(P2),
+    /// Solids cut it, of which more than these bounds is not known.
+    Cut(P2),
+}
+
+/// A part of a box, and the solids that may reach it.
+struct Level {
+    place: BoxAround,
+    /// Where the solids are listed; none if all are meant.
+    listed: Option<[usize; 2]>,
+    /// Where the list ends that was there before its own.
+    end: usize,
+    /// Its own part to be looked at next.
+    next: usize,
+}
+
+/// The walk through the parts of a box.
+struct Walk<'a, E> {
+    solids: &'a [E],
+    lists: Vec<u32, MOST_LISTED>,
+    looked_at: usize,
+    sum: P2,
+}
+
+/// One division of a box into parts, those of each level with half the `room` between their bounds that those above it have; and how many solids were
+/// looked at. After `most` of these nothing is divided any more.
+fn divided<E: Enclosed>(solids: &[E], place: &BoxAround, room: f64, most: usize) -> (P2, usize) {
+    let mut walk = Walk { solids, lists: Vec::new(), looked_at: 0, sum: [0.0; 2] };
+    let axes = place.half.iter().filter(|h| **h > 0.0).count();
+    let mut levels: Vec<Level, MOST_LEVELS> = Vec::new();
+    let mut next = Some(Level { place: *place, listed: None, end: 0, next: 0 });
+    while let Some(mut level) = next.take() {
+        let depth = levels.len();
+        let parts = (1_u64 << (depth * axes)) as f64;
+        let close = room / (1_u64 << depth) as f64;
+        let bounds = match walk.look(&mut level, close * parts) {
+            Looked::Known(bounds) => Some(bounds),
+            Looked::Cut(bounds) => {
+                let gap = bounds[1] - bounds[0];
+                // What is no number is not divided.
+                (!(gap / parts > close && gap > CLOSEST) || walk.looked_at >= most || depth == MOST_LEVELS)
+                    .then_some(bounds)
+            }
+        };
+        match bounds {
+            Some(bounds) => walk.add(bounds, parts, level.end),
+            // There is room for it: see above.
+            None => drop(levels.push(level)),
+        }
+        while let Some(level) = levels.last_mut() {
+            if level.next < 1 << axes {
+                next = Some(Level {
+                    place: level.place.part(level.next),
+                    listed: level.listed,
+                    end: walk.lists.len(),
+                    next: 0,
+                });
+                level.next += 1;
+                break;
+            }
+            walk.lists.truncate(level.end);
+            levels.pop();
+        }
+    }
+    let [lower, upper] = walk.sum;
+    let bounds = [lower * (1.0 - ROUNDING), upper * (1.0 + ROUNDING)];
+    (if bounds[0] <= bounds[1] { bounds } else { [0.0, solids.len() as f64] }, walk.looked_at)
+}
+
+impl<E: Enclosed> Walk<'_, E> {
+    /// Adds the share of one of so many parts, and forgets its list.
+    fn add(&mut self, bounds: P2, parts: f64, end: usize) {
+        self.sum = [self.sum[0] + bounds[0] / parts, self.sum[1] + bounds[1] / parts];
+        self.lists.truncate(end);
+    }
+
+    /// Looks at a part, and lists the solids that reach it. What is `close` need not be closer.
+    fn look(&mut self, level: &mut Level, close: f64) -> Looked {
+        let place = level.place;
+        let (mut holding, mut cutting) = (0, 0);
+        let mut parts: Vec<Constraints, MOST_PARTS> = Vec::new();
+        let (mut few, mut fits) = (true, true);
+        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
+        for at in first..end {
+            let number = if level.listed.is_some() { self.lists.get(at).copied() } else { Some(at as u32) };
+            let Some((number, solid)) = number.and_then(|n| Some((n, self.solids.get(n as usize)?))) else { continue };
+            self.looked_at += 1;
+            let (mut holds, mut reaches) = (false, false);
+            solid.enclosures(&place, &mut |enclosure| {
+                if let Enclosure::Within(constraints) = enclosure {
+                    (holds, reaches) = (holds || constraints.is_empty(), true);
+                    few = parts.push(constraints).is_ok() && few;
+                }
+            });
+            if reaches {
+                (holding, cutting) = (holding + usize::from(holds), cutting + usize::from(!holds));
+                fits = self.lists.push(number).is_ok() && fits;
+            }
+        }
+        if fits {
+            level.listed = Some([level.end, self.lists.len()]);
+        } else {
+            self.lists.truncate(level.end);
+        }
+        match (holding, cutting) {
+            (0, 0 | 1) => Looked::Known([0.0; 2]),
+            (1.., _) => Looked::Known(self.beside_holder(level, holding, close)),
+            _ if few => Looked::Cut(between_polytopes(&parts, &place)),
+            _ => Looked::Cut([0.0, (cutting - 1) as f64]),
+        }
+    }
+
+    /// The excess in a part that some solids hold: all but one of them, and the shares of the others.
+    fn beside_holder(&mut self, level: &Level, holding: usize, close: f64) -> P2 {
+        let mut sum = [(holding - 1) as f64; 2];
+        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
+        for at in first..end {
+            let number = if level.listed.is_some() { self.lists.get(at).copied() } else { Some(at as u32) };
+            let Some(solid) = number.and_then(|n| self.solids.get(n as usize)) else { continue };
+            if let Some([lower, upper]) = share_of(solid, &level.place, BESIDE * close, &mut self.looked_at) {
+                sum = [sum[0] + lower, sum[1] + upper];
+            }
+        }
+        sum
+    }
+}
+
+/// Bounds of the share of a part that a solid has which does not hold all of it; none if it does. By planes, in parts as many as are worth
+/// it, until they are close; else as the solid knows it. Calls itself, once a level.
+fn share_of<E: Enclosed>(solid: &E, place: &BoxAround, close: f64, looked_at: &mut usize) -> Option<P2> {
+    *looked_at += 1;
+    let (mut parts, mut holds, mut few) = (Vec::<Constraints, MOST_PARTS>::new(), false, true);
+    solid.enclosures(place, &mut |enclosure| {
+        if let Enclosure::Within(constraints) = enclosure {
+            holds = holds || constraints.is_empty();
+            few = parts.push(constraints).is_ok() && few;
+        }
+    });
+    if holds {
+        return None;
+    }
+    let rounding = rounding_in(place);
+    let [upper, lower]: P2 =
+        [false, true].map(|rest| parts.iter().map(|part| share_of_polytope(part.iter(), rest)).sum());
+    let found: P2 = [f64::max(lower - rounding, 0.0), f64::min(upper + rounding, 1.0)];
+    let gap = found[1] - found[0];
+    if few && gap <= close {
+        return Some(found);
+    }
+    if !(gap <= close * solid.price()) || !few {
+        let Bounds { lower, upper } = solid.share(place);
+        return Some([lower, upper]);
+    }
+    let count = 1_usize << place.half.iter().filter(|h| **h > 0.0).count();
+    let mut sum = [0.0; 2];
+    for n in 0..count {
+        // A surface reaches half of the parts.
+        let [lower, upper] = share_of(solid, &place.part(n), 2.0 * close, looked_at).unwrap_or([1.0; 2]);
+        sum = [sum[0] + lower, sum[1] + upper];
+    }
+    Some(sum.map(|s| s / count as f64))
+}
+
+/// Of a part of a solid.
+type Constraints = Vec<Constraint, MOST_CONSTRAINTS>;
+
+/// Bounds of the excess of parts of solids, from polytopes within them and around them: it grows with each of them.
+fn between_polytopes(parts: &[Constraints], place: &BoxAround) -> P2 {
+    let rounding = rounding_in(place);
+    let [upper, lower] = [false, true].map(|rest| excess_of_polytopes(parts, rest));
+    [(lower - rounding).max(0.0), upper + rounding]
+}
+
+/// What shares of a box are rounded by.
+fn rounding_in(place: &BoxAround) -> f64 {
+    let shift = place.rounding();
+    place.half.iter().filter(|half| **half > 0.0).fold(ROUNDING, |sum, half| sum + shift / half)
+}
+
+/// The share of a box in a polytope, from `rest` the one within or around the solid.
+fn share_of_polytope<'c>(constraints: impl Iterator<Item = &'c Constraint> + Clone, rest: bool) -> f64 {
+    match constraints.clone().count() {
+        0 | 1 => filled::<1>(constraints, rest),
+        2 => filled::<2>(constraints, rest),
+        3 => filled::<3>(constraints, rest),
+        _ => filled::<{ MOST_PARTS * MOST_CONSTRAINTS }>(constraints, rest),
+    }
+}
+
+/// What two polytopes have in common counts; what three have has been counted three times.
+fn excess_of_polytopes(parts: &[Constraints], rest: bool) -> f64 {
+    let sets = (1_usize << parts.len()) - 1;
+    let share = |set: usize| {
+        let of_set = || parts.iter().enumerate().filter(move |(n, _)| set >> n & 1 == 1).flat_map(|(_, part)| part);
+        let share = share_of_polytope(of_set(), rest);
+        if set.count_ones() % 2 == 0 { share } else { -share }
+    };
+    (1..=sets).filter(|set| set.count_ones() > 1).map(share).sum()
+}

@@ -1,0 +1,158 @@
+//! A part of a solid in a box, between planes: what its curved surface may bend away from a tangent plane is known exactly, as it is a quadric.
+
+use super::ends::End;
+use super::part::Part;
+use super::solid::QuadricSolid;
+use super::wall::Wall;
+use crate::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
+use crate::grid::Grid;
+use crate::grid::bounds::Bounds;
+use crate::grid::cell_range::RangeKind;
+use crate::number::axis::Axis;
+
+/// Rounding of the sums below, a few units in the last place of their terms.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Twice a symmetric matrix, its diagonal and what is beside it: `yz`, `zx`, `xy`.
+struct Quadratic {
+    squares: [f64; 3],
+    products: [f64; 3],
+}
+
+/// Closed forms are off by no more than this, if none left 0 to 1 by more than a thousand times as much.
+const CLOSED_FORM: f64 = 1e-12;
+
+impl Enclosed for QuadricSolid {
+    fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure)) {
+        self.parts().iter().for_each(|part| tell(part.enclosure(place)));
+    }
+
+    /// By the closed form.
+    fn share(&self, place: &BoxAround) -> Bounds<f64> {
+        let mut sides = place.sides();
+        let size = sides.iter().fold(0.0_f64, |most, [lo, hi]| most.max(hi - lo));
+        let flat = sides.iter().position(|[lo, hi]| lo == hi);
+        if let Some([lo, hi]) = flat.and_then(|axis| sides.get_mut(axis)) {
+            // Of a face the cell above.
+            *hi = *lo + size;
+        }
+        let kind = flat.map_or(RangeKind::Cells, RangeKind::Faces);
+        let Ok(grid) = Grid::new(&sides[0], &sides[1], &sides[2]) else { return Bounds::UNKNOWN };
+        let mut found = 0.0;
+        let worst = self.layer(&grid, 0, flat.is_some(), &mut |told, at, share| {
+            if told == kind && at == 0 {
+                found += share;
+            }
+        });
+        if worst <= 1e3 * CLOSED_FORM { Bounds::around(f64::min(found, 1.0), CLOSED_FORM) } else { Bounds::UNKNOWN }
+    }
+
+    fn price(&self) -> f64 {
+        1.0
+    }
+}
+
+impl Part {
+    /// What is known of it in a box.
+    pub fn enclosure(&self, place: &BoxAround) -> Enclosure {
+        let from = Axis::ALL.map(|n| place.middle[n] - self.origin[n]);
+        let tip = matches!(self.curved.wall, Wall::Cone { .. }) && self.ends.iter().flatten().count() == 1;
+        let ends = self.ends.iter().flatten().filter_map(|end| end.constraint(place));
+        let tip = tip.then(|| self.before_tip(place, from));
+        Enclosure::new([self.curved_constraint(place, from)].into_iter().chain(ends).chain(tip))
+    }
+
+    /// The curved surface: where a quadratic function is not positive. `from` leads from the part's origin to the middle of the box.
+    fn curved_constraint(&self, place: &BoxAround, from: [f64; 3]) -> Constraint {
+        let square = from[0] * from[0] + from[1] * from[1] + from[2] * from[2];
+        let a = self.curved.axis;
+        let along = a[0] * from[0] + a[1] * from[1] + a[2] * from[2];
+        // The function in the middle, the sizes of its terms, half its gradient there, and half its second derivatives.
+        let (middle, terms, gradient, second) = match &self.curved.wall {
+            Wall::Ball { radius } => {
+                let unit = Quadratic { squares: [1.0; 3], products: [0.0; 3] };
+                (square - radius * radius, square + radius * radius, from, unit)
+            }
+            Wall::Cylinder { radius } => {
+                let gradient = Axis::ALL.map(|n| from[n] - along * a[n]);
+                let middle = square - along * along - radius * radius;
+                (middle, 2.0 * square + radius * radius, gradient, Quadratic::about_axis(a, 1.0))
+            }
+            Wall::Cone { radius, slope } => {
+                let wide = radius + slope * along;
+                let gradient = Axis::ALL.map(|n| from[n] - (along + slope * wide) * a[n]);
+                let terms = 2.0 * square + radius * radius + 2.0 * slope * slope * along * along + wide * wide;
+                (square - along * along - wide * wide, terms, gradient, Quadratic::about_axis(a, 1.0 + slope * slope))
+            }
+            Wall::Ellipsoid(map) => {
+                let gradient = map.form.map(|row| row[0] * from[0] + row[1] * from[1] + row[2] * from[2]);
+                let value = gradient[0] * from[0] + gradient[1] * from[1] + gradient[2] * from[2];
+                let size = Axis::ALL.into_iter().fold(1.0, |sum, n| sum + 3.0 * map.form[n][n] * from[n] * from[n]);
+                let products = Axis::ALL.map(|n| {
+                    let [u, v] = n.others();
+                    map.form[u][v]
+                });
+                (value - 1.0, size, gradient, Quadratic { squares: Axis::ALL.map(|n| map.form[n][n]), products })
+            }
+        };
+        let slope = Axis::ALL.map(|n| 2.0 * gradient[n] * place.half[n]);
+        let shifted = 2.0 * gradient.iter().map(|g| g.abs()).sum::<f64>() * place.rounding();
+        let rounding = ROUNDING * (terms + slope.iter().map(|s| s.abs()).sum::<f64>()) + shifted;
+        let [low, high] = second.range(place.half);
+        Constraint { middle, slope, rest: [low - rounding, high + rounding] }
+    }
+
+    /// Of a cone that ends in its tip, all on the side of the tip on which the cone is: the other half of the double cone is none of it.
+    fn before_tip(&self, place: &BoxAround, from: [f64; 3]) -> Constraint {
+        let Wall::Cone { radius, slope: growth } = self.curved.wall else {
+            return Constraint { middle: -1.0, slope: [0.0; 3], rest: [0.0; 2] };
+        };
+        let a = self.curved.axis;
+        let slope = Axis::ALL.map(|n| -growth * a[n] * place.half[n]);
+        let terms = Axis::ALL.map(|n| -growth * a[n] * from[n]);
+        let sizes = radius.abs() + terms.iter().chain(&slope).map(|t| t.abs()).sum::<f64>();
+        let rounding = ROUNDING * sizes + growth.abs() * place.rounding();
+        Constraint { middle: terms[0] + terms[1] + terms[2] - radius, slope, rest: [-rounding, rounding] }
+    }
+}
+
+impl End {
+    /// Beyond its plane; none if the box lies in that plane, and points of it belong to the solid.
+    fn constraint(&self, place: &BoxAround) -> Option<Constraint> {
+        let slope = Axis::ALL.map(|n| -self.inward[n] * place.half[n]);
+        let terms = Axis::ALL.map(|n| -self.inward[n] * (place.middle[n] - self.center[n]));
+        let middle = terms[0] + terms[1] + terms[2];
+        if slope == [0.0; 3] && middle == 0.0 {
+            return (!self.closed).then_some(Constraint { middle: 1.0, slope, rest: [0.0; 2] });
+        }
+        // A difference of two coordinates of a plane across an axis has the right sign.
+        let exact = self.inward.iter().filter(|a| **a != 0.0).count() == 1;
+        let sizes = terms.iter().chain(&slope).map(|t| t.abs()).sum::<f64>();
+        let rounding = if exact { 0.0 } else { ROUNDING * sizes + place.rounding() };
+        Some(Constraint { middle, slope, rest: [-rounding, rounding] })
+    }
+}
+
+impl Quadratic {
+    /// The square of the distance from an axis, for a factor of 1.
+    fn about_axis(a: [f64; 3], factor: f64) -> Self {
+        let squares = a.map(|x| 1.0 - factor * x * x);
+        let products = Axis::ALL.map(|n| {
+            let [u, v] = n.others();
+            -factor * a[u] * a[v]
+        });
+        Quadratic { squares, products }
+    }
+
+    /// Bounds of the form in a box about 0, given by half of its size.
+    fn range(&self, half: [f64; 3]) -> [f64; 2] {
+        let mut range = [0.0_f64; 2];
+        for n in Axis::ALL {
+            let [u, v] = n.others();
+            let square = self.squares[n] * half[n] * half[n];
+            let product = 2.0 * (self.products[n] * half[u] * half[v]).abs();
+            range = [range[0] + square.min(0.0) - product, range[1] + square.max(0.0) + product];
+        }
+        range
+    }
+}
