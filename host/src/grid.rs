@@ -32,7 +32,8 @@ impl Edges {
     pub fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Self {
         let axis = |a: usize| {
             let (lo, hi, n) = (lo[a], hi[a], cells[a]);
-            (0..=n).map(|i| if i == n { hi } else { lo + (hi - lo) * (i as f64 / n as f64) }).collect()
+            let between = |i: usize| decimal(lo + (hi - lo) * (i as f64 / n as f64), rounding(lo, hi));
+            (0..=n).map(|i| [lo, between(i), hi][usize::from(i > 0) + usize::from(i == n)]).collect()
         };
         Edges([axis(0), axis(1), axis(2)])
     }
@@ -133,6 +134,30 @@ fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
     }
 }
 
+/// What a sum or a product of coordinates between two others is rounded by.
+fn rounding(lo: f64, hi: f64) -> f64 {
+    4.0 * f64::EPSILON * lo.abs().max(hi.abs())
+}
+
+/// A coordinate as people would write it: if there is a decimal within `room` of it, of digits ten times larger, that one, else as it is. So that
+/// 3 × 0.1 is 0.3, and what ends at 0.3 ends in a plane of the grid.
+fn decimal(at: f64, room: f64) -> f64 {
+    let digits = -(room.log10().ceil() + 1.0);
+    // Powers of ten up to this are exact.
+    if !(digits.abs() <= 22.0) {
+        return at;
+    }
+    let power = 10_f64.powi(digits.abs() as i32);
+    let written = if digits < 0.0 { (at / power).round() * power } else { (at * power).round() / power };
+    if (written - at).abs() <= room { written } else { at }
+}
+
+/// A box in round numbers where its corners are such but for the rounding of sums.
+fn round_box(lo: DVec3, hi: DVec3) -> [DVec3; 2] {
+    let [x, y, z] = [0, 1, 2].map(|a| [lo[a], hi[a]].map(|at| decimal(at, rounding(lo[a], hi[a]))));
+    [0, 1].map(|end| DVec3::new(x[end], y[end], z[end]))
+}
+
 /// Most cells of a grid: beyond, the fields would not fit into any memory this program will meet.
 const MAX_CELLS: f64 = 4e9;
 
@@ -155,7 +180,8 @@ pub fn edges(source: &GridSpec, scene: Option<[DVec3; 2]>, warnings: &mut Vec<St
                 None => (hi - lo) / (count - 2.0).max(DVec3::ONE),
             };
             few_enough(count).map_err(|reason| Error::usage(format!("grid: {reason}")))?;
-            Edges::uniform(lo - margin, hi + margin, *cells)
+            let [lo, hi] = if bounds.is_some() { [lo, hi] } else { round_box(lo - margin, hi + margin) };
+            Edges::uniform(lo, hi, *cells)
         }
         GridSpec::Spacing(d, bounds) => {
             let margin = if bounds.is_some() { 0.0 } else { *d };
@@ -165,7 +191,7 @@ pub fn edges(source: &GridSpec, scene: Option<[DVec3; 2]>, warnings: &mut Vec<St
             let count = ((hi - lo) / *d - 1e-9).ceil().max(DVec3::ONE);
             few_enough(count).map_err(|reason| Error::usage(format!("grid: {reason}")))?;
             let cells = count.to_array().map(|n| n as usize);
-            let end = lo + count * *d;
+            let [lo, end] = round_box(lo, lo + count * *d);
             if bounds.is_some() && (end - hi).cmpgt(DVec3::splat(*d * 1e-6)).any() {
                 warnings.push(format!(
                     "grid: the box is not a whole number of cells of {d} m; it now ends at ({:.6}, {:.6}, {:.6})",
@@ -187,9 +213,14 @@ fn few_enough(count: DVec3) -> std::result::Result<(), String> {
     Err(format!("{x} × {y} × {z} cells are too many: at most {MAX_CELLS:e}, and {MAX_AXIS:e} along an axis"))
 }
 
+/// Boxes around solids are wider than these by less than this share of their size.
+const BOX_ROOM: f64 = 1e-11;
+
 fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
     let [lo, hi] = scene.ok_or_else(|| Error::new("the scene is empty: give --bounds"))?;
     let size = (hi - lo).max_element();
+    // The box around a round solid has room for rounding.
+    let [lo, hi] = [lo, hi].map(|p| DVec3::from_array(p.to_array().map(|at| decimal(at, size * BOX_ROOM))));
     // A flat scene still needs a box with a volume.
     let thin = DVec3::select((hi - lo).cmpgt(DVec3::ZERO), DVec3::ZERO, DVec3::splat(size * 0.5));
     Ok([lo - thin, hi + thin])

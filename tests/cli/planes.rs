@@ -143,3 +143,29 @@ fn texts_mean_the_numbers_they_were_written_from() {
         assert_eq!(blocked_and_open(&field("z")).0, blocked, "{x} {z}");
     }
 }
+
+/// The grid around a pipe is told in round numbers, and its edges are those that are meant: what ends at 0 and 0.6 ends in planes and blocks them.
+#[test]
+fn edges_of_grids_are_round_numbers() {
+    let at = Scratch::new();
+    let (scene, given) = (at.file("pipe.toml"), at.file("grid.json"));
+    fs::write(&scene, "[[solid]]\nshape = \"cylinder\"\nfrom = [0, 0.5, 0.5]\nto = [0.6, 0.5, 0.5]\nradius = 0.1\n")
+        .expect("written");
+    fs::write(&given, "{\"origin\": [-0.1, 0.3, 0.3], \"spacing\": [0.1, 0.1, 0.1], \"cells\": [8, 4, 4]}")
+        .expect("written");
+    let report = at.file("r.json");
+    let output = voidage(&[&"porosity", &scene, &"--spacing", &"0.1", &"--report", &report, &"-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(json(&report)["grid"]["bounds"], serde_json::json!([[-0.1, 0.3, 0.3], [0.7, 0.7, 0.7]]));
+    for how in [&["--spacing", "0.1"], &["--grid", given.to_str().expect("a name")]] {
+        let output = voidage(&[&"porosity", &scene, &how[0], &how[1], &"--npy", &at.file("n"), &"-q"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let beta = array(&at.file("n/beta_x.npy"));
+        let middle = |i: usize| 1.0 - beta[i + 9 * (1 + 4)];
+        let quarter = std::f64::consts::PI / 4.0;
+        let expected = [0.0, quarter, quarter, quarter, quarter, quarter, quarter, quarter, 0.0];
+        for (i, solid) in expected.into_iter().enumerate() {
+            assert!((middle(i) - solid).abs() < 1e-12, "{how:?}: face {i} is {} solid", middle(i));
+        }
+    }
+}

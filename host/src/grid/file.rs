@@ -6,7 +6,7 @@
 //!   points that many cells, the last `ratio` times as long as the first (−r means 1/r);
 //! - `origin`, `spacing`, `cells`: three numbers each.
 
-use super::{Edges, MAX_AXIS, few_enough};
+use super::{Edges, MAX_AXIS, decimal, few_enough, rounding};
 use crate::error::{Error, Result};
 use crate::keys::reader::{meant, misfit, nearest, not_known};
 use crate::keys::value::{Entry, Value};
@@ -161,7 +161,11 @@ impl GridTable {
         few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
             .map_err(|reason| wrong("cells", reason))?;
         Ok(Edges([0, 1, 2].map(|a| match cells.get(a) {
-            Some(&n) => (0..=n).map(|i| origin[a] + spacing[a] * i as f64).collect(),
+            Some(&n) => {
+                let room = rounding(origin[a], origin[a] + spacing[a] * n as f64);
+                let edge = |i: usize| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64, room) };
+                (0..=n).map(edge).collect()
+            }
             None => UNIT_CELL.to_vec(),
         })))
     }
