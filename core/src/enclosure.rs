@@ -15,4 +15,4 @@ mod filled;
 mod union;
 
 pub use constraint::{BoxAround, Constraint, Enclosure};
-pub use union::{Effort, Enclosed, excess, union_bounds};
+pub use union::{Enclosed, UnionEffort, excess, union_bounds};

@@ -76,7 +76,7 @@ impl Exact {
     fn depth(&self, p: DVec3) -> f64 {
         let along = |from: DVec3, to: DVec3, radius: f64| {
             let (axis, [q, lost]) = (to - from, apart(p, from));
-            let unit = axis.normalize();
+            let unit = direction(axis);
             (q.dot(unit), beyond([unit.cross(q), unit.cross(lost)], radius), axis.length())
         };
         match *self {
@@ -100,7 +100,7 @@ impl Exact {
             }
             Exact::Frustum(from, to, [one, other]) => {
                 let (at, _, length) = along(from, to, 0.0);
-                let (unit, [q, lost]) = ((to - from).normalize(), apart(p, from));
+                let (unit, [q, lost]) = (direction(to - from), apart(p, from));
                 let [radius, rest] = grown(one, (other - one) * (at / length));
                 let off = beyond([unit.cross(q), unit.cross(lost)], radius.max(0.0)) - rest;
                 off.max(-at).max(at - length)
@@ -281,10 +281,15 @@ fn between(q: DVec3, e: DVec3, axis: DVec3) -> Option<[f64; 2]> {
     Some([s.min(t), s.max(t)])
 }
 
+/// The unit vector along an axis; divided, as times the reciprocal of its length even one along a coordinate axis is off by its last bit.
+fn direction(axis: DVec3) -> DVec3 {
+    axis / axis.length()
+}
+
 fn tube(p: DVec3, e: DVec3, from: DVec3, to: DVec3, radius: f64) -> Option<[f64; 2]> {
     let (axis, [q, lost]) = (to - from, apart(p, from));
     let slab = between(q, e, axis)?;
-    let unit = axis.normalize();
+    let unit = direction(axis);
     let (a, b) = (unit.cross(e), unit.cross(q));
     if a == DVec3::ZERO {
         return (beyond([b, unit.cross(lost)], radius) <= 0.0).then_some(slab);
@@ -295,7 +300,7 @@ fn tube(p: DVec3, e: DVec3, from: DVec3, to: DVec3, radius: f64) -> Option<[f64;
 fn cone(p: DVec3, e: DVec3, base: DVec3, apex: DVec3, radius: f64) -> Option<[f64; 2]> {
     let (axis, q) = (base - apex, p - apex);
     let slab = between(q, e, axis)?;
-    let (unit, slope) = (axis.normalize(), radius / axis.length());
+    let (unit, slope) = (direction(axis), radius / axis.length());
     let (a, b) = (unit.cross(e), unit.cross(q));
     let (s, t) = (unit.dot(e) * slope, unit.dot(q) * slope);
     let (a2, a1, a0) = (a.dot(a) - s * s, a.dot(b) - s * t, b.dot(b) - t * t);
@@ -351,7 +356,7 @@ fn grown(radius: f64, by: f64) -> [f64; 2] {
 fn frustum(p: DVec3, e: DVec3, from: DVec3, to: DVec3, [one, other]: [f64; 2]) -> Option<[f64; 2]> {
     let (axis, [q, lost]) = (to - from, apart(p, from));
     let slab = between(q, e, axis)?;
-    let (unit, slope) = (axis.normalize(), (other - one) / axis.length());
+    let (unit, slope) = (direction(axis), (other - one) / axis.length());
     let radius = grown(one, unit.dot(q) * slope);
     within_growing(unit.cross(e), [unit.cross(q), unit.cross(lost)], radius, unit.dot(e) * slope, slab)
 }

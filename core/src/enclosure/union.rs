@@ -7,12 +7,11 @@ use super::constraint::{BoxAround, Constraint, Enclosure, MOST_CONSTRAINTS};
 use super::filled::filled;
 use crate::grid::bounds::Bounds;
 use crate::number::plane::P2;
-use crate::number::real::Real;
 use heapless::Vec;
 
 /// How close bounds are wanted, and what that may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
+pub struct UnionEffort {
     /// Bounds this far apart will do, as a share of the box.
     pub tol: f64,
     /// How many solids may be looked at in all parts of the box together; then the bounds are further apart.
@@ -40,9 +39,10 @@ const MOST_LEVELS: usize = 20;
 /// Solids that the lists of all levels hold; where they are full, a part of a box looks at those of the box once more.
 const MOST_LISTED: usize = 256;
 
-/// The first division is for no smaller tolerance; each further one for one so many times smaller.
-const FIRST_TOLERANCE: f64 = 1e-4;
-const FINER: f64 = 1.0 / 64.0;
+/// The first division is for no smaller tolerance; each further one for one at most so many times smaller.
+const FIRST_TOLERANCE: f64 = 1e-2;
+const FIRST_STEP: f64 = 1.0 / 8.0;
+const FINER: f64 = 1.0 / 128.0;
 
 /// Bounds of parts along a curve are as close as this share of the tolerance asks.
 const ALONG_CURVE: f64 = 1.0 / 3.0;
@@ -57,16 +57,21 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const CLOSEST: f64 = 1e-12;
 
 /// Bounds of the share of a box that the union of some solids has, from bounds of the sum of their shares. A box that is flat along an axis is a face.
-pub fn union_bounds<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], sum: Bounds<f64>, effort: Effort) -> Bounds<f64> {
+pub fn union_bounds<E: Enclosed>(
+    solids: &[E],
+    sides: [[f64; 2]; 3],
+    sum: Bounds<f64>,
+    effort: UnionEffort,
+) -> Bounds<f64> {
     let [lower, upper] = excess(solids, sides, effort);
     Bounds { lower: (sum.lower - upper).max(0.0), upper: (sum.upper - lower).min(1.0) }
 }
 
 /// Bounds of the sum of the shares that some solids have of a box, less that of their union.
-pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], Effort { tol, most }: Effort) -> [f64; 2] {
+pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], UnionEffort { tol, most }: UnionEffort) -> [f64; 2] {
     let place = &BoxAround::new(sides);
     let mut found = [0.0, solids.len() as f64];
-    let mut looked_at = 0;
+    let (mut looked_at, mut last) = (0, None);
     let mut enough = if tol >= FIRST_TOLERANCE { tol } else { FIRST_TOLERANCE };
     loop {
         let (bounds, cost) = divided(solids, place, enough * ALONG_CURVE, most.saturating_sub(looked_at));
@@ -74,14 +79,18 @@ pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], Effort { tol, mos
         found = [found[0].max(bounds[0]), found[1].min(bounds[1])];
         let gap = found[1] - found[0];
         looked_at += cost;
-        let finer = (0.7 * tol / gap).clamp(FINER, 0.5);
-        // The number of parts grows with the cube root of the tolerance where surfaces are smooth.
-        let affordable = cost as f64 / Real::sqrt(finer) <= most.saturating_sub(looked_at) as f64;
-        if gap <= tol || gap <= CLOSEST || !affordable || !(gap < 0.75 * before) {
+        // By which power of the tolerance the cost grows: a third where surfaces meet along curves, one where they coincide. At first a small step tells.
+        let growth = last.map(|(other, tol): (f64, f64)| libm::log(cost as f64 / other) / libm::log(tol / enough));
+        let wanted = (0.7 * tol / gap).clamp(if growth.is_some() { FINER } else { FIRST_STEP }, 0.5);
+        let left = cost as f64 / most.saturating_sub(looked_at) as f64;
+        let finer = wanted.max(libm::pow(left, 1.0 / growth.unwrap_or(1.0).clamp(0.3, 1.5)));
+        let in_vain = gap > 0.9 * before && last.is_some_and(|(other, _)| cost as f64 > 1.5 * other);
+        if gap <= tol || gap <= CLOSEST || !(finer <= 0.5) || in_vain || !(enough > CLOSEST) {
             // Bounds that contradict each other do so by rounding.
             return if gap >= 0.0 { found } else { bounds };
         }
-        enough *= finer;
+        last = Some((cost as f64, enough));
+        enough = finer * enough.min(gap);
     }
 }
 
@@ -195,8 +204,34 @@ impl<E: Enclosed> Walk<'_, E> {
             (0, 0 | 1) => Looked::Known([0.0; 2]),
             (1.., _) => Looked::Known(self.beside_holder(level, holding, close)),
             _ if few => Looked::Cut(between_polytopes(&parts, &place)),
-            _ => Looked::Cut([0.0, (cutting - 1) as f64]),
+            _ => Looked::Cut(self.beside_hub(level)),
         }
+    }
+
+    /// The excess in a part that many solids cut: not less than what one of them has in common with each of the others, and not more than
+    /// all but the largest have.
+    fn beside_hub(&mut self, level: &Level) -> P2 {
+        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
+        let place = level.place;
+        let mut hub: Option<(usize, Constraints)> = None;
+        let (mut lower, mut sum, mut largest) = (0.0, 0.0, 0.0_f64);
+        for at in first..end {
+            let number = if level.listed.is_some() { self.lists.get(at).copied() } else { Some(at as u32) };
+            let Some(solid) = number.and_then(|n| self.solids.get(n as usize)) else { continue };
+            self.looked_at += 1;
+            solid.enclosures(&place, &mut |enclosure| {
+                let Enclosure::Within(constraints) = enclosure else { return };
+                let outer = share_of_polytope(constraints.iter(), false);
+                (sum, largest) = (sum + outer, largest.max(outer));
+                match &hub {
+                    None => hub = Some((at, constraints)),
+                    Some((other, _)) if *other == at => {}
+                    Some((_, of_hub)) => lower += share_of_polytope(of_hub.iter().chain(&constraints), true),
+                }
+            });
+        }
+        let rounding = rounding_in(&place) * (end - first) as f64;
+        [f64::max(lower - rounding, 0.0), sum - largest + rounding]
     }
 
     /// The excess in a part that some solids hold: all but one of them, and the shares of the others.
@@ -282,7 +317,7 @@ fn excess_of_polytopes(parts: &[Constraints], rest: bool) -> f64 {
     let share = |set: usize| {
         let of_set = || parts.iter().enumerate().filter(move |(n, _)| set >> n & 1 == 1).flat_map(|(_, part)| part);
         let share = share_of_polytope(of_set(), rest);
-        if set.count_ones() % 2 == 0 { share } else { -share }
+        if set.count_ones().is_multiple_of(2) { share } else { -share }
     };
     (1..=sets).filter(|set| set.count_ones() > 1).map(share).sum()
 }

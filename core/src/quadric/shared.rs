@@ -13,8 +13,9 @@ use crate::number::plane::P2;
 use crate::number::real::Real;
 use heapless::Vec;
 
-/// Most slices of what some parts have in common; and of them, most at hand at once.
-const MOST_SLICES: usize = 1 << 16;
+/// Most slices of what some parts have in common, and how many times as many as a smooth surface needs; and of them, most at hand at once.
+const MOST_SLICES: f64 = 65536.0;
+const SLICES: f64 = 16.0;
 const MOST_AT_ONCE: usize = 40;
 
 /// Most ranges of heights that wait to be looked at.
@@ -211,6 +212,7 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
         let found = Slice::<N>::new(parts.clone(), within, at).common();
         Sample { at, root: found.area.map(Real::sqrt), height: found.height, length: found.length }
     };
+    let most = (SLICES * Real::sqrt(all * (last - first) / enough)).clamp(512.0, MOST_SLICES) as usize;
     let mut found = [0.0; 2];
     let mut waiting: Vec<(P2, f64), MOST_RANGES> = Vec::new();
     let _ = waiting.push(([first, last], enough));
@@ -218,7 +220,7 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
     while let Some((range, enough)) = waiting.pop() {
         let (bounds, slices) = in_range(&slice, range, [all, within.v[1] - within.v[0]], enough);
         spent += slices;
-        let more = bounds[1] - bounds[0] > enough && spent < MOST_SLICES && waiting.len() + 2 <= MOST_RANGES;
+        let more = bounds[1] - bounds[0] > enough && spent < most && waiting.len() + 2 <= MOST_RANGES;
         if more {
             let middle = 0.5 * (range[0] + range[1]);
             let _ = waiting.push(([middle, range[1]], 0.5 * enough));

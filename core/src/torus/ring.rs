@@ -30,7 +30,7 @@ pub(super) fn ahead(q: P2, of: P2) -> f64 {
 }
 
 /// Flat ends, in planes through the axis.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ends {
     /// Unit normals into the solid, of its start and its end.
     pub inward: [P3; 2],
@@ -43,7 +43,7 @@ pub(super) struct Ends {
 }
 
 /// A torus or a part of one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ring {
     pub center: P3,
     /// Unit vectors: towards the start, a quarter of a turn on, and the axis.

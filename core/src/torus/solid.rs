@@ -11,7 +11,7 @@ use core::f64::consts::PI;
 use core::ops::Range;
 
 /// A torus, or a part of a turn of one between flat ends. Not convex.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorusSolid {
     ring: Ring,
 }

@@ -54,6 +54,9 @@ pub struct SizeClass {
 /// A size that is beyond the end of its class by no more than this share is of that class: pipes are often made of facets.
 const SLACK: f64 = 1e-3;
 
+/// Cells with less solid than this share have none but for rounding: what touches them has no size there.
+const TRACE: f64 = 1e-9;
+
 /// Ends of the classes in m.
 const SIZES: [f64; 7] = [0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
@@ -77,7 +80,7 @@ fn of_zone(grid: &Grid<f64>, zone: &Zone, result: &Porosity, obstacles: &Resista
         let solid = (1.0 - result.beta.v[n]) * size;
         (count, volume, solid_volume) = (count + 1, volume + size, solid_volume + solid);
         let length = obstacles.l_obs[n];
-        if length > 0.0 {
+        if length > 0.0 && 1.0 - result.beta.v[n] > TRACE {
             let class = &mut classes[SIZES.partition_point(|&end| end * (1.0 + SLACK) < length)];
             class.solid_volume += solid;
             class.length += obstacles.s[n] * size / (std::f64::consts::PI * length);

@@ -96,7 +96,11 @@ impl FormulaSolid {
 
     /// The same solid once more.
     pub(super) fn is_same(&self, other: &FormulaSolid) -> bool {
-        matches!((&self.kind, &other.kind), (Kind::Quadric(one, _), Kind::Quadric(another, _)) if one == another)
+        match (&self.kind, &other.kind) {
+            (Kind::Quadric(one, _), Kind::Quadric(another, _)) => one == another,
+            (Kind::Torus(one, _), Kind::Torus(another, _)) => one == another,
+            _ => false,
+        }
     }
 
     pub(super) fn pair_with(&self, body: usize) -> Option<Pair> {

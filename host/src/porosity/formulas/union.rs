@@ -3,7 +3,7 @@
 use super::pairs::TOUCHING;
 use super::solid::{FormulaSolid, Kind};
 use glam::DVec3;
-use voidage_core::enclosure::{Effort, union_bounds};
+use voidage_core::enclosure::{UnionEffort, union_bounds};
 use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
@@ -23,7 +23,7 @@ pub(super) fn union_of(
     tol: f64,
 ) -> Bounds<f64> {
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
-    let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, Effort { tol, most }));
+    let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most }));
     let by_sections = || by_sections(solids, sum, cell, tol);
     let sections_first = solids.len() == 2 || cell.size().min_element() == 0.0;
     let ways: [&dyn Fn() -> Option<Bounds<f64>>; 3] = if sections_first {
