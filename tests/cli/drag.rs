@@ -223,6 +223,7 @@ fn what_is_refused() {
         .expect("written");
     let output = voidage(&[&"porosity", &scene, &"--cells", &"4x4x4"]);
     assert!(stderr(&output).contains("the resistance of a porous one is cr"), "{}", stderr(&output));
+    fs::write(&scene, "[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n").expect("written");
     fs::write(&zones, "[[zone]]\nname = \"speck\"\nmin = [0.01, 0.01, 0.01]\nmax = [0.02, 0.02, 0.02]\n")
         .expect("written");
     let output = voidage(&[&"porosity", &scene, &"--cells", &"4x4x4", &"--zones", &zones, &"--report", &report]);
