@@ -32,8 +32,12 @@ impl Edges {
     pub fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Self {
         let axis = |a: usize| {
             let (lo, hi, n) = (lo[a], hi[a], cells[a]);
-            let between = |i: usize| decimal(lo + (hi - lo) * (i as f64 / n as f64), rounding(lo, hi));
-            (0..=n).map(|i| [lo, between(i), hi][usize::from(i > 0) + usize::from(i == n)]).collect()
+            let edge = |i: usize| match i {
+                0 => lo,
+                i if i == n => hi,
+                i => decimal(lo + (hi - lo) * (i as f64 / n as f64), rounding(lo, hi)),
+            };
+            (0..=n).map(edge).collect()
         };
         Edges([axis(0), axis(1), axis(2)])
     }

@@ -218,6 +218,27 @@ fn cell(random: &mut Random) -> [[f64; 2]; 3] {
     cell
 }
 
+/// Solids of some family, and a cell or face.
+struct Meeting {
+    family: Family,
+    exact: Vec<Exact>,
+    all: Vec<QuadricSolid>,
+    cell: [[f64; 2]; 3],
+    /// Volume of the cell, area of the face.
+    size: f64,
+}
+
+impl Meeting {
+    fn new(random: &mut Random) -> Self {
+        let family = FAMILIES[random.below(FAMILIES.len())];
+        let exact = solids(random, family);
+        let all = exact.iter().map(quadric).collect();
+        let cell = cell(random);
+        let size = cell.iter().map(|[lo, hi]| if lo == hi { 1.0 } else { hi - lo }).product();
+        Meeting { family, exact, all, cell, size }
+    }
+}
+
 /// A coarse and a fine tolerance, the parts of a cell, and the same at another scale and place, bound the same number; extreme numbers do no
 /// harm.
 ///
@@ -225,11 +246,7 @@ fn cell(random: &mut Random) -> [[f64; 2]; 3] {
 /// If not.
 pub fn bounds_agree(seed: u64) {
     let random = &mut Random::new(seed);
-    let family = FAMILIES[random.below(FAMILIES.len())];
-    let exact = solids(random, family);
-    let all: Vec<QuadricSolid> = exact.iter().map(quadric).collect();
-    let cell = cell(random);
-    let size = cell.iter().map(|[lo, hi]| if lo == hi { 1.0 } else { hi - lo }).product::<f64>();
+    let Meeting { family, exact, all, cell, size } = Meeting::new(random);
     let rough = if family == Family::Huge { 1e-9 } else { 1e-11 };
     let bounds = |cell: [[f64; 2]; 3], enough: f64| excess(&all, cell, enough).expect("few solids");
     let fine = bounds(cell, 1e-5 * size);
@@ -305,11 +322,7 @@ fn extremes(random: &mut Random) {
 /// If not.
 pub fn planes_agree(seed: u64) {
     let random = &mut Random::new(seed);
-    let family = FAMILIES[random.below(FAMILIES.len())];
-    let exact = solids(random, family);
-    let all: Vec<QuadricSolid> = exact.iter().map(quadric).collect();
-    let cell = cell(random);
-    let size = cell.iter().map(|[lo, hi]| if lo == hi { 1.0 } else { hi - lo }).product::<f64>();
+    let Meeting { family, exact, all, cell, size } = Meeting::new(random);
     let sections = excess(&all, cell, 1e-5 * size).expect("few solids").map(|x| x / size);
     // Coordinates are rounded as a share of the cell's sizes, and of a huge solid.
     let least = cell.iter().filter(|[lo, hi]| lo < hi).fold(1.0, |least, [lo, hi]| f64::min(least, hi - lo));

@@ -63,6 +63,29 @@ pub struct Constraint {
 }
 
 impl Constraint {
+    /// The side of a plane to which its unit normal `inward` points; `from` leads from a point of the plane to the middle of the box, and its terms are rounded by
+    /// the share `rounding`. None if the box lies in the plane.
+    #[must_use]
+    pub fn side_of_plane(place: &BoxAround, inward: [f64; 3], from: [f64; 3], rounding: f64) -> Option<Self> {
+        let slope = Axis::ALL.map(|n| -inward[n] * place.half[n]);
+        let terms = Axis::ALL.map(|n| -inward[n] * from[n]);
+        let middle = terms[0] + terms[1] + terms[2];
+        if slope == [0.0; 3] && middle == 0.0 {
+            return None;
+        }
+        // A difference of two coordinates, of a plane across an axis, has the right sign.
+        let exact = inward.iter().filter(|a| **a != 0.0).count() == 1;
+        let sizes = terms.iter().chain(&slope).map(|t| t.abs()).sum::<f64>();
+        let room = if exact { 0.0 } else { rounding * sizes + place.rounding() };
+        Some(Constraint { middle, slope, rest: [-room, room] })
+    }
+
+    /// What no point is inside of.
+    #[must_use]
+    pub const fn nowhere() -> Self {
+        Constraint { middle: 1.0, slope: [0.0; 3], rest: [0.0; 2] }
+    }
+
     /// How far the affine function is from its value in the middle, at most.
     fn reach(&self) -> f64 {
         self.slope[0].abs() + self.slope[1].abs() + self.slope[2].abs()
@@ -104,11 +127,5 @@ impl Enclosure {
             }
         }
         Enclosure::Within(kept)
-    }
-
-    /// It holds the box.
-    #[must_use]
-    pub fn is_closed(&self) -> bool {
-        matches!(self, Enclosure::Within(kept) if kept.is_empty())
     }
 }

@@ -7,6 +7,7 @@ use super::constraint::{BoxAround, Constraint, Enclosure, MOST_CONSTRAINTS};
 use super::filled::filled;
 use crate::grid::bounds::Bounds;
 use crate::number::plane::P2;
+use core::ops::Range;
 use heapless::Vec;
 
 /// How close bounds are wanted, and what that may take.
@@ -72,7 +73,7 @@ pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], UnionEffort { tol
     let place = &BoxAround::new(sides);
     let mut found = [0.0, solids.len() as f64];
     let (mut looked_at, mut last) = (0, None);
-    let mut enough = if tol >= FIRST_TOLERANCE { tol } else { FIRST_TOLERANCE };
+    let mut enough = tol.max(FIRST_TOLERANCE);
     loop {
         let (bounds, cost) = divided(solids, place, enough * ALONG_CURVE, most.saturating_sub(looked_at));
         let before = found[1] - found[0];
@@ -165,7 +166,19 @@ fn divided<E: Enclosed>(solids: &[E], place: &BoxAround, room: f64, most: usize)
     (if bounds[0] <= bounds[1] { bounds } else { [0.0, solids.len() as f64] }, walk.looked_at)
 }
 
-impl<E: Enclosed> Walk<'_, E> {
+impl<'a, E: Enclosed> Walk<'a, E> {
+    /// Where the solids of a part stand in its list, or in that of all.
+    fn places(&self, level: &Level) -> Range<usize> {
+        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
+        first..end
+    }
+
+    /// The solid in a place, with its number.
+    fn solid(&self, level: &Level, at: usize) -> Option<(u32, &'a E)> {
+        let number = if level.listed.is_some() { *self.lists.get(at)? } else { at as u32 };
+        Some((number, self.solids.get(number as usize)?))
+    }
+
     /// Adds the share of one of so many parts, and forgets its list.
     fn add(&mut self, bounds: P2, parts: f64, end: usize) {
         self.sum = [self.sum[0] + bounds[0] / parts, self.sum[1] + bounds[1] / parts];
@@ -178,10 +191,8 @@ impl<E: Enclosed> Walk<'_, E> {
         let (mut holding, mut cutting) = (0, 0);
         let mut parts: Vec<Constraints, MOST_PARTS> = Vec::new();
         let (mut few, mut fits) = (true, true);
-        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
-        for at in first..end {
-            let number = if level.listed.is_some() { self.lists.get(at).copied() } else { Some(at as u32) };
-            let Some((number, solid)) = number.and_then(|n| Some((n, self.solids.get(n as usize)?))) else { continue };
+        for at in self.places(level) {
+            let Some((number, solid)) = self.solid(level, at) else { continue };
             self.looked_at += 1;
             let (mut holds, mut reaches) = (false, false);
             solid.enclosures(&place, &mut |enclosure| {
@@ -202,6 +213,7 @@ impl<E: Enclosed> Walk<'_, E> {
         }
         match (holding, cutting) {
             (0, 0 | 1) => Looked::Known([0.0; 2]),
+            (1.., 0) => Looked::Known([(holding - 1) as f64; 2]),
             (1.., _) => Looked::Known(self.beside_holder(level, holding, close)),
             _ if few => Looked::Cut(between_polytopes(&parts, &place)),
             _ => Looked::Cut(self.beside_hub(level)),
@@ -211,13 +223,11 @@ impl<E: Enclosed> Walk<'_, E> {
     /// The excess in a part that many solids cut: not less than what one of them has in common with each of the others, and not more than
     /// all but the largest have.
     fn beside_hub(&mut self, level: &Level) -> P2 {
-        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
         let place = level.place;
         let mut hub: Option<(usize, Constraints)> = None;
         let (mut lower, mut sum, mut largest) = (0.0, 0.0, 0.0_f64);
-        for at in first..end {
-            let number = if level.listed.is_some() { self.lists.get(at).copied() } else { Some(at as u32) };
-            let Some(solid) = number.and_then(|n| self.solids.get(n as usize)) else { continue };
+        for at in self.places(level) {
+            let Some((_, solid)) = self.solid(level, at) else { continue };
             self.looked_at += 1;
             solid.enclosures(&place, &mut |enclosure| {
                 let Enclosure::Within(constraints) = enclosure else { return };
@@ -230,17 +240,15 @@ impl<E: Enclosed> Walk<'_, E> {
                 }
             });
         }
-        let rounding = rounding_in(&place) * (end - first) as f64;
+        let rounding = rounding_in(&place) * self.places(level).len() as f64;
         [f64::max(lower - rounding, 0.0), sum - largest + rounding]
     }
 
     /// The excess in a part that some solids hold: all but one of them, and the shares of the others.
     fn beside_holder(&mut self, level: &Level, holding: usize, close: f64) -> P2 {
         let mut sum = [(holding - 1) as f64; 2];
-        let [first, end] = level.listed.unwrap_or([0, self.solids.len()]);
-        for at in first..end {
-            let number = if level.listed.is_some() { self.lists.get(at).copied() } else { Some(at as u32) };
-            let Some(solid) = number.and_then(|n| self.solids.get(n as usize)) else { continue };
+        for at in self.places(level) {
+            let Some((_, solid)) = self.solid(level, at) else { continue };
             if let Some([lower, upper]) = share_of(solid, &level.place, BESIDE * close, &mut self.looked_at) {
                 sum = [sum[0] + lower, sum[1] + upper];
             }

@@ -13,7 +13,7 @@ use crate::number::axis::Axis;
 /// Rounding of the sums below, a few units in the last place of their terms.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// Twice a symmetric matrix, its diagonal and what is beside it: `yz`, `zx`, `xy`.
+/// A quadratic form by its symmetric matrix: the diagonal, and what is beside it: `yz`, `zx`, `xy`.
 struct Quadratic {
     squares: [f64; 3],
     products: [f64; 3],
@@ -119,17 +119,9 @@ impl Part {
 impl End {
     /// Beyond its plane; none if the box lies in that plane, and points of it belong to the solid.
     fn constraint(&self, place: &BoxAround) -> Option<Constraint> {
-        let slope = Axis::ALL.map(|n| -self.inward[n] * place.half[n]);
-        let terms = Axis::ALL.map(|n| -self.inward[n] * (place.middle[n] - self.center[n]));
-        let middle = terms[0] + terms[1] + terms[2];
-        if slope == [0.0; 3] && middle == 0.0 {
-            return (!self.closed).then_some(Constraint { middle: 1.0, slope, rest: [0.0; 2] });
-        }
-        // A difference of two coordinates of a plane across an axis has the right sign.
-        let exact = self.inward.iter().filter(|a| **a != 0.0).count() == 1;
-        let sizes = terms.iter().chain(&slope).map(|t| t.abs()).sum::<f64>();
-        let rounding = if exact { 0.0 } else { ROUNDING * sizes + place.rounding() };
-        Some(Constraint { middle, slope, rest: [-rounding, rounding] })
+        let from = Axis::ALL.map(|n| place.middle[n] - self.center[n]);
+        let side = Constraint::side_of_plane(place, self.inward, from, ROUNDING);
+        side.or_else(|| (!self.closed).then(Constraint::nowhere))
     }
 }
 

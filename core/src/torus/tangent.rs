@@ -14,19 +14,6 @@ use crate::number::axis::Axis;
 /// Rounding of the sums below, a few units in the last place of their terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Where a linear function given by its normal, through the centre, is positive or zero.
-fn beyond(normal: P3, place: &BoxAround, from: P3) -> Option<Constraint> {
-    let slope = Axis::ALL.map(|n| -normal[n] * place.half[n]);
-    let middle = -dot(normal, from);
-    if slope == [0.0; 3] && middle == 0.0 {
-        return None;
-    }
-    let exact = normal.iter().filter(|a| **a != 0.0).count() == 1;
-    let sizes: f64 = Axis::ALL.into_iter().map(|n| (normal[n] * from[n]).abs() + slope[n].abs()).sum();
-    let rounding = if exact { 0.0 } else { ROUNDING * sizes + place.rounding() };
-    Some(Constraint { middle, slope, rest: [-rounding, rounding] })
-}
-
 impl Enclosed for TorusSolid {
     /// Of more than half a turn two parts.
     fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure)) {
@@ -34,7 +21,7 @@ impl Enclosed for TorusSolid {
         let from = Axis::ALL.map(|n| place.middle[n] - ring.center[n]);
         let curved = ring.curved_constraint(place, from);
         let mut between = |normals: &[P3]| {
-            let ends = normals.iter().filter_map(|normal| beyond(*normal, place, from));
+            let ends = normals.iter().filter_map(|normal| Constraint::side_of_plane(place, *normal, from, ROUNDING));
             tell(Enclosure::new([curved].into_iter().chain(ends)));
         };
         match &ring.ends {

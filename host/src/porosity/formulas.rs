@@ -1,8 +1,8 @@
-//! Solids by formula in a layer: closed forms, and sections where two of them truly meet in a cell.
+//! Solids by formula in a layer: closed forms, and bounds of the union where two of them truly meet in a cell.
 //!
 //! Shares of solids that do not meet add up, and that is exact. Which pairs meet is asked of GJK once for each pair of solids whose boxes
-//! overlap. Only in a cell or face that two such solids share is what they have in common taken off ([`share_of_union`](voidage_core::quadric::share_of_union));
-//! with tori, or too many solids, their union is subdivided there. A solid that closes the cell settles it.
+//! overlap. Only in a cell or face that two such solids share is what they have in common taken off, by sections or by planes between which they lie
+//! (`union`). A solid that closes the cell settles it.
 
 mod pairs;
 mod round;
