@@ -21,7 +21,7 @@
 //!
 //! A file uses only those above it in this list:
 //!
-//! 1. [`support`]: support mappings, and bodies made of bodies
+//! 1. [`support`]: support mappings, and bodies made of bodies; `opaque`: a body behind a pointer
 //! 2. [`shape`]: points, segments, triangles, boxes, balls, cylinders, cones, hulls
 //! 3. [`sat`]: triangle against box
 //! 4. [`simplex`]: where the origin lies in a simplex, with proof
@@ -37,6 +37,7 @@ pub mod chord;
 pub mod containment;
 pub mod exact;
 pub mod gjk;
+mod opaque;
 pub mod polytope;
 mod query;
 pub mod sat;

@@ -183,9 +183,7 @@ pub unsafe fn distance<R: Real>(pair: &Pair<R>, distance: *mut Distance<R>) -> A
     if distance.is_null() {
         return Err(Status::Null.of(c"distance"));
     }
-    let found = unsafe { pair.ask(|query| told(query.distance()))? };
-    unsafe { give(distance, found) };
-    Ok(())
+    unsafe { pair.ask(|query| give(distance, told(query.distance()))) }
 }
 
 fn told<R: Real>(found: Clearance<R::Vector>) -> Distance<R> {
@@ -194,8 +192,8 @@ fn told<R: Real>(found: Clearance<R::Vector>) -> Distance<R> {
         Clearance::Apart { distance, a, b, lower, upper } => {
             Distance { contact: Contact::Apart as i32, distance, lower, upper, a: a.to_array(), b: b.to_array() }
         }
-        Clearance::Touching(_) => Distance { contact: Contact::Touching as i32, ..none },
-        Clearance::Overlapping(_) => Distance { contact: Contact::Overlapping as i32, ..none },
+        Clearance::Touching => Distance { contact: Contact::Touching as i32, ..none },
+        Clearance::Overlapping => Distance { contact: Contact::Overlapping as i32, ..none },
         Clearance::Undecided { lower, upper, .. } => {
             Distance { contact: Contact::Undecided as i32, lower, upper, ..none }
         }

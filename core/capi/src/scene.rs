@@ -5,7 +5,7 @@ use crate::input::{Arrays, give, given};
 use crate::memory::{Cut, Measure, Memory};
 use crate::status::{Answer, Status};
 use crate::surface::{Checked, Question, Reply, SurfaceWork, run};
-use crate::types::{Body, Grid, Options, Scene};
+use crate::types::{Body, Grid, Options, PorosityReport, Scene};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::solids::{RoundMemory, RoundShape, RoundSolid, RoundSolids};
 use voidage_core::subdivide::{Candidate, LeafRule, SubdivisionMemory, SubdivisionRule};
@@ -107,7 +107,8 @@ pub unsafe fn porosity<R: Real>(asked: &Asked<R>, reply: &Reply<R>) -> Answer {
         let rule = SubdivisionRule { leaf: LeafRule::Plane, depth: question.options.depth, tol: question.options.tol };
         let others = RoundSolids::new(&question.window.grid, solids, rule, memory);
         let mut others = others.map_err(|_| Status::Memory.of(c"work"))?;
-        let mut report = run(&question, &mut outputs, surface, &mut others)?;
+        let mut report = PorosityReport::default();
+        run(&question, &mut outputs, surface, &mut others, &mut report)?;
         let queries = others.queries();
         (report.queries, report.undecided) = (queries.queries, queries.undecided);
         give(reply.report, report);

@@ -240,14 +240,15 @@ fn layer<'o, R: Real>(slices: &'o mut Slices<R>, window: &Window<R>, n: usize) -
     )
 }
 
-/// Computes the layers asked for.
+/// Computes the layers asked for, and adds to `total` what was found.
 #[inline(never)]
 pub fn run<V: Vector, O: OtherBodies<V>>(
     asked: &Checked<V>,
     outputs: &mut Outputs<V::Scalar>,
     work: SurfaceWork<V>,
     others: &mut O,
-) -> Answer<PorosityReport<V::Scalar>> {
+    total: &mut PorosityReport<V::Scalar>,
+) -> Answer {
     let window = &asked.window;
     let SurfaceWork { bodies, numbers, groups, reals, flags, layer_numbers, layer_groups, union } = work;
     let options = LayerOptions { areas: outputs.areas, ..asked.options };
@@ -256,7 +257,6 @@ pub fn run<V: Vector, O: OtherBodies<V>>(
     let mut memory = memory.map_err(|_| Status::Memory.of(c"work"))?;
     let zero = V::Scalar::ZERO;
     outputs.value.iter_mut().for_each(|field| field.fill(zero));
-    let mut total = PorosityReport::default();
     let mut worst = zero;
     for n in 0..window.count {
         let value = layer(&mut outputs.value, window, n);
@@ -267,9 +267,9 @@ pub fn run<V: Vector, O: OtherBodies<V>>(
                 (worst, total.leaky_body) = (defects.leak, body);
             }
         })?;
-        add(&mut total, &found);
+        add(total, &found);
     }
-    Ok(total)
+    Ok(())
 }
 
 fn add<R: Real>(total: &mut PorosityReport<R>, layer: &LayerReport<R>) {
@@ -313,9 +313,13 @@ unsafe fn surface_of<'a, R: Real>(question: &Question<R>, arrays: &mut Arrays) -
 /// As of [`Arrays::read`] and [`Arrays::write`]; `report` is null or can be written.
 pub unsafe fn porosity<R: Real>(question: &Question<R>, reply: &Reply<R>) -> Answer {
     unsafe {
-        let (asked, mut outputs, needed) = opened(question, reply)?;
-        let work = asked.work(&mut Cut::new(reply.work, needed), false);
-        give(reply.report, run(&asked, &mut outputs, work, &mut ())?);
+        // Looked at where it lies: moved, it would lie on the stack twice.
+        let mut opened = opened(question, reply);
+        let (asked, outputs, needed) = opened.as_mut().map_err(|refusal| *refusal)?;
+        let work = asked.work(&mut Cut::new(reply.work, *needed), false);
+        let mut report = PorosityReport::default();
+        run(asked, outputs, work, &mut (), &mut report)?;
+        give(reply.report, report);
     }
     Ok(())
 }

@@ -70,10 +70,10 @@ pub enum Clearance<V: Vector> {
         /// The true distance is not more than this.
         upper: V::Scalar,
     },
-    /// The distance is zero, and no inner point is shared; see [`Meeting::Touching`].
-    Touching(ExactAxis<V::Scalar>),
-    /// An inner point is shared.
-    Overlapping(MeetingProof<V>),
+    /// The distance is zero, and no inner point is shared; [`meets`] gives the proof.
+    Touching,
+    /// An inner point is shared; [`meets`] gives the proof.
+    Overlapping,
     /// Rounding hides whether they meet.
     Undecided {
         /// The true distance, 0 if they meet, is not less than this.
@@ -199,7 +199,7 @@ impl<'q, 'a, 'b, V: Vector> BodyQuery<'q, 'a, 'b, V> {
             Distance::Separated { distance, a, b, lower, upper, .. } => {
                 Clearance::Apart { distance, a, b, lower, upper }
             }
-            Distance::Overlapping { proof } => Clearance::Overlapping(MeetingProof::Points(proof)),
+            Distance::Overlapping { .. } => Clearance::Overlapping,
             Distance::Undecided { lower, upper, reason } => {
                 self.exact_distance().unwrap_or(Clearance::Undecided { lower, upper, reason })
             }
@@ -222,12 +222,13 @@ impl<'q, 'a, 'b, V: Vector> BodyQuery<'q, 'a, 'b, V> {
     }
 
     /// The exact distance, if both bodies are given by vertices.
+    #[inline(never)]
     fn exact_distance(&self) -> Option<Clearance<V>> {
         let axis = self.hint.unwrap_or(self.b.center() - self.a.center());
-        match self.exactly(axis)? {
-            Meeting::Touching(axis) => return Some(Clearance::Touching(axis)),
-            Meeting::Overlapping(proof) => return Some(Clearance::Overlapping(proof)),
-            Meeting::Apart(_) | Meeting::Undecided(_) => {}
+        match self.exact_contact(axis)? {
+            Contact::Touching => return Some(Clearance::Touching),
+            Contact::Overlapping => return Some(Clearance::Overlapping),
+            Contact::Disjoint => {}
         }
         let (a, b) = (self.a.as_vertices()?, self.b.as_vertices()?);
         let found = exact::distance(&a, &b, Some(axis)).ok()?;

@@ -7,6 +7,7 @@
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
 //! - `wall_pushes`: what the walls of watched cells feel of the fluxes
+//! - `solver_calls`: what differs from one Riemann solver to another
 //! - `sweep`: the rows of a slab in order, in tiles that stay in a core's cache
 //! - `flux_choice`: which solvers and gases of the sweep a program links
 //! - `long_line`: a long line of cells in pieces
@@ -20,6 +21,7 @@ pub(crate) mod reconstruct;
 pub(crate) mod rows;
 pub(crate) mod scratch;
 pub(crate) mod slab;
+pub(crate) mod solver_calls;
 pub(crate) mod sweep;
 pub(crate) mod update;
 pub(crate) mod wall_pushes;

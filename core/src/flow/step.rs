@@ -64,7 +64,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         first_order: Option<&[u8]>,
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
-        self.advance_part::<F>(old, new, slab, (dt, first_order, None), scratch)
+        let mut report = Report::new();
+        self.advance_part::<F>(old, new, slab, (dt, first_order, None), scratch, &mut report)?;
+        Ok(report)
     }
 
     /// The same, which also tells what acts on the walls of some cells. One call writes those of its slab, so that callers with threads give each its own.
@@ -89,7 +91,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             at_faces: push_walls,
             in_cell: push_obstacles,
         };
-        self.advance_part::<F>(old, new, slab, (dt, first_order, Some(&walls)), scratch)
+        let mut report = Report::new();
+        self.advance_part::<F>(old, new, slab, (dt, first_order, Some(&walls)), scratch, &mut report)?;
+        Ok(report)
     }
 
     fn advance_part<F: FluxChoice>(
@@ -99,13 +103,14 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         slab: Range<usize>,
         (dt, first_order, walls): (R, Option<&[u8]>, Option<&Walls<'_, R, D>>),
         scratch: &mut [R],
-    ) -> Result<Report<R, D>, Error> {
-        let run = F::sweep(self)?;
+        report: &mut Report<R, D>,
+    ) -> Result<(), Error> {
+        let by = F::sweep(self)?;
         self.check_fields(old)?;
         let cells = self.mesh.cells();
         let slab = if D == 1 { 0..1 } else { slab.start..slab.end.min(cells[D - 1]) };
         if self.mesh.is_empty() || slab.is_empty() {
-            return Ok(Report::new());
+            return Ok(());
         }
         let layer = if D == 1 { cells[0] } else { self.mesh.layer() };
         self.fits(&new.as_fields(), layer * slab.len())?;
@@ -118,9 +123,11 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         }
         let part = Part { old, dt, first_order, layers: slab, reported: 0..cells[0], walls, first: 0 };
         if in_pieces::<D>(self.mesh.len()) {
-            return Ok(long_line::advance(self, &part, new, scratch, run));
+            long_line::advance(self, &part, new, scratch, by, report);
+        } else {
+            sweep::advance(self, &part, new, scratch, by, report);
         }
-        Ok(sweep::advance(self, &part, new, scratch, run))
+        Ok(())
     }
 
     /// Makes a starting field ready for its first step and returns its largest signal rate: clusters whose cells differ much share
@@ -181,7 +188,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.step_by::<AnyFlux>(old, new, dt, marks, scratch)
     }
 
-    /// The same, compiled for some solvers and gases only: `problem.step_by::<OneFlux<Hllc, WithEnergy>>(…)` links some 60 % of the code of
+    /// The same, compiled for some solvers and gases only: `problem.step_by::<OneFlux<Hllc, WithEnergy>>(…)` links less code than
     /// [`Problem::step`].
     ///
     /// # Errors
@@ -194,9 +201,13 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         marks: &mut [u8],
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
-        self.step_in_slabs(old, new, marks, |new, first_order| {
-            self.advance_slab_by::<F>(old, new, 0..self.mesh.cells()[D - 1], dt, first_order, scratch)
-        })
+        let mut report = Report::new();
+        self.with_fallbacks(old, new, marks, &mut report, |new, first_order, report| {
+            *report = Report::new();
+            let all = 0..self.mesh.cells()[D - 1];
+            self.advance_part::<F>(old, new, all, (dt, first_order, None), scratch, report)
+        })?;
+        Ok(report)
     }
 
     /// The same for a caller with threads: `attempt` advances all slabs by one and the same time ([`Problem::advance_slab_by`]), with the marks
@@ -211,20 +222,37 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         marks: &mut [u8],
         mut attempt: impl FnMut(&mut FieldsMut<'_, R, D>, Option<&[u8]>) -> Result<Report<R, D>, Error>,
     ) -> Result<Report<R, D>, Error> {
+        let mut report = Report::new();
+        self.with_fallbacks(old, new, marks, &mut report, |new, first_order, report| {
+            *report = attempt(new, first_order)?;
+            Ok(())
+        })?;
+        Ok(report)
+    }
+
+    /// Attempts until all states are physical, or set to floors; `report` is that of the last one. It lies with the caller: moved from call to call, it
+    /// would lie on the stack many times.
+    fn with_fallbacks(
+        &self,
+        old: &Fields<'_, R, D>,
+        new: &mut FieldsMut<'_, R, D>,
+        marks: &mut [u8],
+        report: &mut Report<R, D>,
+        mut attempt: impl FnMut(&mut FieldsMut<'_, R, D>, Option<&[u8]>, &mut Report<R, D>) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         fits(self.mesh.len(), marks.len())?;
         let mut rounds = 0;
         loop {
-            let mut report = attempt(new, if rounds > 0 { Some(&*marks) } else { None })?;
-            self.merge(old, new, &mut report)?;
+            attempt(new, if rounds > 0 { Some(&*marks) } else { None }, report)?;
+            self.merge(old, new, report)?;
             if report.unphysical == 0 {
-                return Ok(report);
+                return Ok(());
             }
             if rounds == 0 {
                 marks.fill(0);
             }
             if rounds == FALLBACKS || self.mark_troubled(&new.as_fields(), marks)? == 0 {
-                self.apply_floors(old, new, &mut report)?;
-                return Ok(report);
+                return self.apply_floors(old, new, report);
             }
             rounds += 1;
         }

@@ -264,7 +264,7 @@ pub(super) fn add_body_and<R: Real, V: Vector<Scalar = R>, P: PieceSums<R>>(
         let mut corners = triangle.map(Vector::to_array);
         sums.x.origin = take_origin(&mut corners, 0);
         sums.y.origin = take_origin(&mut corners, 1);
-        if slab_part(&corners, lo, hi, &mut b.slab, &mut b.spare) {
+        if slab_part(&corners, lo, hi, &mut b) {
             sums.scatter(Place::Inside, &mut b);
         } else if P::WANTED && is_seen_level(&corners, lo, hi) {
             b.slab.set(&corners);
@@ -290,22 +290,22 @@ fn take_origin<R: Real>(corners: &mut [[R; 3]; 3], axis: usize) -> R {
     min
 }
 
-/// The part of a triangle in the open slab `lo..hi`; false if there is none. Level triangles on `lo` or `hi` are outside.
+/// The part of a triangle in the open slab `lo..hi`, as `b.slab`; false if there is none. Level triangles on `lo` or `hi` are outside.
 #[inline(always)]
-fn slab_part<R: Real>(corners: &[[R; 3]; 3], lo: R, hi: R, slab: &mut Polygon<R>, spare: &mut Polygon<R>) -> bool {
-    let [a, b, c] = corners.map(|p| p[2]);
-    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+fn slab_part<R: Real>(corners: &[[R; 3]; 3], lo: R, hi: R, b: &mut Buffers<R>) -> bool {
+    let [p, q, r] = corners.map(|p| p[2]);
+    let (min, max) = (p.min(q).min(r), p.max(q).max(r));
     if !(min < hi && max > lo) {
         return false;
     }
-    *slab = Polygon::new(corners);
+    b.slab.set(corners);
     if min < lo {
-        let whole = slab.clone();
-        split(&whole, 2, lo, spare, slab);
+        b.row.set(corners);
+        split(&b.row, 2, lo, &mut b.spare, &mut b.slab);
     }
     if max > hi {
-        let whole = slab.clone();
-        split(&whole, 2, hi, slab, spare);
+        b.row.assign(&b.slab);
+        split(&b.row, 2, hi, &mut b.slab, &mut b.spare);
     }
     true
 }

@@ -62,11 +62,13 @@ fn any<V: Vector>(a: AnyShape<V>, b: AnyShape<V>, axes: [V; 3], radius: V::Scala
     let Ok(b) = AnyBody::new(b).and_then(|b| b.posed(axes, axes[0])?.posed(axes, axes[1])?.rounded(radius)) else { return 2 };
     let near = match convex::distance(&a, &b) {
         Clearance::Apart { distance, .. } => distance.to_f64() as u32,
-        Clearance::Touching(axis) => axis.to_array()[0] as u32,
+        Clearance::Touching => 1,
         _ => 3,
     };
     let cell = Aabb { min: axes[0], max: axes[1] };
-    near ^ u32::from(convex::meets(&a, &b).contact().is_some()) << 8 ^ inside(&a, &cell) << 9
+    let meeting = convex::meets(&a, &b);
+    let axis = if let convex::Meeting::Touching(axis) = &meeting { axis.to_array()[0] as u32 } else { 0 };
+    near ^ axis ^ u32::from(meeting.contact().is_some()) << 8 ^ inside(&a, &cell) << 9
 }
 
 /// The shares of a grid's cells and faces.

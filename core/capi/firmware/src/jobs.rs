@@ -16,6 +16,7 @@ pub struct Memory<R> {
     state: [[R; COUNT]; 5],
     points: [R; 24],
     case: Case<R>,
+    report: StepReport<R>,
     /// Work of the calls.
     pub work: [u64; 32 << 10],
 }
@@ -29,6 +30,7 @@ impl Hash {
         self.0 = self.0.rotate_left(7) ^ bits;
     }
 
+    #[inline(never)]
     fn values<R: Api>(&mut self, values: &[R]) {
         values.iter().for_each(|value| self.mix(value.bits()));
     }
@@ -152,6 +154,7 @@ impl<R: Api> Memory<R> {
         Fractions { value: Beta { v, x, y, z }, lower: none, upper: none }
     }
 
+    #[inline(never)]
     fn beta_hash(&self, status: Status, hash: &mut Hash) {
         hash.mix(status as u64);
         let [nx, ny, nz] = CELLS;
@@ -161,6 +164,7 @@ impl<R: Api> Memory<R> {
         }
     }
 
+    #[inline(never)]
     fn cuboid(&mut self) -> Surface<R> {
         const OF: [[usize; 3]; 12] = [
             [0, 2, 1],
@@ -253,14 +257,14 @@ pub fn flow<R: Api>(memory: &mut Memory<R>) -> Hash {
     memory.state[0].fill(R::ONE);
     let one = memory.state[0].as_ptr();
     let (work, bytes) = (memory.work.as_mut_ptr().cast(), size_of_val(&memory.work));
-    let (mut handle, mut rate, mut report) = (null_mut(), R::ZERO, StepReport::default());
+    let (mut handle, mut rate) = (null_mut(), R::ZERO);
     unsafe {
         hash.mix(R::flow_init(&memory.case, work, bytes, &mut handle, null_mut()) as u64);
         hash.mix(R::flow_set(handle, one, null(), null(), null(), one, null_mut()) as u64);
         hash.mix(R::flow_rate(handle, &mut rate, null_mut()) as u64);
         for _ in 0..100 {
-            hash.mix(R::flow_step(handle, R::HALF / rate, &mut report, null_mut()) as u64);
-            rate = report.rate;
+            hash.mix(R::flow_step(handle, R::HALF / rate, &mut memory.report, null_mut()) as u64);
+            rate = memory.report.rate;
         }
         let [rho, u, v, w, p] = memory.state.each_mut().map(|field| field.as_mut_ptr());
         hash.mix(R::flow_get(handle, rho, u, v, w, p, null_mut()) as u64);

@@ -3,6 +3,7 @@
 //! Points stay as the bodies give them, so that a proof names points of the bodies to the last bit; only their differences are scaled.
 
 use super::outcome::Reason;
+use crate::convex::opaque::Opaque;
 use crate::convex::support::{Support, SupportPoint, lengthened};
 use crate::number::real::{Real, Vector};
 
@@ -159,6 +160,14 @@ where
         let size = direction.norm_1();
         let usual = size > V::Scalar::SCALE_MIN && size < V::Scalar::SCALE_MAX;
         if usual { direction } else { unusual_seed(direction) }
+    }
+
+    /// The same of the two bodies behind pointers.
+    pub fn opaque<'o>(
+        &self,
+        [a, b]: [&'o Opaque<'o, V>; 2],
+    ) -> BodyPair<'o, Opaque<'o, V>, Opaque<'o, V>, V::Scalar, SCALED> {
+        BodyPair { a, b, factor: self.factor, extent: self.extent, slack: self.slack }
     }
 
     /// The two bodies.

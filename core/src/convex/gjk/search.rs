@@ -4,6 +4,7 @@ use super::closest::intersect_rounded;
 use super::outcome::{Intersection, OverlapProof, Reason};
 use super::pair::{BodyPair, Probe, sized};
 use super::working_simplex::{SupportPairs, WorkingSimplex, across};
+use crate::convex::opaque::Opaque;
 use crate::convex::simplex::{OriginSide, Simplex, side};
 use crate::convex::support::{ScalarOf, Support, lengthened};
 use crate::number::real::{Real, Vector};
@@ -70,7 +71,9 @@ where
         }
     }
     if !lean && (deep || reason == Reason::Iterations || pair.slack > Real::ZERO) {
-        return search_harder(pair, axis, reason);
+        let (a, b) = pair.bodies();
+        let [a, b] = [Opaque::new(a), Opaque::new(b)];
+        return search_harder(&pair.opaque([&a, &b]), axis, reason);
     }
     Intersection::Undecided { reason, axis }
 }
@@ -104,15 +107,11 @@ fn overlapping<V: Vector>(simplex: Simplex<V>) -> Intersection<V> {
 /// the distance, which has more patience.
 #[cold]
 #[inline(never)]
-fn search_harder<A, B, const SCALED: bool>(
-    pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
-    axis: A::Vector,
+fn search_harder<V: Vector, const SCALED: bool>(
+    pair: &BodyPair<Opaque<V>, Opaque<V>, V::Scalar, SCALED>,
+    axis: V,
     reason: Reason,
-) -> Intersection<A::Vector>
-where
-    A: Support,
-    B: Support<Vector = A::Vector>,
-{
+) -> Intersection<V> {
     for axis in [pair.seed(None), axis] {
         if let Some(simplex) = surround(pair, axis) {
             return overlapping(simplex);

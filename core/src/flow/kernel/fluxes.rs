@@ -9,7 +9,6 @@ use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
 use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::problem::PressureForm;
-use crate::flow::riemann::Solver;
 use crate::flow::state::{Conserved, Primitive, rotate_back};
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
@@ -32,7 +31,7 @@ fn states<R: Real, const D: usize, const MIXED: bool>(
 }
 
 /// Fluxes through the faces inside and at both ends of a row, and their differences; `place` is that of the row in its tile.
-pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     place: usize,
@@ -64,16 +63,16 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, S: Solver, const ENERGY
         }
     };
     let pace = &mut work.coefficients.pace[..m];
-    if S::LOW_MACH {
+    if slab.solver.low_mach {
         paces(slab, 0, row.at, openings.face(), pace);
     }
-    rows::fluxes::<R, S, D, ENERGY, MIXED>(work.left, work.right, openings, &slab.face_gas, pace, work.flux);
+    (slab.solver.row)([work.left, work.right], openings, &slab.face_gas, pace, work.flux);
     if let Some(medium) = &slab.medium {
         let marks = &medium.porosity.marks[row.start..][..n];
         let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
         let broken = marked(marks, break_low(0)).chain(last);
         let flux = FluxBlock { values: work.flux, n: m };
-        fluxes_at_breaks::<R, D, S, MIXED>(slab, 0, row.at, broken, [work.left, work.right], flux);
+        fluxes_at_breaks::<R, D, MIXED>(slab, 0, row.at, broken, [work.left, work.right], flux);
     }
     let flux = FluxBlock { values: work.flux, n: m };
     positive_fluxes::<R, D, ENERGY, MIXED>(slab, 0, row.at, [work.left, work.right], flux);
@@ -264,7 +263,7 @@ fn half_weight<'s, R: Real, const D: usize>(
 
 /// Fluxes of a row of faces across axis `d` > 0 between `left` and `right`, into `flux`. `at` names the row of cells above the faces,
 /// with `at[d]` one past the end at the upper boundary.
-fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+fn fluxes_of_faces<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
@@ -296,14 +295,14 @@ fn fluxes_of_faces<R: Real, const D: usize, S: Solver, const ENERGY: bool, const
         }
     };
     let pace = &mut pace[..n];
-    if S::LOW_MACH {
+    if slab.solver.low_mach {
         paces(slab, d, at, openings.face(), pace);
     }
-    rows::fluxes::<R, S, D, ENERGY, MIXED>(left, right, openings, &slab.face_gas, pace, flux);
+    (slab.solver.row)([left, right], openings, &slab.face_gas, pace, flux);
     if let Some(medium) = &slab.medium {
         let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
-        fluxes_at_breaks::<R, D, S, MIXED>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
+        fluxes_at_breaks::<R, D, MIXED>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
     }
     positive_fluxes::<R, D, ENERGY, MIXED>(slab, d, at, [left, right], FluxBlock { values: flux, n });
 }
@@ -331,7 +330,7 @@ fn ghosts<R: Real, const D: usize, const MIXED: bool>(
 }
 
 /// Faces between row `j` and the row below it along axis 1 of a 3D mesh; `present` tells whether there is a row `j`.
-pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (layer, j): (usize, isize),
     present: bool,
@@ -346,18 +345,12 @@ pub(in crate::flow) fn fluxes_across_rows<R: Real, const D: usize, S: Solver, co
     let changed = (j > slab.rows.start as isize).then(|| slab.place(j - 1));
     let own = present && j < slab.rows.end as isize;
     let faces = FacesUnder { d, at, present, own, changed };
-    fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, (below.state, below.flux), work, report);
+    fluxes_under::<R, D, ENERGY, MIXED>(slab, faces, (below.state, below.flux), work, report);
     core::mem::swap(&mut below, &mut work.below_row);
 }
 
 /// Faces between row `j` of layer `l` and of the layer below; `present` tells whether there is a layer `l`.
-pub(in crate::flow) fn fluxes_across_layers<
-    R: Real,
-    const D: usize,
-    S: Solver,
-    const ENERGY: bool,
-    const MIXED: bool,
->(
+pub(in crate::flow) fn fluxes_across_layers<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (l, j): (isize, isize),
     present: bool,
@@ -376,7 +369,7 @@ pub(in crate::flow) fn fluxes_across_layers<
     let changed = (l > slab.layers.start as isize).then_some(place);
     let own = present && l < slab.layers.end as isize;
     let faces = FacesUnder { d: D - 1, at, present, own, changed };
-    fluxes_under::<R, D, S, ENERGY, MIXED>(slab, faces, of_row, work, report);
+    fluxes_under::<R, D, ENERGY, MIXED>(slab, faces, of_row, work, report);
     core::mem::swap(&mut below, &mut work.below_layer);
 }
 
@@ -396,7 +389,7 @@ struct FacesUnder<const D: usize> {
 
 /// Fluxes through the faces under a row, from the high face states of the row below; then, if that row is advanced, the changes they make
 /// in it. `below_flux` holds the fluxes under that row, and afterwards the new ones.
-fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+fn fluxes_under<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     FacesUnder { d, at, present, own, changed }: FacesUnder<D>,
     (below_state, below_flux): (&mut [R], &mut [R]),
@@ -415,7 +408,7 @@ fn fluxes_under<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MI
         ghosts::<R, D, MIXED>(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
     let to = (&mut work.flux[..f], &mut *work.coefficients.pace);
-    fluxes_of_faces::<R, D, S, ENERGY, MIXED>(slab, d, at, [below_state, &work.right[..f]], to);
+    fluxes_of_faces::<R, D, ENERGY, MIXED>(slab, d, at, [below_state, &work.right[..f]], to);
     let last = mesh.cells()[d];
     for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
         if at[d] == edge {

@@ -27,11 +27,11 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
     whole: &Part<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
-    run: Sweep<R, D>,
-) -> Report<R, D> {
+    by: Sweep<R, D>,
+    report: &mut Report<R, D>,
+) {
     let n = line.mesh.len();
     let periodic = line.periodic()[0];
-    let mut report = Report::new();
     let (mut begin, end) = if periodic { (BESIDE, n - BESIDE) } else { (0, n) };
     while begin < end {
         let own = begin..end.min(begin + PIECE - 2 * BESIDE);
@@ -41,19 +41,18 @@ pub(in crate::flow) fn advance<R: Real, const D: usize>(
         let first_order = whole.first_order.map(|f| &f[cells.clone()]);
         let (walls, first) = (whole.walls, cells.start);
         let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported, walls, first };
-        let mut of_piece = advance_piece(&piece(line, cells.clone()), &part, own.clone(), new, scratch, run);
+        let mut of_piece = advance_piece(&piece(line, cells.clone()), &part, own.clone(), new, scratch, by);
         for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
             if !outer || periodic {
                 of_piece.inflow[0][side] = Report::new().inflow[0][side];
             }
         }
-        report = report.and(&of_piece);
+        *report = report.and(&of_piece);
         begin = own.end;
     }
     if periodic {
-        report = report.and(&advance_seam(line, whole, new, scratch, run));
+        *report = report.and(&advance_seam(line, whole, new, scratch, by));
     }
-    report
 }
 
 /// The problem on a range of the cells of a line.
@@ -87,11 +86,12 @@ fn advance_piece<R: Real, const D: usize>(
     own: Range<usize>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
-    run: Sweep<R, D>,
+    by: Sweep<R, D>,
 ) -> Report<R, D> {
     let inner = &part.reported;
     let (mut held, scratch) = take_field::<R, D>(scratch, piece.mesh.len(), present_in(part.old));
-    let report = sweep::advance(piece, part, &mut held, scratch, run);
+    let mut report = Report::new();
+    sweep::advance(piece, part, &mut held, scratch, by, &mut report);
     new.density[own.clone()].copy_from_slice(&held.density[inner.clone()]);
     for (new, held) in new.momentum.iter_mut().zip(&held.momentum) {
         new[own.clone()].copy_from_slice(&held[inner.clone()]);
@@ -110,7 +110,7 @@ fn advance_seam<R: Real, const D: usize>(
     whole: &Part<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
-    run: Sweep<R, D>,
+    by: Sweep<R, D>,
 ) -> Report<R, D> {
     let n = line.mesh.len();
     let half = SEAM / 2;
@@ -156,7 +156,8 @@ fn advance_seam<R: Real, const D: usize>(
     let inner = BESIDE..SEAM - BESIDE;
     let (walls, first, reported) = (whole.walls, n - half, inner.clone());
     let part = Part { old: &old, dt: whole.dt, first_order, layers: 0..1, reported, walls, first };
-    let mut report = sweep::advance(&seam, &part, &mut held, scratch, run);
+    let mut report = Report::new();
+    sweep::advance(&seam, &part, &mut held, scratch, by, &mut report);
     for i in inner {
         new.set(place(i), &held.at(i));
         if let Some((new, held)) = new.capacity.get_mut(place(i)).zip(held.capacity.get(i)) {

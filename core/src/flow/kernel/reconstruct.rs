@@ -2,10 +2,10 @@
 
 use crate::flow::boundary::Boundary;
 use crate::flow::kernel::mixed;
-use crate::flow::kernel::rows::{self, Differences, Rate, StateBlock, Three, var};
+use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::slab::{RowAt, Slab};
-use crate::flow::kernel::walls_and_jumps::{slopes_at_boundaries, slopes_at_breaks};
+use crate::flow::kernel::walls_and_jumps::{CellSlopes, limited, slopes_at_boundaries, slopes_at_breaks};
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
 use crate::flow::porosity::flags::{KIND, any_marked, break_high, break_low, marked};
 use crate::flow::porosity::fractions::least_volume;
@@ -80,44 +80,40 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
         } else {
             (&work.window[slab.block(l, j - 1)], &work.window[slab.block(l, j + 1)], 0)
         };
-        let three = |v: usize| {
-            let (low, high) = (var(below, v, padded), var(above, v, padded));
-            (&low[1 - shift..][..n], &var(here, v, padded)[1..][..n], &high[1 + shift..][..n])
-        };
+        let cells = RowBeside { below, here, above, shift, n, padded };
         let widths = slab.problem.mesh.widths[d];
         let gravity = slab.problem.gravity[d];
         let out = &mut *work.slope[d];
         if gravity == R::ZERO && slab.even[d] {
-            slopes_along::<R, D, S, MIXED>(slab, d, row, three, &Even, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), &cells, &Even, compliance, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let sides = slab.problem.boundaries[d];
             let copied = sides.map(|b| matches!(b, Boundary::Wall | Boundary::ZeroGradient));
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
-            slopes_along::<R, D, S, MIXED>(slab, d, row, three, &axis, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), &cells, &axis, compliance, out);
         }
     }
 }
 
 /// Slopes of a row along one axis, breaks included.
-fn slopes_along<'a, R: Real, const D: usize, S: Slope, const MIXED: bool>(
+fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
-    d: usize,
-    row: RowAt<D>,
-    values: impl Fn(usize) -> Three<'a, R>,
+    (d, row): (usize, RowAt<D>),
+    cells: &RowBeside<'_, R>,
     axis: &impl Differences<R>,
     compliance: Option<&[R]>,
     out: &mut [R],
 ) {
-    let n = slab.size.n;
-    rows::slopes::<R, S, D>(&values, axis, compliance, out, n);
+    rows::slopes::<R, S, D>(|v| cells.values(v), axis, compliance, out, cells.n);
     if MIXED {
-        mixed::slopes::<R, S>(values(D + 2), axis, &mut out[(D + 2) * n..][..n]);
+        mixed::slopes::<R, S>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);
     }
-    slopes_at_boundaries(slab, d, row, values(1 + d), axis, out);
+    slopes_at_boundaries(slab, d, row, cells.values(1 + d), axis, out);
     if slab.medium.is_some() {
-        slopes_at_breaks::<R, D, S, MIXED>(slab, d, row, values, axis, compliance, out);
+        let one = CellSlopes { axis, compliance, limit: limited::<R, S, D> };
+        slopes_at_breaks::<R, D, MIXED>(slab, d, row, cells, &one, out);
     }
 }
 

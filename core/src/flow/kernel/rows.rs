@@ -118,6 +118,28 @@ pub(crate) fn primitives<R: Real, const D: usize>(
 /// Values of one variable in the cells below, here and above along an axis.
 pub(crate) type Three<'a, R> = (&'a [R], &'a [R], &'a [R]);
 
+/// State blocks of a row and of what lies beside it along an axis: shifted by one cell in the row itself, or the blocks of other rows.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct RowBeside<'a, R> {
+    pub below: &'a [R],
+    pub here: &'a [R],
+    pub above: &'a [R],
+    /// 1 along the row, else 0.
+    pub shift: usize,
+    /// Cells of the row, and of its block with the ghosts.
+    pub n: usize,
+    pub padded: usize,
+}
+
+impl<'a, R> RowBeside<'a, R> {
+    /// A variable in the cells below, here and above.
+    #[inline(always)]
+    pub fn values(&self, v: usize) -> Three<'a, R> {
+        let of = |block: &'a [R], from: usize| &var(block, v, self.padded)[from..][..self.n];
+        (of(self.below, 1 - self.shift), of(self.here, 1), of(self.above, 1 + self.shift))
+    }
+}
+
 /// How differences along an axis become slopes.
 pub(crate) trait Differences<R> {
     /// Own width over the distance of the centres, below and above.
@@ -152,6 +174,8 @@ fn pressure_differences<R: Real>(
 ///
 /// With the `compliance` 1/c² of each cell, the density's slope is that of a sound wave, dp/c², and a slope of the rest, which is
 /// the entropy wave; without it each variable is limited by itself.
+// A call keeps what the compiler knows: `out` is apart from all that is read.
+#[inline(never)]
 pub(crate) fn slopes<'a, R: Real, S: Slope, const D: usize>(
     values: impl Fn(usize) -> Three<'a, R>,
     axis: &impl Differences<R>,
@@ -221,6 +245,8 @@ pub(crate) enum Rate<'a, R> {
 /// `widening[d]` = ½ dt Δbeta_d / (beta_v dx_d). `weight[d]` = g_d dx_d acts on the deviation from hydrostatic balance.
 ///
 /// `here` is a padded state block, `gamma` that of each cell.
+// As of `slopes`.
+#[inline(never)]
 pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     here: StateBlock<'_, R>,
     slope: &[&[R]; D],
@@ -369,17 +395,16 @@ impl<'a, R> Openings<'a, R> {
 /// Fluxes through a row of faces of axis `d`, from face state blocks in the frame of the axis, as long as `pace`: time step over width, times
 /// open area over open volume.
 pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool, const MIXED: bool>(
-    left: &[R],
-    right: &[R],
+    states: [&[R]; 2],
     openings: Openings<'_, R>,
     gas: &FaceGas<R>,
     pace: &[R],
     out: &mut [R],
 ) {
     match openings {
-        Openings::None => face_loop::<R, S, D, ENERGY, MIXED, 0>([left, right], [&[]; 3], gas, pace, out),
-        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, MIXED, 1>([left, right], [b; 3], gas, pace, out),
-        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, MIXED, 2>([left, right], [b, l, r], gas, pace, out),
+        Openings::None => face_loop::<R, S, D, ENERGY, MIXED, 0>(states, [&[]; 3], gas, pace, out),
+        Openings::Geometric(b) => face_loop::<R, S, D, ENERGY, MIXED, 1>(states, [b; 3], gas, pace, out),
+        Openings::Paper(b, l, r) => face_loop::<R, S, D, ENERGY, MIXED, 2>(states, [b, l, r], gas, pace, out),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::flow::face_gas::FaceGas;
 use crate::flow::kernel::scratch::{ROWS_BESIDE, Sizes};
+use crate::flow::kernel::solver_calls::SolverCalls;
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::throat::ThroatGas;
 use crate::flow::problem::Problem;
@@ -98,6 +99,7 @@ pub(in crate::flow) struct CellsBeside {
 /// One slab of one step, and what it reads.
 pub(in crate::flow) struct Slab<'p, R, const D: usize> {
     pub problem: &'p Problem<'p, R, D>,
+    pub solver: SolverCalls<R, D>,
     pub medium: Option<Medium<'p, R, D>>,
     pub size: Sizes,
     pub periodic: [bool; D],
@@ -124,9 +126,10 @@ pub(in crate::flow) struct Slab<'p, R, const D: usize> {
 
 impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
     /// The slab of a part of a problem; its rows are to be set.
-    pub fn new(problem: &'p Problem<'p, R, D>, part: &Part<'p, R, D>) -> Self {
+    pub fn new(problem: &'p Problem<'p, R, D>, part: &Part<'p, R, D>, solver: SolverCalls<R, D>) -> Self {
         Slab {
             problem,
+            solver,
             medium: problem.porosity.map(|porosity| Medium { mesh: problem.mesh, porosity }),
             size: Sizes::new(problem.mesh.cells(), problem.gas.is_mixed()),
             periodic: problem.periodic(),

@@ -13,6 +13,7 @@ use crate::flow::kernel::reconstruct::reconstruct;
 use crate::flow::kernel::rows;
 use crate::flow::kernel::scratch::{Sizes, Work};
 use crate::flow::kernel::slab::{Part, RowAt, Slab};
+use crate::flow::kernel::solver_calls::SolverCalls;
 use crate::flow::kernel::update::{update, update_below};
 use crate::flow::problem::Problem;
 use crate::flow::riemann::Solver;
@@ -21,56 +22,58 @@ use crate::flow::step_report::Report;
 use crate::number::real::Real;
 use core::ops::Range;
 
-type SweepFn<R, const D: usize> = fn(&Slab<'_, R, D>, &mut FieldsMut<'_, R, D>, &mut [R]) -> Report<R, D>;
+type SweepFn<R, const D: usize> = fn(&Slab<'_, R, D>, &mut FieldsMut<'_, R, D>, &mut [R], &mut Report<R, D>);
 
-/// How a tile of a slab is advanced: [`sweep`], compiled for one solver and one kind of gas.
+/// How a tile of a slab is advanced: [`sweep`], compiled for one kind of gas, with the calls of one solver.
 #[derive(Clone, Copy)]
-pub struct Sweep<R, const D: usize>(SweepFn<R, D>);
+pub struct Sweep<R, const D: usize> {
+    run: SweepFn<R, D>,
+    solver: SolverCalls<R, D>,
+}
 
 impl<R: Real, const D: usize> Sweep<R, D> {
     /// Of a solver, for a gas with or without energy, of one or of several ratios of specific heats.
     pub(in crate::flow) fn by<S: Solver, const ENERGY: bool, const MIXED: bool>() -> Self {
-        Sweep(sweep::<R, D, S, ENERGY, MIXED>)
+        Sweep { run: sweep::<R, D, ENERGY, MIXED>, solver: SolverCalls::of::<S, ENERGY, MIXED>() }
     }
 }
 
-/// Advances a part of a problem into `new`, tile by tile, each by `run`. Slices and scratch must fit.
+/// Advances a part of a problem into `new`, tile by tile, each by `by`. Slices and scratch must fit. Adds to `report` what that did.
 pub(in crate::flow) fn advance<R: Real, const D: usize>(
     problem: &Problem<'_, R, D>,
     part: &Part<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
-    run: Sweep<R, D>,
-) -> Report<R, D> {
-    let mut slab = Slab::new(problem, part);
-    let mut report = Report::new();
+    by: Sweep<R, D>,
+    report: &mut Report<R, D>,
+) {
+    let mut slab = Slab::new(problem, part, by.solver);
     for rows in Sizes::tiles(&problem.mesh) {
         slab.rows = rows;
-        report = report.and(&run.0(&slab, new, scratch));
+        (by.run)(&slab, new, scratch, report);
     }
-    report
 }
 
-/// Advances a tile of a slab into `new`.
-fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+/// Advances a tile of a slab into `new`, and adds to `report` what that did.
+fn sweep<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
     scratch: &mut [R],
-) -> Report<R, D> {
+    report: &mut Report<R, D>,
+) {
     let mut work = Work::new(slab.size, scratch);
     for (i, &width) in slab.problem.mesh.widths[0].iter().enumerate() {
         work.coefficients.inv_width[i] = R::ONE / width;
         // In a porous medium each row has its own.
         work.coefficients.rate[0][i] = R::HALF * slab.dt / width;
     }
-    let mut report = Report::new();
     if D == 1 {
         let row = RowAt { start: 0, at: [0; D] };
         load_row::<R, D, MIXED>(slab, 0, 0, &mut work);
         reconstruct::<R, D, MIXED>(slab, row, (0, 0), &mut work, &mut report.first_order);
-        fluxes_x::<R, D, S, ENERGY, MIXED>(slab, row, 0, &mut work, &mut report);
-        update::<R, D, ENERGY, MIXED>(slab, row, 0, &mut work, new, &mut report);
-        return report;
+        fluxes_x::<R, D, ENERGY, MIXED>(slab, row, 0, &mut work, report);
+        update::<R, D, ENERGY, MIXED>(slab, row, 0, &mut work, new, report);
+        return;
     }
     let n_last = slab.cells(D - 1);
     let (low, high) = (slab.layers.start as isize, slab.layers.end as isize);
@@ -80,8 +83,8 @@ fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bo
             // The ghost of a boundary: no cells, only the face beside the domain.
             if l == high {
                 for j in slab.rows() {
-                    fluxes_across_layers::<R, D, S, ENERGY, MIXED>(slab, (l, j), false, &mut work, &mut report);
-                    update_below::<R, D, ENERGY, MIXED>(slab, (l, j), &mut work, new, &mut report);
+                    fluxes_across_layers::<R, D, ENERGY, MIXED>(slab, (l, j), false, &mut work, report);
+                    update_below::<R, D, ENERGY, MIXED>(slab, (l, j), &mut work, new, report);
                 }
             }
             continue;
@@ -90,13 +93,12 @@ fn sweep<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bo
             load_rows::<R, D, MIXED>(slab, l - 1, held.clone(), &mut work);
             load_rows::<R, D, MIXED>(slab, l, held.clone(), &mut work);
         }
-        sweep_layer::<R, D, S, ENERGY, MIXED>(slab, l, &mut work, new, &mut report);
+        sweep_layer::<R, D, ENERGY, MIXED>(slab, l, &mut work, new, report);
     }
-    report
 }
 
 /// The rows of a layer of the domain, and in 3D one more on each side for the faces between them. Loads the layer above.
-fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+fn sweep_layer<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     l: isize,
     work: &mut Work<'_, R, D>,
@@ -111,7 +113,7 @@ fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIX
     for j in rows.start - beside..rows.end + beside {
         if (j < 0 || j >= slab.all_rows()) && !slab.periodic[1 % D] {
             if j == rows.end {
-                fluxes_across_rows::<R, D, S, ENERGY, MIXED>(slab, (layer, j), false, work, report);
+                fluxes_across_rows::<R, D, ENERGY, MIXED>(slab, (layer, j), false, work, report);
             }
             continue;
         }
@@ -124,13 +126,13 @@ fn sweep_layer<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIX
             at[1] = j.rem_euclid(slab.all_rows()) as usize;
         }
         let row = RowAt { start: slab.problem.mesh.index(at), at };
-        sweep_row::<R, D, S, ENERGY, MIXED>(slab, row, (l, j), work, new, report);
+        sweep_row::<R, D, ENERGY, MIXED>(slab, row, (l, j), work, new, report);
     }
     load_rows::<R, D, MIXED>(slab, l + 1, to_load..held.end, work);
 }
 
 /// Row `j` of layer `l`: its cells, the faces under it, and what the faces above it need of it.
-fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED: bool>(
+fn sweep_row<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     (l, j): (isize, isize),
@@ -145,7 +147,7 @@ fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED
     reconstruct::<R, D, MIXED>(slab, row, (l, j), work, first_order);
     if own_row {
         if l >= slab.layers.start as isize {
-            fluxes_across_layers::<R, D, S, ENERGY, MIXED>(slab, (l, j), true, work, report);
+            fluxes_across_layers::<R, D, ENERGY, MIXED>(slab, (l, j), true, work, report);
             if l > slab.layers.start as isize {
                 update_below::<R, D, ENERGY, MIXED>(slab, (l, j), work, new, report);
             }
@@ -156,12 +158,12 @@ fn sweep_row<R: Real, const D: usize, S: Solver, const ENERGY: bool, const MIXED
     }
     if D == 3 && own_layer {
         if j >= slab.rows.start as isize {
-            fluxes_across_rows::<R, D, S, ENERGY, MIXED>(slab, (row.at[D - 1], j), true, work, report);
+            fluxes_across_rows::<R, D, ENERGY, MIXED>(slab, (row.at[D - 1], j), true, work, report);
         }
         keep_for_row_above::<R, D, MIXED>(slab, work);
     }
     if own_row && own_layer {
-        fluxes_x::<R, D, S, ENERGY, MIXED>(slab, row, slab.place(j), work, report);
+        fluxes_x::<R, D, ENERGY, MIXED>(slab, row, slab.place(j), work, report);
     }
 }
 

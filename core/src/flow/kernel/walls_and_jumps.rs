@@ -6,7 +6,7 @@
 
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::FaceGas;
-use crate::flow::kernel::rows::{self, Differences, FluxBlock, Three, var};
+use crate::flow::kernel::rows::{self, Differences, FluxBlock, RowBeside, Three, var};
 use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
@@ -14,7 +14,7 @@ use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, carried_through, jump_fluxes, mixed_jump_fluxes};
 use crate::flow::problem::PressureForm;
-use crate::flow::riemann::{Slowness, Solver};
+use crate::flow::riemann::Slowness;
 use crate::flow::state::Primitive;
 use crate::number::real::Real;
 
@@ -25,7 +25,7 @@ const LANES: usize = 4;
 const MOST: usize = 5;
 
 /// Differences along an axis for a single cell, without gravity towards its mirror images.
-struct Single<R> {
+pub(in crate::flow) struct Single<R> {
     scale: (R, R),
     half_weight: Option<(R, R)>,
 }
@@ -40,19 +40,43 @@ impl<R: Real> Differences<R> for Single<R> {
     }
 }
 
+/// Values of all variables in the cells below, here and above.
+type CellValues<R> = [[R; 3]; MOST];
+
+/// Slopes of all variables of a cell by a limiter: [`limited`].
+type LimitCall<R> = fn(&CellValues<R>, &Single<R>, Option<&[R]>) -> [R; MOST];
+
+/// Slopes along an axis one cell at a time, for any limiter and any widths.
+pub(in crate::flow) struct CellSlopes<'a, R> {
+    pub axis: &'a dyn Differences<R>,
+    /// 1/c² of the cells of the row, as [`rows::slopes`] takes it.
+    pub compliance: Option<&'a [R]>,
+    pub limit: LimitCall<R>,
+}
+
+/// Slopes of all variables of a cell by a limiter.
+pub(in crate::flow) fn limited<R: Real, S: Slope, const D: usize>(
+    three: &CellValues<R>,
+    axis: &Single<R>,
+    compliance: Option<&[R]>,
+) -> [R; MOST] {
+    let mut slope = [R::ZERO; MOST];
+    let of = |v: usize| (&three[v][..1], &three[v][1..2], &three[v][2..]);
+    rows::slopes::<R, S, D>(of, axis, compliance, &mut slope, 1);
+    slope
+}
+
 /// Corrects the slopes along axis `d` in the cells of a row that have a wall or a jump of porosity on one side, where the usual slope took a value
 /// from beyond it: at a wall that value is mirrored, at a jump the slope is 0. Where gas flows along an inclined wall the correction fades out.
-/// `values` gives a variable in the cells below, here and above.
-pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope, const MIXED: bool>(
+pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     row: RowAt<D>,
-    values: impl Fn(usize) -> Three<'a, R>,
-    axis: &impl Differences<R>,
-    compliance: Option<&[R]>,
+    cells: &RowBeside<'_, R>,
+    slopes: &CellSlopes<'_, R>,
     out: &mut [R],
 ) {
-    let n = slab.size.n;
+    let n = cells.n;
     let Some(medium) = &slab.medium else { return };
     let marks = &medium.porosity.marks[row.start..][..n];
     let ducts = medium.ducts(d, row.at, slab.periodic[d]);
@@ -78,23 +102,22 @@ pub(in crate::flow) fn slopes_at_breaks<'a, R: Real, const D: usize, S: Slope, c
         }
         let mut three = [[R::ZERO; 3]; MOST];
         for (v, three) in three[..D + 2].iter_mut().enumerate() {
-            let (below, here, above) = values(v);
+            let (below, here, above) = cells.values(v);
             *three = [below[i], here[i], above[i]];
         }
-        let slope = slope_at_walls::<R, D, S>(d, breaks, three, axis, i, compliance);
+        let slope = slope_at_walls::<R, D>(d, breaks, three, i, slopes);
         (0..D + 2).for_each(|v| blend(v, slope[v]));
     }
 }
 
 /// Slopes along axis `d` of all variables in cell `i` of a row with a wall on its low side, its high side, or both, where it meets
 /// its mirror image. `three` are the values below, here and above.
-fn slope_at_walls<R: Real, const D: usize, S: Slope>(
+fn slope_at_walls<R: Real, const D: usize>(
     d: usize,
     walls: [bool; 2],
-    mut three: [[R; 3]; MOST],
-    axis: &impl Differences<R>,
+    mut three: CellValues<R>,
     i: usize,
-    compliance: Option<&[R]>,
+    slopes: &CellSlopes<'_, R>,
 ) -> [R; MOST] {
     let image = |wall: bool, own: R, mirrored: R| if wall { mirrored } else { own };
     for (v, [below, here, above]) in three[..D + 2].iter_mut().enumerate() {
@@ -102,14 +125,12 @@ fn slope_at_walls<R: Real, const D: usize, S: Slope>(
         *below = image(walls[0], *below, mirrored);
         *above = image(walls[1], *above, mirrored);
     }
-    let ((a, b), weights) = (axis.scale(i), axis.half_weight(i));
+    let ((a, b), weights) = (slopes.axis.scale(i), slopes.axis.half_weight(i));
     let single = Single {
         scale: (image(walls[0], a, R::ONE), image(walls[1], b, R::ONE)),
         half_weight: weights.map(|(a, b)| (image(walls[0], a, R::ZERO), image(walls[1], b, R::ZERO))),
     };
-    let mut slope = [R::ZERO; MOST];
-    let of = |v: usize| (&three[v][..1], &three[v][1..2], &three[v][2..]);
-    rows::slopes::<R, S, D>(of, &single, compliance.map(|c| &c[i..=i]), &mut slope, 1);
+    let mut slope = (slopes.limit)(&three, &single, slopes.compliance.map(|c| &c[i..=i]));
     slope[1 + d] = match walls {
         [true, true] => R::ZERO,
         [low, _] => {
@@ -157,7 +178,7 @@ pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
 
 /// Replaces the fluxes at the broken faces of a row along or across axis `d`, by their places; `at` names the first of them. `states`
 /// are those on the left and on the right.
-pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver, const MIXED: bool>(
+pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
@@ -172,13 +193,13 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver, cons
     let mut count = 0;
     for i in broken {
         if !(row.ducts.face(i) > R::ZERO) {
-            wall_flux::<R, D, S, MIXED>(&row, i, &mut flux);
+            wall_flux::<R, D, MIXED>(&row, i, &mut flux);
             continue;
         }
         group[count] = i;
         count += 1;
         if count == LANES {
-            jump_group::<R, D, S, MIXED>(&row, &group, count, &mut flux);
+            jump_group::<R, D, MIXED>(&row, &group, count, &mut flux);
             count = 0;
         }
     }
@@ -186,7 +207,7 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, S: Solver, cons
         // A last group of fewer faces repeats its first one.
         let first = group[0];
         group[count..].fill(first);
-        jump_group::<R, D, S, MIXED>(&row, &group, count, &mut flux);
+        jump_group::<R, D, MIXED>(&row, &group, count, &mut flux);
     }
 }
 
@@ -226,7 +247,7 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
 }
 
 /// Fluxes at the first `count` jump faces of a group.
-fn jump_group<R: Real, const D: usize, S: Solver, const MIXED: bool>(
+fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     row: &BrokenRow<'_, R, D>,
     group: &[usize; LANES],
     count: usize,
@@ -264,9 +285,9 @@ fn jump_group<R: Real, const D: usize, S: Solver, const MIXED: bool>(
     };
     let capacities = [0, 1].map(|s| if MIXED { gather(s, D + 3) } else { [R::ZERO; LANES] });
     let f = if MIXED {
-        mixed_jump_fluxes::<R, S, D, LANES>(&faces, &capacities)
+        mixed_jump_fluxes(&faces, &capacities, slab.solver.throat)
     } else {
-        jump_fluxes::<R, S, D, LANES>(&faces, &slab.face_gas, [&slab.throat; 2])
+        jump_fluxes(&faces, &slab.face_gas, [&slab.throat; 2], slab.solver.throat)
     };
     let mut scatter = |v: usize, from: &[R; LANES]| {
         let to = &mut flux.values[v * flux.n..][..flux.n];
@@ -288,7 +309,7 @@ fn jump_group<R: Real, const D: usize, S: Solver, const MIXED: bool>(
 }
 
 /// Flux at the closed face `i` of a row: nothing passes, and each side is pushed by its mirror image.
-fn wall_flux<R: Real, const D: usize, S: Solver, const MIXED: bool>(
+fn wall_flux<R: Real, const D: usize, const MIXED: bool>(
     row: &BrokenRow<'_, R, D>,
     i: usize,
     flux: &mut FluxBlock<'_, R>,
@@ -311,8 +332,8 @@ fn wall_flux<R: Real, const D: usize, S: Solver, const MIXED: bool>(
         let above = w.pressure - reference;
         let slowness = Slowness { bend: above + above, pace: row.pace(side, i, area) };
         let face_gas = if MIXED { FaceGas::new(gas) } else { row.slab.face_gas };
-        let f = S::slow_flux::<R, D, false>(pair[0], pair[1], &face_gas, slowness);
-        row.contraction(i) * area * (f.momentum[0] - reference)
+        let momentum = (row.slab.solver.wall)(pair, &face_gas, slowness);
+        row.contraction(i) * area * (momentum - reference)
     };
     let (to_left, to_right) = (push(0), push(1));
     for v in (0..D + 2).chain(D + 3..D + 3 + 2 * usize::from(MIXED)) {

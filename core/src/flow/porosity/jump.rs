@@ -6,9 +6,12 @@
 
 use crate::flow::face_gas::{FaceGas, FaceGases, MixedFace};
 use crate::flow::porosity::throat::{AtThroat, ThroatGas, throat_area};
-use crate::flow::riemann::{Flux, Solver};
+use crate::flow::riemann::Flux;
 use crate::flow::state::{Gas, Primitive, each};
 use crate::number::real::Real;
+
+/// The flux between the states in a throat, the gas on each side: a Riemann solver.
+pub(in crate::flow) type ThroatCall<R, const D: usize> = fn(&[Primitive<R, D>; 2], &[FaceGas<R>; 2]) -> Flux<R, D>;
 
 /// Open faces at which the porosity jumps, one per lane: what lies on the left and right of them.
 pub(in crate::flow) struct JumpFaces<R, const D: usize, const L: usize> {
@@ -50,17 +53,19 @@ struct JumpLane<R, const D: usize> {
     walls: [R; 2],
 }
 
-/// The fluxes through several jump faces.
-pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
+/// The fluxes through several jump faces; `solve` is the Riemann solver in the throats.
+pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
     faces: &JumpFaces<R, D, L>,
     gas: &impl FaceGases<R>,
     throat: [&ThroatGas<R>; 2],
+    solve: ThroatCall<R, D>,
 ) -> JumpFlux<[R; L], D> {
     let [left, right] = &faces.ducts;
     let to: [R; L] = each(|i| throat_area(left[i], faces.face[i], right[i]));
     let side = |s: usize| throat[s].carry_all(&faces.states[s], &faces.ducts[s], &to);
     let at = [side(0), side(1)];
     let (walls, acoustic_weight) = chokes(faces, &at, throat);
+    let gases = [*gas.left(), *gas.right()];
     let none = [R::ZERO; L];
     let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
     for i in 0..L {
@@ -73,7 +78,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
             references: [faces.references[0][i], faces.references[1][i]],
             walls: [walls[0][i], walls[1][i]],
         };
-        let (weak, strong) = (acoustic(&lane, gas), riemann::<R, S, D>(&lane, gas));
+        let (weak, strong) = (acoustic(&lane, gas), strong_waves(&lane, &solve(&lane.throat, &gases)));
         let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
         let flux = weak.blend(&strong, share);
         out.mass[i] = flux.mass;
@@ -89,9 +94,10 @@ pub(in crate::flow) fn jump_fluxes<R: Real, S: Solver, const D: usize, const L: 
 }
 
 /// The same where each side has a gas of its own, of these `capacities`: one face after the other.
-pub(in crate::flow) fn mixed_jump_fluxes<R: Real, S: Solver, const D: usize, const L: usize>(
+pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize>(
     faces: &JumpFaces<R, D, L>,
     capacities: &[[R; L]; 2],
+    solve: ThroatCall<R, D>,
 ) -> JumpFlux<[R; L], D> {
     let none = [R::ZERO; L];
     let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
@@ -111,7 +117,7 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, S: Solver, const D: usize, con
         let gases = capacities.each_ref().map(|c| Gas::Ideal { gamma: R::ONE + R::ONE / c[i] });
         let throats = gases.map(ThroatGas::new);
         let [left, right] = throats.each_ref();
-        let f = jump_fluxes::<R, S, D, 1>(&face, &MixedFace(gases.map(FaceGas::new)), [left, right]);
+        let f = jump_fluxes::<R, D, 1>(&face, &MixedFace(gases.map(FaceGas::new)), [left, right], solve);
         (out.mass[i], out.energy[i]) = (f.mass[0], f.energy[0]);
         out.normal = [0, 1].map(|s| with(out.normal[s], i, f.normal[s][0]));
         out.momentum = core::array::from_fn(|c| with(out.momentum[c], i, f.momentum[c][0]));
@@ -159,11 +165,10 @@ fn chokes<R: Real, const D: usize, const L: usize>(
     (walls, acoustic_weight)
 }
 
-/// The Riemann problem in the throat.
+/// The fluxes of strong waves, from the flux of the Riemann problem in the throat.
 #[inline(always)]
-fn riemann<R: Real, S: Solver, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases<R>) -> JumpFlux<R, D> {
+fn strong_waves<R: Real, const D: usize>(face: &JumpLane<R, D>, f: &Flux<R, D>) -> JumpFlux<R, D> {
     let to = face.to;
-    let f: Flux<R, D> = S::flux::<R, D, true>(&face.throat[0], &face.throat[1], gas);
     let through = to * f.momentum[0];
     // Impulse rho u² + p on the throat side, and in the cell relative to the reference pressure.
     let normal = |s: usize| {
