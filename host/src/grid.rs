@@ -4,6 +4,7 @@
 pub mod file;
 
 use crate::error::{Error, Result};
+use crate::words::written;
 use glam::DVec3;
 use std::path::Path;
 use voidage_core::grid::{Grid, GridError};
@@ -118,7 +119,8 @@ impl Edges {
     #[must_use]
     pub fn misses(&self, axis: usize, at: f64) -> Option<String> {
         let ([lo, hi], name) = (self.bounds().map(|p| p[axis]), AXES[axis]);
-        (!(lo..=hi).contains(&at)).then(|| format!("the grid reaches from {lo} to {hi} along {name}"))
+        let outside = !(lo..=hi).contains(&at);
+        outside.then(|| format!("the grid reaches from {} to {} along {name}", written(lo), written(hi)))
     }
 }
 
@@ -127,10 +129,10 @@ fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
     match error {
         GridError::NoCell { axis } => (format!("axis {}", name(axis)), "needs at least two edges".into()),
         GridError::NotFinite { axis, index } => {
-            (format!("{}[{index}]", name(axis)), format!("edge {} is not finite", edges[axis][index]))
+            (format!("{}[{index}]", name(axis)), format!("edge {} is not finite", written(edges[axis][index])))
         }
         GridError::NotIncreasing { axis, index } => {
-            let (before, here) = (edges[axis][index - 1], edges[axis][index]);
+            let (before, here) = (written(edges[axis][index - 1]), written(edges[axis][index]));
             (format!("{}[{index}]", name(axis)), format!("edge {here} does not lie above the one before it, {before}"))
         }
         GridError::OutOfRange => ("all axes".into(), "cells are too small, too large or too many to be counted".into()),
@@ -205,7 +207,26 @@ pub fn edges(source: &GridSpec, scene: Option<[DVec3; 2]>, warnings: &mut Vec<St
             Edges::uniform(lo, end, cells)
         }
     };
-    Ok(edges)
+    match (source, scene) {
+        (GridSpec::Cells(_, None) | GridSpec::Spacing(_, None), Some(scene)) => apart(edges, scene),
+        _ => Ok(edges),
+    }
+}
+
+/// The edges around a scene, if there are numbers for them all.
+fn apart(edges: Edges, [lo, hi]: [DVec3; 2]) -> Result<Edges> {
+    match edges.explained() {
+        Ok(_) => Ok(edges),
+        Err(_) => Err(Error::new(format!(
+            "the scene reaches from {} to {}: it is too small, or too far from the origin for its size, for a grid around it",
+            corner(lo),
+            corner(hi)
+        ))),
+    }
+}
+
+fn corner(p: DVec3) -> String {
+    format!("({})", p.to_array().map(written).join(", "))
 }
 
 /// Whether so many cells can be thought of; else why not.

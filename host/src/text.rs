@@ -6,6 +6,20 @@ use std::path::Path;
 /// The mark that some editors put before a text.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
+/// There is a file at `path` and nothing else, if there is anything.
+///
+/// # Errors
+/// There is a directory, a device or a pipe.
+pub fn is_file(path: &Path) -> Result<()> {
+    match std::fs::metadata(path) {
+        Ok(about) if about.is_dir() => Err(Error::file(path, "is a directory, not a regular file")),
+        Ok(about) if !about.is_file() => {
+            Err(Error::file(path, "is a device or a pipe, not a regular file; the standard input is called -"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The text of a file, without a byte order mark.
 ///
 /// # Errors

@@ -11,3 +11,13 @@ pub fn counted(n: usize, one: &str, many: &str) -> String {
 pub fn either<'a>(n: usize, one: &'a str, many: &'a str) -> &'a str {
     if n == 1 { one } else { many }
 }
+
+/// A number as a message writes it: very large and very small ones by a power of ten.
+#[must_use]
+pub fn written(x: f64) -> String {
+    match x.abs() {
+        _ if x.is_nan() => "nan".to_owned(),
+        size if size == 0.0 || (1e-4..1e6).contains(&size) || size.is_infinite() => format!("{x}"),
+        _ => format!("{x:e}"),
+    }
+}

@@ -198,7 +198,7 @@ fn what_is_refused() {
     for (keys, reason) in [
         ("[drag]\nlaw = \"pdr\"\ncr = [1, 1, 1]", "takes law, or cr or from, not both"),
         ("[drag]\ncd = 2", "key drag.cd: goes with drag.law"),
-        ("[drag]\nlaw = \"pdr\"\ncd_round = -1", "needs a number not below 0"),
+        ("[drag]\nlaw = \"pdr\"\ncd_round = -1", "drag.cd_round: needs a number from 0 to 1e6, not -1"),
     ] {
         let output = solve(&at, &channel("bars.toml", keys), "refused", &[]);
         assert!(!output.status.success() && stderr(&output).contains(reason), "{keys}: {}", stderr(&output));

@@ -167,12 +167,12 @@ fn what_cannot_be_is_refused() {
     let right = chamber(4, "p = 2e5, gamma = 1.25", "[time]\nmax_steps = 1\n");
     let isentropic = "model = \"isentropic\"\nrho = 1.2\np = 1e5\ngamma = 1.4";
     let wrong = [
-        ("gamma = 1.25", "gamma = 1", "initial.regions[0].gamma: needs a number above 1, not 1"),
-        ("gamma = 1.25", "gamma = inf", "initial.regions[0].gamma: needs a number above 1"),
+        ("gamma = 1.25", "gamma = 1", "initial.regions[0].gamma: needs a number above 1 and up to 100, not 1"),
+        ("gamma = 1.25", "gamma = inf", "initial.regions[0].gamma: needs a number above 1 and up to 100, not inf"),
         (
             "rho = 1.2, p = 1e5",
             "rho = 1.2, p = 1e5, gamma = 0.9",
-            "initial.uniform.gamma: needs a number above 1, not 0.9",
+            "initial.uniform.gamma: needs a number above 1 and up to 100, not 0.9",
         ),
         (
             "x_max = \"wall\"",

@@ -162,7 +162,7 @@ fn errors_name_file_place_and_reason() {
     let grids = [
         ("x = [0, 2, 1]\ny = [0, 1]\nz = [0, 1]\n", "x[2]: edge 1 does not lie above the one before it, 2"),
         ("x = [0]\ny = [0, 1]\nz = [0, 1]\n", "axis x: needs at least two edges"),
-        ("x = [0, nan]\ny = [0, 1]\nz = [0, 1]\n", "x[1]: edge NaN is not finite"),
+        ("x = [0, nan]\ny = [0, 1]\nz = [0, 1]\n", "x[1]: edge nan is not finite"),
         ("x = [0, 1]\ny = [0, 1]\nz = [0, \n", "line"),
         ("x = [0, 1]\n", "needs all of x, y, z"),
         (

@@ -119,7 +119,10 @@ const WRONG: [(&str, &[&str]); 53] = [
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0]@\nradius = 1", &["three values, not 2"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, \"x\"]@\nradius = 1", &["number, not a text"]),
     ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = 0@\nradius = 1", &["takes a list"]),
-    ("[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1e99@", &["finite number below"]),
+    (
+        "[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1e99@",
+        &["takes a number within ±1e30, not 1e99"],
+    ),
     (
         "[[solid]]\nname = \"a\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmin = [0, 0, 0]@",
         &["sphere takes center, radius; not min"],
@@ -465,7 +468,7 @@ fn grids_that_contradict_themselves() {
         (
             "origin = [-1, -1, -1]\nspacing = [0.5, 0.5, 0.5]\ncells = [8, 6, 6]\n",
             "x = { points = [0, 1, 2], cells = [1] }\ny = [0, 1]\nz = [0, 1]\n",
-            "key grid.x: 3 points need 2 cells, not 1",
+            "key grid.x: 3 points make 2 segments, each with a number in cells: 2, not 1",
         ),
     ] {
         assert!(GRID.contains(from));

@@ -119,13 +119,17 @@ fn wrong_cases_say_where() {
     fs::write(dir.file("scene.toml"), "").expect("written");
     let case = dir.file("case.toml");
     let changed = [
-        ("threads = [1, 2]", "threads = []", "at least one threads"),
+        ("threads = [1, 2]", "threads = []", "threads is an empty list"),
         ("threads = [1, 2]", "threads = [0]", "line 4, column 12: threads[0] must be at least 1"),
         ("threads = [1, 2]", "threads = [99999]", "at most 1024"),
         ("repeats = 1", "repeat = 1", "line 3, column 1: key repeat is not known here; did you mean repeats?"),
         ("method = \"surface\"", "method = \"magic\"", "\"magic\" is not known: auto, surface, gjk"),
-        ("exact = 0.064", "exact = nan", "exact takes a finite number"),
-        ("exact = 0.064", "probe = { cell = [1, 1, 2], beta_v = 1 }", "outside of the grid 2x2x2"),
+        ("exact = 0.064", "exact = nan", "exact takes a number within ±1e30, not nan"),
+        (
+            "exact = 0.064",
+            "probe = { cell = [1, 1, 2], beta_v = 1 }",
+            "probe: cell is no cell of the grid 2x2x2; cells are counted from 0",
+        ),
         (
             "exact = 0.064",
             "probe = { cell = [1, 1, -2], beta_v = 1 }",

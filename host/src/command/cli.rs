@@ -1,5 +1,6 @@
 //! What the user typed.
 
+use crate::command::solve::ranges::DRAG_COEFFICIENT;
 use crate::command::version::VERSION;
 use crate::geometry::unit::Unit;
 use crate::grid::AXES;
@@ -157,9 +158,9 @@ pub struct PorosityArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cells", "spacing", "bounds"])]
     pub grid: Option<PathBuf>,
     /// Number of cells, such as 99x99x63
-    #[arg(long, value_name = "NXxNYxNZ", value_parser = parse_cells, conflicts_with = "spacing")]
+    #[arg(long, value_name = "NXxNYxNZ", value_parser = parse_cells, conflicts_with = "spacing", allow_hyphen_values = true)]
     pub cells: Option<[usize; 3]>,
-    /// Edge length of cubic cells in metres (default: 1/64 of the longest side of the scene)
+    /// Edge length of cubic cells in metres (default: 1/64 of the longest side of the scene, or of --bounds)
     #[arg(long, value_name = "D", value_parser = parse_spacing, allow_negative_numbers = true)]
     pub spacing: Option<f64>,
     /// The grid's box in metres (default: the scene's box and a margin of one cell)
@@ -193,7 +194,7 @@ pub struct PorosityArgs {
     #[arg(long, value_name = "LAW", value_enum, conflicts_with = "no_areas")]
     pub drag: Option<DragLaw>,
     /// Drag coefficient: a number, or round=NUMBER,sharp=NUMBER (default: round=1.2,sharp=2)
-    #[arg(long, value_name = "CD", requires = "drag", value_parser = parse_cd)]
+    #[arg(long, value_name = "CD", requires = "drag", value_parser = parse_cd, allow_hyphen_values = true)]
     pub cd: Option<DragCoefficients>,
     /// Zones of the report's table of congestion (TOML tables "zone" with min, max in metres and, if you like, name; default: the whole grid); with --report; - is the standard input
     #[arg(long, value_name = "FILE", conflicts_with = "no_areas")]
@@ -325,12 +326,13 @@ fn numbers<T: std::str::FromStr, const N: usize>(text: &str, separator: char) ->
         return Err(format!("needs {N} numbers separated by '{separator}', not {}", parts.len()));
     }
     let values: Result<Vec<T>, String> =
-        parts.iter().map(|p| p.parse().map_err(|_| format!("'{p}' is not a number of the right kind"))).collect();
+        parts.iter().map(|p| p.parse().map_err(|_| format!("'{p}' is no number that fits here"))).collect();
     values?.try_into().map_err(|_| "wrong count".to_owned())
 }
 
 fn parse_cells(text: &str) -> Result<[usize; 3], String> {
-    let cells: [usize; 3] = numbers(&text.to_lowercase().replace('×', "x"), 'x')?;
+    let wrong = |reason| format!("{reason}: whole numbers from 1 such as 99x99x63");
+    let cells: [usize; 3] = numbers(&text.to_lowercase().replace('×', "x"), 'x').map_err(wrong)?;
     if cells.contains(&0) { Err("needs at least one cell along each axis".into()) } else { Ok(cells) }
 }
 
@@ -357,21 +359,26 @@ fn parse_tol(text: &str) -> Result<f64, String> {
 
 fn parse_cd(text: &str) -> Result<DragCoefficients, String> {
     let number = |text: &str| match text.trim().parse::<f64>() {
-        Ok(cd) if cd >= 0.0 && cd.is_finite() => Ok(cd),
-        _ => Err(format!("'{text}' is no drag coefficient: needs a number not below 0")),
+        Ok(cd) if DRAG_COEFFICIENT.holds(cd) => Ok(cd),
+        _ => Err(format!("'{text}' is no drag coefficient: needs a number {DRAG_COEFFICIENT}")),
     };
     if !text.contains('=') {
         return number(text).map(|cd| DragCoefficients { round: cd, sharp: cd });
     }
-    let mut found = DragCoefficients::default();
+    let (mut round, mut sharp) = (None, None);
     for part in text.split(',') {
-        match part.split_once('=').map(|(key, value)| (key.trim(), value)) {
-            Some(("round", value)) => found.round = number(value)?,
-            Some(("sharp", value)) => found.sharp = number(value)?,
+        let (key, value) = part.split_once('=').unwrap_or((part, ""));
+        let place = match key.trim() {
+            "round" => &mut round,
+            "sharp" => &mut sharp,
             _ => return Err(format!("'{part}': needs a number, or round=NUMBER,sharp=NUMBER")),
+        };
+        if place.replace(number(value)?).is_some() {
+            return Err(format!("{} is given twice", key.trim()));
         }
     }
-    Ok(found)
+    let usual = DragCoefficients::default();
+    Ok(DragCoefficients { round: round.unwrap_or(usual.round), sharp: sharp.unwrap_or(usual.sharp) })
 }
 
 fn parse_bounds(text: &str) -> Result<[DVec3; 2], String> {

@@ -21,6 +21,7 @@ pub mod monitors;
 pub mod output_keys;
 pub mod pictures;
 pub mod places;
+pub mod ranges;
 pub mod refine;
 pub mod regions;
 pub mod report;

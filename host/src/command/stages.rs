@@ -45,7 +45,10 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
             }
             grid = grid.or(found.grid);
             if args.unit.is_some() {
-                progress.warn(format!("{}: a scene names its own units; --unit does not change them", path.display()));
+                progress.warn(format!(
+                    "{}: a scene is in metres, and its solids of files have a unit each: the unit of STL and OBJ files does not change them",
+                    path.display()
+                ));
             }
             continue;
         }
@@ -112,6 +115,12 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
     });
     report_leaks(bodies, &result, progress);
     report_sheets(bodies, result.sheets_off_planes, progress);
+    if options.leaf != Leaf::Plane && result.subdivided == 0 {
+        progress.warn(match options.method {
+            Method::Gjk => "--leaf has no effect: no body can be subdivided",
+            _ => "--leaf has no effect: it is of --method gjk, which subdivides bodies, and without that none was",
+        });
+    }
     if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
         let why = match options.leaf {
             Leaf::Plane => ["is not convex, or not surely so", "are not convex, or not surely so"],
@@ -122,9 +131,6 @@ pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut 
         let exactly = if options.leaf == Leaf::Plane { ", exactly" } else { "" };
         progress
             .warn(format!("{count} of {all} {why}: measured by {} surface{exactly}", either(count, "its", "their")));
-    }
-    if options.leaf != Leaf::Plane && result.subdivided == 0 {
-        progress.warn("--leaf has no effect: every body was measured by its surface (--method gjk subdivides)");
     }
     if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
         let deeper = result.subdivided + result.divided > 0;

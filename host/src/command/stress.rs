@@ -66,11 +66,16 @@ fn available() -> usize {
 fn chosen(args: &StressArgs) -> Result<Vec<&'static StressCase>> {
     let all = cases();
     let known: Vec<&str> = all.iter().map(|case| case.name).collect();
-    if let Some(unknown) = args.only.iter().find(|only| !known.iter().any(|name| name.starts_with(&only[..]))) {
+    let is_known = |only: &str| !only.is_empty() && known.iter().any(|name| name.starts_with(only));
+    if let Some(unknown) = args.only.iter().find(|only| !is_known(only)) {
         return Err(Error::usage(format!("no case is called {unknown:?}; known are {}", known.join(", "))));
     }
     let named = |case: &StressCase| args.only.iter().any(|only| case.name == only);
     let begins = |case: &StressCase| args.only.is_empty() || args.only.iter().any(|o| case.name.starts_with(&o[..]));
     let wanted = |case: &&StressCase| named(case) || (begins(case) && (!case.long || args.long || args.list));
-    Ok(all.into_iter().filter(wanted).collect())
+    let chosen: Vec<_> = all.into_iter().filter(wanted).collect();
+    match chosen.is_empty() {
+        true => Err(Error::usage("all cases of these names take long: they run with --long, or by their whole names")),
+        false => Ok(chosen),
+    }
 }

@@ -146,7 +146,8 @@ impl Bodies {
         // Each coordinate by itself: the largest of several passes over NaN.
         let measurable = |p: &DVec3| p.abs().cmple(DVec3::splat(LARGEST)).all();
         if let Some(n) = scaled.iter().position(|t| !t.iter().all(measurable)) {
-            let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(scaled[n][0]));
+            let corner = scaled[n].into_iter().find(|p| !measurable(p)).unwrap_or_default();
+            let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(corner));
             return Err(Error { place: Some(format!("triangle {n} (counted from 0)")), ..mesh.error(reason) });
         }
         let mut report = Reporter { file: mesh.name.clone(), warnings: Vec::new() };
@@ -260,7 +261,7 @@ fn say_roles(bodies: &[Body], inverted: impl Iterator<Item = bool>, d: &Diagnosi
     if d.sheets > 0 {
         let place = bodies.iter().find(|b| b.sheet).map_or(DVec3::ZERO, |b| b.bounds[0]);
         report.warn(format!(
-            "{} no thickness (the first at {}); what has none holds no volume and blocks a face only where it lies in its plane",
+            "{} no thickness (the first at {}); what is open on both sides holds no volume and blocks a face only where it lies in its plane",
             counted(d.sheets, "sheet has", "sheets have"),
             show(place)
         ));
@@ -429,30 +430,39 @@ fn close(
 ) -> Vec<Part> {
     let corners = |n: &u32| mesh.triangles[*n as usize].map(|v| mesh.points[v as usize]);
     let mut closed = Vec::new();
-    let mut largest_hole: Option<(f64, DVec3)> = None;
+    let mut open = Open::default();
+    d.area = 0.0;
     for group in groups(mesh, shells, rounding) {
         let members = group.iter().flat_map(|&s| shells[s].triangles.iter());
         let mut triangles: Vec<_> = members.clone().map(corners).collect();
         let own = triangles.len();
+        d.area += triangles.iter().map(area).sum::<f64>();
         let boundary = without_opposites(group.iter().flat_map(|&s| shells[s].boundary.iter().copied()));
         d.boundary_edges += boundary.len();
+        let mut found = Open::default();
         for rim in rims(&boundary) {
             if rim.cancels(&mesh.points, rounding) {
                 d.t_junction_edges += rim.edges.len();
                 continue;
             }
             let cap = rim.cap(&mesh.points);
-            let area: f64 = cap.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum();
-            if largest_hole.is_none_or(|(largest, _)| area > largest) {
-                largest_hole = Some((area, rim.middle(&mesh.points)));
-            }
-            d.holes += 1;
+            found.join(&Open {
+                edges: rim.edges.len(),
+                holes: 1,
+                largest: Some((cap.iter().map(area).sum(), rim.middle(&mesh.points))),
+            });
             triangles.extend(cap);
         }
+        d.holes += found.holes;
         let name = members.min().map_or_else(String::new, |&n| name_of(n));
         let cluster = group.iter().map(|&s| shells[s].cluster).min().unwrap_or(0);
         let guessed = group.iter().any(|&s| shells[s].guessed);
-        closed.push(Part { name, shell: Closed::new(triangles), cluster, guessed, own });
+        let shell = Closed::new(triangles);
+        // That of a sheet is told as such.
+        if !shell.is_sheet() {
+            open.join(&found);
+        }
+        closed.push(Part { name, shell, cluster, guessed, own });
     }
     if d.t_junction_edges > 0 {
         report.warn(format!(
@@ -460,16 +470,41 @@ fn close(
             counted(d.t_junction_edges, "edge has", "edges have")
         ));
     }
-    if let Some((area, place)) = largest_hole {
+    if let Some((area, place)) = open.largest {
         report.warn(format!(
             "the surface is open: {} around {}, closed with {} (the largest, area {area:.6}, at {})",
-            counted(d.boundary_edges - d.t_junction_edges, "boundary edge", "boundary edges"),
-            counted(d.holes, "hole", "holes"),
-            either(d.holes, "a cap", "caps"),
+            counted(open.edges, "boundary edge", "boundary edges"),
+            counted(open.holes, "hole", "holes"),
+            either(open.holes, "a cap", "caps"),
             show(place)
         ));
     }
     closed
+}
+
+/// Where bodies are open.
+#[derive(Default)]
+struct Open {
+    edges: usize,
+    holes: usize,
+    /// Area and middle of the largest cap.
+    largest: Option<(f64, DVec3)>,
+}
+
+impl Open {
+    fn join(&mut self, other: &Open) {
+        self.edges += other.edges;
+        self.holes += other.holes;
+        let area = |largest: Option<(f64, DVec3)>| largest.map(|(area, _)| area);
+        if area(other.largest) > area(self.largest) {
+            self.largest = other.largest;
+        }
+    }
+}
+
+/// Area of a triangle.
+fn area([a, b, c]: &[DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() * 0.5
 }
 
 /// Edges without those that run back along others: there two sides of a sheet meet.

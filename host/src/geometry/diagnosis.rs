@@ -53,7 +53,7 @@ pub struct Diagnosis {
     pub signed_volume: f64,
     /// Sum of the bodies' volumes (overlaps counted as often as they occur).
     pub body_volume: f64,
-    /// Area of the surface.
+    /// Area of the surface; what is there twice counts once.
     pub area: f64,
     /// Lowest and highest corner.
     pub bounds: [DVec3; 2],

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::keys::reader::{meant, misfit, nearest, not_known};
 use crate::keys::value::{Entry, Value};
 use crate::keys::{self, PlacedValue, Source, json};
+use crate::words::counted;
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -198,9 +199,8 @@ fn slip<'a>(strange: &'a [Entry], known: &[Entry]) -> Option<(&'a Entry, &'stati
 /// # Errors
 /// A file that cannot be read or understood, or a grid without cells.
 pub fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Edges> {
-    if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
-        return Err(Error::file(path, "not a regular file"));
-    }
+    Source::no_geometry(path, "a grid")?;
+    crate::text::is_file(path)?;
     parse(path, &crate::text::read(path)?, warnings)
 }
 
@@ -272,7 +272,8 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
     }
     for (what, n) in counts.into_iter().filter_map(|(what, n)| Some((what, n?))) {
         if n != needed {
-            return Err(format!("{given} points need {needed} {what}, not {n}"));
+            let segments = counted(needed, "segment", "segments");
+            return Err(format!("{given} points make {segments}, each with a number in {what}: {needed}, not {n}"));
         }
     }
     let ratios = ratios.clone().unwrap_or_else(|| vec![1.0; cells.len()]);

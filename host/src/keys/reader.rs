@@ -22,7 +22,7 @@ pub fn read<T: for<'de> Deserialize<'de>>(source: &Source, node: &PlacedValue, p
         let reason = if key.is_empty() { wrong.reason } else { format!("key {key}: {}", wrong.reason) };
         match wrong.span {
             Some(span) => source.error(span, reason),
-            None => Error::file(source.path, reason),
+            None => source.at_end(reason),
         }
     })
 }

@@ -71,7 +71,31 @@ impl<'a> Source<'a> {
         let table = if self.is_json() { json::placed(self.text).ok() } else { toml() };
         match table.and_then(|table| deepest(&table, key)) {
             Some(span) => self.error(span, reason),
-            None => Error::file(self.path, reason),
+            None => self.at_end(reason),
+        }
+    }
+
+    /// An error about what the whole text does not have: at its end.
+    #[must_use]
+    pub fn at_end(&self, reason: impl Into<String>) -> Error {
+        let end = self.text.trim_end().len();
+        self.error(end..end, format!("{}; the file ends here", reason.into()))
+    }
+
+    /// The file is none of geometry, as its suffix would tell, but `a case`, `a study`.
+    ///
+    /// # Errors
+    /// It is one, and there.
+    pub fn no_geometry(path: &Path, kind: &str) -> Result<()> {
+        let geometry = path.extension().is_some_and(|e| ["stl", "obj"].iter().any(|s| e.eq_ignore_ascii_case(s)));
+        match geometry && path.is_file() {
+            true => Err(Error::file(
+                path,
+                format!(
+                    "this is a geometry, not {kind}; voidage porosity and inspect read it, [porosity] scene = \"FILE\" of a case names it"
+                ),
+            )),
+            false => Ok(()),
         }
     }
 

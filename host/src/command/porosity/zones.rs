@@ -18,6 +18,7 @@ const LARGEST_FILE: u64 = 1 << 24;
 pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
     let whole = edges.bounds();
     let Some(path) = path else { return Ok(vec![Zone { name: "all".into(), bounds: whole }]) };
+    Source::no_geometry(path, "a list of zones")?;
     let (path, text) = match text_of(path)? {
         Some(text) => (Path::new(INPUT), text),
         None => (path, table::read_text(path, LARGEST_FILE)?),

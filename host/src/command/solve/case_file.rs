@@ -1,7 +1,7 @@
 //! A case file of `voidage solve`: reading it, errors that name its keys, paths that count from its directory.
 
 use super::case::Case;
-use super::places;
+use super::{places, ranges};
 use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
 use crate::files::csv::needs_quotes;
@@ -41,7 +41,7 @@ fn parse(source: &Source) -> Result<Case> {
             return Err(misfit(source, (entry.span.clone(), reason.into())));
         }
     }
-    places::check(&node).map_err(|wrong| misfit(source, wrong))?;
+    places::check(&node).and_then(|()| ranges::check(&node, "")).map_err(|wrong| misfit(source, wrong))?;
     keys::read(source, &PlacedValue { span: None, ..node }, "")
 }
 
@@ -51,6 +51,7 @@ impl CaseFile {
     /// # Errors
     /// The file cannot be read, is not TOML, holds a key that is not known or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self> {
+        Source::no_geometry(path, "a case")?;
         let piped = text_of(path)?;
         let path = if piped.is_some() { Path::new(INPUT) } else { path };
         let text = match piped {
@@ -91,14 +92,14 @@ impl CaseFile {
         self.wrong(key, reason).to_string()
     }
 
-    /// `reason` unless `value` is left out or `holds`.
+    /// No two values of the list at `key` are equal.
     ///
     /// # Errors
-    /// Names key, reason and value.
-    pub fn demand(&self, key: &str, value: Option<f64>, holds: impl Fn(f64) -> bool, reason: &str) -> Result<()> {
-        match value {
-            Some(v) if !holds(v) => Err(self.wrong(key, format!("{reason}, not {v}"))),
-            _ => Ok(()),
+    /// The second of two that are.
+    pub fn distinct<T: PartialEq>(&self, key: &str, values: &[T]) -> Result<()> {
+        match (0..values.len()).find(|&n| values[..n].contains(&values[n])) {
+            Some(n) => Err(self.wrong(&format!("{key}[{n}]"), "stands in this list before")),
+            None => Ok(()),
         }
     }
 

@@ -55,12 +55,6 @@ impl<const D: usize> Inlet<D> {
         let axis = &edges.0[states.live[at.0]];
         let gas = states.gas_of(states.gamma(keys, None));
         let crossing = (axis[axis.len() - 1] - axis[0]) / gas.sound_speed(&state);
-        states.file.demand(
-            &format!("{key}.relax"),
-            keys.relax,
-            |t| t > 0.0 && t.is_finite(),
-            "needs a positive time",
-        )?;
         let relax = keys.relax.unwrap_or(crossing);
         let inlet = Inlet { at, patch: None, relax, sign, gas, per_pressure, shares: Vec::new() };
         inlet.follow(&mut state);

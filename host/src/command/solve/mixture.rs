@@ -3,6 +3,7 @@
 use super::arrays;
 use super::case::Model;
 use super::case_file::CaseFile;
+use super::ranges::GAMMA;
 use super::units::states;
 use crate::error::Result;
 use crate::grid::Edges;
@@ -22,7 +23,6 @@ pub fn mixture(file: &CaseFile, gas: Gas<f64>, edges: &Edges) -> Result<Gas<f64>
             let reason = format!("goes with the gas model {}, not with {model}", Model::Ideal.word());
             return Err(file.wrong(&key, reason));
         }
-        file.demand(&key, keys.gamma, |g| g > 1.0 && g.is_finite(), "needs a number above 1")?;
         found.extend(keys.gamma);
     }
     if let Some(path) = array(file) {
@@ -30,7 +30,7 @@ pub fn mixture(file: &CaseFile, gas: Gas<f64>, edges: &Edges) -> Result<Gas<f64>
             return Err(file
                 .wrong("initial.from", "holds gamma.npy: only an ideal gas may have a gamma of its own in each cell"));
         }
-        found.extend(arrays::read(&path, edges.cells(), above_one)?);
+        found.extend(arrays::read(&path, edges.cells(), |g| GAMMA.refuses(g))?);
     }
     if found.is_empty() {
         return Ok(gas);
@@ -44,10 +44,4 @@ pub fn mixture(file: &CaseFile, gas: Gas<f64>, edges: &Edges) -> Result<Gas<f64>
 pub fn array(file: &CaseFile) -> Option<PathBuf> {
     let dir = file.case.initial.from.as_ref()?;
     Some(file.resolve(dir).join("gamma.npy")).filter(|path| path.exists())
-}
-
-/// A ratio of specific heats.
-#[must_use]
-pub fn above_one(x: f64) -> Option<&'static str> {
-    (x <= 1.0).then_some("is not above 1")
 }

@@ -12,6 +12,7 @@ use crate::command::interrupt;
 use crate::command::progress::{Meter, Progress};
 use crate::error::{Error, Result};
 use crate::grid::{AXES, Edges};
+use crate::words::written;
 use serde::Serialize;
 use std::fmt::Display;
 
@@ -121,7 +122,7 @@ pub fn run<const D: usize>(
             Error::new(format!("--refine-check, on half the cells: {reason}; {kept}"))
         };
         if interrupt::asked() {
-            let (steps, time) = (setup.flow.steps, setup.flow.time);
+            let (steps, time) = (setup.flow.steps, written(setup.flow.time));
             return Err(ended(&format!("interrupted at step {steps}, t = {time}")));
         }
         step(&mut setup, Some(&mut maxima), end).map_err(|trouble| ended(&trouble))?;

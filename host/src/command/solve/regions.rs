@@ -7,9 +7,9 @@ use crate::command::progress::Progress;
 use crate::error::Result;
 use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
+use crate::words::written;
 use glam::DVec3;
 use serde::Serialize;
-use std::path::Path;
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::quadric::QuadricSolid;
@@ -53,18 +53,12 @@ impl Region {
                 let reason = "is of a box; a ball has center and radius: a region is one of them";
                 Err(file.wrong(&format!("{key}.{of_box}"), reason))
             }
-            (Some(center), Some(radius), None) if radius > 0.0 && radius < f64::INFINITY => {
-                if center.iter().any(|x| x.is_infinite()) {
-                    return Err(file.wrong(&format!("{key}.center"), "needs finite numbers"));
-                }
+            (Some(_), Some(radius), None) => {
                 // A ball in the plane of a flow, or an interval: axes that are left out do not count.
                 Ok(Region::Ball(point(file, &format!("{key}.center"), &keys.center, f64::NAN)?, radius))
             }
             (None, Some(_), None) => Err(file.wrong(key, "a ball needs a center beside its radius")),
             (Some(_), None, None) => Err(file.wrong(key, "a ball needs a radius beside its center")),
-            (Some(_), Some(radius), None) => {
-                Err(file.wrong(&format!("{key}.radius"), format!("needs a positive number, not {radius}")))
-            }
         }
     }
 
@@ -79,7 +73,7 @@ impl Region {
         match (0..3).find(|&a| min[a] > max[a]) {
             None => Ok(Region::Box(min, max)),
             Some(a) => {
-                let (axis, min, max) = (AXES[a], min[a], max[a]);
+                let (axis, [min, max]) = (AXES[a], [min[a], max[a]].map(written));
                 Err(file.wrong(&upper, format!("must not lie below min: along {axis} it is {max}, and min is {min}")))
             }
         }
@@ -105,8 +99,11 @@ impl Region {
     /// The cells that hold some of the region, and the share of each one's volume that it takes, x fastest.
     ///
     /// # Errors
-    /// The grid has too many cells.
-    pub fn shares(&self, edges: &Edges) -> Result<Vec<(usize, f64)>> {
+    /// It is round, and so far away that rounding has left no cells; as a reason.
+    pub fn shares(&self, edges: &Edges) -> std::result::Result<Vec<(usize, f64)>, String> {
+        if self.is_outside(edges) {
+            return Ok(Vec::new());
+        }
         let all = match self.solid(edges) {
             Some(solid) => round(&solid.0, &solid.1)?,
             None => self.box_shares(edges),
@@ -180,17 +177,15 @@ impl Region {
 fn point(file: &CaseFile, key: &str, p: &Option<Vec<f64>>, missing: f64) -> Result<[f64; 3]> {
     match p {
         None => Ok([missing; 3]),
-        Some(p) if (1..=3).contains(&p.len()) && p.iter().all(|x| !x.is_nan()) => {
-            Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing)))
-        }
-        Some(_) => Err(file.wrong(key, "needs one to three numbers")),
+        Some(p) if (1..=3).contains(&p.len()) => Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing))),
+        Some(p) => Err(file.wrong(key, format!("needs one to three numbers, not {}", p.len()))),
     }
 }
 
 /// What the regions of a case came to in a flow; those that change nothing, or less than they say, are told.
 ///
 /// # Errors
-/// The grid has too many cells.
+/// As [`Region::shares`].
 pub fn report<const D: usize>(
     file: &CaseFile,
     flow: &Flow<f64, D>,
@@ -202,7 +197,7 @@ pub fn report<const D: usize>(
     for (n, keys) in file.case.initial.regions.iter().enumerate() {
         let key = format!("initial.regions[{n}]");
         let region = Region::new(file, &key, keys)?;
-        let shares = region.shares(edges)?;
+        let shares = region.shares(edges).map_err(|reason| file.wrong(&key, reason))?;
         let report = region.report(edges, &live, flow.beta_v(), &shares);
         let open = report.open_volume / report.volume;
         let trouble = match report.cells_per_radius {
@@ -227,8 +222,9 @@ pub fn report<const D: usize>(
 }
 
 /// Shares of a round solid.
-fn round(solid: &QuadricSolid, edges: &Edges) -> Result<Vec<(usize, f64)>> {
-    let grid: Grid<f64> = edges.grid(None::<&Path>)?;
+fn round(solid: &QuadricSolid, edges: &Edges) -> std::result::Result<Vec<(usize, f64)>, String> {
+    let far = |_| "its center lies so far from the grid that cells cannot be told apart from there".to_owned();
+    let grid: Grid<f64> = edges.explained().map_err(far)?;
     let [nx, ny, nz] = grid.cells();
     let mut all = Vec::new();
     for k in 0..nz {

@@ -14,7 +14,7 @@ use super::solids::SolidForce;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
-use crate::words::counted;
+use crate::words::{counted, written};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use voidage_core::flow::Gas;
@@ -260,7 +260,7 @@ impl Report {
                 progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side"));
             }
         }
-        progress.say(format!("steps         {} to t = {} s", self.steps, self.time));
+        progress.say(format!("steps         {} to t = {} s", self.steps, written(self.time)));
         let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {e:.1e}"));
         progress.say(format!("drift         mass {:.1e}{energy}", self.mass_drift));
         progress.say(format!(

@@ -24,6 +24,7 @@ use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
 use crate::grid::Edges;
+use crate::words::written;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -172,8 +173,8 @@ impl<'a, const D: usize> Run<'a, D> {
         progress: &mut Progress,
     ) -> Result<Self> {
         let output = &file.case.output;
-        let ambient = ambient(file, &setup)?;
-        let mut maxima = maxima(file, &setup, ambient)?;
+        let ambient = ambient(file, &setup);
+        let mut maxima = maxima(file, &setup, ambient);
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let watched = Watched::new(file, &setup, progress)?;
         let cells = setup.pushed.iter().copied().chain(watched.cells()).collect();
@@ -251,7 +252,7 @@ impl<'a, const D: usize> Run<'a, D> {
             }
             if interrupt::asked() {
                 self.checkpoint()?;
-                let (step, time) = (self.setup.flow.steps, self.setup.flow.time);
+                let (step, time) = (self.setup.flow.steps, written(self.setup.flow.time));
                 return Err(Error::new(format!("interrupted at step {step}, t = {time}; go on with --resume")));
             }
         }
@@ -373,10 +374,8 @@ fn formats(output: &OutputKeys) -> &[Format] {
 }
 
 /// The pressure that overpressures are counted from.
-fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> Result<f64> {
-    let given = file.case.output.ambient;
-    file.demand("output.ambient", given, |p| p > 0.0 && p.is_finite(), "needs a positive pressure")?;
-    Ok(given.unwrap_or_else(|| lowest_pressure(&setup.flow)))
+fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> f64 {
+    file.case.output.ambient.unwrap_or_else(|| lowest_pressure(&setup.flow))
 }
 
 /// What the checkpoint of a run must share with it: what decides its flow, and what its largest values are counted from.
@@ -391,9 +390,12 @@ fn fingerprint<const D: usize>(setup: &Setup<D>, maxima: Option<&Maxima>, ambien
 /// The journal of a run that has not stepped yet; refuses a state that no gas has.
 fn first_journal<const D: usize>(file: &CaseFile, setup: &mut Setup<D>) -> Result<Journal> {
     if let Err(error) = setup.flow.rate() {
-        return Err(Error::at(&file.path, "initial", unphysical(setup, Some(error))));
+        return Err(file.wrong("initial", unphysical(setup, Some(error))));
     }
     let content = setup.flow.content();
+    if content.density == 0.0 {
+        return Err(file.wrong("porosity", "the solids fill the whole grid: there is no gas to flow"));
+    }
     Ok(Journal { begin: [content.density, content.energy], ..Journal::default() })
 }
 
@@ -406,6 +408,7 @@ fn pictures<const D: usize>(
 ) -> Result<Option<Pictures>> {
     let of_file = || file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let title = file.case.title.clone().unwrap_or_else(of_file);
+    file.distinct("output.formats", formats(&file.case.output))?;
     let OutputKeys { slice, range, .. } = &file.case.output;
     for (name, ends) in [("speed", range.speed), ("overpressure", range.overpressure)] {
         if ends.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
@@ -420,9 +423,7 @@ fn pictures<const D: usize>(
 }
 
 /// Largest values over time of a flow at its beginning, if the case asks for them.
-fn maxima<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> Result<Option<Maxima>> {
-    let Some(keys) = &file.case.output.maxima else { return Ok(None) };
-    let positive = |v: f64| v > 0.0 && v.is_finite();
-    file.demand("output.maxima.threshold", keys.threshold, positive, "needs a positive overpressure")?;
-    Ok(Some(Maxima::new(keys, ambient, &setup.flow)))
+fn maxima<const D: usize>(file: &CaseFile, setup: &Setup<D>, ambient: f64) -> Option<Maxima> {
+    let keys = file.case.output.maxima.as_ref()?;
+    Some(Maxima::new(keys, ambient, &setup.flow))
 }

@@ -6,6 +6,7 @@ use super::case_file::CaseFile;
 use super::force::pushed_cells;
 use super::inlet::Inlet;
 use super::mixture::mixture;
+use super::ranges::NOT_NEGATIVE;
 use super::regions::{self, RegionReport};
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
@@ -133,7 +134,7 @@ pub fn setup<const D: usize>(
     if let Some(report) = &mut report {
         report.step_share = step_share(&mut flow);
     }
-    let (edges, cfl) = (edges.clone(), cfl(file)?);
+    let (edges, cfl) = (edges.clone(), case.scheme.cfl.unwrap_or(USUAL_CFL));
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
     let pushed = pushed_cells(&flow);
     let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed));
@@ -199,8 +200,7 @@ fn refused(file: &CaseFile, error: voidage_core::flow::Error) -> Error {
 }
 
 fn gas(file: &CaseFile, keys: &GasKeys) -> Result<Gas<f64>> {
-    let GasKeys { model, gamma, sound_speed, rho, p, gas_constant } = *keys;
-    let positive = |v: f64| v > 0.0 && v.is_finite();
+    let GasKeys { model, gamma, sound_speed, rho, p, .. } = *keys;
     let given = [("gamma", gamma), ("sound_speed", sound_speed), ("rho", rho), ("p", p)];
     let needed: &[&str] = match model {
         Model::Ideal => &["gamma"],
@@ -213,12 +213,10 @@ fn gas(file: &CaseFile, keys: &GasKeys) -> Result<Gas<f64>> {
             (false, Some(_)) => {
                 return Err(file.wrong(&format!("gas.{key}"), format!("is not a key of this model ({})", model.word())));
             }
-            _ => file.demand(&format!("gas.{key}"), value, positive, "needs a positive number")?,
+            _ => {}
         }
     }
-    file.demand("gas.gamma", gamma, |g| g > 1.0, "needs a number above 1")?;
-    file.demand("gas.gas_constant", gas_constant, positive, "needs a positive number")?;
-    let value = |v: Option<f64>| v.unwrap_or(f64::NAN); // demanded above
+    let value = |v: Option<f64>| v.unwrap_or(f64::NAN); // asked for above
     Ok(match model {
         Model::Ideal => Gas::Ideal { gamma: value(gamma) },
         Model::Isothermal => Gas::Isothermal { sound_speed: value(sound_speed) },
@@ -249,16 +247,9 @@ const CAREFUL_STEPS: usize = 5;
 /// Share of the stable step of a case that does not say.
 const USUAL_CFL: f64 = 0.8;
 
-fn cfl(file: &CaseFile) -> Result<f64> {
-    let cfl = file.case.scheme.cfl;
-    file.demand("scheme.cfl", cfl, |c| c > 0.0 && c <= 1.0, "needs a number above 0 and at most 1")?;
-    Ok(cfl.unwrap_or(USUAL_CFL))
-}
-
 fn gravity<const D: usize>(file: &CaseFile, live: [usize; D]) -> Result<[f64; D]> {
     let g = file.case.gravity.g.unwrap_or_default();
     for (axis, g) in g.into_iter().enumerate() {
-        file.demand("gravity.g", Some(g), f64::is_finite, "needs finite numbers")?;
         if g != 0.0 && !live.contains(&axis) {
             return Err(file.wrong("gravity.g", format!("acts along {}, which has one cell", AXES[axis])));
         }
@@ -285,10 +276,8 @@ fn drag<const D: usize>(
                 (Some(_), Some(_)) => {
                     return Err(file.wrong(&format!("drag.{name}"), "is given here and in drag.from"));
                 }
-                (Some(path), None) => arrays::read(&path, edges.cells(), arrays::not_negative)?,
+                (Some(path), None) => arrays::read(&path, edges.cells(), |c| NOT_NEGATIVE.refuses(c))?,
                 (None, Some(constants)) => {
-                    let good = |c: f64| c >= 0.0 && c.is_finite();
-                    file.demand(&format!("drag.{name}"), Some(constants[axis]), good, "needs numbers not below 0")?;
                     vec![constants[axis]; if constants[axis] == 0.0 { 0 } else { count }]
                 }
                 (None, None) => Vec::new(),

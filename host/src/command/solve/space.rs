@@ -12,6 +12,7 @@ use crate::command::streams::{INPUT, is_stream};
 use crate::error::Result;
 use crate::files::csv::needs_quotes;
 use crate::geometry::bodies::Bodies;
+use crate::geometry::scene::is_scene;
 use crate::grid::{AXES, Edges};
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
@@ -76,10 +77,20 @@ fn from_scene<const D: usize>(
     if paths.is_empty() {
         return Err(file.wrong("porosity.scene", "names no file"));
     }
+    if let Some(n) = paths.iter().position(|path| path.as_os_str().is_empty()) {
+        let key = if paths.len() == 1 { "porosity.scene".to_owned() } else { format!("porosity.scene[{n}]") };
+        return Err(file.wrong(&key, "is an empty text in place of a file"));
+    }
+    file.distinct("porosity.scene", paths)?;
     paths
         .iter()
         .filter(|path| !is_stream(path))
         .try_for_each(|path| file.existing("porosity.scene", path).map(drop))?;
+    if keys.unit.is_some() && paths.iter().all(|path| is_scene(path)) {
+        let reason =
+            "is of STL and OBJ files: a scene is in metres, and there each solid of shape \"file\" takes a unit";
+        return Err(file.wrong("porosity.unit", reason));
+    }
     if paths.iter().any(|path| is_stream(path)) && file.path == Path::new(INPUT) {
         return Err(file.wrong("porosity.scene", "the standard input can be read once, and the case came from it"));
     }
@@ -122,6 +133,7 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
     let mut names: Vec<String> = Vec::new();
     let all = solids::names(bodies);
     let known = |name: &str| all.iter().any(|own| own.contains(&name));
+    file.distinct("output.forces", &file.case.output.forces)?;
     for (n, name) in file.case.output.forces.iter().enumerate() {
         let more: Vec<&str> = match &name[..] {
             "*" => all.iter().map(|[_, solid]| *solid).filter(|name| !name.is_empty()).collect(),
@@ -152,9 +164,6 @@ fn given_otherwise(file: &CaseFile) -> bool {
 fn law(file: &CaseFile) -> Result<Option<(DragLaw, DragCoefficients)>> {
     let keys = &file.case.drag;
     let given = [("drag.cd", keys.cd), ("drag.cd_round", keys.cd_round), ("drag.cd_sharp", keys.cd_sharp)];
-    for (key, value) in given {
-        file.demand(key, value, |c| c >= 0.0 && c.is_finite(), "needs a number not below 0")?;
-    }
     let law = match keys.law {
         None | Some(LawName::None) => {
             return match given.iter().find(|(_, value)| value.is_some()) {
@@ -175,11 +184,6 @@ fn law(file: &CaseFile) -> Result<Option<(DragLaw, DragCoefficients)>> {
 }
 
 fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
-    file.demand("porosity.tol", keys.tol, |t| (0.0..=1.0).contains(&t), "needs a fraction from 0 to 1")?;
-    file.demand("porosity.jump", keys.jump, |j| j > 0.0, "needs a positive number or inf")?;
-    if keys.depth.is_some_and(|d| d > 10) {
-        return Err(file.wrong("porosity.depth", "is at most 10"));
-    }
     let given = [
         ("porosity.unit", keys.unit.is_some()),
         ("porosity.tol", keys.tol.is_some()),

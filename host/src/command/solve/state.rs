@@ -5,10 +5,12 @@ use super::case::{StateKeys, VELOCITIES};
 use super::case_file::CaseFile;
 use super::mixture;
 use super::places::STATE;
+use super::ranges::{GAMMA, QUANTITY, SIGNED};
 use super::regions::Region;
 use crate::command::stages;
 use crate::error::Result;
 use crate::grid::{AXES, Edges};
+use crate::words::written;
 use std::path::Path;
 use voidage_core::flow::{Conserved, Gas, Primitive};
 
@@ -59,12 +61,6 @@ impl<const D: usize> States<'_, D> {
     /// Something is missing, contradicts, or is no state.
     pub fn state(&self, key: &str, keys: &StateKeys, base: Option<Primitive<f64, D>>) -> Result<Primitive<f64, D>> {
         let missing = |name: &str| self.file.wrong(key, format!("{name} is missing"));
-        for (name, value) in [("p", keys.p), ("T", keys.temperature), ("rho", keys.rho)] {
-            if let Some(value) = value.filter(|v| !(*v > 0.0 && v.is_finite())) {
-                let reason = format!("needs a positive number, not {value}");
-                return Err(self.file.wrong(&format!("{key}.{name}"), reason));
-            }
-        }
         let velocity = self.velocity(key, keys, base.map(|b| b.velocity))?;
         let (density, pressure) = if self.gas.has_energy() {
             let pressure = keys.p.or(base.map(|b| b.pressure)).ok_or_else(|| missing("p"))?;
@@ -77,8 +73,8 @@ impl<const D: usize> States<'_, D> {
             (density, self.gas.pressure(density, 0.0))
         };
         for (name, value) in [("rho", density), ("p", pressure)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(self.file.wrong(key, format!("{name} = {value} is not a positive number")));
+            if let Some(reason) = QUANTITY.refuses(value) {
+                return Err(self.file.wrong(key, format!("comes to {name} = {}, which {reason}", written(value))));
             }
         }
         if let Some(p) = keys.p.filter(|p| !((p / pressure - 1.0).abs() <= AGREEMENT)) {
@@ -104,7 +100,6 @@ impl<const D: usize> States<'_, D> {
         let given = [keys.u, keys.v, keys.w];
         for (axis, u) in given.into_iter().enumerate() {
             let name = VELOCITIES[axis];
-            self.file.demand(&format!("{key}.{name}"), u, f64::is_finite, "needs a finite number")?;
             if !self.live.contains(&axis) && u.is_some_and(|u| u != 0.0) {
                 return Err(self.file.wrong(
                     &format!("{key}.{name}"),
@@ -131,7 +126,7 @@ impl<const D: usize> States<'_, D> {
             }
             (None, Some(dir)) => {
                 let gammas = match mixture::array(self.file).filter(|_| self.gas.is_mixed()) {
-                    Some(path) => arrays::read(&path, edges.cells(), mixture::above_one)?,
+                    Some(path) => arrays::read(&path, edges.cells(), |g| GAMMA.refuses(g))?,
                     None => vec![self.gamma(&StateKeys::default(), None); count],
                 };
                 let states = self.read(&self.file.existing("initial.from", dir)?, edges)?.into_iter();
@@ -165,7 +160,7 @@ impl<const D: usize> States<'_, D> {
             return Err(self.file.wrong(&key, format!("has no state and would change nothing: it needs any of {all}")));
         }
         let region = Region::new(self.file, &key, keys)?;
-        for (cell, share) in region.shares(edges)? {
+        for (cell, share) in region.shares(edges).map_err(|reason| self.file.wrong(&key, reason))? {
             let state = self.state(&key, keys, cells[cell].map(|c| c.state))?;
             let gamma = self.gamma(keys, cells[cell].map(|c| c.gamma));
             cells[cell] = Some(Filled { state, gamma, share }.over(cells[cell], self));
@@ -178,18 +173,18 @@ impl<const D: usize> States<'_, D> {
     fn read(&self, dir: &Path, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
         let shape = edges.cells();
         let file = |name: &str| dir.join(format!("{name}.npy"));
-        let density = arrays::read(&file("rho"), shape, arrays::positive)?;
+        let density = arrays::read(&file("rho"), shape, |x| QUANTITY.refuses(x))?;
         let mut velocity: [Vec<f64>; 3] = Default::default();
         for (axis, values) in velocity.iter_mut().enumerate() {
             let path = file(VELOCITIES[axis]);
             if self.live.contains(&axis) {
-                *values = arrays::read(&path, shape, arrays::any)?;
+                *values = arrays::read(&path, shape, |u| SIGNED.refuses(u))?;
             } else if path.exists() {
-                arrays::read(&path, shape, |u| (u != 0.0).then_some("flows along an axis of one cell"))?;
+                arrays::read(&path, shape, |u| (u != 0.0).then(|| "flows along an axis of one cell".to_owned()))?;
             }
         }
         let pressure = match self.gas.has_energy() {
-            true => arrays::read(&file("p"), shape, arrays::positive)?,
+            true => arrays::read(&file("p"), shape, |x| QUANTITY.refuses(x))?,
             false => density.iter().map(|&rho| self.gas.pressure(rho, 0.0)).collect(),
         };
         let state = |c: usize| Primitive {

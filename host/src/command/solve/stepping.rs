@@ -6,6 +6,7 @@ use super::maxima::Maxima;
 use super::setup::Setup;
 use super::state;
 use crate::flow::Flow;
+use crate::words::written;
 use std::fmt::{self, Write as _};
 use voidage_core::flow::{Error, Primitive};
 
@@ -36,7 +37,7 @@ pub fn step<const D: usize>(setup: &mut Setup<D>, maxima: Option<&mut Maxima>, s
     let (before, floors) = (setup.flow.time, setup.flow.total.floored);
     let stepped = setup.flow.advance(setup.cfl, stop);
     let flow = &setup.flow;
-    let (steps, time) = (flow.steps, flow.time);
+    let (steps, time) = (flow.steps, written(flow.time));
     let at = |reason: &str| format!("step {steps}, t = {time}: {reason}");
     let dt = match stepped {
         Ok(dt) if flow.total.rate.is_finite() && flow.time > before && flow.time.is_finite() => dt,

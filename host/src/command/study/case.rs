@@ -34,15 +34,16 @@
 use super::flows::keys::{FlowRecipe, flow_recipes};
 use super::recipe::{Recipe, recipes};
 use super::scaling::{ScalingRecipe, scaling_recipe};
-use super::values::{few, some};
+use super::values::{distinct, few, some};
 use crate::command::stages::room_for;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
 use crate::grid::Edges;
 use crate::keys::Source;
 use crate::porosity::Method;
 use std::path::{Path, PathBuf};
+use toml::de::DeValue;
 
 /// A study.
 #[derive(Debug, Clone)]
@@ -167,6 +168,7 @@ const LARGEST_FILE: u64 = 1 << 26;
 /// # Errors
 /// As [`table::read_text`].
 pub fn text(path: &Path) -> Result<String> {
+    Source::no_geometry(path, "a study")?;
     table::read_text(path, LARGEST_FILE)
 }
 
@@ -181,7 +183,7 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     keys.is_a("a study")?;
     let title = keys.get("title", table::text)?.unwrap_or_default();
     let repeats = keys.get("repeats", few)?.unwrap_or(3);
-    let threads = keys.get("threads", table::list(few))?.unwrap_or_else(|| vec![1]);
+    let threads = keys.get("threads", distinct(table::list(few)))?.unwrap_or_else(|| vec![1]);
     let areas = keys.get("areas", table::truth)?.unwrap_or(true);
     let refine = keys.get("refine", some(few))?.unwrap_or_else(|| vec![1]);
     let left_out = keys.get("left_out", table::truth)?.unwrap_or(false);
@@ -190,15 +192,18 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     let (scenes, methods, scalings) = (named("scene")?, named("method")?, named("scaling")?);
     let flows = keys.tables("flow")?.into_iter().map(flow_recipes).collect::<Result<Vec<_>>>()?.concat();
     let scalings = scalings.into_iter().map(scaling_recipe).collect::<Result<Vec<_>>>()?;
-    let subjects = scenes.into_iter().map(|k| subject(k, path)).collect::<Result<Vec<_>>>()?;
+    let own_grids = keys.grids("grid")?;
+    let grids: Vec<Edges> = own_grids.iter().flat_map(|g| refine.iter().map(|&n| g.refined(n))).collect();
+    let subjects = scenes.into_iter().map(|k| subject(k, path, &grids)).collect::<Result<Vec<_>>>()?;
     let recipes = methods.into_iter().map(|k| recipes(k, areas)).collect::<Result<Vec<_>>>()?.concat();
-    let grids = keys.grids("grid")?;
-    let grids: Vec<Edges> = grids.iter().flat_map(|g| refine.iter().map(|&n| g.refined(n))).collect();
     for edges in &grids {
         let grid = edges.grid(None).map_err(|e| keys.wrong("refine", e))?;
         room_for(grid.cell_count().saturating_mul(POROSITY_BYTES)).map_err(|e| keys.wrong("grid", e.reason))?;
     }
     keys.finish()?;
+    if let Some(n) = (0..own_grids.len()).find(|&n| own_grids[..n].contains(&own_grids[n])) {
+        return Err(source.at_key(&format!("grid[{n}]"), "is the same as one before"));
+    }
     let is_quick = false;
     let case = StudyCase {
         title,
@@ -214,49 +219,35 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
         note,
         is_quick,
     };
-    check_complete(path, &case)?;
+    check_complete(&source, &case)?;
     Ok(case)
 }
 
 /// Bytes that the porosities of a cell and its faces take, those of the exact result beside them.
 const POROSITY_BYTES: usize = 2 * 4 * size_of::<f64>();
 
-/// A study needs something to do, and its probes cells to look at.
-fn check_complete(path: &Path, case: &StudyCase) -> Result<()> {
-    let StudyCase { subjects, grids, recipes, threads, .. } = case;
+/// A study needs something to do.
+fn check_complete(source: &Source, case: &StudyCase) -> Result<()> {
+    let StudyCase { subjects, grids, recipes, .. } = case;
     let others = !(case.flows.is_empty() && case.scalings.is_empty());
     let bare = subjects.is_empty() && grids.is_empty() && recipes.is_empty();
-    for (what, missing) in [
-        ("scene", subjects.is_empty()),
-        ("grid", grids.is_empty()),
-        ("method", recipes.is_empty()),
-        ("threads", threads.is_empty()),
-    ] {
-        if missing && !(bare && others && what != "threads") {
-            return Err(Error::file(path, format!("a study needs at least one {what}")));
-        }
-    }
-    for Subject { name, probe, .. } in subjects {
-        let outside = |g: &&Edges| probe.is_some_and(|p| (0..3).any(|a| p.cell[a] >= g.cells()[a]));
-        if let Some(grid) = grids.iter().find(outside) {
-            let [nx, ny, nz] = grid.cells();
-            return Err(Error::file(
-                path,
-                format!("scene \"{name}\": the probe lies outside of the grid {nx}x{ny}x{nz}"),
-            ));
+    for (what, missing) in [("scene", subjects.is_empty()), ("grid", grids.is_empty()), ("method", recipes.is_empty())]
+    {
+        if missing && !(bare && others) {
+            return Err(source.at_end(format!("a study needs at least one {what}, a table [[{what}]]")));
         }
     }
     Ok(())
 }
 
-fn subject(mut keys: StrictTable, path: &Path) -> Result<Subject> {
+fn subject(mut keys: StrictTable, path: &Path, grids: &[Edges]) -> Result<Subject> {
     let name = keys.named()?;
     let beside = path.parent().unwrap_or(Path::new(""));
-    let files = keys.get("files", table::list(table::text))?.unwrap_or_default();
-    let files: Vec<PathBuf> = files.iter().map(|f| beside.join(f)).collect();
+    let there = |value: &DeValue| existing(beside, value);
+    let files = keys.get("files", distinct(table::list(there)))?.unwrap_or_default();
     let solids = scene::solids(&mut keys)?;
-    let exact = keys.get("exact", table::number)?;
-    let probe = keys.table("probe")?.map(|mut k| probe(&mut k)).transpose()?;
+    let exact = keys.get("exact", table::positive)?;
+    let probe = keys.table("probe")?.map(|mut k| probe(&mut k, grids)).transpose()?;
     let published = keys.tables("published")?.into_iter().map(published).collect::<Result<_>>()?;
     keys.finish()?;
     if files.is_empty() && solids.is_empty() {
@@ -275,11 +266,28 @@ fn published(mut keys: StrictTable) -> Result<Published> {
     Ok(published)
 }
 
-fn probe(keys: &mut StrictTable) -> Result<ProbeCell> {
+/// The file of that name in a directory.
+fn existing(directory: &Path, value: &DeValue) -> std::result::Result<PathBuf, String> {
+    let name = table::text(value)?;
+    let path = directory.join(&name);
+    match std::fs::metadata(&path) {
+        _ if name.is_empty() => Err("is an empty text in place of a file".to_owned()),
+        Err(e) => Err(format!("{}: cannot open: {e}", path.display())),
+        Ok(_) => Ok(path),
+    }
+}
+
+/// A cell of all `grids`.
+fn probe(keys: &mut StrictTable, grids: &[Edges]) -> Result<ProbeCell> {
     let probe = ProbeCell {
         cell: keys.need("cell", table::three(table::index))?,
         beta_v: keys.need("beta_v", table::fraction)?,
     };
     keys.finish()?;
-    Ok(probe)
+    match grids.iter().map(Edges::cells).find(|cells| (0..3).any(|a| probe.cell[a] >= cells[a])) {
+        None => Ok(probe),
+        Some([nx, ny, nz]) => {
+            Err(keys.wrong("cell", format!("is no cell of the grid {nx}x{ny}x{nz}; cells are counted from 0")))
+        }
+    }
 }

@@ -57,13 +57,29 @@ pub fn word<T: ValueEnum>(value: T) -> String {
 }
 
 /// One value, or a list of some.
-pub fn some<T>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
+pub fn some<T: PartialEq>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
     move |value| {
         if !value.is_array() {
             return read(value).map(|one| vec![one]);
         }
-        let all = table::list(read)(value)?;
-        if all.is_empty() { Err("is an empty list".to_owned()) } else { Ok(all) }
+        distinct(table::list(read))(value)
+    }
+}
+
+/// A list that holds something, and nothing twice.
+///
+/// # Errors
+/// What `list` should be; the second of two equal values.
+pub fn distinct<T: PartialEq>(
+    list: impl FnOnce(&DeValue) -> Wanted<Vec<T>>,
+) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
+    move |value| {
+        let all = list(value)?;
+        match (0..all.len()).find(|&n| all[..n].contains(&all[n])) {
+            Some(n) => Err(format!("[{n}] stands in this list before")),
+            None if all.is_empty() => Err("is an empty list".to_owned()),
+            None => Ok(all),
+        }
     }
 }
 

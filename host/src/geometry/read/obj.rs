@@ -202,8 +202,8 @@ impl<'a> Reader<'a> {
         for face in &self.faces {
             firsts.push(mesh.triangles.len());
             polygon.clear();
-            for &corner in &self.corners[start..face.end] {
-                let vertex = self.vertices.get(corner).ok_or_else(|| self.out_of_range(face, corner))?;
+            for (n, &corner) in self.corners[start..face.end].iter().enumerate() {
+                let vertex = self.vertices.get(corner).ok_or_else(|| self.out_of_range(face, n, corner))?;
                 polygon.push(*vertex);
             }
             start = face.end;
@@ -229,9 +229,14 @@ impl<'a> Reader<'a> {
         runs.map(|((name, start), end)| Solid { name, triangles: firsts[start]..firsts[end] }).collect()
     }
 
-    fn out_of_range(&self, face: &Face, corner: usize) -> Error {
+    /// The `n`-th corner of a face is no vertex of the file.
+    fn out_of_range(&self, face: &Face, n: usize, corner: usize) -> Error {
         let reason = format!("index {}, but there are {} vertices", corner as u64 + 1, self.vertices.len());
-        self.error(face.at, reason)
+        let mut tokens = self.tokens.clone();
+        tokens.go_to(face.at);
+        let keyword = tokens.next();
+        let index = std::iter::from_fn(|| tokens.next_in_line()).nth(n);
+        self.error(index.or(keyword).map_or(face.at, |token| token.at), reason)
     }
 
     fn error(&self, at: usize, reason: String) -> Error {

@@ -14,6 +14,9 @@ pub struct Token<'a> {
     pub at: usize,
 }
 
+/// Larger coordinates overflow when multiplied.
+const LARGEST: f64 = 1e60;
+
 impl Token<'_> {
     /// Whether it is this keyword, in any case.
     pub fn is(&self, keyword: &str) -> bool {
@@ -25,10 +28,13 @@ impl Token<'_> {
         self.bytes.starts_with(b"#") || self.bytes.starts_with(b"//")
     }
 
-    /// Its value as a finite number, or what is wrong with it.
+    /// Its value as a coordinate, or what is wrong with it.
     pub fn number(&self) -> Result<f64, String> {
         match std::str::from_utf8(self.bytes).ok().and_then(|text| text.parse::<f64>().ok()) {
-            Some(value) if value.is_finite() => Ok(value),
+            Some(value) if value.abs() <= LARGEST => Ok(value),
+            Some(value) if value.is_finite() => {
+                Err(format!("{} is no coordinate: it is beyond {LARGEST:e}", quote(self.bytes)))
+            }
             Some(_) => Err(format!("{} is not finite", quote(self.bytes))),
             None => Err(format!("{} is not a number{}", quote(self.bytes), self.advice())),
         }
@@ -138,9 +144,14 @@ impl<'a> Tokens<'a> {
         self.at = self.line_end();
     }
 
-    /// The bytes from `at` up to `end`, without white space around, as text; what is not UTF-8 becomes U+FFFD.
+    /// The bytes from `at` up to `end`, without white space around, as text; what is not UTF-8 is taken for Latin-1, and its control codes become U+FFFD.
     pub fn trimmed(&self, at: usize, end: usize) -> String {
-        String::from_utf8_lossy(self.text[at..end].trim_ascii()).into_owned()
+        let bytes = self.text[at..end].trim_ascii();
+        let latin = |&byte: &u8| match char::from(byte) {
+            c if c.is_control() && c != '\t' => char::REPLACEMENT_CHARACTER,
+            c => c,
+        };
+        std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().map(latin).collect(), str::to_owned)
     }
 
     /// Length of the text.

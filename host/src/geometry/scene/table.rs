@@ -5,6 +5,7 @@ use crate::grid::{Edges, file};
 use crate::keys::Source;
 use crate::keys::reader::{nearest, not_known};
 use crate::keys::source::another;
+use crate::words::written;
 use glam::DVec3;
 use std::ops::Range;
 use std::path::Path;
@@ -16,9 +17,7 @@ use toml::de::{DeTable, DeValue};
 /// If there is no such file, or it is larger.
 pub fn read_text(path: &Path, most: u64) -> Result<String> {
     let about = std::fs::metadata(path).map_err(|e| Error::io(path, "open", &e))?;
-    if !about.is_file() {
-        return Err(Error::file(path, "not a regular file"));
-    }
+    crate::text::is_file(path)?;
     if about.len() > most {
         return Err(Error::file(path, format!("too large: {} bytes, at most {most} are read", about.len())));
     }
@@ -268,10 +267,13 @@ fn item(value: &DeValue, reason: &str) -> Option<Range<usize>> {
     value.as_array()?.get(n.parse::<usize>().ok()?).map(toml::Spanned::span)
 }
 
-/// Larger coordinates overflow when multiplied, and are no geometry.
-const LARGEST: f64 = 1e60;
+/// Larger numbers are a slip of the pen, and no geometry.
+const LARGEST: f64 = 1e30;
 
-/// A finite number.
+/// What must be above zero is at least this.
+const SMALLEST: f64 = 1e-30;
+
+/// A number.
 ///
 /// # Errors
 /// What it should be.
@@ -283,7 +285,7 @@ pub fn number(value: &DeValue) -> Wanted<f64> {
     };
     match digits.parse::<f64>() {
         Ok(x) if x.abs() <= LARGEST => Ok(x),
-        _ => Err(format!("takes a finite number below {LARGEST:e}, not {digits}")),
+        _ => Err(format!("takes a number within ±{LARGEST:e}, not {digits}")),
     }
 }
 
@@ -293,7 +295,11 @@ pub fn number(value: &DeValue) -> Wanted<f64> {
 /// What it should be.
 pub fn positive(value: &DeValue) -> Wanted<f64> {
     let x = number(value)?;
-    if x > 0.0 { Ok(x) } else { Err(format!("must be positive, not {x}")) }
+    match x {
+        _ if x >= SMALLEST => Ok(x),
+        _ if x > 0.0 => Err(format!("must be at least {SMALLEST:e}, not {}", written(x))),
+        _ => Err(format!("must be positive, not {}", written(x))),
+    }
 }
 
 /// A number that is not below zero.
@@ -302,7 +308,18 @@ pub fn positive(value: &DeValue) -> Wanted<f64> {
 /// What it should be.
 pub fn not_negative(value: &DeValue) -> Wanted<f64> {
     let x = number(value)?;
-    if x >= 0.0 { Ok(x) } else { Err(format!("must not be below 0, not {x}")) }
+    if x >= 0.0 { Ok(x) } else { Err(format!("must not be below 0, not {}", written(x))) }
+}
+
+/// A number that is neither below zero nor above another.
+///
+/// # Errors
+/// What it should be.
+pub fn up_to(most: f64) -> impl Fn(&DeValue) -> Wanted<f64> {
+    move |value| {
+        let x = not_negative(value)?;
+        if x <= most { Ok(x) } else { Err(format!("must be at most {}, not {}", written(most), written(x))) }
+    }
 }
 
 /// A number from 0 to 1.
@@ -311,7 +328,7 @@ pub fn not_negative(value: &DeValue) -> Wanted<f64> {
 /// What it should be.
 pub fn fraction(value: &DeValue) -> Wanted<f64> {
     let x = number(value)?;
-    if (0.0..=1.0).contains(&x) { Ok(x) } else { Err(format!("must be from 0 to 1, not {x}")) }
+    if (0.0..=1.0).contains(&x) { Ok(x) } else { Err(format!("must be from 0 to 1, not {}", written(x))) }
 }
 
 /// A whole number of at least zero.

@@ -1,0 +1,240 @@
+//! Slips of the pen: what was given in place of what, what stands twice, what is missing; each is told, at its line if it is in a file.
+
+use crate::kit::{Scratch, fixture, json, program, solve, solved, stderr, stdout, voidage};
+use std::fs;
+use std::process::{Command, Output};
+
+/// The command with arguments, in the directory.
+fn run(at: &Scratch, arguments: &[&str]) -> Output {
+    Command::new(program()).args(arguments).current_dir(&at.0).output().expect("the program runs")
+}
+
+/// It fails with this exit code and these words.
+fn fails(output: &Output, code: i32, words: &[&str]) {
+    let said = stderr(output);
+    assert_eq!(output.status.code(), Some(code), "{words:?}: {said}");
+    words.iter().for_each(|words| assert!(said.contains(words), "'{words}' expected: {said}"));
+}
+
+const BOX: &str = "[[solid]]\nname = \"box\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [0.5, 0.5, 0.5]\n";
+
+const GRID: &str = "[grid]\nx = { points = [0, 1], cells = [4] }\ny = { points = [0, 1], cells = [4] }\nz = { points = [0, 1], cells = [4] }\n";
+const GAS: &str = "[gas]\nmodel = \"ideal\"\ngamma = 1.4\n";
+const INITIAL: &str = "[initial]\nuniform = { rho = 1, p = 1 }\n";
+const WALLS: &str = "[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\nz_min = \"wall\"\nz_max = \"wall\"\n";
+const TIME: &str = "[time]\nmax_steps = 1\n";
+
+#[test]
+fn what_a_case_lacks_has_a_place() {
+    let at = Scratch::new();
+    let parts = [GRID, GAS, INITIAL, TIME, WALLS];
+    for (left_out, words) in [
+        (0, "case.toml: line 14, column 15: grid is missing; the file ends here\n"),
+        (1, "case.toml: line 15, column 15: gas is missing; the file ends here\n"),
+        (2, "case.toml: line 16, column 15: initial is missing; the file ends here\n"),
+        (3, "case.toml: line 16, column 15: time is missing; the file ends here\n"),
+        (4, "case.toml: line 11, column 14: key boundary.x_min: is missing; the file ends here\n"),
+    ] {
+        let text: String = (0..5).filter(|n| *n != left_out).map(|n| parts[n]).collect();
+        fails(&solve(&at, &text, "out", &[]), 1, &[words, " ^\n"]);
+    }
+}
+
+#[test]
+fn lists_of_a_case_hold_nothing_twice() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a scene");
+    let case = |more: &str| [GRID, GAS, INITIAL, WALLS, TIME, more].concat();
+    for (more, words) in [
+        (
+            "[porosity]\nscene = \"box.toml\"\n[output]\nforces = [\"box\", \"box\"]\n",
+            "output.forces[1]: stands in this list before",
+        ),
+        ("[porosity]\nscene = [\"box.toml\", \"box.toml\"]\n", "porosity.scene[1]: stands in this list before"),
+        ("[porosity]\nscene = \"\"\n", "porosity.scene: is an empty text in place of a file"),
+        ("[output]\nformats = [\"vtr\", \"npy\", \"vtr\"]\n", "output.formats[2]: stands in this list before"),
+        (
+            "[porosity]\nscene = \"box.toml\"\nunit = \"mm\"\n",
+            "porosity.unit: is of STL and OBJ files: a scene is in metres",
+        ),
+    ] {
+        fails(&solve(&at, &case(more), "out", &[]), 1, &["case.toml: line ", words, "^"]);
+    }
+    fs::write(at.file("box.toml"), BOX.replace("0.5", "1")).expect("a scene");
+    let output = solve(&at, &case("[porosity]\nscene = \"box.toml\"\n"), "out", &[]);
+    fails(&output, 1, &["line 19, column 1: key porosity: the solids fill the whole grid: there is no gas to flow"]);
+}
+
+#[test]
+fn slips_in_studies_have_lines() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a scene");
+    let study = "threads = [1]\n[[scene]]\nfiles = [\"box.toml\"]\n[[method]]\ntol = 1e-3\n\
+                 [[grid]]\norigin = [0, 0, 0]\nspacing = [0.5, 0.5, 0.5]\ncells = [2, 2, 2]\n";
+    let grid = &study[study.find("[[grid]]").expect("a grid")..];
+    for (from, to, words) in [
+        ("[1]", "[1, 2, 1]", "line 1, column 18: threads[2] stands in this list before"),
+        ("threads = [1]", "refine = [2, 2]", "line 1, column 14: refine[1] stands in this list before"),
+        ("1e-3", "[1e-3, 0.001]", "line 5, column 14: method 1: tol[1] stands in this list before"),
+        (
+            "\"box.toml\"",
+            "\"box.toml\", \"box.toml\"",
+            "line 3, column 22: scene 1: files[1] stands in this list before",
+        ),
+        ("\"box.toml\"", "\"none.stl\"", "line 3, column 10: scene 1: files[0] none.stl: cannot open: No such file"),
+        ("\"box.toml\"", "\"\"", "line 3, column 10: scene 1: files[0] is an empty text in place of a file"),
+        ("\"box.toml\"", "", "line 3, column 9: scene 1: files is an empty list"),
+        ("[[method]]", "exact = 0\n[[method]]", "line 4, column 9: scene 1: exact must be positive, not 0"),
+        (
+            "[[method]]",
+            "probe = { cell = [2, 0, 0], beta_v = 1 }\n[[method]]",
+            "line 4, column 18: scene 1: probe: cell is no cell of the grid 2x2x2; cells are counted from 0",
+        ),
+        (grid, "", "line 5, column 11: a study needs at least one grid, a table [[grid]]; the file ends here"),
+        (grid, &[grid, grid].concat(), "key grid[1]: is the same as one before"),
+    ] {
+        fs::write(at.file("study.toml"), study.replace(from, to)).expect("a study");
+        fails(&run(&at, &["study", "study.toml"]), 1, &["study.toml: ", words, "^"]);
+    }
+}
+
+/// A geometry in place of a case, a case in place of a geometry.
+#[test]
+fn files_of_another_kind() {
+    let at = Scratch::new();
+    fs::copy(fixture("cad_skid.stl"), at.file("skid.stl")).expect("a copy");
+    fs::write(at.file("case.toml"), [GRID, GAS, INITIAL, WALLS, TIME].concat()).expect("a case");
+    for (arguments, kind) in [
+        (&["solve", "skid.stl"][..], "not a case"),
+        (&["study", "skid.stl"], "not a study"),
+        (&["porosity", "skid.stl", "--grid", "skid.stl"], "not a grid"),
+        (&["porosity", "skid.stl", "--report", "r.json", "--zones", "skid.stl"], "not a list of zones"),
+    ] {
+        fails(
+            &run(&at, arguments),
+            1,
+            &["skid.stl: this is a geometry, ", kind, "voidage porosity and inspect read it"],
+        );
+    }
+    for arguments in [&["porosity", "case.toml"], &["inspect", "case.toml"]] {
+        fails(&run(&at, arguments), 1, &["case.toml: this is a case, not a scene", "voidage solve reads it"]);
+    }
+    fails(
+        &run(&at, &["porosity", "skid.stl", "--grid", "/dev/null"]),
+        1,
+        &["is a device or a pipe, not a regular file"],
+    );
+}
+
+#[test]
+fn values_that_begin_with_a_minus() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a scene");
+    for (options, words) in [
+        (
+            &["--cells", "-1x1x1"][..],
+            "'--cells <NXxNYxNZ>': '-1' is no number that fits here: whole numbers from 1 such as 99x99x63",
+        ),
+        (&["--drag", "pdr", "--cd", "-3"], "'--cd <CD>': '-3' is no drag coefficient: needs a number from 0 to 1e6"),
+        (&["--drag", "pdr", "--cd", "1e300"], "needs a number from 0 to 1e6"),
+        (&["--drag", "pdr", "--cd", "round=1,round=2"], "round is given twice"),
+    ] {
+        let output = run(&at, &[&["porosity", "box.toml"], options].concat());
+        fails(&output, 2, &[words]);
+        assert!(!stderr(&output).contains("tip:"), "{}", stderr(&output));
+    }
+    let output = run(&at, &["porosity", "box.toml", "--cells", "4x4x4", "--leaf", "half"]);
+    assert!(stderr(&output).contains("--leaf has no effect: it is of --method gjk"), "{}", stderr(&output));
+    let help = stdout(&run(&at, &["porosity", "--help"])).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("1/64 of the longest side of the scene, or of --bounds"), "{help}");
+    fails(&run(&at, &["stress", "--only", ""]), 2, &["no case is called \"\""]);
+}
+
+/// A scene that no grid of numbers fits around is told as such.
+#[test]
+fn scenes_too_far_away_for_a_grid() {
+    let at = Scratch::new();
+    for (center, radius) in [("1e20", "1"), ("1e30", "1")] {
+        let text = format!("[[solid]]\nshape = \"sphere\"\ncenter = [{center}, 0, 0]\nradius = {radius}\n");
+        fs::write(at.file("scene.toml"), text).expect("a scene");
+        let output = run(&at, &["porosity", "scene.toml", "--cells", "4x4x4"]);
+        fails(&output, 1, &["the scene reaches from (", "too far from the origin for its size"]);
+    }
+    for (radius, words) in
+        [("1e60", "takes a number within ±1e30, not 1e60"), ("1e-60", "must be at least 1e-30, not 1e-60")]
+    {
+        let text = format!("[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = {radius}\n");
+        fs::write(at.file("scene.toml"), text).expect("a scene");
+        fails(&run(&at, &["porosity", "scene.toml"]), 1, &["scene.toml: line 4, column 10: ", words]);
+    }
+}
+
+/// Corners of a tetrahedron as facets of an STL file.
+fn facets(points: [[&str; 3]; 4], faces: &[[usize; 3]]) -> String {
+    let corner = |n: &usize| format!("vertex {}\n", points[*n].join(" "));
+    let facet = |face: &[usize; 3]| {
+        let corners: String = face.iter().map(corner).collect();
+        format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    faces.iter().map(facet).collect()
+}
+
+const POINTS: [[&str; 3]; 4] = [["0", "0", "0"], ["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]];
+const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+#[test]
+fn marks_in_geometry_stand_under_what_is_wrong() {
+    let at = Scratch::new();
+    let mut points = POINTS;
+    points[2][1] = "1e300";
+    fs::write(at.file("far.stl"), format!("solid\n{}endsolid\n", facets(points, &FACES))).expect("a file");
+    let words = [
+        "far.stl: line 5, column 10: `1e300` is no coordinate: it is beyond 1e60",
+        "   5 | vertex 0 1e300 0\n     |          ^^^^^\n",
+    ];
+    fails(&run(&at, &["inspect", "far.stl"]), 1, &words);
+    fs::write(at.file("bad.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n 3\nf 1/7 2 99/1/1\n").expect("a file");
+    let words = ["bad.obj: line 6, column 9: index 99, but there are 3 vertices", "^^^^^^\n"];
+    fails(&run(&at, &["inspect", "bad.obj"]), 1, &words);
+}
+
+#[test]
+fn names_in_latin_1_stay_readable() {
+    let at = Scratch::new();
+    let text = format!("solid Beh?lter\n{}endsolid\n", facets(POINTS, &FACES));
+    let bytes: Vec<u8> = text.bytes().map(|byte| if byte == b'?' { 0xE4 } else { byte }).collect();
+    fs::write(at.file("tank.stl"), bytes).expect("a file");
+    let output = run(&at, &["inspect", "tank.stl", "--report", "r.json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(json(&at.file("r.json"))["bodies"][0]["name"], "Behälter");
+}
+
+/// Triangles that are there twice count once in the area, and what is open because it is a sheet is told as a sheet alone.
+#[test]
+fn surface_counts_and_is_told_once() {
+    let at = Scratch::new();
+    let area = |name: &str, faces: &[[usize; 3]]| {
+        fs::write(at.file(name), format!("solid\n{}endsolid\n", facets(POINTS, faces))).expect("a file");
+        let output = voidage(&[&"inspect", &at.file(name), &"--report", &at.file("r.json")]);
+        (json(&at.file("r.json"))["files"][0]["area"].as_f64().expect("an area"), stderr(&output))
+    };
+    let (once, said) = area("once.stl", &FACES);
+    assert!((once - (1.5 + 0.75_f64.sqrt())).abs() < 1e-12 && said.is_empty(), "{once} {said}");
+    let (twice, said) = area("twice.stl", &[&FACES[..], &FACES[1..3]].concat());
+    assert!((twice - once).abs() < 1e-12 && said.contains("2 triangles repeat others"), "{twice} {said}");
+    let (sheet, said) = area("sheet.stl", &FACES[..1]);
+    assert!((sheet - 0.5).abs() < 1e-12, "{sheet}");
+    assert!(said.contains("1 sheet has no thickness") && said.lines().count() == 1, "{said}");
+}
+
+/// A run that cannot go on tells its time in few digits.
+#[test]
+fn small_times_are_short() {
+    let at = Scratch::new();
+    let case = [GRID, GAS, INITIAL, WALLS, TIME]
+        .concat()
+        .replace("p = 1 ", "p = 1e30 ")
+        .replace("max_steps = 1", "end = 1e-25");
+    let said = stdout(&solved(&at, &case, "out", &[]));
+    assert!(said.contains("to t = 1e-25 s"), "{said}");
+}
