@@ -167,6 +167,9 @@ fn round_box(lo: DVec3, hi: DVec3) -> [DVec3; 2] {
 /// Most cells of a grid: beyond, the fields would not fit into any memory this program will meet.
 const MAX_CELLS: f64 = 4e9;
 
+/// Numbers of cells from here on are told by a power of ten.
+const MANY: f64 = 1e12;
+
 /// Most cells along one axis.
 const MAX_AXIS: f64 = 1e8;
 
@@ -235,6 +238,7 @@ fn few_enough(count: DVec3) -> std::result::Result<(), String> {
     if x * y * z <= MAX_CELLS && count.max_element() <= MAX_AXIS {
         return Ok(());
     }
+    let [x, y, z] = [x, y, z].map(|n| if n < MANY { n.to_string() } else { written(n) });
     Err(format!("{x} × {y} × {z} cells are too many: at most {MAX_CELLS:e}, and {MAX_AXIS:e} along an axis"))
 }
 

@@ -1,5 +1,6 @@
 //! The command `voidage`.
 
+use clap::error::{ContextKind, ErrorKind};
 use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 use voidage::command::cli::{Cli, Command};
@@ -19,7 +20,7 @@ fn main() -> ExitCode {
     });
     let command = match Cli::try_parse() {
         Ok(cli) => cli.command,
-        Err(answer) => return told(&answer),
+        Err(answer) => return told(answer),
     };
     match execute(command).and_then(|()| all_said()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -35,7 +36,11 @@ fn main() -> ExitCode {
 }
 
 /// Help, the version, or what is wrong with the arguments.
-fn told(answer: &clap::Error) -> ExitCode {
+fn told(mut answer: clap::Error) -> ExitCode {
+    // What begins with a minus is a slip far more often than a file: no advice to put -- before it.
+    if answer.kind() == ErrorKind::UnknownArgument {
+        answer.remove(ContextKind::Suggested);
+    }
     match answer.print() {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
             eprintln!("error: cannot write to standard output: {e}");

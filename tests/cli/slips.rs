@@ -90,6 +90,7 @@ fn slips_in_studies_have_lines() {
             "probe = { cell = [2, 0, 0], beta_v = 1 }\n[[method]]",
             "line 4, column 18: scene 1: probe: cell is no cell of the grid 2x2x2; cells are counted from 0",
         ),
+        ("[[method]]", "name = \"\"\n[[method]]", "line 4, column 8: scene 1: name is empty"),
         (grid, "", "line 5, column 11: a study needs at least one grid, a table [[grid]]; the file ends here"),
         (grid, &[grid, grid].concat(), "key grid[1]: is the same as one before"),
     ] {
@@ -138,6 +139,11 @@ fn values_that_begin_with_a_minus() {
         (&["--drag", "pdr", "--cd", "-3"], "'--cd <CD>': '-3' is no drag coefficient: needs a number from 0 to 1e6"),
         (&["--drag", "pdr", "--cd", "1e300"], "needs a number from 0 to 1e6"),
         (&["--drag", "pdr", "--cd", "round=1,round=2"], "round is given twice"),
+        (&["--unit", "-mm"], "unexpected argument '-m' found"),
+        (&["--spacing", "1e-300"], "needs a length from 1e-30 to 1e30"),
+        (&["--bounds", "0,0,0,1,1,1e300"], "needs coordinates within ±1e30, and x0,y0,z0 below x1,y1,z1"),
+        (&["--slice", "x=1e300", "--png", "p.png"], "needs a coordinate in metres, within ±1e30"),
+        (&["--spacing", "1e-9"], "grid: 500000002 × 500000002 × 500000002 cells are too many"),
     ] {
         let output = run(&at, &[&["porosity", "box.toml"], options].concat());
         fails(&output, 2, &[words]);

@@ -1,6 +1,6 @@
 //! What the user typed.
 
-use crate::command::solve::ranges::DRAG_COEFFICIENT;
+use crate::command::solve::ranges::{DRAG_COEFFICIENT, QUANTITY, SIGNED};
 use crate::command::version::VERSION;
 use crate::geometry::unit::Unit;
 use crate::grid::AXES;
@@ -300,7 +300,7 @@ pub struct StudyArgs {
 /// Arguments of `voidage stress`.
 #[derive(Debug, Args)]
 pub struct StressArgs {
-    /// Only the cases of this name, or whose name begins so: flow, geometry/needles; may be repeated
+    /// Only the cases of this name, or whose name begins so: flow, geometry/needles; may be repeated; one that takes long runs by its whole name
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
     /// Also what takes long: more pairs, steps and bodies, and the cases that need many
@@ -338,15 +338,16 @@ fn parse_cells(text: &str) -> Result<[usize; 3], String> {
 
 fn parse_spacing(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(d) if d > 0.0 && d.is_finite() => Ok(d),
-        _ => Err("needs a positive length".into()),
+        Ok(d) if QUANTITY.holds(d) => Ok(d),
+        _ => Err(format!("needs a length {QUANTITY}")),
     }
 }
 
 fn parse_slice(text: &str) -> Result<(usize, f64), String> {
     let (axis, at) = text.split_once('=').ok_or("needs an axis and a coordinate, such as x=1.5")?;
     let axis = AXES.iter().position(|name| *name == axis.trim()).ok_or("the axis is x, y or z")?;
-    let at = at.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or("needs a coordinate in metres")?;
+    let at = at.trim().parse::<f64>().ok().filter(|x| SIGNED.holds(*x));
+    let at = at.ok_or_else(|| format!("needs a coordinate in metres, {SIGNED}"))?;
     Ok((axis, at))
 }
 
@@ -384,9 +385,9 @@ fn parse_cd(text: &str) -> Result<DragCoefficients, String> {
 fn parse_bounds(text: &str) -> Result<[DVec3; 2], String> {
     let b: [f64; 6] = numbers(text, ',')?;
     let (lo, hi) = (DVec3::new(b[0], b[1], b[2]), DVec3::new(b[3], b[4], b[5]));
-    if lo.is_finite() && hi.is_finite() && lo.cmplt(hi).all() {
+    if b.iter().all(|&x| SIGNED.holds(x)) && lo.cmplt(hi).all() {
         Ok([lo, hi])
     } else {
-        Err("needs finite x0,y0,z0 below x1,y1,z1".into())
+        Err(format!("needs coordinates {SIGNED}, and x0,y0,z0 below x1,y1,z1"))
     }
 }

@@ -124,9 +124,13 @@ impl<'a> StrictTable<'a> {
     /// The key `name`, and from here on what messages call the table; without one it is called by its kind and number, `solid 3`.
     ///
     /// # Errors
-    /// If it is no text.
+    /// If it is no text, or an empty one.
     pub fn named(&mut self) -> Result<String> {
-        let Some(name) = self.get("name", text)? else { return Ok(self.subject.clone()) };
+        let some = |value: &DeValue| match text(value)? {
+            name if name.is_empty() => Err("is empty: give one, or leave the key out".to_owned()),
+            name => Ok(name),
+        };
+        let Some(name) = self.get("name", some)? else { return Ok(self.subject.clone()) };
         let kind = self.subject.split(' ').next().unwrap_or_default();
         self.subject = format!("{kind} \"{name}\"");
         Ok(name)
