@@ -470,15 +470,7 @@ fn close(
             counted(d.t_junction_edges, "edge has", "edges have")
         ));
     }
-    if let Some((area, place)) = open.largest {
-        report.warn(format!(
-            "the surface is open: {} around {}, closed with {} (the largest, area {area:.6}, at {})",
-            counted(open.edges, "boundary edge", "boundary edges"),
-            counted(open.holes, "hole", "holes"),
-            either(open.holes, "a cap", "caps"),
-            show(place)
-        ));
-    }
+    open.say(report);
     closed
 }
 
@@ -498,6 +490,18 @@ impl Open {
         let area = |largest: Option<(f64, DVec3)>| largest.map(|(area, _)| area);
         if area(other.largest) > area(self.largest) {
             self.largest = other.largest;
+        }
+    }
+
+    fn say(&self, report: &mut Reporter) {
+        if let Some((area, place)) = self.largest {
+            report.warn(format!(
+                "the surface is open: {} around {}, closed with {} (the largest, area {area:.6}, at {})",
+                counted(self.edges, "boundary edge", "boundary edges"),
+                counted(self.holes, "hole", "holes"),
+                either(self.holes, "a cap", "caps"),
+                show(place)
+            ));
         }
     }
 }

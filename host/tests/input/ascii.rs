@@ -37,7 +37,7 @@ fn names_of_solids() {
     assert_eq!(name(named(b"")), "");
     assert_eq!(name(ascii().replace(" cube", "").into()), "");
     assert_eq!(name(named("Träger 7".as_bytes())), "Träger 7");
-    assert_eq!(name(named(b"Tr\xe4ger\t")), "Tr\u{fffd}ger");
+    assert_eq!(name(named(b"Tr\xe4ger\t")), "Träger");
     assert_eq!(name(named(b"facet normal 0 0 1 outer solid endsolid")), "facet normal 0 0 1 outer solid endsolid");
     assert_eq!(name(named(&[b'n'; 100_000])).len(), 100_000);
     assert_eq!(name(named(&[0xe4; 10_000])).chars().count(), 10_000);
