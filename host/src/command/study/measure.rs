@@ -50,8 +50,7 @@ const SURFACE: Options = Options {
     resistance: false,
 };
 
-/// The reference where solids have formulas and no surface: closed forms, and where two of them meet a subdivision that is finer than
-/// those it is compared with.
+/// The reference where solids have formulas and no surface: closed forms, and where they meet a finer tolerance than those it is compared with.
 const FORMULA: Options = Options { tol: 1e-6, depth: 7, method: Method::Auto, ..SURFACE };
 
 /// The bodies of all scenes of the case file at `path`.
