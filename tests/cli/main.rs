@@ -28,5 +28,6 @@ mod solve_resume;
 mod streams;
 mod stress;
 mod study;
+mod throat;
 mod units;
 mod words;

@@ -51,9 +51,12 @@ pub fn obstacles(
         warn_of_doubt(bodies, &obstacles, progress);
         found.resistance = Some(obstacles);
     }
-    let alone = (found.resistance.is_none() && (wanted.warning || wanted.faces == Faces::Throat))
-        .then(|| progress.stage("shadows", |_| shadows(grid, bodies, result, options)));
-    let Some(shadows) = found.resistance.as_ref().map(|r| &r.shadows).or(alone.as_ref()) else { return found };
+    let porous = bodies.bodies.iter().any(|body| body.porosity > 0.0 && body.porosity < 1.0);
+    let shadows = match &found.resistance {
+        Some(of_solids) if !porous => of_solids.shadows.clone(),
+        None if !wanted.warning && wanted.faces == Faces::Plane => return found,
+        _ => progress.stage("shadows", |_| shadows(grid, bodies, result, options)),
+    };
     // The drag is that of the cell's own surface: it asks for faces as they are.
     if let (Some(law), Some(obstacles)) = (wanted.drag, &found.resistance) {
         let drag = progress.stage("drag", |_| drag(grid, bodies, (result, obstacles), options, law));
@@ -64,10 +67,11 @@ pub fn obstacles(
             ));
         }
         found.drag = Some(drag);
+        warn_of_gratings(bodies, progress);
     }
     match wanted.faces {
-        Faces::Plane => warn_of_hidden_passages(bodies, shadows, progress),
-        Faces::Throat => found.lowered_faces = throat::lower(grid, result, shadows),
+        Faces::Plane => warn_of_hidden_passages(bodies, &shadows, progress),
+        Faces::Throat => found.lowered_faces = throat::lower(grid, result, &shadows),
     }
     found
 }

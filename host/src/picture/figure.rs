@@ -252,10 +252,11 @@ fn legend_width() -> f64 {
     28.0 + text_width(LEGEND, SMALL)
 }
 
-/// A range that has a width: a uniform field lies in the middle of its colours.
+/// A range that has a width: a uniform field lies in the middle of its colours, one of zeros at their lower end.
 fn usable([low, high]: [f64; 2]) -> [f64; 2] {
     match () {
         () if (high - low).is_finite() && low < high => [low, high],
+        () if low == 0.0 && high == 0.0 => [0.0, 1.0],
         () if low.is_finite() && low == high => [low - low.abs().max(1.0) / 2.0, low + low.abs().max(1.0) / 2.0],
         () => [0.0, 1.0],
     }

@@ -3,7 +3,7 @@
 use super::shadows::Shadows;
 use super::solid::with_solid_surface;
 use super::surface_fields::SurfaceFields;
-use super::{Options, Porosity};
+use super::{Options, Porosity, levels, porosity};
 use crate::geometry::bodies::Bodies;
 use std::sync::Arc;
 use voidage_core::grid::Grid;
@@ -55,9 +55,44 @@ pub fn resistance(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options:
 }
 
 /// The shadows of the solid bodies among `bodies` on `grid`, as [`resistance`] finds them.
+fn solid_shadows(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Arc<Shadows> {
+    with_solid_surface(grid, bodies, result, options, |surface, _| surface.shadows.clone())
+}
+
+/// The shadows of all `bodies` on `grid`, those of porous ones weighted as their blockage is: see [`levels`](super::levels()). `result` holds their
+/// porosities, faces included. Runs in the current rayon pool.
 #[must_use]
 pub fn shadows(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Options) -> Arc<Shadows> {
-    with_solid_surface(grid, bodies, result, options, |surface, _| surface.shadows.clone())
+    let levels = thinned(levels(bodies));
+    if levels == [0.0] {
+        return solid_shadows(grid, bodies, result, options);
+    }
+    let mut all = Shadows::none(grid.cell_count());
+    for (k, &level) in levels.iter().enumerate() {
+        let mut union = bodies.clone();
+        union.bodies.retain(|body| body.porosity <= level);
+        union.bodies.iter_mut().for_each(|body| body.porosity = 0.0);
+        let measured = porosity(grid, &union, Options { bounds: false, areas: true, resistance: true, ..options });
+        let weight = levels.get(k + 1).unwrap_or(&1.0) - level;
+        all.add(weight, &solid_shadows(grid, &union, &measured, options));
+    }
+    all.find_hidden(grid, &result.beta);
+    Arc::new(all)
+}
+
+/// Different porosities that shadows are told apart for.
+const MOST_LEVELS: usize = 16;
+
+/// At most so many levels, the lowest and the highest among them: of others, neighbours count as one, with the higher porosity.
+fn thinned(mut levels: Vec<f64>) -> Vec<f64> {
+    let (last, mut n) = (levels.len() - 1, 0);
+    levels.retain(|_| {
+        let place = |n: usize| n * (MOST_LEVELS - 1) / last.max(1);
+        let kept = n == last || last < MOST_LEVELS || n == 0 || place(n) != place(n + 1);
+        n += 1;
+        kept
+    });
+    levels
 }
 
 /// Totals in the order of cells, so that their bits do not depend on the number of threads.

@@ -10,7 +10,7 @@ use voidage_core::surface::layer::{CellSides, KnownAreas, LayerError, Layers, Op
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 use voidage_core::surface::surface_area::SurfaceArea;
 
-/// Shadows of the union of all solid bodies in the cells of a grid, `nx*ny*nz`, x fastest.
+/// Shadows of the union of bodies in the cells of a grid, `nx*ny*nz`, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shadows {
     /// Along x, y and z, which share of the lines through the cell meets solid in it or a blocked side of it.
@@ -66,8 +66,33 @@ impl Shadows {
             too_full
         };
         let too_full = slices.into_par_iter().enumerate().map(layer).sum();
-        let hidden = [0, 1, 2].map(|axis| hidden(grid, axis, &tau[axis], beta));
-        Shadows { tau, place, too_full, hidden }
+        let mut found = Shadows { tau, place, too_full, ..Shadows::default() };
+        found.find_hidden(grid, beta);
+        found
+    }
+
+    /// Of nothing, in so many cells.
+    pub(super) fn none(cells: usize) -> Self {
+        Shadows { tau: [0; 3].map(|_| vec![0.0; cells]), place: [0; 3].map(|_| vec![0.5; cells]), ..Shadows::default() }
+    }
+
+    /// Adds other shadows, weighted. What stands in a cell stands where the heavier of both does.
+    pub(super) fn add(&mut self, weight: f64, other: &Self) {
+        for axis in 0..3 {
+            let into = self.tau[axis].iter_mut().zip(&mut self.place[axis]);
+            for ((tau, place), (&more, &there)) in into.zip(other.tau[axis].iter().zip(&other.place[axis])) {
+                if there != 0.5 && (*place == 0.5 || weight * more > *tau) {
+                    *place = there;
+                }
+                *tau += weight * more;
+            }
+        }
+        self.too_full = self.too_full.max(other.too_full);
+    }
+
+    /// Counts the hidden passages, now that the faces are known.
+    pub(super) fn find_hidden(&mut self, grid: &Grid<f64>, beta: &FieldSet) {
+        self.hidden = [0, 1, 2].map(|axis| hidden(grid, axis, &self.tau[axis], beta));
     }
 }
 

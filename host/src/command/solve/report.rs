@@ -283,8 +283,11 @@ impl Report {
             progress.say(format!("refine check  peaks here, on {nx} × {ny} × {nz} cells, and the change between both"));
             for peak in peaks {
                 let of = |name: &str, unit: &str, Compared { fine, coarse, change }: Compared| {
-                    let change = change
-                        .map_or_else(|| "–".to_owned(), |c| format!("{:+.1} %", (1000.0 * c).round() / 10.0 + 0.0));
+                    let change = match change {
+                        None => "–".to_owned(),
+                        Some(c) if c.abs() > 1.0 => "not alike: too coarse, or the wave has not come".to_owned(),
+                        Some(c) => format!("{:+.1} %", (1000.0 * c).round() / 10.0 + 0.0),
+                    };
                     format!("{name} {fine:.4e}, {coarse:.4e} {unit} ({change})")
                 };
                 let pressure = of("overpressure", "Pa", peak.overpressure);

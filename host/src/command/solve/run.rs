@@ -211,6 +211,13 @@ impl<'a, const D: usize> Run<'a, D> {
             untouched,
             _lock: lock,
         };
+        if resume && run.setup.flow.time > run.limits.end {
+            let (time, end) = (written(run.setup.flow.time), written(run.limits.end));
+            progress.warn(file.remark(
+                "time.end",
+                format!("is {end}, and the run that --resume goes on with is at t = {time}: nothing is left to do"),
+            ));
+        }
         if resume && run.goes_on() {
             // A report tells that a run is finished.
             frames::forget(&run.dir.join(REPORT))?;

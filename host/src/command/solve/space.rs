@@ -82,10 +82,14 @@ fn from_scene<const D: usize>(
         return Err(file.wrong(&key, "is an empty text in place of a file"));
     }
     file.distinct("porosity.scene", paths)?;
-    paths
-        .iter()
-        .filter(|path| !is_stream(path))
-        .try_for_each(|path| file.existing("porosity.scene", path).map(drop))?;
+    paths.iter().filter(|path| !is_stream(path)).try_for_each(|path| {
+        match file.existing("porosity.scene", path)? {
+            path if path.is_dir() => {
+                Err(file.wrong("porosity.scene", format!("{}: is a directory, not a file", path.display())))
+            }
+            _ => Ok(()),
+        }
+    })?;
     if keys.unit.is_some() && paths.iter().all(|path| is_scene(path)) {
         let reason =
             "is of STL and OBJ files: a scene is in metres, and there each solid of shape \"file\" takes a unit";
@@ -119,7 +123,7 @@ fn from_scene<const D: usize>(
     if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none()) {
         warn_of_no_force(&bodies, resistance, progress);
     }
-    if !silent {
+    if !silent && law.is_none() {
         warn_of_gratings(&bodies, progress);
     }
     let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));

@@ -21,7 +21,7 @@ const EXACT: f64 = 1e-9;
 const STYLE: &str = "body{font:15px/1.45 Helvetica,Arial,'DejaVu Sans',sans-serif;color:#222;max-width:1180px;margin:24px auto;padding:0 16px}\
 h1{font-size:24px}h2{font-size:18px;margin-top:32px}table{border-collapse:collapse;font-size:13px;margin:8px 0}\
 td,th{border-bottom:1px solid #ddd;padding:3px 9px;text-align:left;vertical-align:top}th{border-bottom:2px solid #999}\
-.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}.wide{overflow-x:auto}.small{color:#666;font-size:13px}";
+.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}.wide{overflow-x:auto}.small{color:#666;font-size:13px}";
 
 /// The largest of the errors of a point: of the volume, of a cell.
 fn worst(row: &Row) -> Option<f64> {
