@@ -206,7 +206,7 @@ pub(crate) fn locate<R: Real>(edges: &[R], value: R) -> Located {
     }
     let last = edges.len() - 1;
     let share = (value - *first) / (*end - *first);
-    let guess = ((share * R::from_usize(last)).to_f64() as usize).min(last - 1);
+    let guess = (share * R::from_usize(last)).to_usize().min(last - 1);
     for i in [guess, guess.saturating_sub(1), (guess + 1).min(last - 1)] {
         if edges.get(i).is_some_and(|&lo| lo <= value) && edges.get(i + 1).is_some_and(|&hi| value < hi) {
             return Located::Cell(i);

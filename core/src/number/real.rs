@@ -71,6 +71,8 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// The same value (`f32`) or itself (`f64`).
     fn to_f64(self) -> f64;
+    /// The whole number below, 0 of what is negative or NaN, the largest of what is larger.
+    fn to_usize(self) -> usize;
     /// A count as a scalar, rounded to nearest above the mantissa's range.
     fn from_usize(value: usize) -> Self;
     /// Absolute value.
@@ -230,6 +232,10 @@ macro_rules! real {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)
+            }
+            #[inline(always)]
+            fn to_usize(self) -> usize {
+                self as usize
             }
             #[inline(always)]
             fn from_usize(value: usize) -> Self {

@@ -67,7 +67,7 @@ impl<R: Real> Columns<R> {
     /// `parts`.
     fn wanted(&self, gap: R, parts: usize) -> usize {
         let wanted = (gap / self.enough).sqrt() * R::from_usize(parts) * R::from_f64(MARGIN);
-        (wanted.to_f64() as usize).saturating_add(1).max(parts + 1 + parts / 8).min(self.parts.min(MAX_PARTS))
+        wanted.to_usize().saturating_add(1).max(parts + 1 + parts / 8).min(self.parts.min(MAX_PARTS))
     }
 }
 

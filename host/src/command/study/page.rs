@@ -173,7 +173,9 @@ pub fn parts(found: &StudyFindings) -> Vec<(&'static str, Vec<String>, Listing)>
             let exponent = scaling::with_error(e.exponent, e.standard_error);
             format!("{}: the time goes as the power {exponent} of the number of {}.", e.scaling, e.along)
         };
-        let words = scaling::exponents(&found.scalings).iter().map(say).collect();
+        let exponents = scaling::exponents(&found.scalings);
+        let head = "Exponents are those of straight lines through the logarithms of all steps.".to_owned();
+        let words = std::iter::once(head).chain(exponents.iter().map(say)).collect();
         parts.push(("As things grow", words, scaling::table(&found.scalings)));
     }
     if !found.left_out.is_empty() {
