@@ -11,3 +11,9 @@ pub mod value;
 pub use reader::read;
 pub use source::Source;
 pub use value::PlacedValue;
+
+/// The first value of a list that stands in it before.
+#[must_use]
+pub fn first_repeated<T: PartialEq>(values: &[T]) -> Option<usize> {
+    (0..values.len()).find(|&n| values[..n].contains(&values[n]))
+}

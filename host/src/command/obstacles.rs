@@ -8,7 +8,7 @@ use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use crate::porosity::resistance::{Resistance, resistance, shadows};
 use crate::porosity::shadows::{HIDDEN, Shadows};
 use crate::porosity::throat::{self, Faces};
-use crate::porosity::{Options, Porosity};
+use crate::porosity::{Options, Porosity, levels};
 use crate::words::counted;
 use voidage_core::grid::Grid;
 
@@ -51,9 +51,8 @@ pub fn obstacles(
         warn_of_doubt(bodies, &obstacles, progress);
         found.resistance = Some(obstacles);
     }
-    let porous = bodies.bodies.iter().any(|body| body.porosity > 0.0 && body.porosity < 1.0);
     let shadows = match &found.resistance {
-        Some(of_solids) if !porous => of_solids.shadows.clone(),
+        Some(of_solids) if levels(bodies) == [0.0] => of_solids.shadows.clone(),
         None if !wanted.warning && wanted.faces == Faces::Plane => return found,
         _ => progress.stage("shadows", |_| shadows(grid, bodies, result, options)),
     };

@@ -6,7 +6,7 @@
 use crate::error::{Error, Result};
 use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
-use crate::geometry::mesh::Mesh;
+use crate::geometry::mesh::{LARGEST, Mesh};
 use crate::geometry::repair::copies;
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::edges::EdgeUses;
@@ -37,9 +37,6 @@ fn rounding([lo, hi]: [DVec3; 2], single_precision: bool) -> f64 {
     let single = if single_precision { farthest } else { size };
     WELD_ULPS * (f64::from(f32::EPSILON) * single + f64::EPSILON * farthest)
 }
-
-/// Larger coordinates would overflow when multiplied.
-const LARGEST: f64 = 1e60;
 
 /// A closed surface around solid, possibly with cavities; or a convex body known by formula.
 #[derive(Debug, Clone)]

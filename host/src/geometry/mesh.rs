@@ -5,6 +5,9 @@ use glam::DVec3;
 use std::ops::Range;
 use std::path::Path;
 
+/// Larger coordinates would overflow when multiplied.
+pub const LARGEST: f64 = 1e60;
+
 /// Triangles of one source, in its own units and order.
 ///
 /// ```

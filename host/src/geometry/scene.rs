@@ -66,10 +66,7 @@ pub struct SceneSolid {
 }
 
 /// No solid has a larger drag coefficient.
-const MOST_CD: f64 = 1e6;
-
-/// None has a larger resistance, in 1/m.
-const MOST_CR: f64 = 1e30;
+pub const MOST_CD: f64 = 1e6;
 
 /// No scene file is larger, in bytes.
 const LARGEST_FILE: u64 = 1 << 28;
@@ -126,7 +123,8 @@ fn solid(mut keys: StrictTable<'_>) -> Result<(SceneSolid, StrictTable<'_>)> {
     let name = keys.named()?;
     let shape = Shape::read(&mut keys)?;
     let porosity = keys.get("porosity", table::fraction)?.unwrap_or(0.0);
-    let drag = OwnDrag { cd: keys.get("cd", table::up_to(MOST_CD))?, cr: keys.get("cr", table::up_to(MOST_CR))? };
+    let drag =
+        OwnDrag { cd: keys.get("cd", table::up_to(MOST_CD))?, cr: keys.get("cr", table::up_to(table::LARGEST))? };
     if drag.cd.is_some() && drag.cr.is_some() {
         return Err(keys
             .fail("takes cd, the drag coefficient of its frontal area, or cr, the resistance of the whole, not both"));

@@ -1,9 +1,9 @@
 //! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
 
 use super::shadows::Shadows;
-use super::solid::with_solid_surface;
+use super::solid::{up_to, with_solid_surface};
 use super::surface_fields::SurfaceFields;
-use super::{Options, Porosity, levels, porosity};
+use super::{Options, Porosity, levels};
 use crate::geometry::bodies::Bodies;
 use std::sync::Arc;
 use voidage_core::grid::Grid;
@@ -69,10 +69,7 @@ pub fn shadows(grid: &Grid<f64>, bodies: &Bodies, result: &Porosity, options: Op
     }
     let mut all = Shadows::none(grid.cell_count());
     for (k, &level) in levels.iter().enumerate() {
-        let mut union = bodies.clone();
-        union.bodies.retain(|body| body.porosity <= level);
-        union.bodies.iter_mut().for_each(|body| body.porosity = 0.0);
-        let measured = porosity(grid, &union, Options { bounds: false, areas: true, resistance: true, ..options });
+        let (union, measured) = up_to(grid, bodies, level, options);
         let weight = levels.get(k + 1).unwrap_or(&1.0) - level;
         all.add(weight, &solid_shadows(grid, &union, &measured, options));
     }

@@ -30,11 +30,16 @@ pub(super) fn with_solid_surface<T>(
 
 /// Porosities of the solid bodies alone, if there are others: the unions of several levels are mixed into the porosities.
 fn solid_alone(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Option<Porosity> {
-    (levels(bodies) != [0.0]).then(|| {
-        let mut bodies = bodies.clone();
-        bodies.bodies.retain(|b| b.porosity == 0.0);
-        porosity(grid, &bodies, Options { bounds: false, areas: true, resistance: true, ..options })
-    })
+    (levels(bodies) != [0.0]).then(|| up_to(grid, bodies, 0.0, options).1)
+}
+
+/// The bodies up to a level, as if they were solid, and their porosities and surface.
+pub(super) fn up_to(grid: &Grid<f64>, bodies: &Bodies, level: f64, options: Options) -> (Bodies, Porosity) {
+    let mut union = bodies.clone();
+    union.bodies.retain(|body| body.porosity <= level);
+    union.bodies.iter_mut().for_each(|body| body.porosity = 0.0);
+    let found = porosity(grid, &union, Options { bounds: false, areas: true, resistance: true, ..options });
+    (union, found)
 }
 
 /// Work with the layers of the bodies that are solid, those without triangles as facets; both as seen from the grid's corner, if that is far.

@@ -245,7 +245,7 @@ pub(crate) enum Rate<'a, R> {
 /// `widening[d]` = ½ dt Δbeta_d / (beta_v dx_d). `weight[d]` = g_d dx_d acts on the deviation from hydrostatic balance.
 ///
 /// `here` is a padded state block, `gamma` that of each cell.
-// As of `slopes`.
+// A call for the same reason as that of `slopes`.
 #[inline(never)]
 pub(crate) fn half_step<R: Real, const D: usize, const POROUS: bool>(
     here: StateBlock<'_, R>,

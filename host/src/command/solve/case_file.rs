@@ -97,7 +97,7 @@ impl CaseFile {
     /// # Errors
     /// The second of two that are.
     pub fn distinct<T: PartialEq>(&self, key: &str, values: &[T]) -> Result<()> {
-        match (0..values.len()).find(|&n| values[..n].contains(&values[n])) {
+        match keys::first_repeated(values) {
             Some(n) => Err(self.wrong(&format!("{key}[{n}]"), "stands in this list before")),
             None => Ok(()),
         }

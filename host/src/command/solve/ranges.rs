@@ -1,6 +1,8 @@
 //! The numbers that keys of a case take. Each has a range, wide enough for any system of units; what lies beyond is a slip of the pen, and
 //! would overflow in products, or never end.
 
+use crate::geometry::scene::MOST_CD;
+use crate::geometry::scene::table::{LARGEST, SMALLEST};
 use crate::keys::PlacedValue;
 use crate::keys::value::{Misfit, Value};
 use crate::words::written;
@@ -26,12 +28,6 @@ enum Low {
     Mirrored,
 }
 
-/// Quantities are at most so large, in any units.
-const LARGEST: f64 = 1e30;
-
-/// And at least so large, if they are not zero.
-const SMALLEST: f64 = 1e-30;
-
 /// A quantity that is never zero: a density, a pressure, a length, a time.
 pub const QUANTITY: Range = Range { low: Low::From(SMALLEST), high: LARGEST, or_infinite: false };
 
@@ -47,7 +43,7 @@ pub const GAMMA: Range = Range { low: Low::Above(1.0), high: 100.0, or_infinite:
 const CORNER: Range = Range { or_infinite: true, ..SIGNED };
 
 /// A drag coefficient.
-pub const DRAG_COEFFICIENT: Range = Range { high: 1e6, ..NOT_NEGATIVE };
+pub const DRAG_COEFFICIENT: Range = Range { high: MOST_CD, ..NOT_NEGATIVE };
 
 const SHARE: Range = Range { high: 1.0, ..NOT_NEGATIVE };
 

@@ -40,7 +40,7 @@ use crate::error::Result;
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
 use crate::grid::Edges;
-use crate::keys::Source;
+use crate::keys::{Source, first_repeated};
 use crate::porosity::Method;
 use std::path::{Path, PathBuf};
 use toml::de::DeValue;
@@ -201,7 +201,7 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
         room_for(grid.cell_count().saturating_mul(POROSITY_BYTES)).map_err(|e| keys.wrong("grid", e.reason))?;
     }
     keys.finish()?;
-    if let Some(n) = (0..own_grids.len()).find(|&n| own_grids[..n].contains(&own_grids[n])) {
+    if let Some(n) = first_repeated(&own_grids) {
         return Err(source.at_key(&format!("grid[{n}]"), "is the same as one before"));
     }
     let is_quick = false;

@@ -1,6 +1,7 @@
 //! Values of a study file: numbers that are few, words of the command line, lists that may be one value.
 
 use crate::geometry::scene::table;
+use crate::keys::first_repeated;
 use clap::ValueEnum;
 use toml::de::DeValue;
 
@@ -75,7 +76,7 @@ pub fn distinct<T: PartialEq>(
 ) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
     move |value| {
         let all = list(value)?;
-        match (0..all.len()).find(|&n| all[..n].contains(&all[n])) {
+        match first_repeated(&all) {
             Some(n) => Err(format!("[{n}] stands in this list before")),
             None if all.is_empty() => Err("is an empty list".to_owned()),
             None => Ok(all),

@@ -4,6 +4,7 @@
 //! Lines end with LF, CR LF or CR alone.
 
 use crate::error::{Error, excerpt};
+use crate::geometry::mesh::LARGEST;
 use std::path::Path;
 
 /// A run of bytes without white space.
@@ -13,9 +14,6 @@ pub struct Token<'a> {
     /// Offset of its first byte.
     pub at: usize,
 }
-
-/// Larger coordinates overflow when multiplied.
-const LARGEST: f64 = 1e60;
 
 impl Token<'_> {
     /// Whether it is this keyword, in any case.

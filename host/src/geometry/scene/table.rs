@@ -271,11 +271,11 @@ fn item(value: &DeValue, reason: &str) -> Option<Range<usize>> {
     value.as_array()?.get(n.parse::<usize>().ok()?).map(toml::Spanned::span)
 }
 
-/// Larger numbers are a slip of the pen, and no geometry.
-const LARGEST: f64 = 1e30;
+/// Larger numbers are a slip of the pen, in any units.
+pub const LARGEST: f64 = 1e30;
 
 /// What must be above zero is at least this.
-const SMALLEST: f64 = 1e-30;
+pub const SMALLEST: f64 = 1e-30;
 
 /// A number.
 ///
