@@ -33,10 +33,11 @@ impl Edges {
     pub fn uniform(lo: DVec3, hi: DVec3, cells: [usize; 3]) -> Self {
         let axis = |a: usize| {
             let (lo, hi, n) = (lo[a], hi[a], cells[a]);
+            let decimal = decimal(rounding(lo, hi));
             let edge = |i: usize| match i {
                 0 => lo,
                 i if i == n => hi,
-                i => decimal(lo + (hi - lo) * (i as f64 / n as f64), rounding(lo, hi)),
+                i => decimal(lo + (hi - lo) * (i as f64 / n as f64)),
             };
             (0..=n).map(edge).collect()
         };
@@ -145,22 +146,22 @@ fn rounding(lo: f64, hi: f64) -> f64 {
     4.0 * f64::EPSILON * lo.abs().max(hi.abs())
 }
 
-/// A coordinate as people would write it: if there is a decimal within `room` of it, of digits ten times larger, that one, else as it is. So that
+/// Coordinates as people would write them: if there is a decimal within `room` of one, of digits ten times larger, that, else as it is. So that
 /// 3 × 0.1 is 0.3, and what ends at 0.3 ends in a plane of the grid.
-fn decimal(at: f64, room: f64) -> f64 {
+fn decimal(room: f64) -> impl Fn(f64) -> f64 {
     let digits = -(room.log10().ceil() + 1.0);
     // Powers of ten up to this are exact.
-    if !(digits.abs() <= 22.0) {
-        return at;
+    let power = if digits.abs() <= 22.0 { Some(10_f64.powi(digits.abs() as i32)) } else { None };
+    move |at| {
+        let Some(power) = power else { return at };
+        let written = if digits < 0.0 { (at / power).round() * power } else { (at * power).round() / power };
+        if (written - at).abs() <= room { written } else { at }
     }
-    let power = 10_f64.powi(digits.abs() as i32);
-    let written = if digits < 0.0 { (at / power).round() * power } else { (at * power).round() / power };
-    if (written - at).abs() <= room { written } else { at }
 }
 
 /// A box in round numbers where its corners are such but for the rounding of sums.
 fn round_box(lo: DVec3, hi: DVec3) -> [DVec3; 2] {
-    let [x, y, z] = [0, 1, 2].map(|a| [lo[a], hi[a]].map(|at| decimal(at, rounding(lo[a], hi[a]))));
+    let [x, y, z] = [0, 1, 2].map(|a| [lo[a], hi[a]].map(decimal(rounding(lo[a], hi[a]))));
     [0, 1].map(|end| DVec3::new(x[end], y[end], z[end]))
 }
 
@@ -249,7 +250,7 @@ fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
     let [lo, hi] = scene.ok_or_else(|| Error::new("the scene is empty: give --bounds"))?;
     let size = (hi - lo).max_element();
     // The box around a round solid has room for rounding.
-    let [lo, hi] = [lo, hi].map(|p| DVec3::from_array(p.to_array().map(|at| decimal(at, size * BOX_ROOM))));
+    let [lo, hi] = [lo, hi].map(|p| DVec3::from_array(p.to_array().map(decimal(size * BOX_ROOM))));
     // A flat scene still needs a box with a volume.
     let thin = DVec3::select((hi - lo).cmpgt(DVec3::ZERO), DVec3::ZERO, DVec3::splat(size * 0.5));
     Ok([lo - thin, hi + thin])

@@ -52,6 +52,7 @@ fn lists_of_a_case_hold_nothing_twice() {
         ),
         ("[porosity]\nscene = [\"box.toml\", \"box.toml\"]\n", "porosity.scene[1]: stands in this list before"),
         ("[porosity]\nscene = \"\"\n", "porosity.scene: is an empty text in place of a file"),
+        ("[porosity]\nscene = \".\"\n", ": is a directory, not a file"),
         ("[output]\nformats = [\"vtr\", \"npy\", \"vtr\"]\n", "output.formats[2]: stands in this list before"),
         (
             "[porosity]\nscene = \"box.toml\"\nunit = \"mm\"\n",

@@ -166,8 +166,8 @@ impl GridTable {
             .map_err(|reason| wrong("cells", reason))?;
         Ok(Edges([0, 1, 2].map(|a| match cells.get(a) {
             Some(&n) => {
-                let room = rounding(origin[a], origin[a] + spacing[a] * n as f64);
-                let edge = |i: usize| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64, room) };
+                let decimal = decimal(rounding(origin[a], origin[a] + spacing[a] * n as f64));
+                let edge = |i: usize| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64) };
                 (0..=n).map(edge).collect()
             }
             None => UNIT_CELL.to_vec(),
