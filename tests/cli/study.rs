@@ -371,6 +371,24 @@ fn table(path: &Path) -> Vec<Row> {
     lines.map(|line| head.iter().cloned().zip(line).collect()).collect()
 }
 
+/// The time of a run of microseconds is noise: it is run more often than asked for, in a quick look as well.
+#[test]
+fn short_flows_are_run_until_their_time_counts() {
+    let dir = Scratch::new();
+    let (case, out) = (dir.file("case.toml"), dir.file("out"));
+    fs::write(&case, "[[flow]]\nproblem = \"sod\"\ncells = [50, 100]\n").expect("written");
+    let output = voidage(&[&"study", &case, &"--quick", &"-q", &"-o", &out]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for row in table(&out.join("study_flows.csv")) {
+        let of = |column: &str| row[column].parse::<f64>().expect("a number");
+        let enough = of("repeats") * of("slowest") >= 0.02;
+        assert!(of("repeats") == 100.0 || enough, "{row:?}");
+        assert!(of("fastest") <= of("seconds") && of("seconds") <= of("slowest"), "{row:?}");
+    }
+    let page = fs::read_to_string(out.join("study.md")).expect("a page");
+    assert!(page.contains("of short flows as many as take 0.02 s"), "{page}");
+}
+
 /// Flows have the orders that theory says, what is exact stays so, and all of it stands in one page.
 #[test]
 fn flows_and_growing_scenes() {

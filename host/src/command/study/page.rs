@@ -213,7 +213,7 @@ fn absent(found: &StudyFindings) -> Vec<String> {
     }
     if found.quick {
         words.push(
-            "A quick look takes the two smallest grids, one number of threads and a single run of each; the rest is left out."
+            "A quick look takes the two smallest grids, one number of threads and a single run of each, of short flows as many as take 0.02 s; the rest is left out."
                 .to_owned(),
         );
     }
@@ -301,7 +301,8 @@ pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String 
 
 /// How it was measured.
 fn about(found: &StudyFindings) -> Vec<String> {
-    let quick = if found.quick { " A quick look: one run of each, the smallest grids." } else { "" };
+    let quick =
+        if found.quick { " A quick look: one run of each, of short flows more, the smallest grids." } else { "" };
     let mut lines = vec![format!(
         "Made by `{}`, {}, on {}; medians of {}, the fastest and the slowest beside them.{quick}",
         found.command,

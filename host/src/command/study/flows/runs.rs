@@ -36,7 +36,7 @@ pub struct FlowRow {
     pub precision: String,
     /// Number of threads.
     pub threads: usize,
-    /// How often it was run.
+    /// How often it was run: more often than asked where a run is short.
     pub repeats: usize,
     /// Times of the steps alone.
     pub seconds: Spread,
@@ -77,18 +77,26 @@ pub fn all(recipes: &[FlowRecipe], repeats: usize, session: &mut Session) -> Res
     Ok(rows)
 }
 
+/// A flow of microseconds is run until all its runs have taken this long in s, or are this many: the time of one would be noise.
+const ENOUGH: (f64, usize) = (0.02, 100);
+
+/// Runs of these times tell too little yet.
+fn is_short(seconds: &[f64]) -> bool {
+    seconds.iter().sum::<f64>() < ENOUGH.0 && seconds.len() < ENOUGH.1
+}
+
 fn run(recipe: &FlowRecipe, repeats: usize, fine: Option<&FineDensity>) -> Result<FlowRow> {
     let count = u16::try_from(recipe.threads).map_err(|e| Error::new(format!("threads: {e}")))?;
     let pool = stages::threads(Some(count))?;
     let (mut seconds, mut last) = (Vec::new(), FlowOutcome::default());
-    for _ in 0..repeats.max(1) {
+    while seconds.len() < repeats.max(1) || is_short(&seconds) {
         last = pool.install(|| match recipe.precision {
             Precision::F64 => outcome::<f64>(recipe, fine),
             Precision::F32 => outcome::<f32>(recipe, fine),
         })?;
         seconds.push(last.seconds);
     }
-    let seconds = Spread::of(seconds);
+    let (repeats, seconds) = (seconds.len(), Spread::of(seconds));
     let [riemann, limiter] = recipe.words.clone();
     Ok(FlowRow {
         flow: recipe.name.clone(),
