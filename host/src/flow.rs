@@ -449,6 +449,12 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             .collect()
     }
 
+    /// What stands on the low (`side` 0) or high (1) side of axis `d` beside a cell.
+    pub fn stands(&self, d: usize, side: usize, at: [usize; D]) -> &Boundary<R, D> {
+        let patch = self.patches.iter().rev().find(|p| p.covers(d, side == 1, at));
+        patch.map_or(&self.boundaries[d][side], |p| &p.boundary)
+    }
+
     /// The largest Mach number of any cell.
     pub fn max_mach(&self) -> R {
         let rows = self.len() / self.widths[0].len().max(1);

@@ -64,6 +64,23 @@ fn solids_close_faces() {
     assert!(table.lines().skip(1).all(|line| line.ends_with(",0,0,,")), "{table}");
 }
 
+/// A wall at a side of the domain closes its faces; a patch in it is open.
+#[test]
+fn nothing_passes_a_wall_of_the_domain() {
+    let at = Scratch::new();
+    let planes = "{ name = \"floor\", y = 0 }, { name = \"roof\", y = 1 }, { name = \"above\", y = 0.125 }, { name = \"in\", x = 0 }";
+    let vent = "[[boundary.patch]]\nside = \"y_max\"\nmin = [0.5]\nmax = [0.9]\ntype = \"outlet\"\np = 1e5\n[time]";
+    let text = stderr(&solved(&at, &case("", planes).replace("[time]", vent), "out", &[]));
+    let told = "key output.monitors[0]: \"floor\" has no open face, it lies on a wall of the domain: nothing passes it";
+    assert!(text.contains(told) && !text.contains("\"roof\" has"), "{text}");
+    let report = json(&at.file("out/report.json"));
+    let of = |key: &str| [0, 1, 2, 3].map(|n| report["monitors"][n][key].as_f64().expect("a number"));
+    assert_eq!(of("faces"), [0.0, 4.0, 20.0, 8.0]);
+    for (area, truth) in of("area").into_iter().zip([0.0, 0.4, 2.0, 1.0]) {
+        assert!((area - truth).abs() < 1e-12 && area.is_sign_positive(), "{area} m², not {truth}");
+    }
+}
+
 /// The table of a run that was resumed is that of the whole run.
 #[test]
 fn a_resumed_run_goes_on_with_its_table() {

@@ -14,6 +14,7 @@ use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
 use serde::Serialize;
 use std::fmt::Write as _;
+use voidage_core::flow::Boundary;
 
 /// A plane whose flow is kept.
 #[derive(Debug)]
@@ -21,6 +22,8 @@ pub struct Monitor<const D: usize> {
     report: MonitorReport,
     /// Axis among those that flow.
     d: usize,
+    /// It lies on a side of the domain that is a wall, some patches perhaps aside.
+    is_wall: bool,
     /// Open faces.
     faces: Vec<Face>,
 }
@@ -75,7 +78,8 @@ pub fn monitors<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mu
         file.column_name(&format!("{key}.name"), &name, all.iter().map(|m| &m.report.name[..]))?;
         let monitor = Monitor::new(file, &key, name, keys, setup)?;
         if monitor.faces.is_empty() {
-            let reason = format!("\"{}\" has no open face: nothing passes it", monitor.report.name);
+            let why = if monitor.is_wall { ", it lies on a wall of the domain" } else { "" };
+            let reason = format!("\"{}\" has no open face{why}: nothing passes it", monitor.report.name);
             progress.warn(file.remark(&key, reason));
         }
         all.push(monitor);
@@ -101,9 +105,11 @@ impl<const D: usize> Monitor<D> {
         let plane = nearest(&edges.0[axis], at);
         let window = Region::of_box(file, key, &keys.min, &keys.max)?;
         let faces = faces(flow, edges, (axis, d, plane), *live, &window);
-        let area = faces.iter().map(|face| face.area).sum();
+        let area = faces.iter().map(|face| face.area).sum::<f64>() + 0.0; // of none not −0
+        let side = [0, edges.cells()[axis]].iter().position(|end| *end == plane);
+        let is_wall = side.is_some_and(|side| flow.boundaries[d][side] == Boundary::Wall);
         let report = MonitorReport { name, axis: AXES[axis], at: edges.0[axis][plane], faces: faces.len(), area };
-        Ok(Monitor { report, d, faces })
+        Ok(Monitor { report, d, is_wall, faces })
     }
 
     /// What it came to.
@@ -146,7 +152,7 @@ fn nearest(edges: &[f64], at: f64) -> usize {
     if above > 0 && at - edges[above - 1] <= edges[above] - at { above - 1 } else { above }
 }
 
-/// The open faces of a plane of the grid whose middles lie in a window: cells beside them, and open areas.
+/// The open faces of a plane of the grid whose middles lie in a window: cells beside them, and open areas. A wall at a side of the domain closes its faces.
 fn faces<const D: usize>(
     flow: &Flow<f64, D>,
     edges: &Edges,
@@ -172,7 +178,9 @@ fn faces<const D: usize>(
         below[axis] = low;
         let (side, section) = (usize::from(plane > high), flow.area(d, here) * across);
         let share = open.map_or(1.0, |open| open[flow.face(d, here, side)]);
-        if share > 0.0 {
+        let is_side = plane == 0 || plane > high;
+        let is_wall = is_side && *flow.stands(d, side, here) == Boundary::Wall;
+        if share > 0.0 && !is_wall {
             all.push(Face { cells: [position(below, shape), cell], side, area: share * section, section });
         }
     }
