@@ -1,6 +1,6 @@
 //! Pressures in kPa, temperatures in °C, gas constants in kJ are doubted; cases without units are not.
 
-use crate::kit::{Scratch, solved, stderr, stdout, voidage};
+use crate::kit::{Scratch, fixture, solved, stderr, stdout, voidage};
 use std::fs;
 use std::path::Path;
 
@@ -67,6 +67,53 @@ fn pressures_of_their_own_units_are_not() {
     assert!(!text.contains("ambient"), "{text}");
 }
 
+#[test]
+fn pressures_of_no_explosion_are_doubted() {
+    let wall = "\"wall\"";
+    let and_a_ball = "\"wall\"\n[[initial.regions]]\ncenter = [0.5]\nradius = 0.3\nrho = 1\np = 8e9";
+    for (gas, state, more) in
+        [(AIR, "T = 288, p = 8e9", wall), (AIR, "rho = 1, p = 8e9", wall), ("", "rho = 1.2, p = 1e5", and_a_ball)]
+    {
+        let text = said(gas, state, more, "");
+        let words = "p: 8e9 Pa is 78954 times the atmosphere's 101325 Pa;";
+        assert!(text.contains(words) && text.contains("check the exponent"), "{text}");
+    }
+    for state in ["rho = 1.2, p = 9e7", "rho = 1, p = 1e9"] {
+        let text = said("", state, wall, "");
+        assert!(!text.contains("check the exponent"), "{state}: {text}");
+    }
+}
+
+/// A unit that was asked for and makes all of a plant smaller than a hand, or larger than a town.
+#[test]
+fn sizes_by_a_given_unit_are_doubted() {
+    let (at, skid) = (Scratch::new(), fixture("cad_skid.stl"));
+    let inspect = |more: &[&str]| {
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"inspect", &skid];
+        all.extend(more.iter().map(|m| m as &dyn AsRef<std::ffi::OsStr>));
+        stderr(&voidage(&all))
+    };
+    let text = inspect(&["--unit", "mm"]);
+    assert!(text.contains("in mm its size is 0.008369 × 0.0046 × 0.0036 m, small for a plant"), "{text}");
+    assert!(text.contains("check the unit, --unit here, porosity.unit in a case"), "{text}");
+    for unit in [&[][..], &["--unit", "m"], &["--unit", "cm"], &["--unit", "ft"]] {
+        let text = inspect(unit);
+        assert!(!text.contains("for a plant"), "{unit:?}: {text}");
+    }
+    let points = "v 0 0 0\nv 4e6 0 0\nv 0 4e6 0\nv 0 0 4e6\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    fs::write(at.file("large.obj"), points).expect("a file");
+    fs::write(at.file("small.obj"), points.replace("e6", "e-3")).expect("a file");
+    let said = |name: &str, unit: &[&str]| {
+        let path = at.file(name);
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"inspect", &path];
+        all.extend(unit.iter().map(|m| m as &dyn AsRef<std::ffi::OsStr>));
+        stderr(&voidage(&all))
+    };
+    let text = said("large.obj", &["--unit", "cm"]);
+    assert!(text.contains("in cm its size is 40000 × 40000 × 40000 m, large for a plant"), "{text}");
+    assert!(!said("small.obj", &[]).contains("for a plant"));
+}
+
 /// Nothing is said of the cases that ship, nor of the template.
 #[test]
 fn the_examples_are_not_doubted() {
@@ -80,5 +127,6 @@ fn the_examples_are_not_doubted() {
         let short = case.replace("\n[time]\n", "\n[time]\nmax_steps = 0\n");
         let text = stderr(&solved(&at, &short, &format!("out{n}"), &[]));
         assert!(!text.contains("pressures are in Pa") && !text.contains("output.ambient"), "{text}");
+        assert!(!text.contains("check the"), "{text}");
     }
 }

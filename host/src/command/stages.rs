@@ -11,7 +11,7 @@ use crate::geometry::scene;
 use crate::geometry::unit::Unit;
 use crate::grid::file::UNIT_CELL;
 use crate::grid::{AXES, Edges};
-use crate::picture::ticks::{measure as number, number_to};
+use crate::picture::ticks::{measure as number, number as short, number_to};
 use crate::porosity::snap::{self, OffPlanes};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
 use crate::words::{counted, either};
@@ -62,8 +62,30 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
             warn_if_millimetres(path, &bodies, progress);
         }
     }
+    warn_of_unit(args, &bodies, progress);
     bodies.warnings.iter().for_each(|w| progress.warn(w.as_str()));
     Ok((bodies, grid))
+}
+
+/// Sizes in m of all that is read in a unit of its own: less is likely a file in metres, more is no plant.
+const LIKELY: [f64; 2] = [0.05, 2e4];
+
+/// A unit that was asked for makes the whole of the STL and OBJ files smaller than any plant, or larger.
+fn warn_of_unit(args: &SceneArgs, bodies: &Bodies, progress: &mut Progress) {
+    let (Some(unit), files) = (args.unit, &bodies.diagnoses) else { return };
+    let Some([lo, hi]) = files.iter().map(|d| d.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) else { return };
+    let (size, [least, most]) = (hi - lo, LIKELY);
+    let word = match size.max_element() {
+        largest if largest < least => "small",
+        largest if largest > most => "large",
+        _ => return,
+    };
+    let by = size.to_array().map(short).join(" × ");
+    progress.warn(format!(
+        "{}: in {} its size is {by} m, {word} for a plant: check the unit, --unit here, porosity.unit in a case",
+        bodies.files(),
+        unit.name()
+    ));
 }
 
 /// No plant is larger than this in metres, and few parts are smaller than this in millimetres.

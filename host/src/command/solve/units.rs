@@ -1,4 +1,4 @@
-//! Numbers that look as if they were meant in another unit: pressures in kPa or bar, temperatures in °C, a gas constant in kJ.
+//! Numbers that look as if they were meant in another unit: pressures in kPa or bar, temperatures in °C, a gas constant in kJ; and pressures that no gas explosion has.
 //!
 //! Units need only be consistent, and shock tubes without units have pressures from 0.01 to 1000. So a pressure or a temperature is doubted
 //! only where the case itself says that it is in SI units, by a gas constant in J/(kg K) beside a temperature; and the ambient pressure
@@ -6,6 +6,8 @@
 
 use super::case::{StateKeys, side_word};
 use super::case_file::CaseFile;
+use crate::picture::ticks::number_to;
+use crate::words::written;
 
 /// Gas constants in J/(kg K): from heavy refrigerants to hydrogen, with room on both sides.
 const SI_GASES: [f64; 2] = [40.0, 6000.0];
@@ -21,6 +23,12 @@ const HIGH: f64 = 1e4;
 
 /// A pressure below this many Pa, a hundredth of the atmosphere, is doubted.
 const LEAST: f64 = 1000.0;
+
+/// A pressure above this many Pa, a thousand atmospheres, is doubted: gas burnt in a closed room has about eight.
+const MOST: f64 = 1e8;
+
+/// Lowest pressures of gas that is meant to be in Pa, whatever else the case says.
+const ATMOSPHERES: [f64; 2] = [1e4, 1e6];
 
 /// An ambient pressure below the lowest pressure of the beginning by this factor is doubted.
 const FAR_BELOW: f64 = 100.0;
@@ -55,6 +63,14 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
             );
             said.push(file.remark("gas.gas_constant", reason));
         }
+    }
+    let is_pascal = within(lowest, ATMOSPHERES) || file.case.gas.gas_constant.is_some_and(|r| within(r, SI_GASES));
+    if let Some((key, p)) = first(&|keys| keys.p.filter(|p| is_pascal && *p > MOST)) {
+        let (p, atmospheres) = (written(p), number_to(p / 101_325.0, p / 1e7));
+        let reason = format!(
+            "{p} Pa is {atmospheres} times the atmosphere's 101325 Pa; gas that burns in a closed room comes to about 8e5 Pa: check the exponent"
+        );
+        said.push(file.remark(&format!("{key}.p"), reason));
     }
     if let Some(p) = file.case.output.ambient.filter(|p| *p > 0.0 && FAR_BELOW * p < lowest) {
         let reason = format!(
