@@ -13,6 +13,7 @@ mod outputs;
 mod outside;
 mod packages;
 mod patches;
+mod pictures;
 mod places;
 mod planes;
 mod porosity;

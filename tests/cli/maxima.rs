@@ -278,8 +278,23 @@ fn half_the_cells_beside_all() {
     let peaks = check["peaks"].as_array().expect("a list");
     assert_eq!(
         peaks.iter().map(|p| p["name"].as_str().expect("a name")).collect::<Vec<_>>(),
-        ["anywhere", "far", "near"]
+        ["outside the starting regions", "far", "near"]
     );
+    // Cells of the coarse grid that the ball does not reach, in the cells of the fine one.
+    let over = array(&at.file("fine/maxima/overpressure.npy"));
+    let beside = |n: usize| {
+        let (low, high) = ((n / 2) as f64 / 8.0, (n / 2 + 1) as f64 / 8.0);
+        (low - 0.3).max(0.3 - high).max(0.0)
+    };
+    let outside = (0..256).filter(|c| beside(c % 16).hypot(beside(c / 16)) >= 0.2);
+    let largest = outside.map(|c| over[c]).fold(0.0, f64::max);
+    assert_eq!(peaks[0]["overpressure"]["fine"].as_f64(), Some(largest));
+    // Before the blast meets a wall there is nowhere as much as in the ball at the beginning, where it is 4e5 Pa on any grid.
+    solved(&at, &BLAST.replace("end = 1e-3", "end = 1e-4"), "short", &["-q", "--refine-check"]);
+    let short = &json(&at.file("short/report.json"))["refine_check"]["peaks"][0]["overpressure"];
+    for grid in ["fine", "coarse"] {
+        assert!(short[grid].as_f64().is_some_and(|p| p > 2e4 && p < 3e5), "{short}");
+    }
     for n in 0..2 {
         for key in ["overpressure", "impulse", "dynamic_pressure"] {
             let found = &peaks[n + 1][key];
@@ -289,6 +304,22 @@ fn half_the_cells_beside_all() {
             assert!(fine != coarse && (change - (fine - coarse) / fine).abs() < 1e-12, "{key}");
             assert!(peaks[0][key]["fine"].as_f64().expect("a number") >= fine, "{key}");
         }
+    }
+}
+
+/// Without a region above the ambient pressure all cells count, and so they do where one fills the grid.
+#[test]
+fn all_cells_count_without_a_starting_region() {
+    let at = Scratch::new();
+    for (n, region) in
+        ["center = [0.3, 0.3], radius = 0.2, u = 50", "min = [0, 0], max = [1, 1], p = 5e5"].iter().enumerate()
+    {
+        let case = BLAST.replace("center = [0.3, 0.3], radius = 0.2, p = 5e5, rho = 1.2", region);
+        let case = case.replace("formats", "ambient = 1e5\nformats");
+        let output = solved(&at, &case, &format!("out{n}"), &["--refine-check"]);
+        let check = &json(&at.file(&format!("out{n}/report.json")))["refine_check"];
+        assert_eq!(check["peaks"][0]["name"], "anywhere", "{region}");
+        assert!(crate::kit::stdout(&output).contains("\n  anywhere    overpressure "), "{region}");
     }
 }
 

@@ -1,13 +1,14 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
 //! In reading order: [`output_keys`], [`case`], [`places`] and [`case_file`], the file as typed; `arrays`, [`regions`], [`state`], [`mixture`], [`space`],
-//! [`inlet`], [`sides`], [`units`] and [`setup`], from the case to a flow; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`],
+//! [`inlet`], [`sides`], [`units`] and [`setup`], from the case to a flow; [`charges`], where its blast begins; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`],
 //! [`force_peaks`], [`table`], [`series`], [`checkpoint`], [`lock`], [`report`], what it writes; [`limits`] and [`stepping`], how far it goes and
 //! each step; [`refine`], the same case on half the cells; [`run`].
 
 mod arrays;
 pub mod case;
 pub mod case_file;
+pub mod charges;
 pub mod checkpoint;
 pub mod force;
 pub mod force_peaks;

@@ -14,6 +14,8 @@ pub const NO_VALUE: Colour = [186, 160, 172];
 #[derive(Clone, Debug)]
 pub struct ColourMap {
     table: Vec<Colour>,
+    /// The lowest and the highest value have a colour of their own, set off from those between.
+    own_ends: [bool; 2],
 }
 
 const STEPS: usize = 256;
@@ -41,19 +43,19 @@ impl ColourMap {
     /// be it open to 0.999.
     #[must_use]
     pub fn open_fraction() -> Self {
-        let ColourMap { table: even } = Self::sequential();
+        let ColourMap { table: even, .. } = Self::sequential();
         // The colours just below the lightest are left out.
         let mut table: Vec<Colour> = (0..STEPS).map(|step| even[step * LIGHTEST / (STEPS - 1)]).collect();
         table.push(even[STEPS - 1]);
-        ColourMap { table }
+        ColourMap { table, own_ends: [false, true] }
     }
 
     /// From light paper, for none, to dark blue, with a step between none and the least: for quantities that are zero in most cells.
     #[must_use]
     pub fn density() -> Self {
-        let ColourMap { table: even } = Self::sequential();
+        let ColourMap { table: even, .. } = Self::sequential();
         let falling = (0..STEPS - 1).rev().map(|step| even[step * LIGHTEST / (STEPS - 2)]);
-        ColourMap { table: [even[STEPS - 1]].into_iter().chain(falling).collect() }
+        ColourMap { table: [even[STEPS - 1]].into_iter().chain(falling).collect(), own_ends: [true, false] }
     }
 
     /// Blue over white to red-brown: for quantities with a sign, and a range symmetric about zero.
@@ -78,12 +80,27 @@ impl ColourMap {
             return self.table[self.table.len() - 1];
         }
         let step = (value * (STEPS - 1) as f64).round().clamp(0.0, (STEPS - 1) as f64);
-        self.table[step as usize]
+        // What is not none is told from it, be it little.
+        self.table[(step as usize).max(usize::from(self.own_ends[0] && value > ROUNDING))]
+    }
+
+    /// Whether the lowest and the highest value have a colour of their own, set off from those between.
+    #[must_use]
+    pub fn own_ends(&self) -> [bool; 2] {
+        self.own_ends
+    }
+
+    /// The colours between the ends that have one of their own: from just above the lowest value, at a share of 0, to just below the highest, at 1.
+    #[must_use]
+    pub fn between(&self, share: f64) -> Colour {
+        let [first, past] = [usize::from(self.own_ends[0]), self.table.len() - usize::from(self.own_ends[1])];
+        let step = (share.clamp(0.0, 1.0) * (past - 1 - first) as f64).round() as usize; // NaN becomes 0
+        self.table[first + step]
     }
 
     fn through(anchors: &[[f64; 3]]) -> Self {
         let table = (0..STEPS).map(|step| srgb(on_curve(anchors, step as f64 / (STEPS - 1) as f64))).collect();
-        ColourMap { table }
+        ColourMap { table, own_ends: [false; 2] }
     }
 }
 

@@ -12,7 +12,7 @@ use std::path::Path;
 use super::canvas::{Canvas, Colour, GREY, INK, Style, text_width};
 use super::colour::ColourMap;
 use super::heatmap::{Area, EdgeAxis, Heatmap, NORMAL, SMALL, pointer, triangle};
-use super::ticks::{number, number_to, ticks};
+use super::ticks::{Ticks, number, number_to, ticks};
 use crate::error::{Error, Result};
 use crate::grid::AXES;
 use layout::{BAR, Layout, Panel, Rooms};
@@ -25,6 +25,9 @@ const TITLE: f64 = 14.0;
 const BORDER: usize = 18;
 /// Pixels for the title and the note.
 const HEAD: usize = 64;
+
+/// Pixels of the bar for an end with a colour of its own.
+const OWN_END: usize = 18;
 
 /// Explains the pointers.
 const LEGEND: &str = "where the other slices are";
@@ -52,6 +55,8 @@ pub struct Figure<'a> {
     pub range: [f64; 2],
     /// Words beside the ends of the bar; may be empty.
     pub ends: [&'a str; 2],
+    /// Which of these are written; there is room for both, so that pictures of one kind have one size.
+    pub told: [bool; 2],
     /// The colours.
     pub map: &'a ColourMap,
 }
@@ -201,9 +206,21 @@ impl Figure<'_> {
     fn bar_room(&self) -> usize {
         let marks = ticks(self.range[0], self.range[1], 5);
         let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
-        let words = self.ends.iter().map(|w| text_width(w, SMALL)).fold(0.0, f64::max);
+        let words = self.end_words(&marks).iter().map(|w| text_width(w, SMALL)).fold(0.0, f64::max);
         let beside = 10.0 + widest + if words > 0.0 { words + 8.0 } else { 0.0 };
         beside.max(text_width(&self.bar_name(marks.power), NORMAL) - BAR as f64).ceil() as usize + 8
+    }
+
+    /// The words beside the ends of the bar, with the number where no mark tells it.
+    fn end_words(&self, marks: &Ticks) -> [String; 2] {
+        [0, 1].map(|n| {
+            let (end, word) = (self.range[n], self.ends[n]);
+            let near = 1e-9 * (self.range[1] - self.range[0]);
+            match word.is_empty() || marks.at.iter().any(|at| (at - end).abs() <= near) {
+                true => word.to_owned(),
+                false => format!("{} {word}", number(end / 10_f64.powi(marks.power))),
+            }
+        })
     }
 
     /// The name of the field over its bar, with the unit of numbers from which a power of ten is taken out.
@@ -219,23 +236,45 @@ impl Figure<'_> {
         }
     }
 
-    fn bar(&self, canvas: &mut Canvas, area: Area) {
-        for y in 0..area.height {
-            let share = (area.height - 1 - y) as f64 / (area.height - 1).max(1) as f64;
-            canvas.rect(area.x, area.y + y, area.width, 1, self.map.colour(share));
+    /// The colours of the bar, and where those between its ends stand: an end with a colour of its own has a field beyond them.
+    fn bar_colours(&self, canvas: &mut Canvas, area: Area) -> Area {
+        let [below, above] = self.map.own_ends().map(|own| if own { OWN_END.min(area.height / 4) } else { 0 });
+        let inner = Area { y: area.y + above, height: area.height - below - above, ..area };
+        canvas.rect(area.x, area.y, area.width, above, self.map.colour(1.0));
+        canvas.rect(area.x, inner.y + inner.height, area.width, below, self.map.colour(0.0));
+        for y in 0..inner.height {
+            let share = (inner.height - 1 - y) as f64 / (inner.height - 1).max(1) as f64;
+            canvas.rect(area.x, inner.y + y, area.width, 1, self.map.between(share));
         }
+        if above > 0 {
+            canvas.rect(area.x, inner.y, area.width, 1, INK);
+        }
+        if below > 0 {
+            canvas.rect(area.x, inner.y + inner.height - 1, area.width, 1, INK);
+        }
+        inner
+    }
+
+    fn bar(&self, canvas: &mut Canvas, area: Area) {
+        let inner = self.bar_colours(canvas, area);
         canvas.frame(area.x, area.y, area.width, area.height, INK);
         let [low, high] = self.range;
         let marks = ticks(low, high, (area.height / 45).clamp(1, 5));
         let right = (area.x + area.width) as f64;
         let style = Style { height: SMALL, up: 0.5, ..Style::default() };
-        let row = |v: f64| (area.y + area.height - 1) as f64 - (v - low) / (high - low) * (area.height - 1) as f64;
+        // An end with a colour of its own is told in the middle of that.
+        let row = |v: f64| match self.map.own_ends() {
+            [true, _] if v <= low => f64::midpoint((inner.y + inner.height) as f64, (area.y + area.height) as f64),
+            [_, true] if v >= high => f64::midpoint(area.y as f64, inner.y as f64),
+            _ => (inner.y + inner.height - 1) as f64 - (v - low) / (high - low) * (inner.height - 1) as f64,
+        };
         for (v, label) in marks.at.iter().zip(&marks.labels) {
             canvas.rect(area.x + area.width, row(*v).round() as usize, 5, 1, INK);
             canvas.text(right + 10.0, row(*v).round() + 0.5, label, style);
         }
         let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
-        for (v, word) in [low, high].into_iter().zip(self.ends) {
+        let words = self.end_words(&marks);
+        for ((v, word), _) in [low, high].into_iter().zip(&words).zip(self.told).filter(|(_, told)| *told) {
             canvas.text(right + 18.0 + widest, row(v) + 0.5, word, Style { colour: GREY, ..style });
         }
         canvas.text(

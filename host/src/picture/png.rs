@@ -36,7 +36,8 @@ pub fn picture(
     let note = note(edges, unit, open);
     let map = &ColourMap::open_fraction();
     let (name, range, ends) = ("beta_v", [0.0, 1.0], ["blocked", "open"]);
-    Figure { title, moment: "", note: &note, edges, unit, values: beta_v, at, name, range, ends, map }.draw()
+    let (moment, note, values, told) = ("", &note[..], beta_v, [true; 2]);
+    Figure { title, moment, note, edges, unit, values, at, name, range, ends, told, map }.draw()
 }
 
 /// The picture of another field that is not negative, cut as [`picture`] is; `name` has its unit.
@@ -54,7 +55,8 @@ pub fn picture_of(
     let most = values.iter().copied().fold(0.0, f64::max);
     let note = format!("{} · mean {}, most {}", grid_note(edges, unit), number(mean), number(most));
     let (at, range, ends, map) = (cut(edges, telling, through), [0.0, most], ["", ""], &ColourMap::density());
-    Figure { title, moment: "", note: &note, edges, unit, values, at, name, range, ends, map }.draw()
+    let (moment, note, told) = ("", &note[..], [true; 2]);
+    Figure { title, moment, note, edges, unit, values, at, name, range, ends, told, map }.draw()
 }
 
 /// The cells that the slices show: those at the given coordinates, else the most telling ones.

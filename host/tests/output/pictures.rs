@@ -73,6 +73,35 @@ fn slices_show_the_blocked_cell_in_its_corner() {
     assert!(bx + 200 < ox && by > oy + 200, "low x is left, low y is down");
 }
 
+/// Cells that are wholly open, or hold nothing, have a colour of their own, which has a field in the bar beside the number that it stands for.
+#[test]
+fn colours_of_their_own_have_a_field_in_the_bar() {
+    let edges = [&uniform(4)[..], &uniform(4), &uniform(4)];
+    let lightest = ColourMap::sequential().colour(1.0);
+    let half = [0.5; 64];
+    for canvas in [
+        png::picture("", edges, "m", &half, [None; 3]),
+        png::picture_of(("a_x, 1/m", &half), "", edges, "m", [None; 3]),
+    ] {
+        let canvas = canvas.unwrap();
+        let (width, height) = canvas.size();
+        let pixels =
+            || (0..width * height).map(|n| (n % width, n / width)).filter(|&(x, y)| canvas.get(x, y) == lightest);
+        let rows: std::collections::BTreeSet<usize> = pixels().map(|(_, y)| y).collect();
+        let columns: std::collections::BTreeSet<usize> = pixels().map(|(x, _)| x).collect();
+        assert!(rows.len() >= 15 && columns.len() >= 15, "{} x {} pixels", columns.len(), rows.len());
+    }
+    // Between the ends the colours of the bar are those of the cells.
+    for map in [ColourMap::open_fraction(), ColourMap::density(), ColourMap::sequential()] {
+        for share in [0.01, 0.2, 0.5, 0.8, 0.99] {
+            let far = map.between(share).iter().zip(map.colour(share)).map(|(a, b)| a.abs_diff(b)).max();
+            assert!(far <= Some(3), "{share}: {far:?}");
+        }
+    }
+    let map = ColourMap::density();
+    assert!(map.colour(1e-6) == map.between(0.0) && map.colour(0.0) == lightest && map.colour(1e-6) != lightest);
+}
+
 #[test]
 fn pictures_of_any_shape_stay_on_a_readable_sheet() {
     let dir = Dir::new("png-shapes");
@@ -116,7 +145,8 @@ fn figures_of_other_fields_and_of_uniform_or_missing_values() {
     let map = &ColourMap::diverging();
     let figure = |values, range| {
         let (title, note, unit, at, name) = ("u", "step 12", "m", [1, 1, 1], "u [m/s]");
-        Figure { title, moment: "", note, edges, unit, values, at, name, range, ends: ["", ""], map }.draw()
+        Figure { title, moment: "", note, edges, unit, values, at, name, range, ends: ["", ""], told: [true; 2], map }
+            .draw()
     };
     let has = |canvas: &Canvas, colour| {
         let (width, height) = canvas.size();
@@ -139,6 +169,7 @@ fn figures_of_other_fields_and_of_uniform_or_missing_values() {
         name: "",
         range: [0.0, 1.0],
         ends: ["", ""],
+        told: [true; 2],
         map,
     };
     assert!(whole.draw().is_ok());
@@ -170,6 +201,7 @@ fn each_panel_shows_its_own_slice() {
                 name: "",
                 range: [0.0, 1.0],
                 ends: ["", ""],
+                told: [true; 2],
                 map,
             };
             let canvas = figure.draw().unwrap();

@@ -3,6 +3,7 @@
 //! The overpressure is p − p₀, p₀ being the ambient pressure. Its integral over time is taken by the trapezoidal rule from step to step;
 //! the impulse is the largest value that this integral reaches. The moment of arrival is interpolated within a step.
 
+use super::charges::Charges;
 use super::frames::create;
 use super::output_keys::MaximaKeys;
 use crate::error::Result;
@@ -138,10 +139,10 @@ impl Maxima {
         Vtr { x, y, z, cell: cell.collect(), ..Vtr::default() }.write(&dir.join("maxima.vtr"))
     }
 
-    /// The largest values of all open cells, and the first arrival, under a name.
+    /// The largest values of all open cells outside these charges, and the first arrival, under a name.
     #[must_use]
-    pub fn greatest(&self, name: String, beta_v: Option<&[f64]>) -> Peaks {
-        let open = |cell: &usize| beta_v.is_none_or(|b| b[*cell] > 0.0);
+    pub fn greatest(&self, name: String, beta_v: Option<&[f64]>, charges: &Charges) -> Peaks {
+        let open = |cell: &usize| beta_v.is_none_or(|b| b[*cell] > 0.0) && !charges.hold(*cell);
         let most =
             |values: &[f64]| (0..values.len()).filter(open).map(|cell| values[cell]).fold(f64::NEG_INFINITY, f64::max);
         let first = (0..self.arrival.len()).filter(open).map(|cell| self.arrival[cell]).fold(f64::NAN, f64::min);

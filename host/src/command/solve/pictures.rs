@@ -1,11 +1,13 @@
 //! Pictures of frames: speed and overpressure in three planes, with one range of colours for all frames of a run.
 //!
 //! A frame is drawn when it is reached, with the range that the run has had so far, unless the case gives one; its planes are kept in `frames/slices`,
-//! and at the end of the run all frames are drawn again with the range of the whole run.
+//! and at the end of the run all frames are drawn again with the range of the whole run. That of the overpressure is the one outside the regions that a blast starts
+//! from, whose beginning would leave one dark colour to all the rest.
 
 use super::case_file::CaseFile;
+use super::charges::Charges;
 use super::frames::{SLICES, Snapshot, cell_at};
-use super::output_keys::RangeKeys;
+use super::output_keys::OutputKeys;
 use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::files::npy;
@@ -14,6 +16,8 @@ use crate::picture::colour::ColourMap;
 use crate::picture::figure::Figure;
 use crate::picture::png;
 use crate::picture::ticks::number;
+use serde::Serialize;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// The point through which pictures are cut lies within the grid.
@@ -37,8 +41,24 @@ pub struct Pictures {
     at: [usize; 3],
     ambient: f64,
     given: [Option<[f64; 2]>; 2],
-    /// The frames drawn so far with a range that may not be the last.
+    /// Range of each field in the frames so far.
     seen: [[f64; 2]; 2],
+    /// That of the overpressure outside the regions that a blast starts from.
+    outside: [f64; 2],
+    /// Which cells of the planes these regions hold.
+    held: Vec<bool>,
+}
+
+/// Ends of the colours of all frames.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Colours {
+    /// In m/s.
+    pub speed: [f64; 2],
+    /// In kPa.
+    pub overpressure: [f64; 2],
+    /// The latter is the range outside the regions that a blast starts from.
+    #[serde(skip)]
+    pub is_outside: bool,
 }
 
 /// Names over the colours, and of the files.
@@ -47,25 +67,54 @@ const FIELDS: [(&str, &str); 2] = [("speed [m/s]", "speed"), ("overpressure [kPa
 /// Pascals in the unit of the pictures.
 const KILO: f64 = 1e3;
 
+/// Words beside the ends of the colours, where values lie beyond them.
+const BEYOND: [&str; 2] = ["and below", "and above"];
+
+/// Of the whole range of the overpressure, a smaller share outside is none: nothing has come there.
+const NONE_OUTSIDE: f64 = 1e-6;
+
 impl Pictures {
-    /// Cuts through `point`, or where the porosity shows most, or in the middle; overpressures are counted from `ambient`.
+    /// Cuts where the case says, else through the middle of the first of the `charges`, or where the porosity shows most, or in the middle; overpressures are counted
+    /// from `ambient`.
     #[must_use]
     pub fn new<const D: usize>(
         setup: &Setup<D>,
         title: &str,
-        point: Option<[f64; 3]>,
+        keys: &OutputKeys,
         ambient: f64,
-        range: &RangeKeys,
+        charges: &Charges,
     ) -> Self {
         let edges = &setup.edges;
         let middle = edges.cells().map(|n| n / 2);
-        let at = match (point, setup.flow.beta_v()) {
+        let telling = |beta| png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta);
+        let usual = setup.flow.beta_v().and_then(telling).unwrap_or(middle);
+        let [lo, _] = edges.bounds().map(|p| p.to_array());
+        let at = match (keys.slice, charges.middle()) {
             (Some(point), _) => cell_at(edges, point).unwrap_or(middle),
-            (None, Some(beta)) => png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta).unwrap_or(middle),
-            (None, None) => middle,
+            (None, places) => {
+                let through = cell_at(edges, [0, 1, 2].map(|a| places[a].unwrap_or(lo[a]))).unwrap_or(usual);
+                [0, 1, 2].map(|a| if places[a].is_some() { through[a] } else { usual[a] })
+            }
         };
-        let given = [range.speed, range.overpressure];
-        Pictures { title: title.to_owned(), at, ambient, given, seen: [NOTHING; 2] }
+        let (title, given) = (title.to_owned(), [keys.range.speed, keys.range.overpressure]);
+        let mut pictures =
+            Pictures { title, at, ambient, given, seen: [NOTHING; 2], outside: NOTHING, held: Vec::new() };
+        if !charges.is_empty() {
+            pictures.held = pictures.cells(setup).map(|cell| charges.hold(cell)).collect();
+        }
+        pictures
+    }
+
+    /// Ends of the colours, as far as the run has come.
+    #[must_use]
+    pub fn colours(&self) -> Colours {
+        let width = |[low, high]: [f64; 2]| high - low;
+        let [speed, whole] = self.seen;
+        let has_come = !self.held.is_empty() && width(self.outside) > NONE_OUTSIDE * width(whole);
+        let usual = if has_come { self.outside } else { whole };
+        let [given_speed, given] = self.given;
+        let (speed, overpressure) = (given_speed.unwrap_or(speed), given.unwrap_or(usual));
+        Colours { speed, overpressure, is_outside: has_come && given.is_none() }
     }
 
     /// Draws the `n`-th frame into `dir`, and keeps its planes if its colours may change.
@@ -145,12 +194,14 @@ impl Pictures {
         across_x.chain(across_y).chain(across_z)
     }
 
-    /// Widens the ranges of the run; both hold 0.
+    /// Widens the ranges of the run; all hold 0.
     fn see(&mut self, planes: &[Vec<f64>; 2]) {
+        let widened = |range: [f64; 2], v: f64| [range[0].min(v), range[1].max(v)]; // NaN widens nothing
         for (seen, values) in self.seen.iter_mut().zip(planes) {
-            let widened = values.iter().filter(|v| !v.is_nan());
-            *seen = widened.fold(*seen, |[low, high], &v| [low.min(v), high.max(v)]);
+            *seen = values.iter().fold(*seen, |range, &v| widened(range, v));
         }
+        let outside = planes[1].iter().zip(&self.held).filter(|(_, held)| !**held);
+        self.outside = outside.fold(self.outside, |range, (&v, _)| widened(range, v));
     }
 
     fn draw<const D: usize>(
@@ -167,11 +218,16 @@ impl Pictures {
         let note = png::grid_note(edges, "m")
             + if solid { " · solid in mauve" } else { "" }
             + if blocked.is_some() { " · partly solid hatched" } else { "" };
-        let (map, unit, ends, at) = (&ColourMap::sequential(), "m", ["", ""], self.at);
+        let (map, unit, ends, at) = (&ColourMap::sequential(), "m", BEYOND, self.at);
+        let colours = self.colours();
         for (n, path) in paths.iter().enumerate() {
-            let (name, range) = (FIELDS[n].0, self.given[n].unwrap_or(self.seen[n]));
+            let (name, range) = (FIELDS[n].0, [colours.speed, colours.overpressure][n]);
             let (values, moment) = (fields[n], &moment[..]);
-            let figure = Figure { title, moment, note: &note, edges, unit, values, at, name, range, ends, map };
+            let [low, high] = self.cut(setup, values).into_iter().fold(range, |[a, b], v| [a.min(v), b.max(v)]);
+            let told = [low < range[0], high > range[1]];
+            let highest = format!("{note} · highest value {} {}", number(high), ["m/s", "kPa"][n]);
+            let note = if told[1] { &highest[..] } else { &note[..] };
+            let figure = Figure { title, moment, note, edges, unit, values, at, name, range, ends, told, map };
             let canvas = match &blocked {
                 Some(blocked) => figure.draw_hatched(blocked),
                 None => figure.draw(),
@@ -179,6 +235,14 @@ impl Pictures {
             canvas.map_err(|reason| Error::file(path, reason))?.write(path)?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for Colours {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ends = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
+        let of = if self.is_outside { ", that outside the starting regions" } else { "" };
+        write!(f, "speed {} m/s, overpressure {} kPa{of}", ends(self.speed), ends(self.overpressure))
     }
 }
 

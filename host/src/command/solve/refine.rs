@@ -2,6 +2,7 @@
 
 use super::arrays::position;
 use super::case_file::CaseFile;
+use super::charges::Charges;
 use super::frames::cell_at;
 use super::maxima::{Maxima, Peaks};
 use super::output_keys::MaximaKeys;
@@ -19,8 +20,8 @@ use std::fmt::Display;
 /// Fewest cells along an axis that can be halved.
 const FEWEST: usize = 4;
 
-/// Name under which the largest values of all open cells are told.
-const ANYWHERE: &str = "anywhere";
+/// Names under which the largest values of all open cells are told, and of those outside the regions that a blast starts from.
+const ANYWHERE: [&str; 2] = ["anywhere", "outside the starting regions"];
 
 /// What both runs found.
 #[derive(Debug, Clone, Serialize)]
@@ -29,14 +30,14 @@ pub struct RefineCheck {
     pub cells: [usize; 3],
     /// Its steps.
     pub steps: usize,
-    /// Of all open cells, then of each probe.
+    /// Of all open cells outside the regions that a blast starts from, then of each probe.
     pub peaks: Vec<ComparedPeaks>,
 }
 
 /// Largest values in one place.
 #[derive(Debug, Clone, Serialize)]
 pub struct ComparedPeaks {
-    /// Name of the probe, or `anywhere`.
+    /// Name of the probe, or what tells that these are the largest of all cells.
     pub name: String,
     /// Of p − p₀.
     pub overpressure: Compared,
@@ -97,24 +98,37 @@ fn coarser(edges: &Edges, live: &[usize]) -> Edges {
     coarse
 }
 
-/// Runs the case on half the cells to the time `end`, and compares with the largest values of the run on all: `fine` of all open cells and of
-/// each probe.
+/// What the run on all cells found.
+#[derive(Debug)]
+pub struct Fine<'a> {
+    /// Its cells.
+    pub edges: &'a Edges,
+    /// Their open fractions.
+    pub beta_v: Option<&'a [f64]>,
+    /// Its largest values.
+    pub maxima: &'a Maxima,
+    /// The same at each probe.
+    pub probes: Vec<Peaks>,
+}
+
+/// Runs the case on half the cells to the time `end`, and compares with the largest values of the run on all. Where a blast starts, in whichever cells of the
+/// coarse grid, both leave them out: the pressure of the beginning is the same on any grid.
 ///
 /// # Errors
 /// The coarse run fails, or is interrupted.
 pub fn run<const D: usize>(
     file: &CaseFile,
-    edges: &Edges,
     live: [usize; D],
-    fine: Vec<Peaks>,
-    (ambient, end): (f64, f64),
+    fine: Fine<'_>,
+    end: f64,
     line: &Meter,
 ) -> Result<RefineCheck> {
-    let edges = coarser(edges, &live);
+    let edges = coarser(fine.edges, &live);
     // What there is to warn of has been said of the cells of the case.
     let mut silent = Progress::new(&TalkArgs { quiet: true, verbose: false });
     let mut setup = setup(file, &edges, live, &mut silent)?;
-    let usual = MaximaKeys::default();
+    let (usual, ambient) = (MaximaKeys::default(), fine.maxima.ambient);
+    let charges = Charges::new(file, &setup.flow, &edges, ambient)?;
     let mut maxima = Maxima::new(file.case.output.maxima.as_ref().unwrap_or(&usual), ambient, &setup.flow);
     while setup.flow.time < end {
         let ended = |reason: &dyn Display| {
@@ -134,8 +148,10 @@ pub fn run<const D: usize>(
         let at = cell_at(&edges, probe.at)?;
         Some(maxima.peaks(probe.name(n), position(at, edges.cells()), setup.flow.beta_v()))
     });
-    let coarse: Vec<Peaks> = std::iter::once(anywhere(&maxima, setup.flow.beta_v())).chain(probes).collect();
-    let peaks = fine.into_iter().zip(coarse).map(|(fine, coarse)| ComparedPeaks {
+    let of_fine = charges.finer(edges.cells(), fine.edges.cells(), &live, fine.beta_v);
+    let coarse = std::iter::once(anywhere(&maxima, setup.flow.beta_v(), &charges)).chain(probes);
+    let fine = std::iter::once(anywhere(fine.maxima, fine.beta_v, &of_fine)).chain(fine.probes);
+    let peaks = fine.zip(coarse).map(|(fine, coarse)| ComparedPeaks {
         overpressure: Compared::new(fine.overpressure, coarse.overpressure),
         impulse: Compared::new(fine.impulse, coarse.impulse),
         dynamic_pressure: Compared::new(fine.dynamic_pressure, coarse.dynamic_pressure),
@@ -144,8 +160,7 @@ pub fn run<const D: usize>(
     Ok(RefineCheck { cells: edges.cells(), steps: setup.flow.steps, peaks: peaks.collect() })
 }
 
-/// The largest values of all open cells.
-#[must_use]
-pub fn anywhere(maxima: &Maxima, beta_v: Option<&[f64]>) -> Peaks {
-    maxima.greatest(ANYWHERE.to_owned(), beta_v)
+/// The largest values of all open cells outside these charges.
+fn anywhere(maxima: &Maxima, beta_v: Option<&[f64]>, charges: &Charges) -> Peaks {
+    maxima.greatest(ANYWHERE[usize::from(!charges.is_empty())].to_owned(), beta_v, charges)
 }

@@ -6,6 +6,7 @@ use super::checkpoint::Journal;
 use super::force_peaks::{self, ForcePeak};
 use super::maxima::{Maxima, Peaks};
 use super::monitors::MonitorReport;
+use super::pictures::Colours;
 use super::refine::{Compared, RefineCheck};
 use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
@@ -66,6 +67,9 @@ pub struct Report {
     repeated_steps: usize,
     /// Times of the frames.
     frames: Vec<f64>,
+    /// Ends of the colours of pictures, if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    colours: Option<Colours>,
     porosity: Option<SpaceReport>,
     /// How well the grid resolves the regions of the beginning.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -193,6 +197,7 @@ impl Report {
             fallbacks: flow.total.first_order,
             repeated_steps: flow.repeated,
             frames: journal.frames.clone(),
+            colours: None,
             porosity: setup.space,
             regions: setup.regions.clone(),
             patches: setup.patches.clone(),
@@ -211,6 +216,12 @@ impl Report {
     pub fn with_maxima(self, maxima: Option<&Maxima>, probes: Vec<Peaks>) -> Self {
         let report = |m: &Maxima| MaximaReport { ambient: m.ambient, threshold: m.threshold, probes };
         Report { maxima: maxima.map(report), ..self }
+    }
+
+    /// With the ends of the colours of pictures, if there are any.
+    #[must_use]
+    pub fn with_colours(self, colours: Option<Colours>) -> Self {
+        Report { colours, ..self }
     }
 
     /// With the planes whose flow was kept.
@@ -279,21 +290,10 @@ impl Report {
             let largest = format!("largest {largest:.4e} N at t = {largest_time:.4e} s");
             progress.say(format!("force         ({x:.4e}, {y:.4e}, {z:.4e}) N on {name}; {largest}"));
         }
-        if let Some(RefineCheck { cells: [nx, ny, nz], peaks, .. }) = &self.refine_check {
-            progress.say(format!("refine check  peaks here, on {nx} × {ny} × {nz} cells, and the change between both"));
-            for peak in peaks {
-                let of = |name: &str, unit: &str, Compared { fine, coarse, change }: Compared| {
-                    let change = match change {
-                        None => "–".to_owned(),
-                        Some(c) if c.abs() > 1.0 => "not alike: too coarse, or the wave has not come".to_owned(),
-                        Some(c) => format!("{:+.1} %", (1000.0 * c).round() / 10.0 + 0.0),
-                    };
-                    format!("{name} {fine:.4e}, {coarse:.4e} {unit} ({change})")
-                };
-                let pressure = of("overpressure", "Pa", peak.overpressure);
-                progress.say(format!("  {:<12}{pressure}; {}", peak.name, of("impulse", "Pa s", peak.impulse)));
-            }
+        if let Some(colours) = &self.colours {
+            progress.say(format!("colours       {colours}"));
         }
+        self.refine_check.iter().for_each(|check| say_refine_check(check, progress));
         progress.say(format!("time          {}", self.times()));
     }
 
@@ -312,5 +312,23 @@ impl Report {
                 self.seconds
             ),
         }
+    }
+}
+
+/// The largest values of both runs, a line a place.
+fn say_refine_check(RefineCheck { cells: [nx, ny, nz], peaks, .. }: &RefineCheck, progress: &Progress) {
+    progress.say(format!("refine check  peaks here, on {nx} × {ny} × {nz} cells, and the change between both"));
+    let widest = peaks.iter().map(|peak| peak.name.chars().count()).fold(10, usize::max) + 2;
+    for peak in peaks {
+        let of = |name: &str, unit: &str, Compared { fine, coarse, change }: Compared| {
+            let change = match change {
+                None => "–".to_owned(),
+                Some(c) if c.abs() > 1.0 => "not alike: too coarse, or the wave has not come".to_owned(),
+                Some(c) => format!("{:+.1} %", (1000.0 * c).round() / 10.0 + 0.0),
+            };
+            format!("{name} {fine:.4e}, {coarse:.4e} {unit} ({change})")
+        };
+        let pressure = of("overpressure", "Pa", peak.overpressure);
+        progress.say(format!("  {:<widest$}{pressure}; {}", peak.name, of("impulse", "Pa s", peak.impulse)));
     }
 }

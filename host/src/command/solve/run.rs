@@ -1,6 +1,7 @@
 //! `voidage solve`: case → setup → steps → files.
 
 use super::case_file::CaseFile;
+use super::charges::Charges;
 use super::checkpoint::{self, Fingerprint, Journal};
 use super::force_peaks;
 use super::frames::{self, Snapshot, create};
@@ -9,7 +10,7 @@ use super::lock::Lock;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
 use super::output_keys::{Format, OutputKeys};
 use super::pictures::{Pictures, check_slice};
-use super::refine;
+use super::refine::{self, Fine};
 use super::report::{Done, Report};
 use super::series::{Series, Watched};
 use super::setup::{Setup, live_axes, setup};
@@ -126,16 +127,16 @@ fn run<const D: usize>(
     let report = |run: &Run<D>, progress: &Progress| {
         let report = Report::new(file, &run.setup, &run.journal, run.done, progress);
         let report = report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_monitors(run.series.monitors());
-        report.with_forces(run.forces(), &run.journal.peaks)
+        let report = report.with_forces(run.forces(), &run.journal.peaks);
+        report.with_colours(run.pictures.as_ref().map(Pictures::colours))
     };
     let mut summary = report(&run, &progress);
     json::write(&run.dir.join(REPORT), &summary)?;
     if let Some(maxima) = run.maxima.as_ref().filter(|_| args.refine_check) {
-        let anywhere = refine::anywhere(maxima, run.setup.flow.beta_v());
-        let fine = std::iter::once(anywhere).chain(run.peaks(file)).collect();
-        let until = (run.ambient, run.setup.flow.time);
+        let (beta_v, probes, end) = (run.setup.flow.beta_v(), run.peaks(file), run.setup.flow.time);
+        let fine = Fine { edges, beta_v, maxima, probes };
         let _watch = interrupt::Watch::new();
-        let checked = progress.stage("refine-check", |p| refine::run(file, edges, live, fine, until, &p.line()))?;
+        let checked = progress.stage("refine-check", |p| refine::run(file, live, fine, end, &p.line()))?;
         summary = report(&run, &progress).with_refine_check(checked);
         json::write(&run.dir.join(REPORT), &summary)?;
     }
@@ -155,8 +156,6 @@ struct Run<'a, const D: usize> {
     series: Series<D>,
     pictures: Option<Pictures>,
     maxima: Option<Maxima>,
-    /// Pressure that overpressures are counted from.
-    ambient: f64,
     done: Done,
     /// The checkpoint on disk is from before the first floor.
     untouched: bool,
@@ -206,7 +205,6 @@ impl<'a, const D: usize> Run<'a, D> {
             series,
             pictures,
             maxima,
-            ambient,
             done,
             untouched,
             _lock: lock,
@@ -416,7 +414,7 @@ fn pictures<const D: usize>(
     let of_file = || file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let title = file.case.title.clone().unwrap_or_else(of_file);
     file.distinct("output.formats", formats(&file.case.output))?;
-    let OutputKeys { slice, range, .. } = &file.case.output;
+    let range = &file.case.output.range;
     for (name, ends) in [("speed", range.speed), ("overpressure", range.overpressure)] {
         if ends.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
             return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
@@ -426,7 +424,8 @@ fn pictures<const D: usize>(
         return Ok(None);
     }
     progress.warn_of_title(&title);
-    Ok(Some(Pictures::new(setup, &title, *slice, ambient, range)))
+    let charges = Charges::new(file, &setup.flow, &setup.edges, ambient)?;
+    Ok(Some(Pictures::new(setup, &title, &file.case.output, ambient, &charges)))
 }
 
 /// Largest values over time of a flow at its beginning, if the case asks for them.
