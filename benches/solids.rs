@@ -12,7 +12,7 @@ use voidage::grid::Edges;
 use voidage::porosity::Options;
 use voidage_benches::porosity_seconds;
 use voidage_core::convex::shape::Cylinder;
-use voidage_core::torus::TorusShape;
+use voidage_core::solids::torus::TorusShape;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{formulas, sixteen_balls};
 

@@ -1,25 +1,23 @@
 //! Volume and area porosity of real geometry on structured grids.
 //!
 //! The crate is `no_std`, allocates nothing, holds no `unsafe` code but one instruction on ARM (`number/root.rs`) and works in `f32` and `f64` from one text.
-//! Nine rooms; one uses only those above it:
+//! Seven rooms; one uses only those above it:
 //!
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
 //! 3. [`grid`]: cells, faces, index order; solid fractions of a layer, as bounds that bodies share
-//! 4. [`quadric`]: fractions of cylinder, cone, ball, capsule, ellipsoid by closed forms
-//! 5. [`torus`]: fractions of tori and pipe bends by quadrature
-//! 6. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
+//! 4. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
 //!    in [`surface`]
-//! 7. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
-//! 8. [`solids`]: solids by formula beside bodies of triangles, where they share cells by subdivision
-//! 9. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
+//! 5. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
+//! 6. [`solids`]: fractions of solids by formula, by closed forms and quadrature, alone and beside bodies of triangles
+//! 7. [`flow`]: the Euler equations in a porous space; it uses [`number`] alone and sees porosity only as slices
 //!
 //! | to … | use |
 //! |---|---|
 //! | tell whether two convex bodies meet, how far apart they are | [`convex::meets`], [`convex::distance`] |
 //! | measure triangulated bodies, overlaps counted once | [`surface::layer::Layers`] |
-//! | measure cylinders, cones, balls, capsules, ellipsoids by closed forms | [`quadric::QuadricSolid`] |
-//! | measure tori and pipe bends | [`torus::TorusSolid`] |
+//! | measure cylinders, cones, balls, capsules, ellipsoids by closed forms | [`solids::quadric::QuadricSolid`] |
+//! | measure tori and pipe bends | [`solids::torus::TorusSolid`] |
 //! | bound the fractions of any convex body | [`subdivide`] |
 //! | make open fractions ready for a flow, step it | [`flow::prepare`], [`flow::Problem`] |
 //! | put `f32` or `f64` into one text | [`number`] |
@@ -121,12 +119,9 @@
 struct PackagePage;
 
 pub mod convex;
-pub mod enclosure;
 pub mod flow;
 pub mod grid;
 pub mod number;
-pub mod quadric;
 pub mod solids;
 pub mod subdivide;
 pub mod surface;
-pub mod torus;

@@ -1,4 +1,4 @@
-//! Solids known by formula in the layers of a grid: closed forms, and sections where two of them share a cell.
+//! Solids known by formula in the layers of a grid: closed forms and quadrature, and sections where two of them share a cell.
 //!
 //! They enter [`crate::surface::layer::Layers`] beside bodies of triangles, as [`OtherBodies`](crate::surface::OtherBodies), or alone.
 //!
@@ -43,13 +43,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A file uses only those above it in this list:
+//! What stands here uses only what is above it in this list:
 //!
-//! 1. `round_shape`: a shape of a round kind, for GJK and for subdivision
-//! 2. `round_solids`: solids in the caller's memory, as bodies of a layer
+//! 1. [`enclosure`]: solids between polytopes in a box, and bounds of what a union of them has of it
+//! 2. [`quadric`]: fractions of cylinder, cone, ball, capsule, ellipsoid by closed forms; [`torus`]: fractions of tori and pipe bends by
+//!    quadrature
+//! 3. `round_shape`: a shape of a round kind, for GJK and for subdivision
+//! 4. `round_solids`: solids in the caller's memory, as bodies of a layer
 
+pub mod enclosure;
+pub mod quadric;
 mod round_shape;
 mod round_solids;
+pub mod torus;
 
 pub use round_shape::RoundShape;
 pub use round_solids::{RoundMemory, RoundNeeded, RoundSolid, RoundSolids};

@@ -3,9 +3,9 @@
 use crate::quadrature::Exact;
 use crate::random::Random;
 use glam::DVec3;
-use voidage_core::enclosure::{self, BoxAround, Enclosed, Enclosure, UnionEffort};
-use voidage_core::quadric::{QuadricSolid, excess};
-use voidage_core::torus::{TorusShape, TorusSolid};
+use voidage_core::solids::enclosure::{self, BoxAround, Enclosed, Enclosure, UnionEffort};
+use voidage_core::solids::quadric::{QuadricSolid, excess};
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 
 /// How two or three solids lie to each other in the unit cube.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

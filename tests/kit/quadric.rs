@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::quadric::QuadricSolid;
+use voidage_core::solids::quadric::QuadricSolid;
 
 /// How a solid lies in the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use voidage_core::quadric::{QuadricSolid, excess};
+use voidage_core::solids::quadric::{QuadricSolid, excess};
 use voidage_tests::meeting::{FAMILIES, Family, bounds_agree, planes_agree, planes_enclose_a_torus, quadric, solids};
 use voidage_tests::quadrature::{Exact, common_area, common_volume};
 use voidage_tests::random::Random;

@@ -1,5 +1,6 @@
 //! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
 
+mod architecture;
 mod boxes;
 mod common;
 mod core_alone;
@@ -8,7 +9,6 @@ mod drag;
 mod hulls;
 mod invariance;
 mod known;
-mod layers;
 mod meshes;
 mod obstacles;
 mod overlap;

@@ -9,7 +9,7 @@ use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
-use voidage_core::quadric::QuadricSolid;
+use voidage_core::solids::quadric::QuadricSolid;
 use voidage_tests::quadrature::with_chords;
 use voidage_tests::quadric::{FAMILIES, Family, Kind, errors, never_panics, parts_sum_to_the_whole, shares};
 use voidage_tests::random::Random;

@@ -10,7 +10,7 @@ use voidage_core::convex::shape::{Cylinder, Sphere};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::torus::{TorusShape, TorusSolid};
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 use voidage_tests::random::Random;
 use voidage_tests::solids::{cuboid, formulas, scene};
 

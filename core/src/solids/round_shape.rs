@@ -5,7 +5,7 @@ use crate::convex::support::{Support, SupportPoint, Transformed};
 use crate::grid::bounds::Bounds;
 use crate::number::aabb::Aabb;
 use crate::number::real::Vector;
-use crate::quadric::{AsQuadric, QuadricSolid};
+use crate::solids::quadric::{AsQuadric, QuadricSolid};
 use crate::subdivide::{ActiveFacets, Columns, LocalPlanes, Occupancy, QueryCount, Subdividable, WarmStart};
 
 /// A convex shape that has a formula.

@@ -14,7 +14,7 @@ use crate::grid::fields::{Fields, Layer, accumulate};
 use crate::number::aabb::Aabb;
 use crate::number::axis::Axis;
 use crate::number::real::{Real, Vector};
-use crate::quadric::{AsQuadric, QuadricSolid, share_of_union};
+use crate::solids::quadric::{AsQuadric, QuadricSolid, share_of_union};
 use crate::subdivide::{QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, TooLittleMemory, share};
 use crate::surface::OtherBodies;
 

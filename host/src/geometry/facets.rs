@@ -4,7 +4,7 @@ use super::bodies::Body;
 use super::form::Form;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use voidage_core::torus::TorusShape;
+use voidage_core::solids::torus::TorusShape;
 
 /// Facets from pole to pole of a ball, and what makes its surface that of the true one.
 const BALL_STEPS: usize = AROUND / 2;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Hull, Sphere};
 use voidage_core::convex::support::{Support, Transformed};
 use voidage_core::number::aabb::Aabb;
-use voidage_core::torus::{TorusShape, TorusSolid};
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 
 /// A body in its place, in metres.
 #[derive(Debug, Clone)]

@@ -18,7 +18,7 @@ use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::grid::fields::Layer;
-use voidage_core::torus::TorusSolid;
+use voidage_core::solids::torus::TorusSolid;
 
 /// Sums this near to 1 are 1, as in the core's sums over surfaces.
 const FULL: f64 = 1.0 - 256.0 * f64::EPSILON;

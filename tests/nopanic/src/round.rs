@@ -8,11 +8,11 @@ use voidage_core::grid::fields::{Fields, Layer};
 use voidage_core::grid::{Grid, cell_range::RangeKind};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
-use voidage_core::quadric::{AsQuadric, QuadricSolid, excess, share_of_union};
+use voidage_core::solids::quadric::{AsQuadric, QuadricSolid, excess, share_of_union};
 use voidage_core::solids::{RoundMemory, RoundShape, RoundSolid, RoundSolids};
 use voidage_core::subdivide::{Candidate, LeafRule, SubdivisionMemory, SubdivisionRule};
 use voidage_core::surface::OtherBodies;
-use voidage_core::torus::{TorusShape, TorusSolid};
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 
 /// What a visitor of shares is told, and what it is not told, as one number.
 fn told(kind: RangeKind, at: usize, share: f64) -> usize {

@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde::Serialize;
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
-use voidage_core::quadric::QuadricSolid;
+use voidage_core::solids::quadric::QuadricSolid;
 
 /// A region of space.
 #[derive(Debug, Clone, Copy, PartialEq)]

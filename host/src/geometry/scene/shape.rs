@@ -14,7 +14,7 @@ use std::sync::Arc;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
 use voidage_core::convex::support::Transformed;
 use voidage_core::number::aabb::Aabb;
-use voidage_core::torus::{TorusShape, TorusSolid};
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 
 /// A shape as the scene describes it, before it is placed. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::convex::gjk::{Intersection, intersect};
 use voidage_core::convex::support::{Support, SupportPoint, Transformed};
-use voidage_core::torus::TorusSolid;
+use voidage_core::solids::torus::TorusSolid;
 
 /// Solids that overlap by less than this share of their size are taken to touch.
 pub(super) const TOUCHING: f64 = 1e-9;

@@ -3,7 +3,7 @@
 use crate::porosity::convex::Convex;
 use glam::DVec3;
 use voidage_core::convex::support::{Support, SupportPoint};
-use voidage_core::quadric::{AsQuadric, QuadricSolid};
+use voidage_core::solids::quadric::{AsQuadric, QuadricSolid};
 
 /// A convex body of a round kind, as a support mapping.
 #[derive(Clone, Copy)]

@@ -3,11 +3,11 @@
 use super::round::closed_form;
 use crate::porosity::convex::Convex;
 use glam::DVec3;
-use voidage_core::enclosure::{BoxAround, Enclosed, Enclosure};
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::number::aabb::Aabb;
-use voidage_core::quadric::QuadricSolid;
-use voidage_core::torus::{TorusShape, TorusSolid};
+use voidage_core::solids::enclosure::{BoxAround, Enclosed, Enclosure};
+use voidage_core::solids::quadric::QuadricSolid;
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 
 /// Shares that leave 0 to 1 by more than this are not believed: the solid is subdivided in that layer.
 pub(super) const BELIEVED: f64 = 1e-9;

@@ -3,12 +3,12 @@
 use super::pairs::TOUCHING;
 use super::solid::{FormulaSolid, Kind};
 use glam::DVec3;
-use voidage_core::enclosure::{UnionEffort, union_bounds};
 use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::number::aabb::Aabb;
-use voidage_core::quadric::{QuadricSolid, share_of_union};
+use voidage_core::solids::enclosure::{UnionEffort, union_bounds};
+use voidage_core::solids::quadric::{QuadricSolid, share_of_union};
 
 /// How many solids are looked at in a cell before sections are tried; and at most.
 const FIRST: usize = 1 << 15;

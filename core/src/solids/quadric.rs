@@ -9,7 +9,7 @@
 //! ```
 //! use glam::DVec3;
 //! use voidage_core::grid::{Grid, cell_range::RangeKind};
-//! use voidage_core::quadric::QuadricSolid;
+//! use voidage_core::solids::quadric::QuadricSolid;
 //!
 //! let edges = [0.0, 1.0, 2.0];
 //! let grid = Grid::new(&edges, &edges, &edges)?;

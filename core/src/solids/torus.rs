@@ -7,7 +7,7 @@
 //! ```
 //! use glam::DVec3;
 //! use voidage_core::grid::{Grid, cell_range::RangeKind};
-//! use voidage_core::torus::{TorusShape, TorusSolid};
+//! use voidage_core::solids::torus::{TorusShape, TorusSolid};
 //!
 //! let edges = [0.0, 0.5, 1.0];
 //! let grid = Grid::new(&edges, &edges, &edges)?;

@@ -4,11 +4,11 @@ use super::ends::End;
 use super::part::Part;
 use super::solid::QuadricSolid;
 use super::wall::Wall;
-use crate::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
 use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
+use crate::solids::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
 
 /// Rounding of the sums below, a few units in the last place of their terms.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;

@@ -6,10 +6,10 @@
 
 use super::ring::{P3, Ring, dot, length2};
 use super::solid::TorusSolid;
-use crate::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
 use crate::grid::bounds::Bounds;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
+use crate::solids::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
 
 /// Rounding of the sums below, a few units in the last place of their terms.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

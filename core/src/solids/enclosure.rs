@@ -4,7 +4,7 @@
 //! whose planes are moved out by as much as the surface may bend away, and one whose planes are moved in. What unions of polytopes have
 //! of the box is exact. A box is halved along each axis until its bounds are close enough; only where two surfaces meet does that take many
 //! parts, and there each level makes the gap eight times smaller: there are twice as many of such parts, of an eighth of the size, and as a share of it
-//! the gap of each is half as large. Where surfaces coincide four times as many parts are cut at each level, and sections serve better ([`crate::quadric`]).
+//! the gap of each is half as large. Where surfaces coincide four times as many parts are cut at each level, and sections serve better ([`crate::solids::quadric`]).
 //!
 //! 1. `constraint`: an affine function and how far another may be from it
 //! 2. `filled`: what affine functions leave of a box

@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Rooms of the core from the bottom up. The flow uses scalars only, and no geometry uses the flow.
-const CORE: [&str; 10] =
-    ["number", "flow", "convex", "grid", "enclosure", "quadric", "torus", "surface", "subdivide", "solids"];
+const CORE: [&str; 7] = ["number", "flow", "convex", "grid", "surface", "subdivide", "solids"];
 
 /// Rooms and single files of the host likewise.
 const HOST: [&str; 12] =

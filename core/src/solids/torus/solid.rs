@@ -230,7 +230,7 @@ impl TorusSolid {
         [lo - room, hi + room]
     }
 
-    /// Tells the shares in layer `k` as [`crate::quadric::QuadricSolid::layer`] does, each with what it may be off by. Returns by how much the worst
+    /// Tells the shares in layer `k` as [`crate::solids::quadric::QuadricSolid::layer`] does, each with what it may be off by. Returns by how much the worst
     /// left 0 to 1 beyond that.
     pub fn layer<R: Real>(
         &self,
