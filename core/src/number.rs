@@ -4,7 +4,8 @@
 //! - [`aabb`]: axis-aligned boxes
 //! - [`words`]: words for exact integers of their values
 //! - `axis`: the coordinate axes, as indices that need no check
-//! - `plane`: points of planes across an axis
+//! - `plane`: points of planes across an axis, as arrays
+//! - `space`: points of space, as arrays
 //! - `root`: the square root where there is no std
 
 pub mod aabb;
@@ -13,4 +14,5 @@ pub(crate) mod plane;
 pub mod real;
 #[cfg(not(feature = "std"))]
 mod root;
+pub(crate) mod space;
 pub mod words;

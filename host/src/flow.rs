@@ -129,7 +129,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         faces: [Vec<R>; D],
         treatment: Treatment<R>,
     ) -> Result<Tidied, Error> {
-        let periodic = self.boundaries.map(|b| b[0] == Boundary::Periodic);
+        let periodic = self.boundaries.map(|b| b[0].is_periodic());
         let flags = HugeVec::zeros(volume.len());
         let fractions = Fractions { volume: volume.into(), faces: faces.map(Into::into), flags };
         let space = prepare(&self.mesh()?, periodic, fractions, treatment, |cells| Merging {
@@ -416,7 +416,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// The cell behind the low (`side` 0) or high (1) face of a cell; none at a side of the domain that is not periodic.
     pub fn behind(&self, d: usize, mut at: [usize; D], side: usize) -> Option<usize> {
         let n = self.cells();
-        let periodic = self.boundaries[d][0] == Boundary::Periodic;
+        let periodic = self.boundaries[d][0].is_periodic();
         at[d] = match (side, at[d]) {
             (0, 0) => periodic.then_some(n[d] - 1)?,
             (0, i) => i - 1,

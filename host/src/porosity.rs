@@ -4,7 +4,7 @@
 //! any number of threads.
 //!
 //! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
-//! is measured; `targets`, `layers`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `surface_layers`,
+//! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `surface_layers`,
 //! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`congestion`], [`throat`], what follows from it.
 
 pub mod congestion;
@@ -13,7 +13,6 @@ mod doubt;
 pub mod drag;
 mod fields;
 mod formulas;
-mod layers;
 mod levels;
 mod local;
 mod options;
@@ -27,12 +26,12 @@ pub mod surface_fields;
 mod surface_layers;
 mod targets;
 pub mod throat;
+mod worker;
 
 use crate::geometry::bodies::{self, Bodies, Doubt};
 pub use crate::huge::HugeVec;
 pub use fields::FieldSet;
 use glam::DVec3;
-use layers::{Summary, Target, Workers};
 pub use levels::levels;
 pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
@@ -44,6 +43,7 @@ use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::Layers;
+use worker::{Summary, Target, Workers};
 
 /// Bytes that the fields of a grid take, with the lists of triangles by layer and what one thread needs beside them.
 #[must_use]
@@ -55,7 +55,7 @@ pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     let (surfaces, _) = surfaces(bodies, |_, body| &bodies.triangles[body.triangles.clone()]);
     let lists = Layers::needed(grid, &surfaces);
     let listed = size_of::<u32>() * lists.numbers + size_of::<Group<DVec3>>() * lists.groups;
-    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + layers::memory_of_a_thread(grid) + listed
+    size_of::<f64>().saturating_mul(sets * (grid.cell_count() + faces)) + worker::memory_of_a_thread(grid) + listed
 }
 
 /// Porosities of `bodies` on `grid`; runs in the current rayon pool.

@@ -70,9 +70,54 @@ impl<R: Real, const D: usize> Patch<R, D> {
 }
 
 impl<R: Real, const D: usize> Boundary<R, D> {
+    /// Nothing flows through.
+    pub fn is_wall(&self) -> bool {
+        match self {
+            Boundary::Wall => true,
+            Boundary::Periodic
+            | Boundary::ZeroGradient
+            | Boundary::FarField(_)
+            | Boundary::Inlet(_)
+            | Boundary::Outlet { .. }
+            | Boundary::Reservoir { .. } => false,
+        }
+    }
+
+    /// What leaves comes in at the opposite side.
+    pub fn is_periodic(&self) -> bool {
+        match self {
+            Boundary::Periodic => true,
+            Boundary::Wall
+            | Boundary::ZeroGradient
+            | Boundary::FarField(_)
+            | Boundary::Inlet(_)
+            | Boundary::Outlet { .. }
+            | Boundary::Reservoir { .. } => false,
+        }
+    }
+
+    /// The ghost state is that of the cell inside, but for the sign of a velocity: under gravity it lacks the weight of the gas between them.
+    pub(crate) fn copies_inside(&self) -> bool {
+        match self {
+            Boundary::Wall | Boundary::ZeroGradient => true,
+            Boundary::Periodic
+            | Boundary::FarField(_)
+            | Boundary::Inlet(_)
+            | Boundary::Outlet { .. }
+            | Boundary::Reservoir { .. } => false,
+        }
+    }
+
     /// A given gas may enter here.
     pub(crate) fn feeds(&self) -> bool {
-        matches!(self, Boundary::FarField(_) | Boundary::Inlet(_))
+        match self {
+            Boundary::FarField(_) | Boundary::Inlet(_) => true,
+            Boundary::Periodic
+            | Boundary::Wall
+            | Boundary::ZeroGradient
+            | Boundary::Outlet { .. }
+            | Boundary::Reservoir { .. } => false,
+        }
     }
 
     /// The ghost state beside an inner state, both in the frame of axis `d`; `low` is the low side of the axis. Periodic

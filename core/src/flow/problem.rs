@@ -67,7 +67,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     /// An axis is periodic on one side only, or a number of the gas makes no sense.
     pub fn new(mesh: Mesh<'a, R, D>, gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Result<Self, Error> {
         for (axis, [low, high]) in boundaries.iter().enumerate() {
-            if (*low == Boundary::Periodic) != (*high == Boundary::Periodic) {
+            if low.is_periodic() != high.is_periodic() {
                 return Err(Error::HalfPeriodic { axis });
             }
         }
@@ -114,7 +114,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     pub fn with_patches(self, patches: &'a [Patch<R, D>]) -> Result<Self, Error> {
         let wrong = |p: &Patch<R, D>| {
             let side = self.boundaries.get(p.axis).map(|sides| sides[usize::from(p.high)]);
-            D < 2 || p.boundary == Boundary::Periodic || side.is_none_or(|side| side == Boundary::Periodic)
+            D < 2 || p.boundary.is_periodic() || side.is_none_or(|side| side.is_periodic())
         };
         match patches.iter().position(wrong) {
             Some(number) => Err(Error::Patch { number }),
@@ -200,7 +200,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
 
     /// The axis has periodic ends.
     pub fn periodic(&self) -> [bool; D] {
-        self.boundaries.map(|b| b[0] == Boundary::Periodic)
+        self.boundaries.map(|b| b[0].is_periodic())
     }
 
     pub(in crate::flow) fn check_fields(&self, old: &Fields<'_, R, D>) -> Result<(), Error> {
@@ -226,7 +226,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
                 None => t,
                 Some(porosity) => {
                     let medium = Medium { mesh: self.mesh, porosity };
-                    let periodic = self.boundaries[d][0] == Boundary::Periodic;
+                    let periodic = self.boundaries[d][0].is_periodic();
                     t * self.openness(&medium.ducts(d, at, periodic), 0)
                 }
             }

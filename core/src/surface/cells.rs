@@ -20,6 +20,7 @@
 use crate::grid::fields::{Layer, ShapeMismatch, accumulate, accumulate_face, at_least, noise};
 use crate::grid::{Grid, Located};
 use crate::number::real::{Real, Vector};
+use crate::number::space::sub;
 use crate::surface::clip::{Polygon, split};
 use crate::surface::surface_area::{PieceSums, Place};
 use core::fmt;
@@ -447,9 +448,9 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         let (ni, inside) = (self.window.ni, self.x.holds(c));
         let reach = if inside { (self.x.upper(c) - o[0]) * R::from_f64(3.0) } else { R::ZERO };
         let (mut nx, mut ny, mut nz, mut moment) = (R::ZERO, R::ZERO, R::ZERO, R::ZERO);
-        let mut a = crate::surface::clip::sub(*first, *o);
+        let mut a = sub(*first, *o);
         for p in others {
-            let b = crate::surface::clip::sub(*p, *o);
+            let b = sub(*p, *o);
             let ax = a[1] * b[2] - a[2] * b[1];
             nx += ax;
             ny += a[2] * b[0] - a[0] * b[2];

@@ -6,6 +6,7 @@
 use heapless::Vec;
 
 use crate::number::real::Real;
+use crate::number::space::{cross, sub};
 
 /// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is room for the cuts by
 /// other bodies' planes in one cell. A full polygon is halved before the next cut.
@@ -115,21 +116,6 @@ impl<R: Real> Polygon<R> {
         }
         sum
     }
-}
-
-#[inline(always)]
-pub(crate) fn sub<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-pub(crate) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The point of the edge `a`–`b` at coordinate `at` of `axis` (0, 1, otherwise 2), which lies strictly between both ends.

@@ -12,7 +12,8 @@
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
 use crate::number::real::Real;
-use crate::surface::clip::{Polygon, cross, dot, sub};
+use crate::number::space::{cross, dot, sub};
+use crate::surface::clip::Polygon;
 
 /// Places closer than this, in ε, are one place.
 const THICKNESS_IN_EPSILONS: f64 = 64.0;

@@ -18,7 +18,8 @@ mod piece;
 
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::clip::{Polygon, cross, dot, keep, sub};
+use crate::number::space::{cross, dot, sub, unit};
+use crate::surface::clip::{Polygon, keep};
 use bsp::{Branch, BspMemory, build_bsp};
 use descent::{Descent, DescentRule};
 use piece::NoProof::{Ambiguous, Full};
@@ -455,15 +456,4 @@ fn integrate<R: Real>(polygon: &Polygon<R>, flux: &mut [R; 3], moment: &mut [R; 
         }
         a = b;
     }
-}
-
-/// A vector of length 1; none for zero, overflow and NaN.
-fn unit<R: Real>(v: [R; 3]) -> Option<[R; 3]> {
-    let largest = v[0].abs().max(v[1].abs()).max(v[2].abs());
-    if !(largest > R::ZERO && largest.is_finite()) {
-        return None;
-    }
-    let scaled = v.map(|c| c / largest);
-    let length = dot(scaled, scaled).sqrt();
-    Some(scaled.map(|c| c / length))
 }

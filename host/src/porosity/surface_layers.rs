@@ -2,11 +2,11 @@
 
 use super::Options;
 use super::fields::FieldSet;
-use super::layers::{Summary, Workers};
 use super::road::Road;
 use super::shadows::Shadows;
 use super::surface_fields::SurfaceFields;
 use super::targets::targets;
+use super::worker::{Summary, Workers};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;

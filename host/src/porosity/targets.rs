@@ -1,7 +1,7 @@
 //! Fields cut into layers, each for one thread to write.
 
 use super::fields::FieldSet;
-use super::layers::Target;
+use super::worker::Target;
 use voidage_core::grid::Grid;
 use voidage_core::surface::surface_area::SurfaceArea;
 

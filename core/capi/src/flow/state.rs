@@ -141,7 +141,7 @@ impl<R: Real, const D: usize> State<R, D> {
         let mut setup = Setup { live, widths, gas, scheme, gravity, boundaries, relax, space: None, drag };
         if let Some((fractions, merging)) = space {
             let treatment = Treatment { jump: case.jump, merge: true };
-            let periodic = boundaries.map(|b| b[0] == Boundary::Periodic);
+            let periodic = boundaries.map(|b| b[0].is_periodic());
             setup.space = Some(prepare(&setup.mesh()?, periodic, fractions, treatment, |_| merging)?);
         }
         setup.problem()?;
@@ -264,7 +264,7 @@ impl<R: Real, const D: usize> State<R, D> {
         let (found, time) = boundary(side, self.setup.gas, self.setup.live).map_err(|refusal| refusal.index(number))?;
         let Some(d) = self.setup.live.iter().position(|&axis| axis == number / 2) else { return Ok(()) };
         let slot = &mut self.setup.boundaries[d][number % 2];
-        if (found == Boundary::Periodic) != (*slot == Boundary::Periodic) {
+        if found.is_periodic() != slot.is_periodic() {
             return Err(Status::Periodic.of(c"side.kind").axis(number / 2));
         }
         *slot = found;
@@ -287,7 +287,7 @@ fn sides<R: Real, const D: usize>(
             (boundaries[d][side], relax[d][side]) = found;
         }
         let [low, high] = boundaries[d];
-        if (low == Boundary::Periodic) != (high == Boundary::Periodic) {
+        if low.is_periodic() != high.is_periodic() {
             return Err(Status::Periodic.of(c"side.kind").axis(axis));
         }
     }

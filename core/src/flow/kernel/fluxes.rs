@@ -175,7 +175,7 @@ fn states_at_ends<R: Real, const D: usize, const MIXED: bool>(
 
 /// Pressure in the middle of the cell beyond a side of the domain, from that of the cell inside: a wall mirrors it.
 fn middle<R: Real, const D: usize>(side: &Boundary<R, D>, inside: R, ghost: &Primitive<R, D>) -> R {
-    if *side == Boundary::Wall { inside } else { ghost.pressure }
+    if side.is_wall() { inside } else { ghost.pressure }
 }
 
 /// Writes the pace of each face normal to axis `d` in a row: the time step over the smaller width beside it, times its open fraction `face` over the
@@ -224,7 +224,7 @@ fn paces<R: Real, const D: usize>(slab: &Slab<'_, R, D>, d: usize, at: [usize; D
     if periodic {
         return;
     }
-    let given = |high: bool, at: [usize; D]| *slab.problem.side(d, high, at) != Boundary::Wall;
+    let given = |high: bool, at: [usize; D]| !slab.problem.side(d, high, at).is_wall();
     if d == 0 {
         for (i, high) in [(0, false), (cells, true)] {
             if given(high, at) {

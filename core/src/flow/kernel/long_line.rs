@@ -61,7 +61,7 @@ fn piece<'p, R: Real, const D: usize>(line: &Problem<'p, R, D>, cells: Range<usi
     let part = |s: &'p [R]| if s.is_empty() { s } else { &s[cells.clone()] };
     let mut boundaries = line.boundaries;
     for (side, outer) in [(0, cells.start == 0), (1, cells.end == n)] {
-        if !outer || boundaries[0][side] == Boundary::Periodic {
+        if !outer || boundaries[0][side].is_periodic() {
             boundaries[0][side] = Boundary::ZeroGradient;
         }
     }

@@ -1,6 +1,5 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
-use crate::flow::boundary::Boundary;
 use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
@@ -89,7 +88,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let sides = slab.problem.boundaries[d];
-            let copied = sides.map(|b| matches!(b, Boundary::Wall | Boundary::ZeroGradient));
+            let copied = sides.map(|b| b.copies_inside());
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
             slopes_along::<R, D, S, MIXED>(slab, (d, row), &cells, &axis, compliance, out);

@@ -164,7 +164,7 @@ pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
         for i in range {
             let mut at = row.at;
             at[0] = i;
-            let walls = [false, true].map(|high| *slab.problem.side(d, high, at) == Boundary::Wall);
+            let walls = [false, true].map(|high| slab.problem.side(d, high, at).is_wall());
             if !walls[side] {
                 continue;
             }

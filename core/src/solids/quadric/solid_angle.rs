@@ -7,8 +7,9 @@
 //! Reference for triangles: A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983).
 
 use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
-use crate::number::plane::{P2, cross, sub};
+use crate::number::plane::{self, P2};
 use crate::number::real::Real;
+use crate::number::space::{dot, length, sub};
 use core::f64::consts::PI;
 
 /// A plane in the space where the ball is the unit ball about the origin.
@@ -33,18 +34,6 @@ pub(super) struct PlaneOfUnitBall<M> {
     pub ends: [f64; 2],
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn length(a: [f64; 3]) -> f64 {
-    Real::sqrt(dot(a, a))
-}
-
 /// A point in the plane, and where it is mapped. Differences are mapped as such, so that they keep their digits.
 #[derive(Clone, Copy)]
 struct Mapped {
@@ -58,7 +47,7 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
     }
 
     fn difference(&self, a: Mapped, b: Mapped) -> [f64; 3] {
-        (self.map)(sub(a.plane, b.plane), 0.0)
+        (self.map)(plane::sub(a.plane, b.plane), 0.0)
     }
 
     /// Solid angle of a region, not negative.
@@ -101,13 +90,13 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
 
     /// Twice the area of a triangle from a point of the plane, by its other corners.
     fn twice(&self, from: P2, p: Mapped, q: Mapped) -> f64 {
-        self.area * cross(sub(p.plane, from), sub(q.plane, p.plane))
+        self.area * plane::cross(plane::sub(p.plane, from), plane::sub(q.plane, p.plane))
     }
 
     /// Twice the area of the triangle of the plane's foot and two of its points, and the product of their distances times the cosine.
     fn about_foot(&self, p: Mapped, q: Mapped) -> (f64, f64) {
         let foot = self.normal.map(|x| x * self.height);
-        (self.twice(self.foot, p, q), dot(minus(p.unit, foot), minus(q.unit, foot)))
+        (self.twice(self.foot, p, q), dot(sub(p.unit, foot), sub(q.unit, foot)))
     }
 
     /// Real and imaginary part of a number whose argument is half the solid angle of a triangle.
@@ -128,7 +117,7 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
         let size = length(along);
         let aside = aside.unwrap_or(if size > 0.0 { area / size } else { 0.0 });
         let foot = self.normal.map(|x| x * self.height);
-        let [s, t] = [p, q].map(|point| if size > 0.0 { dot(minus(point.unit, foot), along) / size } else { 0.0 });
+        let [s, t] = [p, q].map(|point| if size > 0.0 { dot(sub(point.unit, foot), along) / size } else { 0.0 });
         if s < 0.0 && t > 0.0 {
             // The foot of the foot lies between: each side of it by itself, or the digits of what lies close to the foot would be lost.
             let m = aside.abs();

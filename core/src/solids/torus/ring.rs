@@ -8,14 +8,8 @@ use super::roots::root;
 use crate::number::axis::Axis;
 use crate::number::plane::{self, P2};
 use crate::number::real::Real;
+use crate::number::space::{P3, dot};
 use heapless::Vec;
-
-pub(super) type P3 = [f64; 3];
-
-#[inline(always)]
-pub(super) fn dot(a: P3, b: P3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
 
 /// Length of a vector; exact if one component is zero.
 #[inline(always)]

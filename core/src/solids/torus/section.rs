@@ -9,11 +9,12 @@
 //! In planes across the axis the section is a ring between two circles, and exact.
 
 use super::disc::{self, Polygon};
-use super::ring::{P3, Ring, ahead, length2};
+use super::ring::{Ring, ahead, length2};
 use super::touching::{Events, Lines, azimuths, chord};
 use crate::number::axis::Axis;
 use crate::number::plane::{self, P2};
 use crate::number::real::Real;
+use crate::number::space::P3;
 use core::f64::consts::PI;
 use heapless::Vec;
 

@@ -1,12 +1,13 @@
 //! The door of this room: a torus or a pipe bend, and what it tells of a layer.
 
-use super::ring::{Ends, P3, Ring, ahead, dot, length2};
+use super::ring::{Ends, Ring, ahead, length2};
 use super::section::{Rectangle, Reference, Section};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
 use crate::number::plane::P2;
 use crate::number::real::{Real, Vector};
+use crate::number::space::{P3, cross, dot, unit};
 use core::f64::consts::PI;
 use core::ops::Range;
 
@@ -42,14 +43,11 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Room for rounding, as a share of coordinates and sizes.
 const ROOM: f64 = 1e-12;
 
-fn unit(v: P3) -> Option<P3> {
+/// The vector of length 1 in the direction of one within these sizes; components that could only underflow are zero.
+fn direction(v: P3) -> Option<P3> {
     let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    if !SIZES.contains(&largest) {
-        return None;
-    }
-    let v = v.map(|x| x / largest);
-    let length = Real::sqrt(dot(v, v));
-    Some(v.map(|x| x / length).map(|x| if x.abs() < 1e-120 { 0.0 } else { x }))
+    let unit = if SIZES.contains(&largest) { unit(v) } else { None };
+    Some(unit?.map(|x| if x.abs() < 1e-120 { 0.0 } else { x }))
 }
 
 /// Cosine and sine of degrees, quarter turns exactly.
@@ -87,7 +85,8 @@ impl TorusSolid {
     #[must_use]
     pub fn new<V: Vector>(shape: &TorusShape<V>) -> Option<Self> {
         let number = |v: V| v.to_array().map(Real::to_f64);
-        let (center, axis, start) = (number(shape.center), unit(number(shape.axis))?, unit(number(shape.start))?);
+        let (center, axis, start) =
+            (number(shape.center), direction(number(shape.axis))?, direction(number(shape.start))?);
         let (radius, tube) = (shape.radius.to_f64(), shape.tube.to_f64());
         let sizes = SIZES.contains(&radius) && SIZES.contains(&tube) && tube <= radius;
         let placed = center.iter().all(|x| x.abs() < SIZES.end);
@@ -99,11 +98,8 @@ impl TorusSolid {
         if !(dot(across, across) > 1e-12) {
             return None;
         }
-        let across = unit(across)?;
-        let beside = Axis::ALL.map(|n| {
-            let [u, v] = n.others();
-            axis[u] * across[v] - axis[v] * across[u]
-        });
+        let across = direction(across)?;
+        let beside = cross(axis, across);
         let frame = [across, beside, axis];
         let ends = (shape.angle < 360.0).then(|| {
             let [c, s] = turned(shape.angle);

@@ -4,11 +4,12 @@
 //! ring and along the axis, g changes by its gradient times d, plus |d|², less 2 R times what ρ grows by more than its gradient tells: for q the vector from
 //! the axis that is |q + d| − |q| − q·d/|q| = d_ring² / (|q + d| + |q| + d_ρ).
 
-use super::ring::{P3, Ring, dot, length2};
+use super::ring::{Ring, length2};
 use super::solid::TorusSolid;
 use crate::grid::bounds::Bounds;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
+use crate::number::space::{P3, dot};
 use crate::solids::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
 
 /// Rounding of the sums below, a few units in the last place of their terms.

@@ -4,10 +4,11 @@
 //! them the height over the plane is followed in small steps, and its roots are what is wanted. Where θ turns at one azimuth, as it
 //! does if e_u is across the axis, θ is followed instead.
 
-use super::ring::{P3, Ring, ahead, dot, length2};
+use super::ring::{Ring, ahead, length2};
 use super::roots::root;
 use crate::number::plane::P2;
 use crate::number::real::Real;
+use crate::number::space::{P3, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
 use heapless::Vec;
 

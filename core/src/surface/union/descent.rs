@@ -4,7 +4,8 @@ use super::bsp::{Branch, Node};
 use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{AMBIGUITY_BAND, Ball, Place, cut, place, span};
 use crate::number::real::Real;
-use crate::surface::clip::{Polygon, dot};
+use crate::number::space::dot;
+use crate::surface::clip::Polygon;
 
 /// Fragments smaller than this, in faces of the cell, cannot do harm.
 const SLIVER: f64 = 1e-9;

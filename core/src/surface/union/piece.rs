@@ -1,7 +1,8 @@
 //! Pieces of surface, their places relative to planes, and why a union of them may not be found.
 
 use crate::number::real::Real;
-use crate::surface::clip::{Polygon, dot, sub};
+use crate::number::space::{dot, sub};
+use crate::surface::clip::Polygon;
 use core::fmt;
 
 /// Why there is no union: divide the cell.

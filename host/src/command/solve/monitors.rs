@@ -14,7 +14,6 @@ use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
 use serde::Serialize;
 use std::fmt::Write as _;
-use voidage_core::flow::Boundary;
 
 /// A plane whose flow is kept.
 #[derive(Debug)]
@@ -107,7 +106,7 @@ impl<const D: usize> Monitor<D> {
         let faces = faces(flow, edges, (axis, d, plane), *live, &window);
         let area = faces.iter().map(|face| face.area).sum::<f64>() + 0.0; // of none not −0
         let side = [0, edges.cells()[axis]].iter().position(|end| *end == plane);
-        let is_wall = side.is_some_and(|side| flow.boundaries[d][side] == Boundary::Wall);
+        let is_wall = side.is_some_and(|side| flow.boundaries[d][side].is_wall());
         let report = MonitorReport { name, axis: AXES[axis], at: edges.0[axis][plane], faces: faces.len(), area };
         Ok(Monitor { report, d, is_wall, faces })
     }
@@ -179,7 +178,7 @@ fn faces<const D: usize>(
         let (side, section) = (usize::from(plane > high), flow.area(d, here) * across);
         let share = open.map_or(1.0, |open| open[flow.face(d, here, side)]);
         let is_side = plane == 0 || plane > high;
-        let is_wall = is_side && *flow.stands(d, side, here) == Boundary::Wall;
+        let is_wall = is_side && flow.stands(d, side, here).is_wall();
         if share > 0.0 && !is_wall {
             all.push(Face { cells: [position(below, shape), cell], side, area: share * section, section });
         }

@@ -84,7 +84,7 @@ pub fn sides<const D: usize>(
     for (n, keys) in file.case.boundary.patch.iter().enumerate() {
         let place = patch_place(states, n, keys)?;
         let (d, side) = place.at;
-        if sides.boundaries[d][side] == Boundary::Periodic {
+        if sides.boundaries[d][side].is_periodic() {
             return Err(file.wrong(&format!("{}.side", place.key), "is periodic: it has no parts"));
         }
         let boundary = boundary(states, edges, cells, &place, &mut sides.inlets)?;

@@ -19,7 +19,7 @@ use crate::porosity::throat::{self, Faces};
 use crate::porosity::{Options, porosity};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use voidage_core::flow::{Boundary, PressureForm};
+use voidage_core::flow::PressureForm;
 
 /// Name under which the force on all other solids is told.
 pub const OTHERS: &str = "others";
@@ -190,7 +190,7 @@ impl<const D: usize> Parts<'_, D> {
 
     /// At both ends of a periodic axis the flow has the less open face of the two: what a solid closes of one it closes of both.
     fn match_ends(&mut self) {
-        for d in (0..D).filter(|&d| self.flow.boundaries[d][0] == Boundary::Periodic) {
+        for d in (0..D).filter(|&d| self.flow.boundaries[d][0].is_periodic()) {
             for low in (0..self.flow.len()).filter(|&cell| self.flow.coordinates(cell)[d] == 0) {
                 let Some(high) = self.flow.behind(d, self.flow.coordinates(low), 0) else { continue };
                 let ends = [(low, 0), (high, 1)];

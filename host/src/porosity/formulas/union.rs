@@ -95,8 +95,22 @@ pub(super) fn box_of(grid: &Grid<f64>, kind: RangeKind, range: CellRange) -> Opt
     Some(cell)
 }
 
-/// What both pairs of bounds say; the first where they contradict each other by rounding.
+/// What both pairs of bounds say. Where they contradict each other by rounding, what lies between them: neither is nearer the truth.
 pub(super) fn narrowed(a: Bounds<f64>, b: Bounds<f64>) -> Bounds<f64> {
-    let both = Bounds { lower: a.lower.max(b.lower), upper: a.upper.min(b.upper) };
-    if both.lower <= both.upper { both } else { Bounds { lower: a.lower, upper: a.lower } }
+    let (lower, upper) = (a.lower.max(b.lower), a.upper.min(b.upper));
+    Bounds { lower: lower.min(upper), upper: lower.max(upper) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bounds, narrowed};
+
+    #[test]
+    fn bounds_that_contradict_each_other_leave_what_lies_between_them() {
+        let bounds = |lower, upper| Bounds { lower, upper };
+        assert_eq!(narrowed(bounds(0.0, 0.5), bounds(0.25, 1.0)), bounds(0.25, 0.5));
+        let (below, above) = (bounds(0.125, 0.25), bounds(0.5, 0.625));
+        assert_eq!(narrowed(below, above), bounds(0.25, 0.5));
+        assert_eq!(narrowed(above, below), bounds(0.25, 0.5));
+    }
 }
