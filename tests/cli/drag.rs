@@ -128,27 +128,27 @@ fn thin_walls_are_tight() {
 #[test]
 fn a_cube_in_the_planes_has_no_drag_of_its_own() {
     let at = Scratch::new();
-    let force = |place: f64, law: &str| {
+    let force = |place: f64, law: &str, end: f64| {
         let [x, yz] = [4.0, 1.0].map(|corner| corner + place);
         let ([x2, yz2], name) = ([x + 1.0, yz + 1.0], format!("cube_{place}.toml"));
         let cube = format!("[[solid]]\nshape = \"box\"\nmin = [{x}, {yz}, {yz}]\nmax = [{x2}, {yz2}, {yz2}]\n");
         fs::write(at.file(&name), cube).expect("written");
         let case = channel(&name, &format!("[drag]\nlaw = \"{law}\""))
             .replace("z = [0, 3]", "z = { points = [0, 3], cells = [6] }")
-            .replace("u = 10", "u = 20")
-            .replace("end = 2", "end = 3")
+            .replace("u = 10", "u = 80")
+            .replace("end = 2", &format!("end = {end}"))
             .replace("y_max = \"wall\"", "y_max = \"wall\"\nz_min = \"wall\"\nz_max = \"wall\"");
-        let dir = format!("cube_{place}_{law}");
+        let dir = format!("cube_{place}_{law}_{end}");
         solved(&at, &case, &dir, &["-q"]);
         let [p, rho, u] = ["p", "rho", "u"].map(|name| array(&at.file(&dir).join(format!("final/{name}.npy"))));
         let flux = |i: usize| (0..36).map(|row| 20 * row + i).map(|c| p[c] + rho[c] * u[c] * u[c]).sum::<f64>() / 36.0;
         // Momentum that the channel of 9 m² loses, in dynamic heads on a square metre.
-        (flux(2) - flux(17)) * 9.0 / 240.0
+        (flux(2) - flux(17)) * 9.0 / (0.5 * 1.2 * 80.0 * 80.0)
     };
-    let resolved = force(0.0, "none");
-    assert_eq!(resolved, force(0.0, "pdr"));
+    assert_eq!(force(0.0, "none", 0.02), force(0.0, "pdr", 0.02));
+    let resolved = force(0.0, "none", 0.75);
     let spread = |law: &str| {
-        let all = [0.1, 0.25, 0.4].map(|place| force(place, law));
+        let all = [0.1, 0.25, 0.4].map(|place| force(place, law, 0.75));
         let ends = [f64::INFINITY, f64::NEG_INFINITY];
         let [least, most] = all.iter().chain([&resolved]).fold(ends, |[a, b], &f| [a.min(f), b.max(f)]);
         most - least

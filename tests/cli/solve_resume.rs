@@ -1,8 +1,9 @@
 //! Runs that stop and go on: at a number of steps, by Ctrl-C, by a kill. They end with the same bits as a run that never stopped.
 
-use crate::kit::{Scratch, fixture, json, program, solve, solved, stderr};
+use crate::kit::{Scratch, json, program, solve, solved, stderr};
 use std::fs;
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -11,7 +12,7 @@ fn wind(time: &str, output: &str) -> String {
     format!(
         r#"
 [grid]
-x = {{ points = [-2, 10], cells = [24] }}
+x = {{ points = [-2.05, 9.95], cells = [24] }}
 y = {{ points = [-1, 5], cells = [12] }}
 z = {{ points = [-1, 5], cells = [18] }}
 [porosity]
@@ -41,7 +42,7 @@ maxima = {{ threshold = 20 }}
 probes = [{{ name = "P", at = [5, 2, 4.5] }}]
 {output}
 "#,
-        fixture("cad_skid.stl").display()
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/channel/cube.stl").display()
     )
 }
 

@@ -3,8 +3,8 @@
 //! A set is an NPZ archive with edges `x`, `y`, `z`, solid fractions `vol`, `ax`, `ay`, `az` (NaN where solid lies in
 //! the plane of a face) and for the latter `amb_?_idx`, `amb_?_below`, `amb_?_above`.
 
+use crate::unzip::members;
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use voidage::grid::Edges;
 use voidage::porosity::FieldSet;
@@ -46,17 +46,10 @@ impl Truth {
     /// If it is not as described above.
     #[must_use]
     pub fn read(path: &Path) -> Self {
-        let file = std::fs::File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let mut archive = zip::ZipArchive::new(file).expect("a zip archive");
-        let mut arrays = BTreeMap::new();
-        for n in 0..archive.len() {
-            let mut member = archive.by_index(n).expect("a member");
-            let name = member.name().trim_end_matches(".npy").to_owned();
-            let mut bytes = Vec::new();
-            member.read_to_end(&mut bytes).expect("readable");
-            arrays.insert(name, array(&bytes));
-        }
-        Truth(arrays)
+        let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let arrays =
+            members(&bytes).into_iter().map(|(name, npy)| (name.trim_end_matches(".npy").to_owned(), array(&npy)));
+        Truth(arrays.collect())
     }
 
     /// The grid.

@@ -8,7 +8,7 @@ use voidage_tests::random::Random;
 
 #[test]
 fn random_triangles() {
-    for seed in 0..2000 {
+    for seed in 0..1000 {
         let mut random = Random::new(seed);
         let count = 6 * (1 + random.below(40));
         let bytes: Vec<u8> = (0..count).map(|_| random.bits() as u8).collect();
@@ -18,7 +18,7 @@ fn random_triangles() {
 
 #[test]
 fn random_sizes() {
-    for seed in 0..2000 {
+    for seed in 0..1000 {
         let mut random = Random::new(seed);
         let count = 18 * (1 + random.below(20));
         let bytes: Vec<u8> = (0..count).map(|_| random.bits() as u8).collect();

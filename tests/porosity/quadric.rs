@@ -25,7 +25,7 @@ fn agrees(family: Family, seed: u64) -> Result<(), TestCaseError> {
 }
 
 fn agrees_of(family: Family, kinds: Kind, seed: u64) -> Result<(), TestCaseError> {
-    let most = if family == Family::Huge { 1_000_000_000 } else { 30_000_000 };
+    let most = if family == Family::Huge { 200_000_000 } else { 10_000_000 };
     let found = with_chords(most, || errors(&mut Random::new(seed), family, kinds, 1));
     prop_assume!(found.is_some(), "quadrature needs too many chords");
     let (cell, face, place) = found.expect("assumed");
@@ -45,7 +45,7 @@ macro_rules! families {
     };
 }
 families!(
-    4,
+    2,
     aligned: Aligned,
     nearly_aligned: NearlyAligned,
     oblique: Oblique,
@@ -56,14 +56,14 @@ families!(
     cutting_the_domain: Cutting
 );
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, max_shrink_iters: 4, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4, failure_persistence: None, max_shrink_iters: 4, ..ProptestConfig::default() })]
     #[test]
     fn truncated_cones(seed in any::<u64>(), family in 0..FAMILIES.len() - 1) {
         agrees_of(FAMILIES[family], Kind::Frustum, seed)?;
     }
 }
 
-// Its quadrature takes up to a minute.
+// Its quadrature takes up to ten seconds.
 families!(1, huge: Huge);
 
 #[test]

@@ -154,7 +154,7 @@ fn counted(form: &Form, lo: DVec3, hi: DVec3) -> [f64; 2] {
 }
 
 /// Cells of each body that are looked at again, of some tens of thousands that are cut.
-const SAMPLES: u32 = 500;
+const SAMPLES: u32 = 250;
 
 #[test]
 fn a_million_cells_hold_closed_forms_and_finer_cells() {
@@ -234,7 +234,7 @@ fn most_boxes_are_placed_without_asking_gjk() {
 
 #[test]
 fn coarse_cells_and_faces_hold_fine_ones() {
-    let edges = unit_grid(12);
+    let edges = unit_grid(7);
     for (name, form, _) in round_bodies() {
         let bodies = formulas(&[form]);
         let fine = run(&edges, &bodies, plane(6, 1e-5), 1);

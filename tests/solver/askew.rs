@@ -121,17 +121,10 @@ fn in_square(half: f64, degrees: f64, low: [f64; 2], high: [f64; 2]) -> f64 {
 #[test]
 fn a_porous_body_askew_to_the_grid_costs_little_total_pressure() {
     let (n, width) = CHANNEL;
-    let mut bodies: Vec<(String, OpenFractions<2>, f64)> = [(10.0, 0.03), (30.0, 0.045), (45.0, 0.05), (80.0, 0.03)]
-        .into_iter()
-        .map(|(degrees, most)| {
-            let open = porous(n, width, 0.8, 0.0, |low, high| in_square(0.2, degrees, low, high));
-            (format!("square at {degrees}°"), open, most)
-        })
-        .collect();
     let about = |x: [f64; 2]| [x[0] - 1.0, x[1] - 0.5];
+    let square = porous(n, width, 0.8, 0.0, |low, high| in_square(0.2, 30.0, low, high));
     let round = porous(n, width, 0.8, 0.0, |low, high| disc(0.25, about(low), about(high)));
-    bodies.push(("disc".into(), round, 0.03));
-    for (name, open, most) in bodies {
+    for (name, open, most) in [("square at 30°", square, 0.045), ("disc", round, 0.03)] {
         let (found, without_map) = (total_pressure_loss(&open, 0.1), total_pressure_loss(&open, f64::INFINITY));
         println!("{name}: {found:.4} q lost, {without_map:.4} q in the geometric form alone");
         assert!(found.abs() < most && found < 0.6 * without_map, "{name}: {found} q, without the map {without_map} q");
@@ -142,12 +135,10 @@ fn a_porous_body_askew_to_the_grid_costs_little_total_pressure() {
 fn a_layer_of_random_obstacles_smaller_than_a_cell_keeps_the_throat_map() {
     let (n, width) = CHANNEL;
     let layer = |low: [f64; 2], high: [f64; 2]| if low[0] > 0.79 && high[0] < 1.21 { 1.0 } else { 0.0 };
-    for (inside, most) in [(0.8, 0.3), (0.5, 0.4)] {
-        let open = porous(n, width, inside, 0.05, layer);
-        let (found, without_map) = (total_pressure_loss(&open, 0.1), total_pressure_loss(&open, f64::INFINITY));
-        println!("layer of {inside}: {found:.4} q lost, {without_map:.4} q in the geometric form alone");
-        assert!(found < most && found < 0.35 * without_map, "{inside}: {found} q, without the map {without_map} q");
-    }
+    let open = porous(n, width, 0.5, 0.05, layer);
+    let (found, without_map) = (total_pressure_loss(&open, 0.1), total_pressure_loss(&open, f64::INFINITY));
+    println!("{found:.4} q lost, {without_map:.4} q in the geometric form alone");
+    assert!(found < 0.4 && found < 0.35 * without_map, "{found} q, without the map {without_map} q");
 }
 
 /// A rough start in a box of random fractions, seen from the first axis or with both exchanged.

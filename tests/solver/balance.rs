@@ -98,7 +98,7 @@ fn a_column_in_discrete_balance_stays_along_every_axis() {
             let k = cell / stride % m;
             flow.set(cell, &Primitive { density: density[k], velocity: [0.0; D], pressure: pressure[k] });
         }
-        for _ in 0..3000 {
+        for _ in 0..1000 {
             flow.advance(0.8, f64::MAX).unwrap();
         }
         (0..flow.len())

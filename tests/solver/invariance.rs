@@ -68,6 +68,7 @@ struct Block {
     seed: u64,
     riemann: Riemann,
     gas: Gas<f64>,
+    steps: usize,
 }
 
 /// A gas of two ratios of specific heats.
@@ -75,7 +76,7 @@ const MIXED: Gas<f64> = Gas::Mixed { gammas: [1.2, 1.67] };
 
 /// The flow in a block whose axes are exchanged and then turned around, told in the frame of the block.
 fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64; 6]> {
-    let Block { n, sides, alike, seed, riemann, gas } = block;
+    let Block { n, sides, alike, seed, riemann, gas, steps } = block;
     let mut s = Source::seeded(seed);
     let mut s = move || s.unit();
     let cells = n.iter().product();
@@ -124,7 +125,7 @@ fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64;
         let velocity = std::array::from_fn(|a| sign(a) * (d[1 + order[a]] - 0.5));
         flow.set_mixed(c, &Primitive { density: 0.5 + d[0], velocity, pressure: 0.1 + 3.0 * d[4] }, 1.2 + 0.47 * d[8]);
     }
-    for _ in 0..8 {
+    for _ in 0..steps {
         flow.step(0.004).unwrap();
     }
     let mut out = vec![[0; 6]; cells];
@@ -152,7 +153,7 @@ fn exchanged_and_turned_axes_give_the_same_bits() {
             (4, false, MIXED),
             (5, true, MIXED),
         ] {
-            let block = Block { n: [5, 6, 7], sides: Boundary::Wall, alike, seed, riemann, gas };
+            let block = Block { n: [5, 6, 7], sides: Boundary::Wall, alike, seed, riemann, gas, steps: 8 };
             let plain = [false; 3];
             let reference = turned_block(block, [0, 1, 2], plain);
             for order in [[1, 0, 2], [2, 1, 0], [0, 2, 1], [1, 2, 0], [2, 0, 1]] {
@@ -169,14 +170,13 @@ fn exchanged_and_turned_axes_give_the_same_bits() {
 /// Layers of many cells are swept in tiles of rows; with the shortest axis first there is one tile only.
 #[test]
 fn layers_in_tiles_give_the_bits_of_one() {
-    for (seed, sides) in [Boundary::Wall, Boundary::Periodic, Boundary::ZeroGradient].into_iter().enumerate() {
-        for gas in [IDEAL, MIXED] {
-            let riemann = Riemann::Hllc;
-            let block = Block { n: [280, 35, 3], sides, alike: false, seed: seed as u64, riemann, gas };
-            let whole = turned_block(block, [2, 1, 0], [false; 3]);
-            for order in [[0, 1, 2], [1, 0, 2]] {
-                assert!(turned_block(block, order, [false; 3]) == whole, "{sides:?} {order:?} {gas:?}");
-            }
+    for (seed, sides, gas) in
+        [(0, Boundary::Wall, MIXED), (1, Boundary::Periodic, IDEAL), (2, Boundary::ZeroGradient, MIXED)]
+    {
+        let block = Block { n: [280, 29, 3], sides, alike: false, seed, riemann: Riemann::Hllc, gas, steps: 3 };
+        let whole = turned_block(block, [2, 1, 0], [false; 3]);
+        for order in [[0, 1, 2], [1, 0, 2]] {
+            assert!(turned_block(block, order, [false; 3]) == whole, "{sides:?} {order:?} {gas:?}");
         }
     }
 }
@@ -204,7 +204,7 @@ fn rest<R: Scalar, const D: usize>(seed: u64, gas: Gas<R>, riemann: Riemann) {
         for pressure in [PressureForm::Geometric, PressureForm::Paper] {
             flow.scheme.limiter = limiter;
             flow.scheme.pressure = pressure;
-            for _ in 0..50 {
+            for _ in 0..12 {
                 let dt = flow.stable_dt(R::from_f64(0.8)).unwrap();
                 if dt.is_finite() {
                     flow.step(dt).unwrap();

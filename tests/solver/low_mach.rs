@@ -74,7 +74,7 @@ const MC: Limiter = Limiter::MonotonizedCentral;
 
 #[test]
 fn a_slow_vortex_keeps_its_energy_at_any_mach_number() {
-    for (mach, odd_even) in [(0.3, 2e-3), (0.03, 5e-3), (0.003, 2.5e-2)] {
+    for (mach, odd_even) in [(0.3, 2e-3), (0.03, 5e-3), (0.01, 2.5e-2)] {
         let still = Gresho { mach, stream: 0.0 };
         let soft = vortex(still, [40; 2], (Riemann::HllcLowMach, MC, 0.8), 1.0);
         assert!(soft.energy >= 0.94 && soft.energy < 1.0, "Mach {mach}: {soft:?}");
@@ -86,7 +86,7 @@ fn a_slow_vortex_keeps_its_energy_at_any_mach_number() {
 
 #[test]
 fn a_slow_vortex_keeps_its_energy_however_it_is_computed() {
-    let still = Gresho { mach: 0.01, stream: 0.0 };
+    let still = Gresho { mach: 0.05, stream: 0.0 };
     let usual = (Riemann::HllcLowMach, MC, 0.8);
     // Other limiters, steps, streams, cells.
     for (v, cells, by, turns, least) in [
@@ -108,9 +108,9 @@ fn a_slow_vortex_keeps_its_energy_however_it_is_computed() {
 
 #[test]
 fn the_slowest_vortex_does_not_feed_sound() {
-    // Mach 1e-4: 60 000 steps in a tenth of a turn. The pressure of sound that a hundredth of the velocity makes is 1e2. What is lost goes
+    // Mach 1e-4: 18 000 steps in 0.03 turns. The pressure of sound that a hundredth of the velocity makes is 1e2. What is lost goes
     // when the state of the beginning, whose discrete divergence is not 0, settles: 0.78 of the energy is left, of the plain flux 0.5.
-    let run = |riemann| vortex(Gresho { mach: 1e-4, stream: 0.0 }, [20; 2], (riemann, MC, 0.8), 0.1);
+    let run = |riemann| vortex(Gresho { mach: 1e-4, stream: 0.0 }, [20; 2], (riemann, MC, 0.8), 0.03);
     let (soft, plain) = (run(Riemann::HllcLowMach), run(Riemann::Hllc));
     assert!(soft.energy > plain.energy + 0.1 && soft.energy < 1.0, "{soft:?} {plain:?}");
     assert!(soft.pressure_error < 20.0 && soft.odd_even_velocity < 3e-2, "{soft:?}");
