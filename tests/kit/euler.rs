@@ -5,6 +5,7 @@
 
 pub mod cases;
 pub mod expression;
+pub mod hostile;
 pub mod property;
 pub mod space;
 pub mod two_gases;

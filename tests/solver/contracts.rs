@@ -4,6 +4,7 @@ use voidage_core::flow::{
     Boundary, Conserved, Drag, Error, Fields, FieldsMut, Fractions, Gas, Merging, Mesh, Primitive, Problem, Report,
     Treatment, cluster_scratch, prepare, scratch_needed,
 };
+use voidage_tests::euler::hostile::{Calls, any_calls_from_bytes};
 use voidage_tests::euler::property::Source;
 
 /// Lengths of all slices of a plane problem of 4 × 3 cells, by name.
@@ -229,4 +230,15 @@ fn any_fractions_are_made_ready_and_stepped_without_panic() {
     }
     println!("{merged} merged, {closed} closed to the outside, {sealed} sealed");
     assert!(merged > 1000 && closed > 10 && sealed > 100);
+}
+
+/// Walls are found by bisection among watched cells: where their indices did not ascend, a step panicked.
+#[test]
+fn any_call_of_the_flow_answers() {
+    let mut calls = Calls::default();
+    for round in 0..3000_u16 {
+        any_calls_from_bytes(&[round as u8, round.to_le_bytes()[1], round as u8], &mut calls);
+    }
+    println!("{calls:?}");
+    assert!(calls.merged > 100 && calls.stepped > 500 && calls.refused > 3000, "{calls:?}");
 }

@@ -41,6 +41,11 @@ pub enum Error {
     OtherFlux,
     /// A reservoir beside a mixed gas: it feeds gas of one ratio of specific heats.
     MixedReservoir,
+    /// Watched cells whose indices do not ascend.
+    WatchedOrder {
+        /// The first among them that is below the one before it.
+        number: usize,
+    },
     /// A cell outside the physical set (density or pressure not positive, or not finite; of a mixed gas a capacity out of its bounds).
     Unphysical {
         /// Its flat index.
@@ -69,6 +74,9 @@ impl fmt::Display for Error {
             Error::OtherFlux => f.write_str("the step is compiled for another Riemann solver or another kind of gas"),
             Error::MixedReservoir => {
                 f.write_str("a reservoir has no place beside a gas of several ratios of specific heats")
+            }
+            Error::WatchedOrder { number } => {
+                write!(f, "watched cell {number} has a lower index than the one before it")
             }
             Error::Unphysical { cell } => {
                 write!(f, "the density or pressure of cell {cell} is not positive, or its state is not finite")

@@ -72,7 +72,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     /// The same, which also tells what acts on the walls of some cells. One call writes those of its slab, so that callers with threads give each its own.
     ///
     /// # Errors
-    /// As of [`Problem::advance_slab_by`]; the watched cells and their results are not equally many.
+    /// As of [`Problem::advance_slab_by`]; the watched cells and their results are not equally many, or their indices do not ascend.
     pub fn advance_slab_watching<F: FluxChoice>(
         &self,
         old: &Fields<'_, R, D>,
@@ -83,6 +83,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         scratch: &mut [R],
     ) -> Result<Report<R, D>, Error> {
         fits(watched.cells.len(), watched.pushes.len())?;
+        if let Some(before) = watched.cells.windows(2).position(|pair| pair[0] > pair[1]) {
+            return Err(Error::WatchedOrder { number: before + 1 });
+        }
         let walls = Walls {
             cells: watched.cells,
             pushes: Cell::from_mut(watched.pushes).as_slice_of_cells(),
