@@ -2,11 +2,13 @@
 
 use core::error::Error;
 
-use glam::DVec3;
-use voidage_core::convex::shape::Sphere;
+use glam::{DVec3, Vec3};
+use voidage_core::convex::chord::Chords;
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, Sphere};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::number::aabb::Aabb;
+use voidage_core::number::real::{Real, Vector};
 use voidage_core::subdivide::{
     Bounds, Candidate, LeafRule, MAX_RANGES, QueryCount, RangeStack, SubdivisionMemory, SubdivisionRule,
     TooLittleMemory, share, subdivide,
@@ -174,4 +176,73 @@ fn a_polygon_takes_as_many_corners_as_it_has_room_for() {
 fn an_edge_is_crossed_at_the_same_point_from_both_ends() {
     let (a, b) = ([0.1, 0.7, -0.3], [1.3, -0.2, 0.9]);
     assert_eq!(crossing(a, b, 0, 0.9), crossing(b, a, 0, 0.9));
+}
+
+/// The share of a box from `low` to `high` along each axis that a body has.
+fn share_of<B: Chords>(body: B, low: f64, high: f64) -> [f64; 2] {
+    let side = |x: f64| B::Vector::splat(<B::Vector as Vector>::Scalar::from_f64(x));
+    let cell = Aabb { min: side(low), max: side(high) };
+    let rule = SubdivisionRule { leaf: LeafRule::Plane, depth: 3, tol: Real::from_f64(1e-2) };
+    let (mut candidates, mut facets) = ([Candidate::default(); 64], [0; 64]);
+    let mut memory = SubdivisionMemory { candidates: &mut candidates, facets: &mut facets };
+    let found = share(&cell, &[body], rule, &mut memory, &mut QueryCount::default()).expect("room");
+    [found.lower.to_f64(), found.upper.to_f64()]
+}
+
+/// Round bodies as large as `size`: deep inside them a box is full, far off it is empty, just outside it is not full; and a box about one of them has
+/// its volume.
+fn of_any_size<V: Vector>(size: f64) {
+    let point = |x: f64, y: f64, z: f64| V::from_array([x, y, z].map(|c| V::Scalar::from_f64(c * size)));
+    let r = V::Scalar::from_f64(size);
+    let pi = core::f64::consts::PI;
+    for away in [0.0, 4.0, -1.0] {
+        let at = |x: f64, y: f64, z: f64| point(x + away, y, z);
+        // The volume of each, in cubes of side 2.
+        let found = |low: f64, high: f64| {
+            [
+                (share_of(Sphere { center: at(0.0, 0.0, 0.0), radius: r }, low, high), pi / 6.0),
+                (
+                    share_of(Ellipsoid { center: at(0.0, 0.0, 0.0), semi_axes: point(1.0, 0.5, 1.0) }, low, high),
+                    pi / 12.0,
+                ),
+                (share_of(Cylinder::new(at(0.0, -1.0, 0.0), at(0.0, 1.0, 0.0), r), low, high), pi / 4.0),
+                (share_of(Cone::new(at(0.0, -1.0, 0.0), at(0.0, 1.0, 0.0), r), low, high), pi / 12.0),
+                (
+                    share_of(
+                        Capsule { from: at(0.0, -0.5, 0.0), to: at(0.0, 0.5, 0.0), radius: r * V::Scalar::HALF },
+                        low,
+                        high,
+                    ),
+                    pi / 4.0 * 0.25 * 0.5 + pi / 6.0 * 0.125,
+                ),
+            ]
+        };
+        // Boxes in the middle that are small beside the bodies, whose surfaces they may touch if these lie to one side.
+        for (n, ([lower, upper], _)) in found(0.0, size * 1e-9).into_iter().enumerate() {
+            match away {
+                0.0 => assert!(lower == 1.0, "body {n} of size {size:e} is not full: {lower}..{upper}"),
+                4.0 => assert!(upper == 0.0, "body {n} of size {size:e} is elsewhere: {lower}..{upper}"),
+                _ => assert!(lower < 1e-2, "body {n} of size {size:e} ends here: {lower}..{upper}"),
+            }
+        }
+        if away == 0.0 {
+            for (n, ([lower, upper], truth)) in found(-size, size).into_iter().enumerate() {
+                assert!(
+                    lower <= truth + 1e-6 && truth - 1e-6 <= upper && upper - lower < 0.2,
+                    "body {n} of size {size:e}: {truth} in {lower}..{upper}"
+                );
+            }
+        }
+    }
+}
+
+/// The lengths of a query may be such that their squares are infinite, or nothing: a cell deep inside a ball of 1e20 counted as open in `f32`.
+#[test]
+fn balls_whose_squares_overflow_or_underflow_are_balls() {
+    for size in [1.0, 1e18, 3e19, 1e25, 1e-18, 1e-22, 1e-25] {
+        of_any_size::<Vec3>(size);
+    }
+    for size in [1.0, 1e153, 1e155, 1e200, 1e-153, 1e-160, 1e-200] {
+        of_any_size::<DVec3>(size);
+    }
 }

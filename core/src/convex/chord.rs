@@ -117,9 +117,46 @@ fn endless<R: Real>() -> [R; 2] {
     [-R::INFINITY, R::INFINITY]
 }
 
+/// A sum of squares from which nothing to speak of was lost by overflow or underflow.
+#[inline(always)]
+fn is_usual<R: Real>(squares: R) -> bool {
+    squares >= R::MIN_POSITIVE / R::EPSILON && squares < R::INFINITY
+}
+
+/// One over the power of two of a size; none where one cannot compute with it.
+fn inverse_binade<R: Real>(size: R) -> Option<R> {
+    let unit = size.binade();
+    (unit > R::ZERO && unit.is_finite() && R::ONE / unit >= R::MIN_POSITIVE).then(|| R::ONE / unit)
+}
+
+/// Where `|w + t e| <= q + t dq`, found by `of`: with `w` and `q`, and with `e` and `dq`, brought near one by powers of two. A chord that tells nothing
+/// if there are no such powers.
+#[cold]
+#[inline(never)]
+fn rescaled<V: Vector>(
+    (w, e): (V, V),
+    (q, dq): (V::Scalar, V::Scalar),
+    of: impl FnOnce(V, V, V::Scalar, V::Scalar) -> Option<[V::Scalar; 2]>,
+) -> Option<[V::Scalar; 2]> {
+    let along = e.norm_max().larger(dq.abs());
+    let length = inverse_binade(w.norm_max().larger(q.abs()));
+    let step = if along > V::Scalar::ZERO { inverse_binade(along) } else { Some(V::Scalar::ONE) };
+    let (Some(length), Some(step)) = (length, step) else { return Some([V::Scalar::INFINITY * V::Scalar::ZERO; 2]) };
+    of(w * length, e * step, q * length, dq * step).map(|t| t.map(|t| t / length * step))
+}
+
 /// Where `|w + t e| <= q`.
 #[inline(always)]
 fn within<V: Vector>(w: V, e: V, q: V::Scalar) -> Option<[V::Scalar; 2]> {
+    if is_usual(w.dot(w) + q * q) && (is_usual(e.dot(e)) || e == V::ZERO) {
+        return within_usual(w, e, q);
+    }
+    rescaled((w, e), (q, V::Scalar::ZERO), |w, e, q, _| within_usual(w, e, q))
+}
+
+/// The same of lengths whose squares can be had.
+#[inline(always)]
+fn within_usual<V: Vector>(w: V, e: V, q: V::Scalar) -> Option<[V::Scalar; 2]> {
     let zero = V::Scalar::ZERO;
     let (a, area) = (e.dot(e), w.cross(e));
     let discriminant = a * (q * q) - area.dot(area);
@@ -137,10 +174,19 @@ fn within<V: Vector>(w: V, e: V, q: V::Scalar) -> Option<[V::Scalar; 2]> {
 /// Where `|w + t e| <= q + t dq`, for `q + t dq` not negative.
 #[inline(always)]
 fn within_cone<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V::Scalar; 2]> {
-    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::INFINITY);
-    if dq == zero {
+    if dq == V::Scalar::ZERO {
         return within(w, e, q);
     }
+    if is_usual(w.dot(w) + q * q) && is_usual(e.dot(e) + dq * dq) {
+        return within_usual_cone(w, e, q, dq);
+    }
+    rescaled((w, e), (q, dq), within_usual_cone)
+}
+
+/// The same of lengths whose squares can be had.
+#[inline(always)]
+fn within_usual_cone<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V::Scalar; 2]> {
+    let (zero, infinity) = (V::Scalar::ZERO, V::Scalar::INFINITY);
     let (reach, area) = (e * q - w * dq, w.cross(e));
     let discriminant = reach.dot(reach) - area.dot(area);
     let (a, b) = (e.dot(e) - dq * dq, w.dot(e) - q * dq);
@@ -188,10 +234,15 @@ fn no_facet<V: Vector>() -> FacetPlane<V> {
 #[inline(always)]
 fn ball<V: Vector>(center: V, radius: V::Scalar, origin: V, direction: V) -> Option<[V::Scalar; 2]> {
     let to_center = center - origin;
-    let inv = reciprocal(direction.dot(direction));
+    let direction_sq = direction.dot(direction);
+    let inv = reciprocal(direction_sq);
     let nearest = to_center.dot(direction) * inv;
     let across = to_center - direction * nearest;
-    let half_sq = (radius * radius - across.dot(across)) * inv;
+    let (whole_sq, across_sq) = (radius * radius, across.dot(across));
+    if !(is_usual(whole_sq + across_sq) && is_usual(direction_sq)) {
+        return within(origin - center, direction, radius);
+    }
+    let half_sq = (whole_sq - across_sq) * inv;
     if radius < V::Scalar::ZERO || half_sq < V::Scalar::ZERO {
         return None;
     }
@@ -223,10 +274,11 @@ fn out_to<V: Vector>(v: V, radius: V::Scalar) -> V {
     v * (radius / length(v)).min(V::Scalar::ONE)
 }
 
-/// The length of a vector whose squares neither overflow nor vanish; else NaN or too small, which tells nothing.
+/// The length of a vector of any size.
 #[inline(always)]
-fn length<V: Vector>(v: V) -> V::Scalar {
-    v.dot(v).sqrt()
+pub(crate) fn length<V: Vector>(v: V) -> V::Scalar {
+    let sq = v.dot(v);
+    if is_usual(sq) { sq.sqrt() } else { v.length() }
 }
 
 #[inline(always)]
@@ -299,7 +351,12 @@ impl<V: Vector> Capsule<V> {
     #[inline(always)]
     fn off_core(&self, point: V) -> V {
         let (axis, to) = (self.to - self.from, point - self.from);
-        let share = to.dot(axis) / axis.dot(axis);
+        let share = if is_usual(axis.dot(axis)) && is_usual(to.dot(to)) {
+            to.dot(axis) / axis.dot(axis)
+        } else {
+            let factor = V::Scalar::ONE / axis.norm_max().larger(to.norm_max()).binade();
+            (to * factor).dot(axis * factor) / (axis * factor).dot(axis * factor)
+        };
         let share = if share > V::Scalar::ZERO { share.min(V::Scalar::ONE) } else { V::Scalar::ZERO };
         to - axis * share
     }
@@ -371,6 +428,10 @@ impl<V: Vector> Chords for Cone<V> {
         let (left, out) = (top.offset - top.normal.dot(point), length(self.frame.lateral(point - self.frame.base)));
         let less = radius - self.top_radius();
         let beside = ((out - self.top_radius()) * height - left * less) / length(V::new(height, less, V::Scalar::ZERO));
+        // Products of lengths that are too large tell nothing.
+        if !beside.is_finite() {
+            return endless();
+        }
         let low = below.max(beside).max(if self.facet_count() > 1 { -left } else { below });
         [low, if low < V::Scalar::ZERO { low } else { V::Scalar::INFINITY }]
     }

@@ -6,7 +6,7 @@
 use super::chord_bounds::Columns;
 use super::local_planes::{LocalPlanes, MAX_PLANES, PlaneDistances};
 use super::occupancy::{ActiveFacets, Occupancy, QueryCount, WarmStart};
-use crate::convex::chord::{Chords, chord_rounding, rounding_at};
+use crate::convex::chord::{Chords, chord_rounding, length, rounding_at};
 use crate::convex::exact::Contact;
 use crate::convex::gjk::{Intersection, intersect};
 use crate::convex::support::{ScalarOf, Support};
@@ -201,7 +201,7 @@ fn by_signed_distance<B: Chords>(
 ) -> Option<Occupancy> {
     let (half, middle) = (cell.size() * Real::HALF, cell.center());
     let [low, high] = body.signed_distance(middle);
-    let reach = half.dot(half).sqrt() + margin;
+    let reach = length(half) + margin;
     if low >= reach {
         return Some(Occupancy::Open);
     }
