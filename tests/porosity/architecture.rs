@@ -56,6 +56,36 @@ fn only_the_command_speaks_to_a_terminal() {
     }
 }
 
+/// The table of ARCHITECTURE.md: every path exists, every name stands in a file of its row.
+#[test]
+fn the_page_that_says_where_things_are_is_right() {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let page = std::fs::read_to_string(top.join("ARCHITECTURE.md")).expect("the page");
+    let (_, table) = page.split_once("## Where to look for").expect("the table");
+    let (table, _) = table.split_once("\n## ").expect("a section after it");
+    let quoted = |cell: &str| -> Vec<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
+    let (mut paths, mut found) = (0, String::new());
+    for row in table.lines().filter(|line| line.starts_with("| ")).skip(1) {
+        let cells: Vec<&str> = row.split('|').collect();
+        let files = quoted(cells[2]);
+        let mut text = String::new();
+        for file in &files {
+            match std::fs::read_to_string(top.join(file)) {
+                Ok(source) => text += &source,
+                Err(_) if top.join(file).is_dir() => {}
+                Err(_) => drop(writeln!(found, "no {file}")),
+            }
+        }
+        let words: BTreeSet<&str> = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+        for name in quoted(cells[3]).iter().filter(|name| !words.contains(name.as_str())) {
+            let _ = writeln!(found, "no {name} in {files:?}");
+        }
+        paths += files.len();
+    }
+    assert!(paths > 100, "{paths} paths were seen");
+    assert!(found.is_empty(), "the table of ARCHITECTURE.md is wrong:\n{found}");
+}
+
 /// Types of the same name in different files, each with its reason.
 const SHARED_NAMES: [(&str, &str); 4] = [
     ("Error", "that of the flow is a value without text; that of the host names file, place and reason"),
