@@ -146,8 +146,8 @@ fn rounding(lo: f64, hi: f64) -> f64 {
     4.0 * f64::EPSILON * lo.abs().max(hi.abs())
 }
 
-/// Coordinates as people would write them: if there is a decimal within `room` of one, of digits ten times larger, that, else as it is. So that
-/// 3 × 0.1 is 0.3, and what ends at 0.3 ends in a plane of the grid.
+/// Coordinates as people would write them: a decimal that lies within `room` of one takes its place, if its last digit counts ten times `room` or
+/// more. So 3 × 0.1 is 0.3, and what ends at 0.3 ends in a plane of the grid.
 fn decimal(room: f64) -> impl Fn(f64) -> f64 {
     let digits = -(room.log10().ceil() + 1.0);
     // Powers of ten up to this are exact.

@@ -127,7 +127,7 @@ pub enum BodyError {
     NegativeRadius,
     /// A hull of no points, or a box whose `min` exceeds its `max`.
     NoPoint,
-    /// Three vectors that are not of length one and at right angles, within 256 ε.
+    /// Three vectors whose scalar products with themselves are not 1, or with each other not 0, within 256 ε.
     NotARotation,
 }
 

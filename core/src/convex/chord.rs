@@ -129,29 +129,33 @@ fn inverse_binade<R: Real>(size: R) -> Option<R> {
     (unit > R::ZERO && unit.is_finite() && R::ONE / unit >= R::MIN_POSITIVE).then(|| R::ONE / unit)
 }
 
-/// Where `|w + t e| <= q + t dq`, found by `of`: with `w` and `q`, and with `e` and `dq`, brought near one by powers of two. A chord that tells nothing
-/// if there are no such powers.
-#[cold]
-#[inline(never)]
-fn rescaled<V: Vector>(
-    (w, e): (V, V),
-    (q, dq): (V::Scalar, V::Scalar),
-    of: impl FnOnce(V, V, V::Scalar, V::Scalar) -> Option<[V::Scalar; 2]>,
-) -> Option<[V::Scalar; 2]> {
+/// Powers of two that bring `w` and `q`, and `e` and `dq`, near one; none if there are no such powers.
+fn factors<V: Vector>((w, q): (V, V::Scalar), (e, dq): (V, V::Scalar)) -> Option<[V::Scalar; 2]> {
     let along = e.norm_max().larger(dq.abs());
-    let length = inverse_binade(w.norm_max().larger(q.abs()));
-    let step = if along > V::Scalar::ZERO { inverse_binade(along) } else { Some(V::Scalar::ONE) };
-    let (Some(length), Some(step)) = (length, step) else { return Some([V::Scalar::INFINITY * V::Scalar::ZERO; 2]) };
-    of(w * length, e * step, q * length, dq * step).map(|t| t.map(|t| t / length * step))
+    let step = if along > V::Scalar::ZERO { inverse_binade(along)? } else { V::Scalar::ONE };
+    Some([inverse_binade(w.norm_max().larger(q.abs()))?, step])
 }
 
 /// Where `|w + t e| <= q`.
 #[inline(always)]
 fn within<V: Vector>(w: V, e: V, q: V::Scalar) -> Option<[V::Scalar; 2]> {
-    if is_usual(w.dot(w) + q * q) && (is_usual(e.dot(e)) || e == V::ZERO) {
+    // With a smaller product something is lost, or the line is parallel to the axis; with a larger `w` it misses.
+    if is_usual(e.dot(e) * (q * q)) {
         return within_usual(w, e, q);
     }
-    rescaled((w, e), (q, V::Scalar::ZERO), |w, e, q, _| within_usual(w, e, q))
+    within_cone_of_any_size(w, e, q, V::Scalar::ZERO)
+}
+
+/// Where `|w + t e| <= q + t dq`, lengths brought near one; a chord that tells nothing where that cannot be done. Out of the way of what is usual.
+#[cold]
+#[inline(never)]
+fn within_cone_of_any_size<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V::Scalar; 2]> {
+    let Some([length, step]) = factors((w, q), (e, dq)) else {
+        return Some([V::Scalar::INFINITY * V::Scalar::ZERO; 2]);
+    };
+    let (w, e, q, dq) = (w * length, e * step, q * length, dq * step);
+    let found = if dq == V::Scalar::ZERO { within_usual(w, e, q) } else { within_usual_cone(w, e, q, dq) };
+    found.map(|t| t.map(|t| t / length * step))
 }
 
 /// The same of lengths whose squares can be had.
@@ -180,7 +184,7 @@ fn within_cone<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Option<[V:
     if is_usual(w.dot(w) + q * q) && is_usual(e.dot(e) + dq * dq) {
         return within_usual_cone(w, e, q, dq);
     }
-    rescaled((w, e), (q, dq), within_usual_cone)
+    within_cone_of_any_size(w, e, q, dq)
 }
 
 /// The same of lengths whose squares can be had.
@@ -239,8 +243,8 @@ fn ball<V: Vector>(center: V, radius: V::Scalar, origin: V, direction: V) -> Opt
     let nearest = to_center.dot(direction) * inv;
     let across = to_center - direction * nearest;
     let (whole_sq, across_sq) = (radius * radius, across.dot(across));
-    if !(is_usual(whole_sq + across_sq) && is_usual(direction_sq)) {
-        return within(origin - center, direction, radius);
+    if !(is_usual(whole_sq) && is_usual(direction_sq)) {
+        return within_cone_of_any_size(origin - center, direction, radius, V::Scalar::ZERO);
     }
     let half_sq = (whole_sq - across_sq) * inv;
     if radius < V::Scalar::ZERO || half_sq < V::Scalar::ZERO {
@@ -278,7 +282,21 @@ fn out_to<V: Vector>(v: V, radius: V::Scalar) -> V {
 #[inline(always)]
 pub(crate) fn length<V: Vector>(v: V) -> V::Scalar {
     let sq = v.dot(v);
-    if is_usual(sq) { sq.sqrt() } else { v.length() }
+    if is_usual(sq) { sq.sqrt() } else { length_of_any_size(v) }
+}
+
+#[cold]
+#[inline(never)]
+fn length_of_any_size<V: Vector>(v: V) -> V::Scalar {
+    v.length()
+}
+
+/// How far along an axis of any size a vector reaches, as a share of it.
+#[cold]
+#[inline(never)]
+fn share_along<V: Vector>(axis: V, to: V) -> V::Scalar {
+    let factor = V::Scalar::ONE / axis.norm_max().larger(to.norm_max()).binade();
+    (to * factor).dot(axis * factor) / (axis * factor).dot(axis * factor)
 }
 
 #[inline(always)]
@@ -351,12 +369,9 @@ impl<V: Vector> Capsule<V> {
     #[inline(always)]
     fn off_core(&self, point: V) -> V {
         let (axis, to) = (self.to - self.from, point - self.from);
-        let share = if is_usual(axis.dot(axis)) && is_usual(to.dot(to)) {
-            to.dot(axis) / axis.dot(axis)
-        } else {
-            let factor = V::Scalar::ONE / axis.norm_max().larger(to.norm_max()).binade();
-            (to * factor).dot(axis * factor) / (axis * factor).dot(axis * factor)
-        };
+        let axis_sq = axis.dot(axis);
+        let share =
+            if is_usual(axis_sq) && is_usual(to.dot(to)) { to.dot(axis) / axis_sq } else { share_along(axis, to) };
         let share = if share > V::Scalar::ZERO { share.min(V::Scalar::ONE) } else { V::Scalar::ZERO };
         to - axis * share
     }

@@ -6,7 +6,6 @@
 //!
 //! Reference: E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast procedure for computing the distance between complex objects in
 //! three-dimensional space", *IEEE J. Robotics and Automation* 4 (1988).
-
 //!
 //! A file uses only those above it in this list:
 //!

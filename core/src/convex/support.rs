@@ -162,7 +162,7 @@ pub struct Transformed<S: Support> {
     pub(crate) translation: S::Vector,
     norm: ScalarOf<S>,
     /// Scale of the radius; zero if the scale differs by axis and the ball becomes an ellipsoid.
-    round: ScalarOf<S>,
+    radius_scale: ScalarOf<S>,
 }
 
 impl<S: Support> Transformed<S> {
@@ -172,8 +172,8 @@ impl<S: Support> Transformed<S> {
         let columns = [rotation[0] * sx, rotation[1] * sy, rotation[2] * sz];
         let rows = columns[0].abs() + columns[1].abs() + columns[2].abs();
         let even = sx.abs() == sy.abs() && sy.abs() == sz.abs();
-        let round = if even { sx.abs() } else { Real::ZERO };
-        Transformed { shape, columns, translation, norm: magnitude(rows), round }
+        let radius_scale = if even { sx.abs() } else { Real::ZERO };
+        Transformed { shape, columns, translation, norm: magnitude(rows), radius_scale }
     }
 
     /// What is mapped.
@@ -197,7 +197,7 @@ impl<S: Support> Transformed<S> {
     #[inline(always)]
     fn image(&self, found: SupportPoint<S::Vector>, local: S::Vector) -> SupportPoint<S::Vector> {
         let mut point = found.point;
-        if S::ROUNDED && self.round == Real::ZERO {
+        if S::ROUNDED && self.radius_scale == Real::ZERO {
             let length = local.length();
             if length > Real::ZERO {
                 // Divided first: the quotient is below one whatever the scale.
@@ -235,7 +235,7 @@ impl<S: Support> Support for Transformed<S> {
     }
     #[inline(always)]
     fn radius(&self) -> ScalarOf<S> {
-        self.shape.radius() * self.round
+        self.shape.radius() * self.radius_scale
     }
     #[inline(always)]
     fn slack(&self) -> ScalarOf<S> {
@@ -290,7 +290,7 @@ pub(crate) fn lengthened<V: Vector>(direction: V) -> V {
     if unit > V::Scalar::ZERO && unit.is_finite() { direction * (V::Scalar::ONE / unit) } else { direction }
 }
 
-/// A vector divided by its length, whatever its size; zero for zero and for vectors that are not finite.
+/// A vector divided by its length; zero for zero, for vectors of subnormal numbers, and for infinite ones. A NaN stays one.
 pub(crate) fn normalized<V: Vector>(v: V) -> V {
     let unit = v.norm_max().binade();
     if !(unit > V::Scalar::ZERO) || !unit.is_finite() {

@@ -168,7 +168,7 @@ impl<R: Real> Gas<R> {
 
     /// A capacity that left the bounds by rounding, put back to them; any other as it is.
     #[inline(always)]
-    pub(in crate::flow) fn settled(self, capacity: R) -> R {
+    pub(in crate::flow) fn within_bounds(self, capacity: R) -> R {
         let [least, most] = self.capacities();
         let inside = capacity.limited(least, most);
         if (capacity - inside).abs() <= R::from_f64(ROUNDINGS) * R::EPSILON * most { inside } else { capacity }

@@ -38,7 +38,7 @@ impl CellRange {
         CellRange { lo: [0; 3], hi }
     }
 
-    /// The cells or faces of a grid that a closed box touches.
+    /// The cells or faces of a grid that a closed box touches: none if a coordinate of the box is NaN.
     #[must_use]
     pub fn touching<V: Vector>(grid: &Grid<V::Scalar>, kind: RangeKind, bounds: &Aabb<V>) -> Self {
         let (min, max) = (bounds.min.to_array(), bounds.max.to_array());

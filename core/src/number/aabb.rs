@@ -31,7 +31,7 @@ impl<V: Vector> Aabb<V> {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Holds no point.
+    /// Holds no point. A NaN does not make a box empty.
     #[must_use]
     pub fn is_empty(self) -> bool {
         let [a, b] = [self.min.to_array(), self.max.to_array()];

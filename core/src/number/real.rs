@@ -1,6 +1,6 @@
 //! The two scalars, `f32` and `f64`, and their three-dimensional vectors.
 //!
-//! The only file that knows a precision. [`Real`] and [`Vector`] are sealed and hold what this crate uses, no more.
+//! Only this file and [`words`](super::words) know a precision. [`Real`] and [`Vector`] are sealed and hold what this crate uses, no more.
 //!
 //! Correctly rounded operations (`sqrt`, `floor`, `abs`) come from std under the feature `std` and from libm or the processor without it;
 //! everything that is not correctly rounded always comes from libm. So the feature changes speed, never bits.
@@ -69,7 +69,7 @@ pub trait Real:
 
     /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;
-    /// The same value (`f32`) or itself (`f64`).
+    /// This value as an `f64`, exactly.
     fn to_f64(self) -> f64;
     /// The whole number below, 0 of what is negative or NaN, the largest of what is larger.
     fn to_usize(self) -> usize;
@@ -116,7 +116,7 @@ pub trait Real:
     }
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// The largest power of two not above the absolute value of a normal number; 0 for subnormal numbers.
+    /// The largest power of two not above the absolute value of a normal number; 0 of zero and subnormal numbers, infinity of infinities and NaN.
     fn binade(self) -> Self;
     /// The magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
@@ -184,7 +184,7 @@ pub trait Vector:
     fn norm_max(self) -> Self::Scalar {
         self.x().abs().larger(self.y().abs()).larger(self.z().abs())
     }
-    /// The unit vector along the coordinate axis that this vector has the least component of, the first of equals.
+    /// The unit vector along the coordinate axis that this vector has the least component of, by size; the first of equals.
     #[inline(always)]
     fn least_axis(self) -> Self {
         let [x, y, z] = self.abs().to_array();
@@ -197,7 +197,7 @@ pub trait Vector:
             Self::new(zero, zero, one)
         }
     }
-    /// Length, free of overflow and underflow.
+    /// Length, without overflow or underflow of the squares. Where the largest component is subnormal, infinite or NaN, that component's size.
     fn length(self) -> Self::Scalar {
         let unit = self.norm_max().binade();
         if !(unit > Self::Scalar::ZERO) || !unit.is_finite() {

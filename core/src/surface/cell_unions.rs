@@ -356,7 +356,7 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             }
         })?;
         if P::WANTED {
-            surface.settle([0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]), found.error <= known());
+            surface.set_sides([0, 1, 2].map(|axis| [found.low[axis], found.high[axis]]), found.error <= known());
         }
         let error = found.error;
         let refined = Refined::from_union(found);

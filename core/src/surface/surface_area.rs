@@ -131,7 +131,7 @@ pub(super) trait KeptSurface<R>: Default {
     /// A fragment counts.
     fn keep(&mut self, fragment: SurfaceArea<R>);
     /// Solid fractions of the sides, and whether they are known to rounding.
-    fn settle(&mut self, sides: [[R; 2]; 3], exact: bool);
+    fn set_sides(&mut self, sides: [[R; 2]; 3], exact: bool);
 }
 
 impl<R> KeptSurface<R> for () {
@@ -140,7 +140,7 @@ impl<R> KeptSurface<R> for () {
     #[inline(always)]
     fn keep(&mut self, _: SurfaceArea<R>) {}
     #[inline(always)]
-    fn settle(&mut self, _: [[R; 2]; 3], _: bool) {}
+    fn set_sides(&mut self, _: [[R; 2]; 3], _: bool) {}
 }
 
 impl<R: Real> KeptSurface<R> for UnionSurface<R> {
@@ -150,7 +150,7 @@ impl<R: Real> KeptSurface<R> for UnionSurface<R> {
     fn keep(&mut self, fragment: SurfaceArea<R>) {
         self.area = self.area.plus(fragment);
     }
-    fn settle(&mut self, sides: [[R; 2]; 3], exact: bool) {
+    fn set_sides(&mut self, sides: [[R; 2]; 3], exact: bool) {
         (self.sides, self.exact) = (Some(sides), exact);
     }
 }

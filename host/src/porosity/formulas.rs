@@ -2,7 +2,7 @@
 //!
 //! Shares of solids that do not meet add up, and that is exact. Which pairs meet is asked of GJK once for each pair of solids whose boxes
 //! overlap. Only in a cell or face that two such solids share is what they have in common taken off, by sections or by planes between which they lie
-//! (`union`). A solid that closes the cell settles it.
+//! (`union`). A solid that closes the cell leaves nothing to find out.
 
 mod pairs;
 mod round;

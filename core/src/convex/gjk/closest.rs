@@ -20,7 +20,8 @@ const COMBINATION_ROUNDINGS: f64 = 16.0;
 /// Gap at which a search stops, in units of ε times the distance: a few roundings, below which no step makes progress.
 const GAP_ROUNDINGS: f64 = 16.0;
 
-/// How many steps may go by without a gain. Fewer leave distances to needles off by their thickness; more cost time near touch.
+/// How many steps of a search, in a row or not, may go by without a gain. Fewer leave distances to needles off by their thickness; more cost time
+/// near touch.
 const PATIENCE: u32 = 8;
 
 /// The boolean for rounded bodies: the cores' distance against the sum of the radii, stopping as soon as that is decided.

@@ -45,7 +45,7 @@ pub(in crate::flow) fn update<R: Real, const D: usize, const ENERGY: bool, const
     rows::update::<R, D, ENERGY, MIXED>(slab.old, new, span, &change, scale, slab.dt);
     if MIXED {
         for own in &mut new.capacity[span.to..][..span.n] {
-            *own = slab.problem.gas.settled(*own);
+            *own = slab.problem.gas.within_bounds(*own);
         }
     }
     drag(slab, span, new);

@@ -102,7 +102,7 @@ pub(in crate::flow) fn apply_capacities<R: Real, const D: usize>(
         }
         let sum = weighted(cells.clone(), &weight, |cell| field.capacity[cell]);
         // As the energy is divided, so that a pressure of 1 stays 1.
-        let mean = gas.settled(sum * (R::ONE / weighted(cells.clone(), &weight, |_| R::ONE)));
+        let mean = gas.within_bounds(sum * (R::ONE / weighted(cells.clone(), &weight, |_| R::ONE)));
         cells.for_each(|cell| field.capacity[cell] = mean);
     }
 }

@@ -193,8 +193,7 @@ impl<'a, const D: usize> Run<'a, D> {
             create(&dir.join("frames"))?;
         }
         let series = Series::begin(&dir, file, &setup, watched, &journal, (limits.log_every, ambient))?;
-        let begun = journal.log > 0;
-        let (done, untouched) = (Done::default(), setup.flow.total.floored == 0);
+        let (begun, done, untouched) = (journal.log > 0, Done::default(), setup.flow.total.floored == 0);
         let mut run = Run {
             setup,
             limits,
@@ -209,16 +208,12 @@ impl<'a, const D: usize> Run<'a, D> {
             untouched,
             _lock: lock,
         };
-        if resume && run.setup.flow.time > run.limits.end {
-            let (time, end) = (written(run.setup.flow.time), written(run.limits.end));
-            progress.warn(file.remark(
-                "time.end",
-                format!("is {end}, and the run that --resume goes on with is at t = {time}: nothing is left to do"),
-            ));
-        }
-        if resume && run.goes_on() {
-            // A report tells that a run is finished.
-            frames::forget(&run.dir.join(REPORT))?;
+        if resume {
+            run.warn_of_an_end_before(file, progress);
+            if run.goes_on() {
+                // A report tells that a run is finished.
+                frames::forget(&run.dir.join(REPORT))?;
+            }
         }
         if !begun {
             frames::forget(&run.dir.join(checkpoint::UNTOUCHED))?;
@@ -227,6 +222,15 @@ impl<'a, const D: usize> Run<'a, D> {
             run.checkpoint()?;
         }
         Ok(run)
+    }
+
+    /// A run that is resumed may have gone beyond the end that its case has now.
+    fn warn_of_an_end_before(&self, file: &CaseFile, progress: &mut Progress) {
+        if self.setup.flow.time > self.limits.end {
+            let (time, end) = (written(self.setup.flow.time), written(self.limits.end));
+            let reason = "the run that --resume goes on with is at t";
+            progress.warn(file.remark("time.end", format!("is {end}, and {reason} = {time}: nothing is left to do")));
+        }
     }
 
     /// Has it steps to do?

@@ -64,16 +64,8 @@ pub fn load<const D: usize>(
     Ok((if open { None } else { Some(space) }, solids))
 }
 
-/// The one place where a scene becomes open fractions.
-fn from_scene<const D: usize>(
-    file: &CaseFile,
-    scene: &Paths,
-    edges: &Edges,
-    live: [usize; D],
-    progress: &mut Progress,
-) -> Result<(Space<D>, Vec<Measured<D>>)> {
-    let keys = &file.case.porosity;
-    let Paths(paths) = scene;
+/// The files of a scene, from where the case lies.
+fn scene_files(file: &CaseFile, Paths(paths): &Paths) -> Result<SceneArgs> {
     if paths.is_empty() {
         return Err(file.wrong("porosity.scene", "names no file"));
     }
@@ -90,7 +82,7 @@ fn from_scene<const D: usize>(
             _ => Ok(()),
         }
     })?;
-    if keys.unit.is_some() && paths.iter().all(|path| is_scene(path)) {
+    if file.case.porosity.unit.is_some() && paths.iter().all(|path| is_scene(path)) {
         let reason =
             "is of STL and OBJ files: a scene is in metres, and there each solid of shape \"file\" takes a unit";
         return Err(file.wrong("porosity.unit", reason));
@@ -99,9 +91,20 @@ fn from_scene<const D: usize>(
         return Err(file.wrong("porosity.scene", "the standard input can be read once, and the case came from it"));
     }
     let place = |path: &PathBuf| if is_stream(path) { path.clone() } else { file.resolve(path) };
-    let scene = SceneArgs { scene: paths.iter().map(place).collect(), unit: keys.unit };
+    Ok(SceneArgs { scene: paths.iter().map(place).collect(), unit: file.case.porosity.unit })
+}
+
+/// The one place where a scene becomes open fractions.
+fn from_scene<const D: usize>(
+    file: &CaseFile,
+    scene: &Paths,
+    edges: &Edges,
+    live: [usize; D],
+    progress: &mut Progress,
+) -> Result<(Space<D>, Vec<Measured<D>>)> {
+    let keys = &file.case.porosity;
     // The flow has a grid of its own; that of a scene file is for the scene alone.
-    let (bodies, _) = stages::load(&scene, progress)?;
+    let (bodies, _) = stages::load(&scene_files(file, scene)?, progress)?;
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
     let mut result = stages::measure(&bodies, edges, Options { resistance: true, ..options }, progress)?;
