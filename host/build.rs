@@ -1,8 +1,8 @@
-//! What `voidage --version` tells of the build: commit, features, target.
+//! What `voidage --version` tells of the build: commit, features, target; and where the pages are that `voidage docs` prints.
 //!
 //! The commit is recorded in release builds only: it would have every commit compile a developer's build anew.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() {
@@ -11,9 +11,17 @@ fn main() {
     let commit = if release { commit() } else { None };
     println!("cargo:rustc-env=VOIDAGE_COMMIT={}", commit.unwrap_or_else(|| "not recorded".to_owned()));
     println!("cargo:rustc-env=VOIDAGE_TARGET={}", variable("TARGET"));
+    println!("cargo:rustc-env=VOIDAGE_DOCS={}", pages().display());
     let features: Vec<&str> =
         ["cli", "pictures", "scene", "serde"].into_iter().filter(|name| has_feature(name)).collect();
     println!("cargo:rustc-env=VOIDAGE_FEATURES={}", features.join(" "));
+}
+
+/// The directory of the pages. In a package it is `docs`; in a clone that is a link, which some systems write as a file.
+fn pages() -> PathBuf {
+    let root = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
+    let own = root.join("docs");
+    if own.is_dir() { own } else { root.join("../docs") }
 }
 
 fn variable(name: &str) -> String {

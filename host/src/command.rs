@@ -1,9 +1,10 @@
 //! The command `voidage`: what the user typed, and what is done about it.
 //!
-//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`]; [`stages`], [`obstacles`]; [`riemann`] and [`triangulated`],
+//! In reading order: [`version`], [`interrupt`], [`cli`], [`progress`], [`streams`], [`template`], [`docs`]; [`stages`], [`obstacles`]; [`riemann`] and [`triangulated`],
 //! which `study` and `stress` share; [`porosity`], [`inspect`], [`solve`], [`study`], [`stress`].
 
 pub mod cli;
+pub mod docs;
 pub mod inspect;
 pub mod interrupt;
 pub mod obstacles;

@@ -44,8 +44,15 @@ impl Error {
 
     /// An operating-system error about a file.
     pub fn io(path: &Path, doing: &str, cause: &std::io::Error) -> Self {
-        Error::file(path, format!("cannot {doing}: {cause}"))
+        Error::file(path, format!("cannot {doing}: {}", said(cause)))
     }
+}
+
+/// What the system says of a failure, without its number.
+#[must_use]
+pub fn said(cause: &std::io::Error) -> String {
+    let text = cause.to_string();
+    text.split(" (os error ").next().unwrap_or(&text).to_owned()
 }
 
 /// Characters of a line that a message shows at most.

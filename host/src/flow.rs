@@ -173,6 +173,11 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         self.space.as_ref().map_or(0, Prepared::merged_cells)
     }
 
+    /// The cells of each cluster, which share one state.
+    pub fn clusters(&self) -> Vec<Vec<usize>> {
+        self.porosity().map_or_else(Vec::new, |p| p.clusters().map(Iterator::collect).collect())
+    }
+
     /// Faces where the porosity jumps and the throat map acts.
     pub fn jump_faces(&self) -> usize {
         self.porosity().map_or(0, |p| p.jump_faces())

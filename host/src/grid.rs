@@ -128,7 +128,7 @@ impl Edges {
 fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
     let name = |axis: usize| AXES[axis];
     match error {
-        GridError::NoCell { axis } => (format!("axis {}", name(axis)), "needs at least two edges".into()),
+        GridError::NoCell { axis } => (name(axis).to_owned(), "needs at least two edges".into()),
         GridError::NotFinite { axis, index } => {
             (format!("{}[{index}]", name(axis)), format!("edge {} is not finite", written(edges[axis][index])))
         }
@@ -245,6 +245,16 @@ fn few_enough(count: DVec3) -> std::result::Result<(), String> {
 
 /// Boxes around solids are wider than these by less than this share of their size.
 const BOX_ROOM: f64 = 1e-11;
+
+/// Cells that span the longest side of a scene or a box, unless the user says how many.
+const USUAL_CELLS: f64 = 64.0;
+
+/// The usual size of cubic cells in a box, else around a scene.
+#[must_use]
+pub fn usual_spacing(bounds: Option<[DVec3; 2]>, scene: Option<[DVec3; 2]>) -> f64 {
+    let size = bounds.map_or_else(|| around(scene), Ok).map_or(0.0, |[lo, hi]| (hi - lo).max_element());
+    if size > 0.0 { size / USUAL_CELLS } else { 1.0 }
+}
 
 fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
     let [lo, hi] = scene.ok_or_else(|| Error::new("the scene is empty: give --bounds"))?;

@@ -4,9 +4,9 @@ use clap::error::{ContextKind, ErrorKind};
 use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 use voidage::command::cli::{Cli, Command};
-use voidage::command::progress::{all_said, print, visible};
-use voidage::command::{inspect, interrupt, porosity, solve, stress, study};
-use voidage::error::{Error, Result};
+use voidage::command::progress::{all_said, print, print_aside, visible};
+use voidage::command::{docs, inspect, interrupt, porosity, solve, stress, study};
+use voidage::error::{Error, Result, said};
 
 fn main() -> ExitCode {
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
@@ -15,7 +15,7 @@ fn main() -> ExitCode {
             return;
         }
         voidage::files::discard_unfinished();
-        eprintln!("error: {}", visible(&interrupt::cut_off()));
+        print_aside(&format!("error: {}", visible(&interrupt::cut_off())));
         std::process::exit(130);
     });
     let command = match Cli::try_parse() {
@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     match execute(command).and_then(|()| all_said()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", visible(&error.to_string()));
+            print_aside(&format!("error: {}", visible(&error.to_string())));
             ExitCode::from(match error.usage {
                 _ if interrupt::asked() => 130,
                 true => 2,
@@ -43,7 +43,7 @@ fn told(mut answer: clap::Error) -> ExitCode {
     }
     match answer.print() {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            eprintln!("error: cannot write to standard output: {e}");
+            print_aside(&format!("error: cannot write to standard output: {}", said(&e)));
             ExitCode::FAILURE
         }
         _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2)),
@@ -57,6 +57,7 @@ fn execute(command: Command) -> Result<()> {
         Command::Study(args) => study::study(&args),
         Command::Stress(args) => stress::stress(&args),
         Command::Solve(args) => solve::run::solve(&args),
+        Command::Docs { page } => docs::docs(page.as_deref()),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "voidage", &mut script);

@@ -1,8 +1,9 @@
 //! Pictures of fields, from the pixel upwards.
 //!
-//! In reading order: `accents`, `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`svg`], [`axis`], [`panels`].
+//! In reading order: `accents`, `alphabets`, `font`, [`canvas`], [`colour`], [`ticks`], [`heatmap`], [`figure`], [`png`]; [`svg`], [`axis`], [`panels`].
 
 mod accents;
+mod alphabets;
 pub mod axis;
 pub mod canvas;
 pub mod colour;

@@ -23,8 +23,11 @@ pub fn is_file(path: &Path) -> Result<()> {
 /// The text of a file, without a byte order mark.
 ///
 /// # Errors
-/// It cannot be read, or is no UTF-8.
+/// It is a directory, cannot be read, or is no UTF-8.
 pub fn read(path: &Path) -> Result<String> {
+    if path.is_dir() {
+        return Err(Error::file(path, "is a directory, not a file"));
+    }
     of_bytes(path, std::fs::read(path).map_err(|e| Error::io(path, "read", &e))?)
 }
 

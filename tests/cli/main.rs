@@ -1,6 +1,7 @@
 //! The command, as from a shell.
 
 mod bad_inputs;
+mod docs;
 mod drag;
 mod forces;
 mod inspect;

@@ -49,6 +49,31 @@ fn packages_hold_licences_and_a_page_of_their_own() {
     }
 }
 
+/// Targets of the links in a page that are files, without what stands behind #.
+fn targets(text: &str) -> Vec<String> {
+    // What stands between fences is code, not links.
+    let text: String = text.split("```").step_by(2).collect();
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let files = targets.filter_map(|target| target.split('#').next()).filter(|file| !file.is_empty());
+    files.filter(|file| !file.contains("://")).map(str::to_owned).collect()
+}
+
+/// The pages that the program prints are in its package, and so is what they link to.
+#[test]
+fn the_package_holds_the_pages() {
+    let files = listed("voidage");
+    let pages: Vec<&String> = files.iter().filter(|f| f.starts_with("docs/") && f.matches('/').count() == 1).collect();
+    let names = voidage::command::docs::PAGES.map(|(name, _, _)| format!("docs/{name}.md"));
+    assert_eq!(pages.into_iter().collect::<BTreeSet<_>>(), names.iter().collect());
+    for page in names {
+        let text = fs::read_to_string(repository().join(&page)).expect("a page");
+        for target in targets(&text) {
+            let inside = target.strip_prefix("../").map_or(format!("docs/{target}"), str::to_owned);
+            assert!(files.contains(&inside), "{page}: {target} is not in the package");
+        }
+    }
+}
+
 /// Links of the pages of the repository lead somewhere.
 #[test]
 fn links_of_the_pages_lead_to_files() {
@@ -57,15 +82,9 @@ fn links_of_the_pages_lead_to_files() {
     let mut seen = 0;
     for page in docs.filter(|p| p.extension().is_some_and(|e| e == "md")).chain(pages) {
         let text = fs::read_to_string(&page).expect("a page");
-        // What stands between fences is code, not links.
-        let text: String = text.split("```").step_by(2).collect();
-        for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            let file = target.split('#').next().unwrap_or("");
-            if file.is_empty() || file.contains("://") {
-                continue;
-            }
+        for target in targets(&text) {
             seen += 1;
-            assert!(page.with_file_name(file).exists(), "{}: {target} leads nowhere", page.display());
+            assert!(page.with_file_name(&target).exists(), "{}: {target} leads nowhere", page.display());
         }
     }
     assert!(seen > 10, "links were seen");

@@ -98,3 +98,42 @@ fn regions_without_a_middle() {
         assert!(planes(&at, 1, at_cell).iter().map(|(_, p)| *p).eq(kept(&at, 1)), "{region}");
     }
 }
+
+/// A small cell merged with one of the region begins with its pressure: a bar beside the ball, thinner than a cell, does not set the colours.
+#[test]
+fn merged_cells_of_the_region_do_not_set_the_colours() {
+    let at = Scratch::new();
+    let bar = "[[solid]]\nshape = \"box\"\nmin = [0, 0.605, 0]\nmax = [1, 0.79, 1]\n";
+    fs::write(at.file("bar.toml"), bar).expect("a scene");
+    let region = "center = [0.35, 0.45, 0.25], radius = 0.15, p = 8e5";
+    let case = BLAST.replace("center = [0.35, 0.75, 0.25], radius = 0.15, p = 8e5", region);
+    let case =
+        case.replace("end = 6e-4", "max_steps = 1").replace("[output]", "[porosity]\nscene = \"bar.toml\"\n[output]");
+    let said = stdout(&solved(&at, &case, "out", &[]));
+    assert!(!said.contains(" 0 merged"), "{said}");
+    let colours = &json(&at.file("out/report.json"))["colours"]["overpressure"];
+    // The first step carries less than a tenth of 700 kPa into the cells beside the region.
+    assert!(colours[1].as_f64().is_some_and(|high| high > 0.0 && high < 70.0), "{colours}");
+}
+
+/// Two gases have pictures of γ; where there is one gas, none are left of a run before.
+#[test]
+fn gamma_of_two_gases_is_drawn() {
+    let at = Scratch::new();
+    let names = |at: &Scratch| -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(at.file("out/frames"))
+            .expect("frames")
+            .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned())
+            .filter(|name| name.starts_with("gamma_"))
+            .collect();
+        names.sort();
+        names
+    };
+    let case = BLAST.replace("end = 6e-4", "max_steps = 1");
+    solved(&at, &case.replace("p = 8e5", "p = 8e5, gamma = 1.25"), "out", &["-q"]);
+    assert_eq!(names(&at), ["gamma_0000.png", "gamma_0001.png"]);
+    let drawn = fs::read(at.file("out/frames/gamma_0000.png")).expect("a picture");
+    assert_ne!(drawn, fs::read(at.file("out/frames/pressure_0000.png")).expect("a picture"));
+    solved(&at, &case, "out", &["-q", "--force"]);
+    assert!(names(&at).is_empty());
+}

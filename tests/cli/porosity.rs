@@ -161,7 +161,7 @@ fn errors_name_file_place_and_reason() {
     let out = Scratch::new();
     let grids = [
         ("x = [0, 2, 1]\ny = [0, 1]\nz = [0, 1]\n", "x[2]: edge 1 does not lie above the one before it, 2"),
-        ("x = [0]\ny = [0, 1]\nz = [0, 1]\n", "axis x: needs at least two edges"),
+        ("x = [0]\ny = [0, 1]\nz = [0, 1]\n", "key x: needs at least two edges"),
         ("x = [0, nan]\ny = [0, 1]\nz = [0, 1]\n", "x[1]: edge nan is not finite"),
         ("x = [0, 1]\ny = [0, 1]\nz = [0, \n", "line"),
         ("x = [0, 1]\n", "needs all of x, y, z"),
@@ -214,7 +214,9 @@ fn misuse_exits_with_two() {
     }
     assert_eq!(voidage(&[&"porosity"]).status.code(), Some(2));
     // A negative number is a value that is wrong, not an option that is not known.
-    for (option, reason) in [("--tol", "needs a fraction from 0 to 1"), ("--depth", "-1 is not in 0..=10")] {
+    for (option, reason) in
+        [("--tol", "needs a fraction from 0 to 1"), ("--depth", "needs a whole number from 0 to 10")]
+    {
         let message = stderr(&voidage(&[&"porosity", &mesh, &option, &"-1"]));
         assert!(message.contains(reason), "{option}: {message}");
     }

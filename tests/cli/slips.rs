@@ -234,6 +234,136 @@ fn surface_counts_and_is_told_once() {
     assert!(said.contains("1 sheet has no thickness") && said.lines().count() == 1, "{said}");
 }
 
+/// Texts that are no TOML, and what is said of them: never the words of the reader of TOML.
+#[test]
+fn broken_texts_are_told_in_the_words_of_their_writer() {
+    let solid = "[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n";
+    let no_value = "this is no value: numbers are written as 2.5 or 1e-3";
+    let backslash = "a backslash means something else in double quotes";
+    let key = "a key or a name is missing here";
+    for (line, said) in [
+        ("radius 2", "`=` and a value are missing behind this key"),
+        ("name: \"a\"", "between a key and its value stands `=`, not `:`"),
+        ("// a remark", "a comment begins with #"),
+        ("name = \"a\" // a remark", "a comment begins with #"),
+        ("; a remark", "a comment begins with #"),
+        ("<<<<<<< HEAD", "this cannot be read: a line is a key with a value"),
+        ("}", "this cannot be read: a line is a key with a value"),
+        ("]", "this bracket has no partner"),
+        ("[solid]]", "solid stands here as [solid] and before in line 1 as [[solid]]"),
+        ("[grid]]", "nothing may follow the head of a table on its line but a comment"),
+        ("[[solid]", "`]]` is missing"),
+        ("[]", key),
+        ("[a..b]", key),
+        ("= 3", key),
+        ("gr\u{f6}sse = 3", "this cannot stand in a key"),
+        ("porosity\u{a0}= 1", "this cannot stand in a key"),
+        ("porosity = 0,5", "decimals are written with a point"),
+        ("porosity = 0.5.5", no_value),
+        ("porosity = 1.5e3.2", no_value),
+        ("porosity = 50%", no_value),
+        ("porosity = 0b12", "this is no number"),
+        ("porosity = 0o9", "this is no number"),
+        ("porosity = null", no_value),
+        ("porosity = Infinity", no_value),
+        ("porosity = 1979-13-01", no_value),
+        ("porosity = +-1", "a number has one sign at most"),
+        ("porosity = 1_", "`_` may only stand between digits"),
+        ("porosity = 0x10", "porosity takes a number in decimal digits"),
+        ("name = \"a\\q\"", backslash),
+        ("name = \"C:\\Users\"", backslash),
+        ("name = \"\\U00110000\"", backslash),
+        ("name = \"\"\"abc", "has no three at its end"),
+        ("name = '''abc", "has no three at its end"),
+        ("name = \"a\nb\"", "line 5, column 10: this text has no closing quote"),
+        ("translate = [,1, 2, 3]", "one comma is too many in this list"),
+        ("translate = [1,, 2, 3]", "one comma is too many in this list"),
+        ("translate = [1, 2, 3\nname = 1", "a comma is missing here, or the `]` of the list before"),
+        ("translate = (1, 2, 3)", "lists stand in brackets: `[1, 2, 3]`"),
+        ("translate = {1, 2, 3}", "lists stand in brackets, `[1, 2, 3]`"),
+        ("name = \"a\"\rcd = 1", "lines end in a carriage return alone"),
+    ] {
+        let at = Scratch::new();
+        std::fs::write(at.file("s.toml"), format!("{solid}{line}\n")).expect("a scene");
+        let output = voidage(&[&"inspect", &at.file("s.toml")]);
+        let told = stderr(&output);
+        let first = told.lines().next().unwrap_or("");
+        assert!(output.status.code() == Some(1) && first.contains(said), "{line}\n{told}");
+        assert!(first.contains("line 5, column ") || first.contains("line 6, column 1:"), "{line}\n{told}");
+        for word in ["expected", "invalid", "float", "unquoted", "unicode", "inline", "array"] {
+            assert!(!first.contains(word), "{line}\n{told}");
+        }
+    }
+}
+
+/// What a grid gets wrong is told where it stands.
+#[test]
+fn axes_of_a_grid_are_told_at_their_line() {
+    for (x, said) in [
+        ("[]", "line 3, column 5: key grid.x: needs at least two edges"),
+        (
+            "{ points = [4, 0], cells = [2] }",
+            "line 3, column 5: key grid.x: points must ascend: 0 does not lie above 4",
+        ),
+        ("{ points = [0, nan], cells = [2] }", "points must ascend: nan does not lie above 0"),
+    ] {
+        let (at, grid) = (Scratch::new(), format!("\n[grid]\nx = {x}\n"));
+        let told = stderr(&solve(&at, &[&grid, GAS, INITIAL, WALLS, TIME].concat(), "out", &[]));
+        assert!(told.contains(said), "{told}");
+    }
+}
+
+/// Tables of a list that are one table, as the head of a list has two pairs of brackets.
+#[test]
+fn one_table_in_place_of_a_list() {
+    let patch = "[boundary.patch]\nside = \"x_max\"\ntype = \"wall\"\n";
+    let told = stderr(&solve(&Scratch::new(), &[GRID, GAS, INITIAL, WALLS, patch, TIME].concat(), "out", &[]));
+    assert!(told.contains("key boundary.patch: takes a list: each of its tables has a head"), "{told}");
+    assert!(told.contains("[[boundary.patch]]"), "{told}");
+    let probe = "[output]\nprobes = { at = [0, 0, 0] }\n";
+    let told = stderr(&solve(&Scratch::new(), &[GRID, GAS, INITIAL, WALLS, TIME, probe].concat(), "out", &[]));
+    assert!(told.contains("key output.probes: takes a list, not a table"), "{told}");
+}
+
+/// Numbers of the command line are told their range in words.
+#[test]
+fn whole_numbers_of_the_command_line_have_a_range() {
+    let sphere = "[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n";
+    let at = Scratch::new();
+    fs::write(at.file("s.toml"), sphere).expect("a scene");
+    for (option, value, range) in [
+        ("--threads", "0", "from 1 to 1024"),
+        ("--threads", "two", "from 1 to 1024"),
+        ("--threads", "99999", "from 1 to 1024"),
+        ("--depth", "-1", "from 0 to 10"),
+        ("--depth", "11", "from 0 to 10"),
+    ] {
+        let output = run(&at, &["porosity", "s.toml", option, value]);
+        let told = stderr(&output);
+        assert!(output.status.code() == Some(2), "{told}");
+        assert!(told.contains(&format!("needs a whole number {range}")) && !told.contains("digit"), "{told}");
+    }
+    // The grid around a scene is in round numbers whatever room the box of a round solid has.
+    let told = stderr(&run(&at, &["porosity", "s.toml", "--slice", "x=9", "--png", "s.png"]));
+    assert!(told.contains("the grid reaches from -1.03125 to 1.03125 along x"), "{told}");
+    let told = stderr(&run(&at, &["solve", "."]));
+    assert!(told.contains(".: is a directory, not a file"), "{told}");
+    let told = stderr(&run(&at, &["solve", "no.toml"]));
+    assert!(told.contains("No such file or directory\n"), "{told}");
+}
+
+/// JSON where only TOML is read is called by its name.
+#[test]
+fn json_is_called_by_its_name() {
+    let at = Scratch::new();
+    std::fs::write(at.file("s.json"), "{\"solid\": []}").expect("a file");
+    std::fs::write(at.file("s.toml"), "\n {\"solid\": []}").expect("a file");
+    let told = stderr(&voidage(&[&"inspect", &at.file("s.toml")]));
+    assert!(told.contains("line 2, column 2: this is JSON; scenes, cases and studies are TOML"), "{told}");
+    let told = stderr(&voidage(&[&"solve", &at.file("s.json")]));
+    assert!(told.contains("line 1, column 1: this is JSON"), "{told}");
+}
+
 /// A run that cannot go on tells its time in few digits.
 #[test]
 fn small_times_are_short() {

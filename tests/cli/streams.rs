@@ -239,3 +239,20 @@ fn solids_are_told_one_by_one() {
         }
     }
 }
+
+/// Where the standard error takes no more, the run goes on: nobody reads it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_error_is_no_failure() {
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").expect("a device");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(program());
+        command.args(arguments).stderr(full()).output().expect("the program runs").status.code()
+    };
+    assert_eq!(run(&["inspect", "no.stl"]), Some(1));
+    assert_eq!(run(&["docs", "no"]), Some(2));
+    let scene = fixture("cad_skid.stl");
+    let scene = scene.to_str().expect("a path");
+    assert_eq!(run(&["porosity", scene, "--spacing", "0.5", "-v"]), Some(0));
+    assert_eq!(run(&["porosity", scene, "--spacing", "0.5", "--no-such"]), Some(2));
+}

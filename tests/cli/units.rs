@@ -42,6 +42,19 @@ fn temperatures_in_celsius_are_doubted() {
     assert!(text.contains("not in °C") && text.contains("not in kPa or bar"), "{text}");
 }
 
+/// The gas constant of a mole makes air 35 times too dense.
+#[test]
+fn the_gas_constant_of_a_mole_is_doubted() {
+    for r in ["8.314", "8314.46", "8.31"] {
+        let text = said(&format!("gas_constant = {r}"), "T = 288, p = 101325", "\"wall\"", "");
+        assert!(text.contains(&format!("key gas.gas_constant: {r} is that of a mole of any gas")), "{text}");
+    }
+    for (constant, state) in [("gas_constant = 8.4", "T = 288, p = 101325"), ("gas_constant = 8.314", "T = 1, p = 1")] {
+        let text = said(constant, state, "\"wall\"", "");
+        assert!(!text.contains("mole"), "{text}");
+    }
+}
+
 #[test]
 fn a_gas_constant_in_kilojoules_is_doubted() {
     let text = said("gas_constant = 0.287", "T = 288, p = 101325", "\"wall\"", "");

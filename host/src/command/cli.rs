@@ -14,12 +14,18 @@ use std::path::PathBuf;
 
 /// Volume and area porosity of real geometry on structured grids.
 #[derive(Debug, Parser)]
-#[command(name = "voidage", version = VERSION, about, max_term_width = 100)]
+#[command(name = "voidage", version = VERSION, about, max_term_width = 100, after_help = FIRST_STEPS)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
+
+/// Below the list of commands.
+const FIRST_STEPS: &str = "First steps: voidage porosity FILE.stl --png FILE.png
+             voidage porosity --template-scene > scene.toml
+             voidage solve --template > case.toml
+Every key of these files: voidage docs scene, voidage docs case";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -34,6 +40,11 @@ pub enum Command {
     Stress(StressArgs),
     /// Flow a gas through a porous space, as a case file says
     Solve(SolveArgs),
+    /// Print a page of the manual: every key of every file, every field of every output; without a name, the list of pages
+    Docs {
+        /// The page, such as case or scene
+        page: Option<String>,
+    },
     /// Print a completion script for a shell
     Completions {
         /// The shell
@@ -173,7 +184,7 @@ pub struct PorosityArgs {
     #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol, allow_negative_numbers = true)]
     pub tol: f64,
     /// How often a cell without a proof may be divided by two (default: 6; 3 with --leaf solid or half)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_depth, allow_negative_numbers = true)]
     pub depth: Option<u32>,
     /// What becomes of parts still cut when a subdivision by GJK ends
     #[arg(long, value_enum, default_value_t = Leaf::Plane)]
@@ -200,7 +211,7 @@ pub struct PorosityArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "no_areas")]
     pub zones: Option<PathBuf>,
     /// Number of threads (default: all cores)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// Write fields for ParaView (.vtr), a picture (.png) or a report (.json), by the suffix; - is the standard output, as it is for all files
     #[arg(short, long, value_name = "FILE")]
@@ -247,7 +258,7 @@ pub struct SolveArgs {
     #[arg(long)]
     pub refine_check: bool,
     /// Number of threads (default: all cores)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// Go on from the checkpoint in the output directory
     #[arg(long)]
@@ -313,7 +324,7 @@ pub struct StressArgs {
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
     /// Number of cases at a time, each on one thread (default: all cores)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// What goes to the terminal.
     #[command(flatten)]
@@ -328,6 +339,20 @@ fn numbers<T: std::str::FromStr, const N: usize>(text: &str, separator: char) ->
     let values: Result<Vec<T>, String> =
         parts.iter().map(|p| p.parse().map_err(|_| format!("'{p}' is no number that fits here"))).collect();
     values?.try_into().map_err(|_| "wrong count".to_owned())
+}
+
+/// A whole number between two others.
+fn whole<T: TryFrom<u32>>(text: &str, [low, high]: [u32; 2]) -> Result<T, String> {
+    let number = text.parse().ok().filter(|n| (low..=high).contains(n));
+    number.and_then(|n| T::try_from(n).ok()).ok_or_else(|| format!("needs a whole number from {low} to {high}"))
+}
+
+fn parse_depth(text: &str) -> Result<u32, String> {
+    whole(text, [0, 10])
+}
+
+fn parse_threads(text: &str) -> Result<u16, String> {
+    whole(text, [1, 1024])
 }
 
 fn parse_cells(text: &str) -> Result<[usize; 3], String> {

@@ -13,7 +13,7 @@ use super::streams::{self, INPUT, is_stream, text_of};
 use super::template;
 use crate::error::Result;
 use crate::geometry::bodies::Bodies;
-use crate::grid::{self, Edges, GridSpec};
+use crate::grid::{self, Edges, GridSpec, usual_spacing};
 use crate::porosity::congestion::congestion;
 use crate::porosity::throat::Faces;
 use crate::porosity::{Method, Options};
@@ -82,8 +82,8 @@ fn spec(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> GridSpec {
         (_, Some(spacing), _) => GridSpec::Spacing(spacing, args.bounds),
         (.., Some(edges)) if args.bounds.is_none() => GridSpec::Edges(edges),
         _ => {
-            let size = args.bounds.or_else(|| bodies.bounds()).map_or(1.0, |[lo, hi]| (hi - lo).max_element());
-            GridSpec::Spacing(if size > 0.0 { size / 64.0 } else { 1.0 }, args.bounds)
+            let spacing = usual_spacing(args.bounds, bodies.bounds());
+            GridSpec::Spacing(spacing, args.bounds)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What the user sees while and after it runs.
 
 use crate::command::cli::TalkArgs;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, said};
 use crate::picture::not_drawn;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
@@ -19,9 +19,16 @@ use std::time::{Duration, Instant};
 pub fn print(bytes: &[u8]) -> Result<()> {
     let mut out = std::io::stdout();
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::new(format!("cannot write to standard output: {e}"))),
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::new(format!("cannot write to standard output: {}", said(&e))))
+        }
         _ => Ok(()),
     }
+}
+
+/// Print a line beside the results, to standard error. Where that takes no more, nobody reads it: no failure of the work.
+pub fn print_aside(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// A sentence as a terminal may see it: control characters, which names in files may hold, are spelled out.
@@ -71,7 +78,7 @@ impl Meter {
     /// Tell it.
     pub fn tell(&self, sentence: &str) {
         match self.plain {
-            Some(_) => eprintln!("{sentence}"),
+            Some(_) => print_aside(sentence),
             None => self.bar.set_message(sentence.to_owned()),
         }
     }
@@ -145,7 +152,7 @@ impl Progress {
     pub fn warn(&mut self, sentence: impl Into<String>) {
         let sentence = sentence.into();
         if !self.quiet {
-            eprintln!("warning: {}", visible(&sentence));
+            print_aside(&format!("warning: {}", visible(&sentence)));
         }
         self.warnings.push(sentence);
     }
@@ -168,7 +175,7 @@ impl Progress {
         let sentence = visible(sentence.as_ref());
         match (self.quiet, self.taken) {
             (true, _) => {}
-            (false, true) => eprintln!("{sentence}"),
+            (false, true) => print_aside(&sentence),
             (false, false) => {
                 if let Err(error) = print(format!("{sentence}\n").as_bytes()) {
                     UNSAID.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
@@ -180,7 +187,9 @@ impl Progress {
     /// Tells that `work` goes on, unless the run is quiet, as long as what is returned lives.
     #[must_use]
     pub fn goes_on(&self, work: String) -> Option<Heartbeat> {
-        let tell = move |time: Duration| eprintln!("{}: {:.0} s so far", visible(&work), time.as_secs_f64());
+        let tell = move |time: Duration| {
+            print_aside(&format!("{}: {:.0} s so far", visible(&work), time.as_secs_f64()));
+        };
         (!self.quiet).then(|| Heartbeat::new(PAUSE, tell))
     }
 
@@ -218,7 +227,7 @@ impl Progress {
         let seconds = begin.elapsed().as_secs_f64();
         *self.seconds.entry(name).or_default() += seconds;
         if self.verbose {
-            eprintln!("{name:>10} {seconds:9.4} s");
+            print_aside(&format!("{name:>10} {seconds:9.4} s"));
         }
         result
     }

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::keys::reader::{meant, misfit, nearest, not_known};
 use crate::keys::value::{Entry, Value};
 use crate::keys::{self, PlacedValue, Source, json};
-use crate::words::counted;
+use crate::words::{counted, written};
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -272,6 +272,9 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
     let counts = [("cells", Some(cells.len())), ("ratios", ratios.as_ref().map(Vec::len))];
     if given < 2 {
         return Err(format!("needs at least two points, not {given}"));
+    }
+    if let Some(pair) = points.windows(2).find(|pair| !(pair[0] < pair[1])) {
+        return Err(format!("points must ascend: {} does not lie above {}", written(pair[1]), written(pair[0])));
     }
     for (what, n) in counts.into_iter().filter_map(|(what, n)| Some((what, n?))) {
         if n != needed {

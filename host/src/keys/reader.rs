@@ -211,6 +211,15 @@ impl Reader<'_> {
         }
     }
 
+    /// The value is a table under a head such as `[boundary.patch]`, and not one in braces.
+    fn is_under_a_head(&self) -> bool {
+        let known = |entry: &super::value::Entry| Some((self.node.span.as_ref()?.end, entry.node.span.as_ref()?.end));
+        match &self.node.value {
+            Value::Table(entries) => entries.iter().filter_map(known).any(|(table, last)| last > table),
+            _ => false,
+        }
+    }
+
     fn member(&self, key: &str) -> String {
         if self.key.is_empty() { key.to_owned() } else { format!("{}.{key}", self.key) }
     }
@@ -305,6 +314,11 @@ impl<'de> Deserializer<'de> for &Reader<'_> {
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
         match self.node.value {
             Value::List(_) => self.deserialize_any(visitor),
+            Value::Table(_) if self.is_under_a_head() => {
+                let reason =
+                    format!("takes a list: each of its tables has a head with two pairs of brackets, [[{}]]", self.key);
+                Err(self.place(de::Error::custom(reason)))
+            }
             _ => Err(self.takes("a list")),
         }
     }

@@ -31,14 +31,22 @@ impl<'a> Source<'a> {
     /// # Errors
     /// It is none.
     pub fn toml(&self) -> Result<toml::Spanned<DeTable<'a>>> {
-        DeTable::parse(self.text).map_err(|e| {
-            let span = e.span().unwrap_or(0..0);
-            let reason = in_words(self.text, &span, e.message());
-            match e.span() {
-                Some(span) => self.error(span, reason),
-                None => Error::file(self.path, reason),
-            }
-        })
+        if let Some(json) = self.as_json_would_begin() {
+            return Err(self.error(json, "this is JSON; scenes, cases and studies are TOML, grids may be either"));
+        }
+        let (table, slips) = DeTable::parse_recoverable(self.text);
+        let place = |e: &toml::de::Error| e.span().unwrap_or(0..0);
+        // One slip leads to others further down, which are found before it.
+        match slips.iter().min_by_key(|e| place(e).start) {
+            None => Ok(table),
+            Some(e) => Err(self.error(place(e), in_words(self.text, &place(e), e.message()))),
+        }
+    }
+
+    /// The brace that JSON begins with, if the text begins so.
+    fn as_json_would_begin(&self) -> Option<Range<usize>> {
+        let at = self.text.len() - self.text.trim_start().len();
+        self.text[at..].starts_with('{').then_some(at..at + 1)
     }
 
     /// The text is JSON rather than TOML: the file is called so, or begins as no TOML does.

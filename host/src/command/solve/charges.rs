@@ -16,8 +16,8 @@ const ROUNDING: f64 = 1e-9;
 /// Regions above the ambient pressure.
 #[derive(Debug, Clone, Default)]
 pub struct Charges {
-    /// Of each cell, whether such a region holds some of it and it begins above the ambient pressure, whatever regions after that one left of it. Empty if no cell does,
-    /// or no other open cell is left.
+    /// Of each cell, whether such a region holds some of it and it begins above the ambient pressure, whatever regions after that one left of it; or it
+    /// shares its state with such a cell. Empty if no cell does, or no other open cell is left.
     held: Vec<bool>,
     /// Middle of the first such region, in m; none along axes on which it has no ends.
     middle: Option<[Option<f64>; 3]>,
@@ -48,8 +48,18 @@ impl Charges {
             charges.held.resize(flow.len(), false);
             above.for_each(|cell| charges.held[cell] = true);
         }
+        charges.take_whole_clusters(flow);
         charges.leave_some(flow.beta_v());
         Ok(charges)
+    }
+
+    /// Small cells that share their state with one of these begin with its pressure, too.
+    fn take_whole_clusters<const D: usize>(&mut self, flow: &Flow<f64, D>) {
+        for cluster in flow.clusters() {
+            if cluster.iter().any(|&cell| self.hold(cell)) {
+                cluster.iter().for_each(|&cell| self.held[cell] = true);
+            }
+        }
     }
 
     /// Where no open cell is left beside them, none is left out.

@@ -131,7 +131,7 @@ pub fn remove_old(dir: &Path) -> Result<()> {
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         let number = stem.rsplit('_').next().unwrap_or_default();
         let numbered = number.len() >= 4 && number.bytes().all(|b| b.is_ascii_digit());
-        let ours = matches!(stem.strip_suffix(number), Some("flow_" | "speed_" | "pressure_" | ""));
+        let ours = matches!(stem.strip_suffix(number), Some("flow_" | "speed_" | "pressure_" | "gamma_" | ""));
         if numbered && ours || stem == SLICES && path.is_dir() {
             let removed = if path.is_dir() { std::fs::remove_dir_all(&path) } else { std::fs::remove_file(&path) };
             removed.map_err(|e| Error::io(&path, "remove", &e))?;

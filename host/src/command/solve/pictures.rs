@@ -1,4 +1,4 @@
-//! Pictures of frames: speed and overpressure in three planes, with one range of colours for all frames of a run.
+//! Pictures of frames: speed and overpressure in three planes, and γ of two gases, with one range of colours for all frames of a run.
 //!
 //! A frame is drawn when it is reached, with the range that the run has had so far, unless the case gives one; its planes are kept in `frames/slices`,
 //! and at the end of the run all frames are drawn again with the range of the whole run. That of the overpressure is the one outside the regions that a blast starts
@@ -19,6 +19,7 @@ use crate::picture::ticks::number;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
+use voidage_core::flow::Gas;
 
 /// The point through which pictures are cut lies within the grid.
 ///
@@ -61,8 +62,20 @@ pub struct Colours {
     pub is_outside: bool,
 }
 
-/// Names over the colours, and of the files.
-const FIELDS: [(&str, &str); 2] = [("speed [m/s]", "speed"), ("overpressure [kPa]", "pressure")];
+/// Names over the colours, of the files, and of the units.
+const FIELDS: [(&str, &str, &str); 2] = [("speed [m/s]", "speed", " m/s"), ("overpressure [kPa]", "pressure", " kPa")];
+
+/// A picture of a field.
+struct Picture<'a> {
+    /// What stands over the colours.
+    name: &'a str,
+    /// Behind a number, with the space between; empty of what has none.
+    unit: &'a str,
+    values: &'a [f64],
+    /// Ends of the colours.
+    range: [f64; 2],
+    path: PathBuf,
+}
 
 /// Pascals in the unit of the pictures.
 const KILO: f64 = 1e3;
@@ -129,19 +142,21 @@ impl Pictures {
         dir: &Path,
     ) -> Result<()> {
         let over = shot.pressure.iter().map(|p| (p - self.ambient) / KILO).collect();
-        let mut fields = [shot.speed(), over];
-        if let Some(beta) = setup.flow.beta_v() {
-            for values in &mut fields {
-                values.iter_mut().zip(beta).filter(|(_, b)| **b == 0.0).for_each(|(v, _)| *v = f64::NAN);
-            }
-        }
+        let fields = [shot.speed(), over].map(|values| without_solids(setup, values));
         let planes = fields.each_ref().map(|values| self.cut(setup, values));
         self.see(&planes);
         if self.given.contains(&None) {
             let both = planes.concat();
             npy::write_all(&dir.join(SLICES), &[(format!("{n:04}"), [both.len() / 2, 2, 1], &both)])?;
         }
-        self.draw(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))
+        self.draw_both(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))?;
+        // No mixture of gases has a γ beyond those of the case: one range from the beginning.
+        if let (Some(gammas), Gas::Mixed { gammas: range }) = (&shot.gamma, setup.flow.gas()) {
+            let within = gammas.iter().map(|g| g.clamp(range[0], range[1])).collect(); // but for rounding
+            let (values, path) = (&without_solids(setup, within)[..], dir.join(format!("gamma_{n:04}.png")));
+            self.draw(setup, &Picture { name: "gamma", unit: "", values, range, path }, time)?;
+        }
+        Ok(())
     }
 
     /// Draws all frames again with the range of the whole run, if it is not given.
@@ -164,7 +179,7 @@ impl Pictures {
                     0 => self.see(&planes),
                     _ => {
                         let fields = planes.each_ref().map(|values| self.spread(setup, values));
-                        self.draw(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))?;
+                        self.draw_both(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))?;
                     }
                 }
             }
@@ -204,37 +219,44 @@ impl Pictures {
         self.outside = outside.fold(self.outside, |range, (&v, _)| widened(range, v));
     }
 
-    fn draw<const D: usize>(
+    /// Speed and overpressure, with the colours of the run so far.
+    fn draw_both<const D: usize>(
         &self,
         setup: &Setup<D>,
         fields: [&[f64]; 2],
         time: f64,
         paths: [PathBuf; 2],
     ) -> Result<()> {
+        let colours = self.colours();
+        let ranges = [colours.speed, colours.overpressure];
+        for (n, path) in paths.into_iter().enumerate() {
+            let (name, _, unit) = FIELDS[n];
+            self.draw(setup, &Picture { name, unit, values: fields[n], range: ranges[n], path }, time)?;
+        }
+        Ok(())
+    }
+
+    fn draw<const D: usize>(&self, setup: &Setup<D>, picture: &Picture, time: f64) -> Result<()> {
         let edges = setup.edges.0.each_ref().map(|e| &e[..]);
         let blocked: Option<Vec<f64>> = setup.flow.beta_v().map(|beta| beta.iter().map(|b| 1.0 - b).collect());
-        let (title, moment) = (&self.title[..], format!(" · t = {} s", number(time)));
+        let (title, moment) = (&self.title[..], &format!(" · t = {} s", number(time))[..]);
         let solid = setup.space.is_some_and(|s| s.closed_cells > 0);
         let note = png::grid_note(edges, "m")
             + if solid { " · solid in mauve" } else { "" }
             + if blocked.is_some() { " · partly solid hatched" } else { "" };
         let (map, unit, ends, at) = (&ColourMap::sequential(), "m", BEYOND, self.at);
-        let colours = self.colours();
-        for (n, path) in paths.iter().enumerate() {
-            let (name, range) = (FIELDS[n].0, [colours.speed, colours.overpressure][n]);
-            let (values, moment) = (fields[n], &moment[..]);
-            let [low, high] = self.cut(setup, values).into_iter().fold(range, |[a, b], v| [a.min(v), b.max(v)]);
-            let told = [low < range[0], high > range[1]];
-            let highest = format!("{note} · highest value {} {}", number(high), ["m/s", "kPa"][n]);
-            let note = if told[1] { &highest[..] } else { &note[..] };
-            let figure = Figure { title, moment, note, edges, unit, values, at, name, range, ends, told, map };
-            let canvas = match &blocked {
-                Some(blocked) => figure.draw_hatched(blocked),
-                None => figure.draw(),
-            };
-            canvas.map_err(|reason| Error::file(path, reason))?.write(path)?;
-        }
-        Ok(())
+        let Picture { name, values, range, ref path, .. } = *picture;
+        let [low, high] = self.cut(setup, values).into_iter().fold(range, |[a, b], v| [a.min(v), b.max(v)]);
+        let told = [low < range[0], high > range[1]];
+        let highest =
+            if told[1] { format!(" · highest value {}{}", number(high), picture.unit) } else { String::new() };
+        let note = &(note + &highest)[..];
+        let figure = Figure { title, moment, note, edges, unit, values, at, name, range, ends, told, map };
+        let canvas = match &blocked {
+            Some(blocked) => figure.draw_hatched(blocked),
+            None => figure.draw(),
+        };
+        canvas.map_err(|reason| Error::file(path, reason))?.write(path)
     }
 }
 
@@ -246,9 +268,16 @@ impl fmt::Display for Colours {
     }
 }
 
+/// A field with NaN in closed cells.
+fn without_solids<const D: usize>(setup: &Setup<D>, mut values: Vec<f64>) -> Vec<f64> {
+    let beta = setup.flow.beta_v().unwrap_or_default();
+    values.iter_mut().zip(beta).filter(|(_, b)| **b == 0.0).for_each(|(v, _)| *v = f64::NAN);
+    values
+}
+
 /// A range that holds 0 and nothing else yet.
 const NOTHING: [f64; 2] = [0.0, 0.0];
 
 fn file_names(dir: &Path, n: usize) -> [PathBuf; 2] {
-    FIELDS.map(|(_, name)| dir.join(format!("{name}_{n:04}.png")))
+    FIELDS.map(|(_, name, _)| dir.join(format!("{name}_{n:04}.png")))
 }

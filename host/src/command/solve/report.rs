@@ -15,7 +15,7 @@ use super::solids::SolidForce;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
-use crate::words::{counted, written};
+use crate::words::{counted, rounded};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use voidage_core::flow::Gas;
@@ -271,9 +271,9 @@ impl Report {
                 progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side"));
             }
         }
-        progress.say(format!("steps         {} to t = {} s", self.steps, written(self.time)));
-        let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {e:.1e}"));
-        progress.say(format!("drift         mass {:.1e}{energy}", self.mass_drift));
+        progress.say(format!("steps         {} to t = {} s", self.steps, rounded(self.time)));
+        let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {}", share(e)));
+        progress.say(format!("drift         mass {}{energy}", share(self.mass_drift)));
         progress.say(format!(
             "repairs       {} to first order, {}, {} repeated",
             counted(self.fallbacks, "fallback", "fallbacks"),
@@ -313,6 +313,11 @@ impl Report {
             ),
         }
     }
+}
+
+/// A share in two digits.
+fn share(of: f64) -> String {
+    if of == 0.0 { "0".to_owned() } else { format!("{of:.1e}") }
 }
 
 /// The largest values of both runs, a line a place.

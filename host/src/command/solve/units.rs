@@ -15,6 +15,12 @@ const SI_GASES: [f64; 2] = [40.0, 6000.0];
 /// Gas constants in J/(kg K) are a thousand times those in kJ/(kg K).
 const KILO: f64 = 1000.0;
 
+/// The gas constant of a mole, in J/(mol K); nobody writes it more roughly than within the share [`NEAR`].
+const UNIVERSAL: f64 = 8.314_462_618;
+
+/// See [`UNIVERSAL`]: 8.31 is meant.
+const NEAR: f64 = 1e-3;
+
 /// Temperatures below this many K are doubted: the air of a hot day has 50 °C.
 const COLD: f64 = 60.0;
 
@@ -43,6 +49,7 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
     let within = |x: f64, [low, high]: [f64; 2]| low <= x && x <= high;
     let mut said = Vec::new();
     let first = |of: &dyn Fn(&StateKeys) -> Option<f64>| states.iter().find_map(|(key, keys)| Some((key, of(keys)?)));
+    let is_high = || first(&|keys| keys.p.filter(|p| *p > HIGH)).is_some();
     if let (Some(r), Some((key, _))) = (file.case.gas.gas_constant, first(&|keys| keys.temperature)) {
         let si = within(r, SI_GASES);
         if let Some((key, t)) = first(&|keys| keys.temperature.filter(|t| si && *t < COLD)) {
@@ -56,11 +63,7 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
             );
             said.push(file.remark(&format!("{key}.p"), reason));
         }
-        if within(KILO * r, SI_GASES) && first(&|keys| keys.p.filter(|p| *p > HIGH)).is_some() {
-            let reason = format!(
-                "{r} beside {key}.T makes a gas a thousand times too dense, if pressures are in Pa; \
-                 it is in J/(kg K), not in kJ/(kg K)"
-            );
+        if let Some(reason) = gas_constant(r, key).filter(|_| is_high()) {
             said.push(file.remark("gas.gas_constant", reason));
         }
     }
@@ -83,6 +86,22 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
         said.push(file.remark("output.ambient", reason));
     }
     said
+}
+
+/// What a gas constant may be instead of one in J/(kg K), beside a temperature in the table `key` and pressures in Pa.
+fn gas_constant(r: f64, key: &str) -> Option<String> {
+    let molar = |of: f64| (r / of - 1.0).abs() < NEAR;
+    if molar(UNIVERSAL) || molar(KILO * UNIVERSAL) {
+        return Some(format!(
+            "{r} is that of a mole of any gas; here it is in J/(kg K): divided by the molar mass, 287 for air"
+        ));
+    }
+    (SI_GASES[0]..=SI_GASES[1]).contains(&(KILO * r)).then(|| {
+        format!(
+            "{r} beside {key}.T makes a gas a thousand times too dense, if pressures are in Pa; \
+             it is in J/(kg K), not in kJ/(kg K)"
+        )
+    })
 }
 
 /// All tables of a case that may give a state, by their keys.

@@ -36,7 +36,7 @@ use super::recipe::{Recipe, recipes};
 use super::scaling::{ScalingRecipe, scaling_recipe};
 use super::values::{distinct, few, some};
 use crate::command::stages::room_for;
-use crate::error::Result;
+use crate::error::{Result, said};
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
 use crate::grid::Edges;
@@ -272,7 +272,7 @@ fn existing(directory: &Path, value: &DeValue) -> std::result::Result<PathBuf, S
     let path = directory.join(&name);
     match std::fs::metadata(&path) {
         _ if name.is_empty() => Err("is an empty text in place of a file".to_owned()),
-        Err(e) => Err(format!("{}: cannot open: {e}", path.display())),
+        Err(e) => Err(format!("{}: cannot open: {}", path.display(), said(&e))),
         Ok(_) => Ok(path),
     }
 }

@@ -113,7 +113,7 @@ fn check_keys(keys: &StrictTable, shape: &str) -> Result<()> {
             Err(keys.fail(format!("{takes}; {} {are} missing", missing.join(", "))))
         }
         (Some((_, span)), _) => {
-            let names: Vec<&str> = wrong.iter().map(|(key, _)| *key).collect();
+            let names: Vec<&str> = wrong.iter().map(|(key, _)| if key.is_empty() { "\"\"" } else { *key }).collect();
             Err(keys.error_at(
                 span.clone(),
                 format!("{takes}; not {} (and every solid takes {})", names.join(", "), EVERY.join(", ")),

@@ -107,7 +107,8 @@ impl<'a> StrictTable<'a> {
         let strange: Vec<_> = self.given().into_iter().filter(|(key, _)| !keys.contains(key)).collect();
         match &strange[..] {
             [(_, first), ..] if keys.iter().any(|key| !self.has(key)) => {
-                let names: Vec<&str> = strange.iter().map(|(key, _)| *key).collect();
+                let names: Vec<&str> =
+                    strange.iter().map(|(key, _)| if key.is_empty() { "\"\"" } else { *key }).collect();
                 let subject = self.subject.rsplit(' ').next().unwrap_or_default();
                 Err(self
                     .error_at(first.clone(), format!("{subject} takes {}; not {}", keys.join(", "), names.join(", "))))
@@ -285,6 +286,7 @@ pub fn number(value: &DeValue) -> Wanted<f64> {
     let digits = match value {
         DeValue::Float(f) => f.as_str(),
         DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+        DeValue::Integer(_) => return Err("takes a number in decimal digits".to_owned()),
         other => return Err(format!("takes a number, not {}", kind(other))),
     };
     match digits.parse::<f64>() {
