@@ -42,7 +42,8 @@ fn told(mut answer: clap::Error) -> ExitCode {
         answer.remove(ContextKind::Suggested);
     }
     match answer.print() {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+        // Where errors are not taken nobody reads them; help and version are what was asked for.
+        Err(e) if !answer.use_stderr() && e.kind() != std::io::ErrorKind::BrokenPipe => {
             print_aside(&format!("error: cannot write to standard output: {}", said(&e)));
             ExitCode::FAILURE
         }
