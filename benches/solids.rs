@@ -1,15 +1,17 @@
-//! Time of solids by formula: `cargo bench -p voidage-benches --bench solids`.
+//! Time of solids by formula: `cargo bench -p voidage-benches --bench solids`; with words after `--`, of the cases whose names hold them all.
+//! With the word `once` each case is computed a single time on one thread, so that callgrind counts its instructions.
 //!
-//! One line a case: medians over several runs of the computation alone, on one thread and on two, and nanoseconds of the first for each share
-//! of a cell that a solid cuts.
+//! One line a case: medians over several runs of the computation alone, on one thread and on two, and nanoseconds of the first for each cut
+//! cell.
 
 use glam::DVec3;
 use std::path::Path;
+use std::time::Instant;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
 use voidage::geometry::scene::{self, load};
 use voidage::grid::Edges;
-use voidage::porosity::Options;
+use voidage::porosity::{Options, porosity};
 use voidage_benches::porosity_seconds;
 use voidage_core::convex::shape::Cylinder;
 use voidage_core::solids::torus::TorusShape;
@@ -18,6 +20,9 @@ use voidage_tests::solids::{formulas, sixteen_balls};
 
 const RUNS: usize = 9;
 
+/// The word that asks for a single run.
+const ONCE: &str = "once";
+
 fn main() {
     println!(
         "{:34} {:>15} {:>10} {:>10} {:>7} {:>9} {:>9}",
@@ -25,14 +30,14 @@ fn main() {
     );
     let rack = Edges::uniform(DVec3::ZERO, DVec3::new(52.0, 52.0, 17.0), [104, 104, 34]);
     let hall = Edges::uniform(DVec3::ZERO, DVec3::new(100.0, 100.0, 30.0), [200, 200, 60]);
-    case("1000 pipes, aligned", &pipes(1000, false, &rack), &rack);
-    case("1000 pipes, oblique", &pipes(1000, true, &rack), &rack);
-    case("10000 pipes, aligned", &pipes(10_000, false, &hall), &hall);
-    case("10000 pipes, oblique", &pipes(10_000, true, &hall), &hall);
+    case("1000 pipes, aligned", || pipes(1000, false, &rack), &rack);
+    case("1000 pipes, oblique", || pipes(1000, true, &rack), &rack);
+    case("10000 pipes, aligned", || pipes(10_000, false, &hall), &hall);
+    case("10000 pipes, oblique", || pipes(10_000, true, &hall), &hall);
     let balls: Vec<Form> = sixteen_balls().into_iter().map(Form::Sphere).collect();
-    case("16 balls", &formulas(&balls), &Edges::cube(0.0, 1.0, 100));
-    case("200 elbows, aligned", &elbows(200, false, &rack), &rack);
-    case("200 elbows, oblique", &elbows(200, true, &rack), &rack);
+    case("16 balls", || formulas(&balls), &Edges::cube(0.0, 1.0, 100));
+    case("200 elbows, aligned", || elbows(200, false, &rack), &rack);
+    case("200 elbows, oblique", || elbows(200, true, &rack), &rack);
     let platform = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/examples/study/platform_scene.toml");
     let platform = scene::read(&platform).expect("the shipped platform");
     let edges = platform
@@ -41,7 +46,7 @@ fn main() {
         .unwrap_or_else(|| Edges::uniform(DVec3::ZERO, DVec3::new(99.0, 99.0, 63.0), [99, 99, 63]));
     let mut bodies = Bodies::default();
     load::add(&platform, &mut bodies).expect("solids");
-    case("the shipped platform", &bodies, &edges);
+    case("the shipped platform", || bodies, &edges);
 }
 
 /// Pipes of 0.05 to 0.25 m radius and 2 to 12 m length in a grid.
@@ -77,8 +82,16 @@ fn elbows(count: usize, oblique: bool, edges: &Edges) -> Bodies {
     formulas(&(0..count).map(elbow).collect::<Vec<_>>())
 }
 
-fn case(name: &str, bodies: &Bodies, edges: &Edges) {
+fn case(name: &str, bodies: impl FnOnce() -> Bodies, edges: &Edges) {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    if words.iter().any(|word| word != ONCE && !name.contains(word.as_str())) {
+        return;
+    }
     let [nx, ny, nz] = edges.cells();
+    let bodies = &bodies();
+    if words.iter().any(|word| word == ONCE) {
+        return once(name, bodies, edges);
+    }
     let (one, result) = porosity_seconds(bodies, edges, 1, RUNS, Options::default());
     let (two, _) = porosity_seconds(bodies, edges, 2, RUNS, Options::default());
     let cut = result.beta.v.iter().filter(|&&b| b > 0.0 && b < 1.0).count().max(1);
@@ -90,5 +103,21 @@ fn case(name: &str, bodies: &Bodies, edges: &Edges) {
         one / two,
         one * 1e9 / cut as f64,
         result.max_gap
+    );
+}
+
+/// One run on one thread, the time of which is printed with a sum of the field.
+fn once(name: &str, bodies: &Bodies, edges: &Edges) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let grid = edges.grid(None).expect("a grid");
+    let begin = Instant::now();
+    let result = pool.install(|| porosity(&grid, bodies, Options::default()));
+    println!(
+        "{name:34} {:.1} ms, volume {}, gap {:.1e}, {} cells cut, {} shared",
+        begin.elapsed().as_secs_f64() * 1e3,
+        result.solid_volume,
+        result.max_gap,
+        result.cells.cut,
+        result.cells.ambiguous
     );
 }

@@ -9,7 +9,7 @@ use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
-use voidage_core::solids::quadric::QuadricSolid;
+use voidage_core::solids::quadric::{QuadricSolid, excess};
 use voidage_tests::quadrature::with_chords;
 use voidage_tests::quadric::{FAMILIES, Family, Kind, errors, never_panics, parts_sum_to_the_whole, shares};
 use voidage_tests::random::Random;
@@ -499,4 +499,46 @@ fn long_thin_cones_have_their_volume() {
         let volume = PI * radius * radius * (1.0 + taper + taper * taper) * 14.0 / 3.0 / 0.67_f64.powi(3);
         assert!((found - volume).abs() < 1e-11 * (1.0 + volume), "{round}: {found} cells, not {volume}");
     }
+}
+
+/// A solid that a pipe may meet, in or near the unit cell.
+fn beside_a_pipe(random: &mut Random, along: DVec3) -> QuadricSolid {
+    let (center, half) = (random.point(DVec3::splat(-0.5), DVec3::splat(1.5)), random.vector::<DVec3>(1.0));
+    let half = if random.below(3) == 0 { along.any_orthonormal_vector() } else { half };
+    let radius = random.between(0.05, 1.2);
+    let solid = match random.below(3) {
+        0 => QuadricSolid::ball(center, radius),
+        1 => QuadricSolid::cylinder(center - half * 2.0, center + half * 2.0, radius),
+        _ => QuadricSolid::capsule(center - half, center + half, radius),
+    };
+    solid.expect("a solid")
+}
+
+/// What a pipe along an axis but for rounding has in common with others is what it would have along the axis: rows of a slice along it pass it by up
+/// to 10¹⁶ lengths, and what tangents to such lengths tell was believed to the last digit.
+#[test]
+fn a_pipe_along_rows_but_for_rounding() {
+    let random = &mut Random::new(712);
+    let mut met = 0;
+    for round in 0..800 {
+        let (n, tilt) = (random.below(3), 10_f64.powf(random.between(-16.5, -11.5)));
+        let [along, aside, upward] = [n, (n + 1) % 3, (n + 2) % 3].map(|axis| DVec3::AXES[axis]);
+        let tilt = tilt * (aside * random.between(-1.0, 1.0) + upward * if random.below(2) == 0 { 1.0 } else { 0.1 });
+        let (center, radius) = (random.point(DVec3::splat(-0.3), DVec3::splat(1.3)), random.between(0.05, 1.2));
+        let half = random.between(1.0, 3.0);
+        let pipe = |along: DVec3| {
+            QuadricSolid::cylinder(center - along * half, center + along * half, radius).expect("a pipe")
+        };
+        let (straight, tilted, other) = (pipe(along), pipe(along + tilt), beside_a_pipe(random, along));
+        for flat in 0..4 {
+            let mut place = [[0.0, 1.0]; 3];
+            place.iter_mut().skip(flat).take(1).for_each(|sides| *sides = [0.5, 0.5]);
+            let close = if flat < 3 { 1e-13 } else { 1e-4 };
+            let [one, two] = [&straight, &tilted].map(|pipe| excess([pipe, &other], place, close).expect("two solids"));
+            let apart = (one[0] - two[1]).max(two[0] - one[1]);
+            assert!(apart < 1e-10, "{round}, flat along {flat}: {one:?} along the axis, {two:?} tilted by {tilt}");
+            met += u32::from(one[0] > 0.01);
+        }
+    }
+    assert!(met > 500, "{met} places in which two meet");
 }

@@ -43,6 +43,9 @@ pub(super) struct Window {
 /// Farther than any arc between rows reaches from its chord; its square is finite.
 const ANY_REACH: f64 = 1e150;
 
+/// Lengths of rows, and what their tangents tell, are off by this share of them.
+const ROUNDED_LENGTH: f64 = 64.0 * f64::EPSILON;
+
 /// Bounds that say nothing.
 const UNKNOWN: P2 = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -272,7 +275,9 @@ impl<'a, const N: usize> Slice<'a, N> {
     pub fn common(&self) -> Common {
         let [first, last] = self.rows;
         let width = self.window.u[1] - self.window.u[0];
-        let rounded = |[low, high]: P2| [low - self.noise, high + self.noise];
+        let rounded = |[low, high]: P2| {
+            [low - self.noise - ROUNDED_LENGTH * low.abs(), high + self.noise + ROUNDED_LENGTH * high.abs()]
+        };
         let mut found = Common { area: [0.0; 2], height: rounded([last - first; 2]), length: UNKNOWN };
         if !(first < last) {
             return found;
@@ -309,8 +314,11 @@ impl<'a, const N: usize> Slice<'a, N> {
         let mut most = self.window.u[1] - self.window.u[0];
         for turn in 0..60 {
             let width = b.v - a.v;
-            let (at, tangents) = below_tangents([a.length(), b.length()], [self.rise(&a), self.rise(&b)], width);
-            most = most.min(tangents);
+            let (lengths, rises) = ([a.length(), b.length()], [self.rise(&a), self.rise(&b)]);
+            let (at, tangents) = below_tangents(lengths, rises, width);
+            // Rows along a pipe but for rounding pass it by as much as 10¹⁶ lengths: what rounding leaves of these tells nothing.
+            let sizes = lengths[0].abs() + lengths[1].abs() + rises[0].abs().min(rises[1].abs()) * width;
+            most = most.min(tangents + ROUNDED_LENGTH * sizes);
             let close = 0.25 * most.abs().max(self.tie.get());
             if best.length() > enough || most - best.length() <= close || !(width > self.noise) {
                 break;
@@ -549,7 +557,8 @@ fn below_tangents([p, q]: P2, [up, down]: P2, width: f64) -> (f64, f64) {
         (width, q)
     } else if up.is_finite() && down.is_finite() {
         let at = ((q - p - down * width) / (up - down)).limited(0.0, width);
-        (at, (p + up * at).min(q + down * (at - width)))
+        // By the flatter tangent: rounding of `at` counts as often as that is steep, and the other may be steeper by many powers of ten.
+        (at, if up <= -down { p + up * at } else { q + down * (at - width) })
     } else if down.is_finite() {
         (0.0, q - down * width)
     } else if up.is_finite() {
