@@ -1,7 +1,8 @@
 //! Geometry: triangles of files and solids by formula, put in order until they are bodies that can be measured.
 //!
-//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`facets`], [`single`], [`repair`], `diagnosis`, `resolve`, [`bodies`]; `scene`.
+//! In reading order: [`mod@unit`], [`mesh`], [`read`]; [`form`], [`facets`], [`single`], [`repair`], `diagnosis`, `resolve`, [`bodies`]; [`areas`]; `scene`.
 
+pub mod areas;
 pub mod bodies;
 mod diagnosis;
 pub mod facets;

@@ -5,7 +5,7 @@
 //!
 //! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
 //! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `surface_layers`,
-//! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`congestion`], [`throat`], what follows from it.
+//! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], what follows from it.
 
 pub mod congestion;
 pub mod convex;
@@ -19,6 +19,7 @@ mod options;
 pub mod resistance;
 mod result;
 mod road;
+pub mod rod;
 pub mod shadows;
 pub mod snap;
 mod solid;

@@ -1,6 +1,7 @@
 //! Triangulated solids, outward, and scenes of them.
 
 use glam::{DMat3, DVec3};
+use std::f64::consts::PI;
 use voidage::geometry::bodies::{Bodies, Body, Doubt, OwnDrag};
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::{Mesh, Solid};
@@ -171,7 +172,7 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         form: Some(form.clone()),
         single: None,
         porosity: 0.0,
-        volume: 0.0,
+        volume: volume_of(form),
         bounds: form.bounds(),
         cavities: 0,
         doubt: Doubt::None,
@@ -180,4 +181,19 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         drag: OwnDrag::default(),
     };
     Bodies { bodies: forms.iter().enumerate().map(body).collect(), ..Bodies::default() }
+}
+
+/// The volume of a curved solid; of those bounded by planes none is asked for.
+fn volume_of(form: &Form) -> f64 {
+    let ball = |radii: DVec3| 4.0 / 3.0 * PI * radii.element_product();
+    let frustum = |[from, to]: [DVec3; 2], a: f64, b: f64| PI / 3.0 * from.distance(to) * (a * a + a * b + b * b);
+    match form {
+        Form::Sphere(s) => ball(DVec3::splat(s.radius)),
+        Form::Ellipsoid(s) => ball(s.shape().semi_axes),
+        Form::Cylinder(s) => frustum(s.ends(), s.base_radius(), s.base_radius()),
+        Form::Cone(s) => frustum(s.ends(), s.base_radius(), s.top_radius()),
+        Form::Capsule(s) => frustum([s.from, s.to], s.radius, s.radius) + ball(DVec3::splat(s.radius)),
+        Form::Torus(s) => PI * s.tube * s.tube * s.radius * s.angle.to_radians(),
+        _ => 0.0,
+    }
 }

@@ -1,15 +1,19 @@
 //! Resistance from geometry: closed forms, what is round, what a solid gives itself, congestion.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3, EulerRot};
 use voidage::geometry::bodies::{Bodies, OwnDrag};
 use voidage::geometry::form::Form;
+use voidage::geometry::{areas, facets};
 use voidage::grid::Edges;
-use voidage::porosity::congestion::{Zone, congestion};
+use voidage::porosity::congestion::{Congestion, Zone, congestion};
 use voidage::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use voidage::porosity::resistance::{Resistance, resistance};
+use voidage::porosity::rod::Rod;
 use voidage::porosity::{Options, Porosity, porosity};
-use voidage_core::convex::shape::Cylinder;
-use voidage_tests::solids::{cuboid, formulas, scene, sphere};
+use voidage_core::convex::shape::{Cylinder, Sphere};
+use voidage_core::number::aabb::Aabb;
+use voidage_core::solids::torus::TorusShape;
+use voidage_tests::solids::{cuboid, formulas, scene, sphere, turned_box};
 
 fn edges(cells: usize, size: f64) -> Edges {
     let axis: Vec<f64> = (0..=cells).map(|n| size * n as f64).collect();
@@ -115,21 +119,113 @@ fn what_a_solid_gives_itself() {
     assert!((drag.cr[0][MIDDLE] - 2.0).abs() < 1e-12, "half of the cell is grating");
 }
 
-/// A pipe's diameter, length and frontal area come back.
+/// The table of congestion of some zones.
+fn table(edges: &Edges, bodies: &Bodies, zones: &[[DVec3; 2]]) -> Vec<Congestion> {
+    let grid = edges.grid(None).expect("a grid");
+    let result = porosity(&grid, bodies, Options::default());
+    let zone = |&[min, max]: &[DVec3; 2]| Zone { name: "some".into(), bounds: Aabb { min, max } };
+    let zones: Vec<Zone> = zones.iter().map(zone).collect();
+    congestion(&grid, bodies, &zones, &result, Options::default())
+}
+
+/// A pipe is one row with its diameter, length, volume and frontal area, however large the cells are and wherever zones cut it, beside the grid and
+/// beyond it.
 #[test]
 fn congestion_of_a_pipe() {
-    let (edges, bodies) = (edges(5, 0.5), pipe(0.1));
-    let (result, obstacles) = found(&edges, &bodies);
-    let grid = edges.grid(None).expect("a grid");
-    let zone = |name: &str, hi: f64| Zone { name: name.into(), bounds: [DVec3::ZERO, DVec3::new(2.5, 2.5, hi)] };
-    let found = congestion(&grid, &[zone("all", 2.5), zone("lower", 1.0)], &result, &obstacles);
-    for (zone, height) in found.iter().zip([2.5, 1.0]) {
-        let [size] = &zone.sizes[..] else { panic!("{zone:?}") };
-        assert_eq!([size.above, size.to.unwrap_or_default()], [0.1, 0.2]);
-        assert!((size.length / height - 1.0).abs() < 1e-3, "{size:?}");
-        assert!((size.frontal_area[0] / (0.2 * height) - 1.0).abs() < 1e-3);
-        assert!((size.blockage[0] / (0.2 / 2.5) - 1.0).abs() < 1e-3);
-        assert!((zone.solid_volume / (std::f64::consts::PI * 0.01 * height) - 1.0).abs() < 1e-9);
+    let pi = std::f64::consts::PI;
+    for (cells, width) in [(5, 0.5), (2, 1.25), (25, 0.1), (7, 2.5 / 7.0)] {
+        let (edges, zone) = (edges(cells, width), |lo, hi| [DVec3::new(-9.0, 0.0, lo), DVec3::new(9.0, 2.5, hi)]);
+        for (found, height) in
+            table(&edges, &pipe(0.1), &[zone(-3.0, 7.0), zone(0.0, 2.5), zone(0.33, 1.0)]).iter().zip([2.5, 2.5, 0.67])
+        {
+            let [size] = &found.sizes[..] else { panic!("{found:?}") };
+            assert_eq!(([size.above, size.to.unwrap_or_default()], size.bodies), ([0.1, 0.2], 1));
+            assert!((size.length - height).abs() < 1e-12, "{size:?}");
+            assert!((size.solid_volume - pi * 0.01 * height).abs() < 1e-12, "{size:?}");
+            assert!((found.solid_volume - pi * 0.01 * height).abs() < 1e-12, "{found:?}");
+            // By formula the sides of a pipe that a zone cuts are known as its whole frontal area is.
+            assert!((size.frontal_area[0] - 0.2 * height).abs() < 1e-9, "{size:?}");
+            assert!((size.blockage[0] - 0.2 / 2.5).abs() < 1e-9, "{size:?}");
+            assert!((found.volume - 6.25 * height).abs() < 1e-12);
+        }
     }
-    assert_eq!([found[0].cells, found[1].cells], [125, 50]);
+}
+
+/// Diameters and lengths of whole bodies: prisms are 4 A / P thick, bends as long as their middle line, turned anyhow.
+#[test]
+fn rods() {
+    let turn = DMat3::from_euler(EulerRot::XYZ, 0.3, 0.9, -0.4);
+    let turned = |half: DVec3| turned_box(DVec3::splat(1.2), half, turn);
+    let edges = edges(3, 1.0);
+    let whole = [DVec3::ZERO, DVec3::splat(3.0)];
+    let only = |bodies: &Bodies| {
+        let found = table(&edges, bodies, &[whole]);
+        let [size] = found[0].sizes[..] else { panic!("{found:?}") };
+        size
+    };
+    for (half, diameter) in [
+        (DVec3::new(0.04, 0.9, 0.04), 0.08),
+        (DVec3::new(0.9, 0.02, 0.06), 4.0 * 0.02 * 0.06 / 0.08),
+        (DVec3::new(0.3, 0.3, 0.3), 0.6),
+        (DVec3::new(0.5, 0.005, 0.5), 4.0 * 0.5 * 0.005 / 0.505),
+    ] {
+        let body = scene(&[turned(half)]);
+        let area = areas::of_triangles(&body.triangles);
+        let rod = Rod::of_body(&body.bodies[0], &body.triangles, &area);
+        assert!((rod.diameter - diameter).abs() < 1e-12, "{half}: {rod:?}");
+        assert!((rod.length - 2.0 * half.max_element()).abs() < 1e-12, "{half}: {rod:?}");
+        let size = only(&body);
+        assert!(size.above < diameter && diameter <= size.to.expect("an end"), "{half}: {size:?}");
+        assert!((size.frontal_area[2] - area.frontal[2]).abs() < 1e-15);
+    }
+    // A quarter of a ring, by formula and as triangles without its form.
+    let (radius, tube, angle) = (0.8, 0.05, 90.0);
+    let ring = TorusShape { center: DVec3::splat(1.0), axis: DVec3::ONE, start: DVec3::X, radius, tube, angle };
+    let middle = radius * std::f64::consts::FRAC_PI_2;
+    let by_formula = only(&formulas(&[Form::Torus(ring)]));
+    assert!((by_formula.length - middle).abs() < 1e-12 && by_formula.to == Some(0.1), "{by_formula:?}");
+    let as_triangles = only(&scene(&[facets::triangles(&Form::Torus(ring))]));
+    assert!((as_triangles.length / middle - 1.0).abs() < 2e-3 && as_triangles.to == Some(0.1), "{as_triangles:?}");
+    // A ball is as long as it is thick, tessellated too.
+    for body in
+        [formulas(&[Form::Sphere(Sphere { center: DVec3::ONE, radius: 0.3 })]), scene(&[sphere(DVec3::ONE, 0.3, 24)])]
+    {
+        let size = only(&body);
+        assert!((size.length / 0.6 - 1.0).abs() < 1e-2 && size.above == 0.5, "{size:?}");
+    }
+}
+
+/// A pipe as thick as a class's end is of that class, also as facets; two zones share a body without loss.
+#[test]
+fn ends_of_classes_and_zones() {
+    let (edges, middle) = (edges(4, 0.75), 1.3);
+    for end in [0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0] {
+        let cylinder = Form::Cylinder(Cylinder::new(DVec3::new(0.1, 1.4, 1.5), DVec3::new(2.9, 1.5, 1.6), end / 2.0));
+        for bodies in [formulas(std::slice::from_ref(&cylinder)), scene(&[facets::triangles(&cylinder)])] {
+            let lower = [DVec3::ZERO, DVec3::new(middle, 3.0, 3.0)];
+            let upper = [DVec3::new(middle, 0.0, 0.0), DVec3::splat(3.0)];
+            let found = table(&edges, &bodies, &[[DVec3::ZERO, DVec3::splat(3.0)], lower, upper]);
+            let [all, a, b] = found.iter().map(|f| f.sizes[0]).collect::<Vec<_>>()[..] else { panic!("{found:?}") };
+            assert_eq!([all.to, a.to, b.to], [Some(end); 3], "{found:?}");
+            assert!((all.length - a.length - b.length).abs() < 1e-10, "{found:?}");
+            assert!((all.length / 2.8 - 1.0).abs() < 2e-3, "{found:?}");
+            for axis in 0..3 {
+                let apart = all.frontal_area[axis] - a.frontal_area[axis] - b.frontal_area[axis];
+                assert!(apart.abs() < 1e-10, "{found:?}");
+            }
+        }
+    }
+}
+
+/// Bodies beside a zone, or that touch it, are not in it; what is porous itself has no size.
+#[test]
+fn what_a_zone_does_not_hold() {
+    let mut bodies =
+        scene(&[cuboid(DVec3::splat(0.0), DVec3::splat(1.0)), cuboid(DVec3::splat(1.5), DVec3::splat(2.0))]);
+    bodies.bodies[1].porosity = 0.5;
+    let found =
+        table(&edges(3, 1.0), &bodies, &[[DVec3::new(1.0, 0.0, 0.0), DVec3::splat(3.0)], [DVec3::ZERO, DVec3::ONE]]);
+    assert!(found[0].sizes.is_empty(), "{found:?}");
+    assert!((found[0].solid_volume - 0.0625).abs() < 1e-12, "{found:?}");
+    assert_eq!((found[1].sizes[0].bodies, found[1].sizes[0].frontal_area), (1, [1.0; 3]));
 }

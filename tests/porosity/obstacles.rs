@@ -8,6 +8,7 @@ use voidage::grid::Edges;
 use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::{Options, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
+use voidage_core::solids::torus::TorusShape;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, formulas, scene};
 
@@ -141,6 +142,37 @@ fn a_body_within_another_adds_nothing() {
     for cells in [1, 2, 5, 9] {
         let found = obstacles(&edges(cells, 0.0, 3.0), &scene(&[outer.clone(), inner.clone()])).totals;
         assert!(close(found.wetted_area, 6.0 * 2.4 * 2.4), "{cells}: {found:?}");
+    }
+}
+
+/// The end of a needle in a plane of the grid, below a cell in which bodies overlap: however small, all of it is wetted.
+#[test]
+fn the_end_of_a_needle_in_a_plane() {
+    let boxes =
+        [(0.2, 0.7), (0.3, 0.8)].map(|(lo, hi)| cuboid(DVec3::new(lo, lo, 1.0 + lo), DVec3::new(hi, hi, 1.0 + hi)));
+    let corner = DVec3::new(0.9, 0.9, 0.5);
+    let [width, depth] = [1e-4, 4e-6];
+    let needle = cuboid(corner, corner + DVec3::new(width, depth, 0.5));
+    let found = obstacles(&edges(2, 0.0, 2.0), &scene(&[boxes[0].clone(), boxes[1].clone(), needle])).totals;
+    let union = 2.0 * 6.0 * 0.25 - 6.0 * 0.16;
+    let truth = union + 2.0 * width * depth + (width + depth);
+    assert!((found.wetted_area - truth).abs() < 1e-13, "{found:?} {truth}");
+}
+
+/// Curved solids of so many facets that a cell once held too many for their shadow, which lies between that of one and the sum.
+#[test]
+fn a_torus_and_a_capsule_in_one_cell() {
+    let (center, axis) = (DVec3::splat(0.5), DVec3::new(1.0, 2.0, 3.0));
+    let torus = Form::Torus(TorusShape { center, axis, start: DVec3::X, radius: 0.3, tube: 0.08, angle: 360.0 });
+    let capsule = Form::Capsule(Capsule { from: DVec3::splat(0.2), to: DVec3::splat(0.8), radius: 0.1 });
+    let one = Edges([0; 3].map(|_| vec![0.0, 1.0]));
+    let both = obstacles(&one, &formulas(&[torus.clone(), capsule.clone()]));
+    assert_eq!((both.shadows.too_full, both.totals.unproved), (0, 0));
+    let [torus, capsule] =
+        [torus, capsule].map(|form| obstacles(&one, &formulas(&[form])).shadows.tau.each_ref().map(|tau| tau[0]));
+    for axis in 0..3 {
+        let tau = both.shadows.tau[axis][0];
+        assert!(tau > torus[axis].max(capsule[axis]) + 1e-3 && tau < torus[axis] + capsule[axis] - 1e-3, "{tau}");
     }
 }
 

@@ -12,7 +12,7 @@ use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::{AreaSlices, CellSides, LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
-use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
+use voidage_core::surface::surface_area::{CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, SurfaceArea};
 use voidage_core::surface::union::UnionMemory;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, turned_box};
@@ -194,8 +194,8 @@ fn a_slit_within_a_body() {
     }
 }
 
-/// Frontal areas and shadows of the cells of a single layer, in the precision of the triangles.
-fn in_one_layer<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]]) -> Vec<[f64; 6]> {
+/// Frontal areas and shadows of the cells of a single layer, in the precision of the triangles, with room for so many pieces of surface.
+fn in_one_layer<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], room: usize) -> Vec<[f64; 6]> {
     let zero = V::Scalar::ZERO;
     let ends = [edges[0], edges[edges.len() - 1]];
     let (grid, bodies) = (Grid::new(edges, edges, &ends).expect("a grid"), [Surface::new(triangles)]);
@@ -211,7 +211,16 @@ fn in_one_layer<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]]) -> Vec<[f6
     let beta = LayerSlices::of_fields(&grid, 0, &mut v, [&mut x, &mut y, &mut z]).expect("slices");
     let (mut union, mut sides) = (vec![SurfaceArea::default(); cells], vec![CellSides::default(); cells]);
     let mut surface = vec![CellSurface::default(); cells];
-    let areas = AreaSlices { union: &mut union, sides: &mut sides, cells: &mut surface };
+    let (mut kept, mut pieces) = (vec![KeptCell::default(); cells], vec![KeptPiece::default(); room]);
+    let mut corners = vec![[zero; 3]; 5 * room];
+    let memory_of_pieces = PieceMemory { pieces: &mut pieces, corners: &mut corners };
+    let areas = AreaSlices {
+        union: &mut union,
+        sides: &mut sides,
+        cells: &mut surface,
+        kept: &mut kept,
+        pieces: memory_of_pieces,
+    };
     let (_, report) = layers.layer_and_areas(0, beta, None, areas, &mut memory, |_, _| ()).expect("a layer");
     let (bottom, top) = z.split_at(cells);
     let open = OpenLayer { cell: &v, x: &x, y: &y, z: bottom, top };
@@ -223,7 +232,8 @@ fn in_one_layer<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]]) -> Vec<[f6
     let (mut share, mut place) = ([0; 3].map(|_| vec![zero; cells]), [0; 3].map(|_| vec![zero; cells]));
     let slices =
         ShadowSlices { share: share.each_mut().map(|f| &mut f[..]), place: place.each_mut().map(|f| &mut f[..]) };
-    assert_eq!(layers.shadows(0, &open, Some((&union, sides)), slices, memory), Ok(0));
+    let kept = KeptPieces { cells: &kept, pieces: &pieces, corners: &corners };
+    assert_eq!(layers.shadows(0, &open, (Some((&union, sides)), Some(kept)), slices, memory), Ok(0));
     let of = |c: usize| {
         let ([a, b, c_], [x, y, z]) = (union[c].frontal, share.each_ref().map(|f| f[c]));
         [a, b, c_, x, y, z].map(Real::to_f64)
@@ -240,8 +250,15 @@ fn in_single_precision() {
         let body = Turned::random(&mut random, 1.2).triangles();
         let single: Vec<[Vec3; 3]> = body.iter().map(|t| t.map(DVec3::as_vec3)).collect();
         let widened: Vec<Triangle> = single.iter().map(|t| t.map(Vec3::as_dvec3)).collect();
-        let found = in_one_layer(&axis.map(|e| e as f32), &single);
-        let truth = in_one_layer(&axis.map(|e| f64::from(e as f32)), &widened);
+        let found = in_one_layer(&axis.map(|e| e as f32), &single, 999);
+        let axis = axis.map(|e| f64::from(e as f32));
+        let truth = in_one_layer(&axis, &widened, 999);
+        // Pieces for which there is no room are cut again.
+        for room in [0, 7, 20] {
+            let again = in_one_layer(&axis, &widened, room);
+            let apart = again.iter().flatten().zip(truth.iter().flatten()).map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-13, "{room}");
+        }
         for (found, truth) in found.iter().flatten().zip(truth.iter().flatten()) {
             assert!((found - truth).abs() < 3e-5, "{found} {truth}");
             partly += usize::from(*truth > 0.01 && *truth < 0.99);
@@ -324,7 +341,7 @@ fn crossing_sheets_against_lines() {
             share: share.each_mut().map(|field| &mut field[..]),
             place: place.each_mut().map(|field| &mut field[..]),
         };
-        assert_eq!(layers.shadows(0, &open, None, slices, memory), Ok(0));
+        assert_eq!(layers.shadows(0, &open, (None, None), slices, memory), Ok(0));
         for axis in 0..3 {
             let (iu, iv) = ((axis + 1) % 3, (axis + 2) % 3);
             let meets = |[a, b, c]: &Triangle, u: f64, v: f64| {

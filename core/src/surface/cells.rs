@@ -267,9 +267,8 @@ pub(super) fn add_body_and<R: Real, V: Vector<Scalar = R>, P: PieceSums<R>>(
         sums.y.origin = take_origin(&mut corners, 1);
         if slab_part(&corners, lo, hi, &mut b) {
             sums.scatter(Place::Inside, &mut b);
-        } else if P::WANTED && is_seen_level(&corners, lo, hi) {
-            b.slab.set(&corners);
-            sums.scatter(Place::InPlane, &mut b);
+        } else if P::WANTED {
+            sums.scatter_level(&corners, [lo, hi], &mut b);
         }
     }
     let defects = sums.x_faces_and_cells(hi - lo);
@@ -354,6 +353,17 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         Sums { window, grid, x, y, flux_x, moment, flux_y, layer, pieces }
     }
 
+    /// Spread what a level triangle has in the planes below and above the layer, which only `pieces` sees.
+    fn scatter_level(&mut self, corners: &[[R; 3]; 3], [lo, hi]: [R; 2], b: &mut Buffers<R>) {
+        let is_seen = is_seen_level(corners, lo, hi);
+        for (place, told) in [(Place::InPlane, is_seen), (Place::Top, corners.iter().all(|p| p[2] == hi))] {
+            if told {
+                b.slab.set(corners);
+                self.scatter(place, b);
+            }
+        }
+    }
+
     /// Spread `b.slab` over rows. In a plane of the grid only `pieces` sees it.
     #[inline]
     fn scatter(&mut self, place: Place, b: &mut Buffers<R>) {
@@ -414,8 +424,8 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         if piece.is_empty() {
             return;
         }
-        if P::WANTED && place == Place::InPlane {
-            return self.note(row, c, place, piece.doubled_area());
+        if P::WANTED && place != Place::Inside {
+            return self.note(row, c, place, piece, piece.doubled_area());
         }
         let Window { i0, j0, .. } = self.window;
         if self.x.holds(c) {
@@ -430,14 +440,15 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         self.integrate(row, c, if wall.is_some() { Place::InPlane } else { Place::Inside }, piece);
     }
 
-    /// Tell `pieces` of a piece, by twice its area vector. It may lie beyond the window, but not beyond the grid.
+    /// Tell `pieces` of a piece, with twice its area vector. It may lie beyond the window, but not beyond the grid.
     #[inline(always)]
-    fn note(&mut self, row: isize, c: isize, place: Place, doubled_area: [R; 3]) {
+    fn note(&mut self, row: isize, c: isize, place: Place, piece: &Polygon<R>, doubled_area: [R; 3]) {
         let [nx, ny, _] = self.grid.cells();
         let Window { i0, j0, .. } = self.window;
         let (i, j) = (i0.wrapping_add_signed(c), j0.wrapping_add_signed(row));
         if i < nx && j < ny {
-            self.pieces.add(j * nx + i, place, doubled_area);
+            let in_grid = self.x.origin == R::ZERO && self.y.origin == R::ZERO;
+            self.pieces.add(j * nx + i, place, doubled_area, in_grid.then_some(piece));
         }
     }
 
@@ -461,7 +472,7 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
             a = b;
         }
         if P::WANTED {
-            self.note(row, c, place, [nx, ny, nz]);
+            self.note(row, c, place, piece, [nx, ny, nz]);
         }
         if self.y.holds(row) {
             add_at(self.flux_x, row as usize * (ni + 2) + (c + 1) as usize, nx * R::HALF);

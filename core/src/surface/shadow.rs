@@ -151,6 +151,7 @@ impl<'m, R: Real> Outlines<'m, R> {
     }
 
     /// Add all faces of a cell, as seen along some axes; none if there is no room.
+    #[inline(never)]
     pub fn add(&mut self, faces: &CellFaces<R>, wanted: [bool; 3]) -> Option<()> {
         let mut last = 0;
         for face in faces.all() {
@@ -177,6 +178,7 @@ impl<'m, R: Real> Outlines<'m, R> {
     }
 
     /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid; none if patience or memory is spent.
+    #[inline(never)]
     pub fn shadow(&mut self, axis: usize) -> Option<R> {
         let outline = self.axes.get_mut(axis.min(2))?;
         let count = joined(outline.edges.get_mut(..outline.count)?);
@@ -239,6 +241,8 @@ pub struct ShadowFace<R: Real> {
     polygon: Polygon<R>,
     /// Twice its area vector.
     doubled: [R; 3],
+    /// From where to where it extends along x, y and z.
+    around: [(R, R); 3],
     solid: usize,
     sheet: bool,
 }
@@ -256,6 +260,12 @@ pub(super) struct CellFaces<'m, R: Real> {
 
 /// Faces whose planes make an angle with a smaller sine may be the sides of a slit.
 const LEAST_SINE: f64 = 0.05;
+
+/// Of more pairs of faces, one entered and one left, a sweep costs less.
+const MOST_PAIRS: usize = 1 << 15;
+
+/// Rounding gives shorter edges, as shares of the cell, any direction.
+const LEAST_EDGE: f64 = 0.01;
 
 impl<'m, R: Real> CellFaces<'m, R> {
     /// Of nothing yet.
@@ -282,6 +292,7 @@ impl<'m, R: Real> CellFaces<'m, R> {
     pub fn push(&mut self, doubled: [R; 3]) {
         if let Some(face) = self.faces.get_mut(self.count) {
             (face.doubled, face.solid, face.sheet) = (doubled, self.solid, self.sheet);
+            face.around = [0, 1, 2].map(|axis| face.polygon.extent(axis));
             self.has_sheet |= self.sheet;
             self.count += 1;
         }
@@ -316,6 +327,7 @@ impl<'m, R: Real> CellFaces<'m, R> {
 
     /// The area on which lines along an axis (0, 1, otherwise 2) enter solid, and that on which they leave it, if no line enters after it has left:
     /// as seen along the axis, no face that is entered lies beyond one that is left.
+    #[inline(never)]
     pub fn passed_once(&self, axis: usize) -> Option<[R; 2]> {
         let (axis, faces) = (axis.min(2), self.all());
         if self.has_sheet {
@@ -323,7 +335,7 @@ impl<'m, R: Real> CellFaces<'m, R> {
         }
         let (mut areas, mut entered_to, mut left_from) = ([R::ZERO; 2], -R::INFINITY, R::INFINITY);
         for face in faces {
-            let (area, (low, high)) = (face.doubled[axis], face.polygon.extent(axis));
+            let (area, (low, high)) = (face.doubled[axis], face.around[axis]);
             if area < R::ZERO {
                 areas[0] -= area * R::HALF;
                 entered_to = entered_to.larger(high);
@@ -334,22 +346,48 @@ impl<'m, R: Real> CellFaces<'m, R> {
         }
         let seen = |sign: R| faces.iter().filter(move |face| face.doubled[axis] * sign > thickness());
         let never_again = |left: &ShadowFace<R>| {
-            let around = [0, 1, 2].map(|axis| left.polygon.extent(axis));
-            seen(-R::ONE).all(|entered| left.hides_from(around, entered, axis))
+            // No line comes from it to what ends before it begins.
+            left.around[axis].0 >= entered_to || seen(-R::ONE).all(|entered| left.hides_from(entered, axis))
         };
-        (entered_to <= left_from || seen(R::ONE).all(never_again)).then_some(areas)
+        let few = || seen(-R::ONE).count().saturating_mul(seen(R::ONE).count()) <= MOST_PAIRS;
+        (entered_to <= left_from || (few() && seen(R::ONE).all(never_again))).then_some(areas)
     }
 }
 
 impl<R: Real> ShadowFace<R> {
-    /// Does no line along an axis that leaves solid by this face, which lies within `around`, come to another?
-    fn hides_from(&self, around: [(R, R); 3], other: &Self, axis: usize) -> bool {
+    /// Does no line along an axis that leaves solid by this face come to another?
+    fn hides_from(&self, other: &Self, axis: usize) -> bool {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let beside = |a: usize| {
-            let (low, high) = other.polygon.extent(a);
-            high <= around[a].0 || low >= around[a].1
+            let (own, (low, high)) = (self.around[a], other.around[a]);
+            high <= own.0 || low >= own.1
         };
-        beside(u) || beside(v) || other.polygon.extent(axis).1 <= around[axis].0 || self.is_beyond(other)
+        // Where a line comes from one to the other, each lies above the plane of the other somewhere.
+        other.around[axis].1 <= self.around[axis].0
+            || beside(u)
+            || beside(v)
+            || self.is_beyond(other)
+            || other.is_beyond(self)
+            || self.is_beside(other, axis)
+            || other.is_beside(self, axis)
+    }
+
+    /// Does one of its edges, as seen along an axis, have another face on its outer side?
+    fn is_beside(&self, other: &Self, axis: usize) -> bool {
+        let (u, v, corners) = ((axis + 1) % 3, (axis + 2) % 3, self.polygon.corners());
+        let Some(mut last) = corners.last() else { return true };
+        for corner in corners {
+            let along = [corner[u] - last[u], corner[v] - last[v]];
+            // Seen from behind, edges lead the other way around.
+            let along = if self.doubled[axis] < R::ZERO { [-along[0], -along[1]] } else { along };
+            let is_outside = |c: &[R; 3]| along[0] * (c[v] - last[v]) <= along[1] * (c[u] - last[u]);
+            let has_direction = along[0] * along[0] + along[1] * along[1] > R::from_f64(LEAST_EDGE * LEAST_EDGE);
+            if has_direction && other.polygon.corners().iter().all(is_outside) {
+                return true;
+            }
+            last = corner;
+        }
+        false
     }
 
     /// Does another face lie behind the plane of this one? They may meet at an edge.
@@ -430,9 +468,11 @@ impl<R: Real> Sweep<'_, R> {
     /// The area that is covered or solid; none if memory or patience is spent.
     fn shadow(&mut self) -> Option<R> {
         let (mut next, mut steps, mut v, mut area) = (0, 0_usize, R::ZERO, R::ZERO);
+        // The places of the edges crossed so far are known at `v`.
+        let mut known = true;
         while v < R::ONE {
             let nearest_end = self.drop_passed(v);
-            let mut top = nearest_end;
+            let (mut top, before) = (nearest_end, if known { self.count } else { 0 });
             while let Some(edge) = self.edges.get(next).filter(|e| e.low[1] <= v) {
                 if edge.high[1] > v {
                     top = top.smaller(edge.high[1]);
@@ -442,10 +482,10 @@ impl<R: Real> Sweep<'_, R> {
                 next += 1;
             }
             top = top.smaller(self.edges.get(next).map_or(R::ONE, |e| e.low[1]));
-            self.arrange(v, top);
+            self.arrange(v, top, before);
             let stop = self.first_crossing(v, top);
             area += self.strips(v, stop, top);
-            v = stop;
+            (v, known) = (stop, stop >= top);
             steps += self.count + 1;
             if steps > MOST_STEPS {
                 return None;
@@ -476,12 +516,14 @@ impl<R: Real> Sweep<'_, R> {
         nearest
     }
 
-    /// Find the places of the crossed edges at `v` and at `top`, and put them in order, as the line meets them just beyond `v`.
-    fn arrange(&mut self, v: R, top: R) {
+    /// Find the places of the crossed edges at `v` and at `top`, and put them in order, as the line meets them just beyond `v`. Of the first ones, so many,
+    /// the step before has ended at `v`.
+    fn arrange(&mut self, v: R, top: R, known: usize) {
         for start in 0..self.count {
             let Some(&id) = self.crossed.get(start) else { continue };
             let Some(edge) = self.edges.get_mut(id as usize) else { continue };
-            edge.step = [edge.at(v), edge.at(top)];
+            let low = if start < known { edge.step[1] } else { edge.at(v) };
+            edge.step = [low, edge.at(top)];
             let (step, mut at) = (edge.step, start);
             while let Some(before) = at.checked_sub(1) {
                 let Some(&other) = self.crossed.get(before) else { break };

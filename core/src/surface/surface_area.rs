@@ -14,6 +14,7 @@ mod spread;
 use crate::grid::Grid;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Bins;
+use crate::surface::clip::Polygon;
 pub(super) use spread::Place;
 use spread::spread;
 
@@ -56,8 +57,8 @@ pub(super) trait PieceSums<R> {
     const WANTED: bool;
     /// The pieces that follow are of this body, which may be a sheet without volume.
     fn begin_body(&mut self, body: u32, sheet: bool);
-    /// A piece that counts for a cell of the layer, by twice its area vector.
-    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3]);
+    /// A piece that counts for a cell of the layer, by twice its area vector; the piece itself, if its coordinates are those of the grid.
+    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: Option<&Polygon<R>>);
 }
 
 impl<R> PieceSums<R> for () {
@@ -65,7 +66,7 @@ impl<R> PieceSums<R> for () {
     #[inline(always)]
     fn begin_body(&mut self, _: u32, _: bool) {}
     #[inline(always)]
-    fn add(&mut self, _: usize, _: Place, _: [R; 3]) {}
+    fn add(&mut self, _: usize, _: Place, _: [R; 3], _: Option<&Polygon<R>>) {}
 }
 
 /// What one cell holds of single bodies' surfaces. The default serves as memory.
@@ -80,6 +81,10 @@ pub struct CellSurface<R> {
     pub(super) bodies: Bodies,
     /// Of several bodies, what their union has.
     pub(super) union: Option<UnionSurface<R>>,
+    /// The pieces inside that have been kept.
+    pub(super) kept: CellPieces,
+    /// Surface lies in the plane of its upper side.
+    pub(super) wall_on_top: bool,
 }
 
 impl<R: Real> CellSurface<R> {
@@ -100,6 +105,109 @@ impl<R: Real> CellSurface<R> {
             Bodies::Several => UnionSurface { exact: true, sides: Some([[R::ZERO; 2]; 3]), ..alone },
             _ => UnionSurface { exact: true, ..alone },
         }
+    }
+}
+
+/// The pieces that have been kept of the surface inside one cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CellPieces {
+    /// There are none.
+    #[default]
+    None,
+    /// The last of them, by its number in the layer.
+    Last(u32),
+    /// Not all: there was no room, or a piece has coordinates of its own.
+    Incomplete,
+}
+
+/// A piece of surface in a cell that has been kept. The default serves as memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KeptPiece {
+    /// The piece of the same cell before it.
+    before: CellPieces,
+    first_corner: u32,
+    corners: u32,
+    body: u32,
+    sheet: bool,
+}
+
+/// Memory for the pieces of surface in a layer, which spare cutting them again; cells for which it does not suffice are cut again.
+#[derive(Debug, Default)]
+pub struct PieceMemory<'a, R> {
+    /// Pieces.
+    pub pieces: &'a mut [KeptPiece],
+    /// Their corners: four to five times as many.
+    pub corners: &'a mut [[R; 3]],
+}
+
+/// How much of a [`PieceMemory`] is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PiecesUsed {
+    /// Pieces.
+    pub pieces: usize,
+    /// Corners.
+    pub corners: usize,
+}
+
+impl<R: Real> PieceMemory<'_, R> {
+    /// Keep one more piece of a cell, those of which before it are given, and of a body, which may be a sheet.
+    #[inline(always)]
+    fn keep(
+        &mut self,
+        used: &mut PiecesUsed,
+        before: CellPieces,
+        (body, sheet): (u32, bool),
+        piece: Option<&Polygon<R>>,
+    ) -> CellPieces {
+        let (Some(piece), true) = (piece, before != CellPieces::Incomplete) else { return CellPieces::Incomplete };
+        let corners = piece.corners();
+        let (first, number) = (used.corners, used.pieces);
+        let places = self.corners.get_mut(first..).and_then(|free| free.get_mut(..corners.len()));
+        let (Some(places), Some(kept)) = (places, self.pieces.get_mut(number)) else { return CellPieces::Incomplete };
+        places.copy_from_slice(corners);
+        *kept = KeptPiece { before, first_corner: first as u32, corners: corners.len() as u32, body, sheet };
+        *used = PiecesUsed { pieces: number + 1, corners: first + corners.len() };
+        CellPieces::Last(number as u32)
+    }
+}
+
+/// The pieces of surface that have been kept of a layer.
+#[derive(Clone, Copy, Debug)]
+pub struct KeptPieces<'a, R> {
+    /// Of each cell, `ny*nx`, x fastest.
+    pub cells: &'a [KeptCell],
+    /// All pieces.
+    pub pieces: &'a [KeptPiece],
+    /// Their corners.
+    pub corners: &'a [[R; 3]],
+}
+
+/// What has been kept of a cell. The default serves as memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KeptCell {
+    /// Its pieces.
+    pub(super) pieces: CellPieces,
+    /// Surface may lie in the plane of a side normal to x, y, z.
+    pub(super) walls: [bool; 3],
+}
+
+impl<'a, R> KeptPieces<'a, R> {
+    /// What has been kept of a cell, if that is all.
+    pub(super) fn of(&self, cell: usize) -> Option<KeptCell> {
+        self.cells.get(cell).copied().filter(|kept| kept.pieces != CellPieces::Incomplete)
+    }
+
+    /// The pieces of a cell, the last first: corners, the body and whether it is a sheet.
+    pub(super) fn pieces(&self, cell: KeptCell) -> impl Iterator<Item = (&'a [[R; 3]], u32, bool)> + use<'a, R> {
+        let KeptPieces { pieces, corners, .. } = *self;
+        let mut at = cell.pieces;
+        core::iter::from_fn(move || {
+            let CellPieces::Last(number) = at else { return None };
+            let KeptPiece { before, first_corner, corners: count, body, sheet } = *pieces.get(number as usize)?;
+            // Lists lead downwards, so that they end.
+            at = if matches!(before, CellPieces::Last(n) if n < number) { before } else { CellPieces::None };
+            Some((corners.get(first_corner as usize..)?.get(..count as usize)?, body, sheet))
+        })
     }
 }
 
@@ -161,13 +269,20 @@ pub(super) struct LayerSurface<'a, R> {
     cells: &'a mut [CellSurface<R>],
     body: u32,
     sheet: bool,
+    pieces: PieceMemory<'a, R>,
+    used: PiecesUsed,
 }
 
 impl<'a, R: Real> LayerSurface<'a, R> {
-    /// Of nothing yet.
-    pub fn new(cells: &'a mut [CellSurface<R>]) -> Self {
+    /// Of nothing yet; pieces are kept as far as there is room.
+    pub fn new(cells: &'a mut [CellSurface<R>], pieces: PieceMemory<'a, R>) -> Self {
         cells.fill(CellSurface::default());
-        LayerSurface { cells, body: 0, sheet: false }
+        LayerSurface { cells, body: 0, sheet: false, pieces, used: PiecesUsed::default() }
+    }
+
+    /// How many pieces and corners have been kept.
+    pub fn used(&self) -> PiecesUsed {
+        self.used
     }
 
     /// What has been gathered.
@@ -189,16 +304,21 @@ impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
     }
 
     #[inline(always)]
-    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3]) {
+    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: Option<&Polygon<R>>) {
         let Some(cell) = self.cells.get_mut(cell) else { return };
+        if place == Place::Inside {
+            let owner = (self.body, self.sheet);
+            cell.kept = self.pieces.keep(&mut self.used, cell.kept, owner, piece);
+        }
         let area = SurfaceArea::of_polygon(doubled_area);
         match (self.sheet, place) {
             (true, Place::Inside) => cell.sheets = cell.sheets.plus(area),
             (true, Place::InPlane) => cell.sheets.wetted += area.wetted,
             (false, Place::Inside) => cell.inside = cell.inside.plus(area),
             (false, Place::InPlane) => cell.in_plane += area.wetted,
+            (_, Place::Top) => cell.wall_on_top = true,
         }
-        if !self.sheet {
+        if !self.sheet && place != Place::Top {
             cell.bodies = match cell.bodies {
                 Bodies::None => Bodies::One(self.body),
                 Bodies::One(body) if body == self.body => Bodies::One(body),

@@ -347,7 +347,9 @@ impl<R: Real> Frame<R> {
         (seen > R::ZERO).then_some(doubled)
     }
 
-    fn framed(&self, p: [R; 3]) -> [R; 3] {
+    /// A point as seen from the cell.
+    #[inline(always)]
+    pub fn framed(&self, p: [R; 3]) -> [R; 3] {
         let d = sub(p, self.origin);
         [d[0] / self.scale[0], d[1] / self.scale[1], d[2] / self.scale[2]]
     }

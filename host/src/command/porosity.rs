@@ -61,10 +61,13 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let drag = args.drag.map(|law| (law, coefficients));
         let wanted = Wanted { resistance, drag, faces: args.faces, warning: false };
         let found = obstacles(&grid, &bodies, &mut result, options, wanted, &mut progress);
-        let congestion = found.resistance.as_ref().map(|r| congestion(&grid, &zones, &result, r)).unwrap_or_default();
-        for zone in congestion.iter().filter(|z| z.cells == 0) {
-            progress.warn(format!("zone \"{}\" holds the centre of no cell", zone.zone));
-        }
+        // The report alone has it.
+        let congestion = match (&found.resistance, &args.report) {
+            (Some(_), Some(_)) => {
+                progress.stage("congestion", |_| congestion(&grid, &bodies, &zones, &result, options))
+            }
+            _ => Vec::new(),
+        };
         let report = Report::new(args, &edges, &bodies, &result, (&found, congestion));
         files::write(args, &edges, (&result, &found), &report, &mut progress)?;
         report.summary(&progress);

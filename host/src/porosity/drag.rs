@@ -76,7 +76,8 @@ pub fn drag(
     options: Options,
     (law, coefficients): (DragLaw, DragCoefficients),
 ) -> ObstacleDrag {
-    let round: Vec<bool> = bodies.bodies.par_iter().map(|b| is_round(b, &bodies.triangles)).collect();
+    let round: Vec<bool> =
+        bodies.bodies.par_iter().map(|b| is_round(b, &bodies.triangles[b.triangles.clone()])).collect();
     let weight = |(body, &round): (&Body, &bool)| match body.drag {
         // Its own resistance stands for all of it.
         _ if body.porosity > 0.0 || body.drag.cr.is_some() => [1.0, 0.0, 0.0],
@@ -184,13 +185,14 @@ fn add_own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options, found
 /// Edges that turn by less than this belong to a curved surface.
 const CURVED: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 
-/// Is a body round? By its shape, if that is known; else if edges that turn by less than 40° make up half of all turning, each by its length and
-/// angle.
-fn is_round(body: &Body, triangles: &[[DVec3; 3]]) -> bool {
+/// Is a body with these triangles round? By its shape, if that is known; else if edges that turn by less than 40° make up half of all turning, each by its
+/// length and angle.
+#[must_use]
+pub fn is_round(body: &Body, triangles: &[[DVec3; 3]]) -> bool {
     match &body.form {
         Some(Form::Box(_)) => false,
         Some(Form::Hull(_)) | None => {
-            let [curved, all] = turning(&triangles[body.triangles.clone()]);
+            let [curved, all] = turning(triangles);
             curved > 0.5 * all
         }
         Some(_) => true,

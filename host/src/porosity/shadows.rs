@@ -8,7 +8,7 @@ use voidage_core::grid::Grid;
 use voidage_core::grid::fields::ShapeMismatch;
 use voidage_core::surface::layer::{CellSides, KnownAreas, LayerError, Layers, OpenLayer};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
-use voidage_core::surface::surface_area::SurfaceArea;
+use voidage_core::surface::surface_area::{KeptPieces, SurfaceArea};
 
 /// Shadows of the union of bodies in the cells of a grid, `nx*ny*nz`, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,6 +23,9 @@ pub struct Shadows {
     /// Hidden passages along x, y and z.
     pub hidden: [HiddenPassages; 3],
 }
+
+/// What is told beside the areas of a layer, and the pieces of surface that have been kept of it.
+pub type BesideAreas<'a> = (&'a [CellSides<f64>], KeptPieces<'a, f64>);
 
 /// Cells that are blocked across an axis by more than [`HIDDEN`] of their section beyond what either of their two faces shows, both of which
 /// are open.
@@ -39,13 +42,14 @@ pub struct HiddenPassages {
 pub const HIDDEN: f64 = 0.95;
 
 impl Shadows {
-    /// Of bodies in layers, whose open fractions and areas of surface are known, with what is told beside the areas for each layer.
+    /// Of bodies in layers, whose open fractions and areas of surface are known, with what is told beside the areas for each layer, and the pieces of surface
+    /// that have been kept of it.
     #[must_use]
     pub fn of_layers(
         grid: &Grid<f64>,
         layers: &Layers<DVec3>,
         beta: &FieldSet,
-        (areas, sides): (&[SurfaceArea<f64>], &[&[CellSides<f64>]]),
+        (areas, known): (&[SurfaceArea<f64>], &[BesideAreas]),
     ) -> Self {
         let [nx, ny, nz] = grid.cells();
         let fields = |value: f64| [0; 3].map(|_| vec![value; nx * ny * nz]);
@@ -60,8 +64,9 @@ impl Shadows {
         let buffers = Mutex::new(Vec::new());
         let layer = |(k, slices): (usize, ShadowSlices<f64>)| {
             let mut own = buffers.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_else(Buffers::new);
-            let areas = (&areas[k * nx * ny..(k + 1) * nx * ny], sides[k]);
-            let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), areas), slices);
+            let (sides, kept) = known[k];
+            let areas = (&areas[k * nx * ny..(k + 1) * nx * ny], sides);
+            let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), areas, kept), slices);
             buffers.lock().unwrap_or_else(PoisonError::into_inner).push(own);
             too_full
         };
@@ -123,11 +128,9 @@ fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> Hidden
     found
 }
 
-/// Edges that a cell may hold, seen along one axis.
-const MAX_EDGES: usize = 1 << 15;
-
-/// Faces that a cell may hold.
-const MAX_FACES: usize = MAX_EDGES;
+/// Faces that a cell may hold at first, and at most; so many edges, too, seen along one axis. Curved solids are thousands of facets.
+const FACES: usize = 1 << 12;
+const MOST_FACES: usize = 1 << 18;
 
 /// A thread's memory.
 struct Buffers {
@@ -139,12 +142,16 @@ struct Buffers {
 
 impl Buffers {
     fn new() -> Self {
-        Buffers {
-            edges: vec![ShadowEdge::default(); 3 * MAX_EDGES],
-            crossed: vec![0; MAX_EDGES],
-            lists: Vec::new(),
-            faces: vec![ShadowFace::default(); MAX_FACES],
-        }
+        let mut new = Buffers { edges: Vec::new(), crossed: Vec::new(), lists: Vec::new(), faces: Vec::new() };
+        new.make_room(FACES);
+        new
+    }
+
+    /// Room for so many faces in a cell.
+    fn make_room(&mut self, faces: usize) {
+        self.edges.resize(3 * faces, ShadowEdge::default());
+        self.crossed.resize(faces, 0);
+        self.faces.resize(faces, ShadowFace::default());
     }
 
     /// The shadows of layer `k`; how many of its cells are too full.
@@ -152,16 +159,18 @@ impl Buffers {
         &mut self,
         layers: &Layers<DVec3>,
         k: usize,
-        (open, areas): (&OpenLayer<f64>, KnownAreas<f64>),
+        (open, areas, kept): (&OpenLayer<f64>, KnownAreas<f64>, KeptPieces<f64>),
         mut into: ShadowSlices<f64>,
     ) -> usize {
         loop {
             let Buffers { edges, crossed, lists, faces } = self;
             let memory = ShadowMemory { edges, crossed, lists, faces };
-            match layers.shadows(k, open, Some(areas), into.reborrow(), memory) {
+            match layers.shadows(k, open, (Some(areas), Some(kept)), into.reborrow(), memory) {
                 Err(LayerError::Shape(ShapeMismatch { expected, found })) if found == self.lists.len() => {
                     self.lists.resize(expected.max(2 * found), 0);
                 }
+                // The layer again, with more room: what it holds does not depend on what thread had it.
+                Ok(1..) if self.faces.len() < MOST_FACES => self.make_room(4 * self.faces.len()),
                 too_full => return too_full.expect("slices of a layer fit its grid"),
             }
         }

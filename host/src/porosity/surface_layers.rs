@@ -41,8 +41,8 @@ pub fn finish(
         let open = beta.open_layer(grid, k);
         layers.finish_areas(k, &open, &summary.sides, areas).expect("slices of a layer fit its grid");
     });
-    let sides: Vec<_> = summaries.iter().map(|summary| &summary.sides[..]).collect();
-    let shadows = Arc::new(Shadows::of_layers(grid, layers, beta, (&areas, &sides)));
+    let known: Vec<_> = summaries.iter().map(|summary| (&summary.sides[..], summary.kept.pieces())).collect();
+    let shadows = Arc::new(Shadows::of_layers(grid, layers, beta, (&areas, &known)));
     let reports = summaries.iter().map(|summary| summary.areas);
     SurfaceFields {
         // In the order of layers, so that the bits do not depend on the number of threads.

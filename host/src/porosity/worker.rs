@@ -11,7 +11,9 @@ use voidage_core::surface::bins::Group;
 use voidage_core::surface::layer::{
     AreaReport, AreaSlices, CellKinds, CellSides, LayerMemory, LayerReport, Layers, MemoryNeeded,
 };
-use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
+use voidage_core::surface::surface_area::{
+    CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, PiecesUsed, SurfaceArea,
+};
 use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 
 /// Rows that miss zero by more than this fraction of a face leak.
@@ -41,6 +43,24 @@ pub struct Summary {
     pub areas: AreaReport<f64>,
     /// What is told beside the areas of some cells.
     pub sides: Vec<CellSides<f64>>,
+    /// The pieces of surface, with areas.
+    pub kept: Kept,
+}
+
+/// Pieces of surface that were cut for the areas of a layer and serve its shadows.
+#[derive(Debug, Clone, Default)]
+pub struct Kept {
+    cells: Vec<KeptCell>,
+    pieces: Vec<KeptPiece>,
+    corners: Vec<[f64; 3]>,
+}
+
+impl Kept {
+    /// As the core takes it.
+    #[must_use]
+    pub fn pieces(&self) -> KeptPieces<'_, f64> {
+        KeptPieces { cells: &self.cells, pieces: &self.pieces, corners: &self.corners }
+    }
 }
 
 impl Summary {
@@ -138,7 +158,34 @@ struct Worker {
 struct AreaVecs {
     cells: Vec<CellSurface<f64>>,
     sides: Vec<CellSides<f64>>,
+    kept: Kept,
 }
+
+impl AreaVecs {
+    /// Room for the cells of a layer, and for as many pieces of each layer.
+    fn make_room(&mut self, cells: usize, layers: usize) {
+        let pieces = (ALL_PIECES_KEPT / layers.max(1)).min(PIECES_KEPT);
+        self.cells.resize(cells, CellSurface::default());
+        self.sides.resize(cells, CellSides::default());
+        self.kept.cells.resize(cells, KeptCell::default());
+        self.kept.pieces.resize(pieces, KeptPiece::default());
+        self.kept.corners.resize(CORNERS_EACH * pieces, [0.0; 3]);
+    }
+
+    /// A copy of what has been kept of a layer.
+    fn kept(&self, used: PiecesUsed) -> Kept {
+        let Kept { cells, pieces, corners } = &self.kept;
+        let (pieces, corners) = (pieces[..used.pieces].to_vec(), corners[..used.corners].to_vec());
+        Kept { cells: cells.clone(), pieces, corners }
+    }
+}
+
+/// Pieces of surface that are kept of a layer, and of all of them: of others, shadows cut them again. The same for any number of threads.
+const PIECES_KEPT: usize = 1 << 16;
+const ALL_PIECES_KEPT: usize = 1 << 21;
+
+/// Corners that a piece has, or nearly.
+const CORNERS_EACH: usize = 5;
 
 /// What a thread needs for sums over surfaces and for unions.
 struct SumVecs {
@@ -199,12 +246,12 @@ impl Worker {
             let report = layers.zeroed_layer(k, beta, bounds, &mut memory, &mut others, note_leak).expect(FITS);
             return Summary::new(report, &others, leaks);
         };
-        let AreaVecs { cells, sides } = vecs;
-        cells.resize(union.len(), CellSurface::default());
-        sides.resize(union.len(), CellSides::default());
-        let areas = AreaSlices { union, sides, cells };
+        vecs.make_room(union.len(), grid.cells()[2]);
+        let AreaVecs { cells, sides, kept: Kept { cells: kept, pieces, corners } } = &mut *vecs;
+        let areas = AreaSlices { union, sides, cells, kept, pieces: PieceMemory { pieces, corners } };
         let (report, areas) = layers.layer_and_areas(k, beta, bounds, areas, &mut memory, note_leak).expect(FITS);
-        Summary { areas, sides: sides[..areas.sides].to_vec(), ..Summary::new(report, &others, leaks) }
+        let (sides, kept) = (vecs.sides[..areas.sides].to_vec(), vecs.kept(areas.kept));
+        Summary { areas, sides, kept, ..Summary::new(report, &others, leaks) }
     }
 }
 

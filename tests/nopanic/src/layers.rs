@@ -4,9 +4,11 @@ use glam::{DVec3, Vec3};
 use voidage_core::grid::{Grid, Located};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
-use voidage_core::surface::layer::{AreaSlices, CellSides, LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer};
+use voidage_core::surface::layer::{
+    AreaSlices, CellSides, KnownSurface, LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer,
+};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
-use voidage_core::surface::surface_area::{CellSurface, SurfaceArea};
+use voidage_core::surface::surface_area::{CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, SurfaceArea};
 use voidage_core::surface::union::{UnionBuffers, UnionMemory};
 
 fn asked<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], at: usize, r: V::Scalar) -> usize {
@@ -45,7 +47,9 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let (mut reals, mut flags, mut numbers, mut groups) = ([zero; 999], [0; 999], [0; 99], [Group::default(); 9]);
     let mut buffers = UnionBuffers::<V::Scalar, 8>::default();
     let union = buffers.memory();
-    let Ok(mut memory) = LayerMemory::new(grid, &mut reals, &mut flags, &mut numbers, &mut groups, union) else { return 1 };
+    let Ok(mut memory) = LayerMemory::new(grid, &mut reals, &mut flags, &mut numbers, &mut groups, union) else {
+        return 1;
+    };
     let mut fields = [[zero; 99]; 16];
     let mut slices = fields.iter_mut().map(|f| f.as_mut_slice());
     let mut next = || -> Option<LayerSlices<V::Scalar>> {
@@ -56,25 +60,30 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let porosity = layers.layer(at, beta, Some([low, high]), &mut memory).map_or(3, |report| report.divided);
     let (mut union, mut sides) = ([SurfaceArea::default(); 99], [CellSides::default(); 99]);
     let mut cells = [CellSurface::default(); 99];
+    let (mut kept, mut pieces, mut corners) = ([KeptCell::default(); 99], [KeptPiece::default(); 9], [[zero; 3]; 40]);
     let areas = AreaSlices {
         union: union.get_mut(..at).unwrap_or_default(),
         sides: sides.get_mut(..at).unwrap_or_default(),
         cells: cells.get_mut(..at).unwrap_or_default(),
+        kept: kept.get_mut(..at).unwrap_or_default(),
+        pieces: PieceMemory { pieces: &mut pieces, corners: &mut corners },
     };
     let found = layers.layer_and_areas(at, again, None, areas, &mut memory, |_, _| ());
     let (unproved, used) = found.map_or((4, 0), |(_, report)| (report.unproved, report.sides));
     let open = [V::Scalar::HALF; 99];
     let of = |count: usize| open.get(..count).unwrap_or(&open);
     let known = OpenLayer { cell: of(at), x: of(at + 1), y: of(at + 2), z: of(at), top: of(at) };
-    let finished = layers.finish_areas(at, &known, sides.get(..used).unwrap_or_default(), union.get_mut(..at).unwrap_or_default());
+    let finished =
+        layers.finish_areas(at, &known, sides.get(..used).unwrap_or_default(), union.get_mut(..at).unwrap_or_default());
     let areas = union.get(..at).zip(sides.get(..used));
-    porosity ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, areas, at)
+    let kept = KeptPieces { cells: &kept, pieces: &pieces, corners: &corners };
+    porosity ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, (areas, Some(kept)), at)
 }
 
 fn shadowed<V: Vector>(
     layers: &Layers<V>,
     open: &OpenLayer<V::Scalar>,
-    areas: Option<(&[SurfaceArea<V::Scalar>], &[CellSides<V::Scalar>])>,
+    areas: KnownSurface<V::Scalar>,
     at: usize,
 ) -> usize {
     let (mut edges, mut crossed, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);

@@ -5,19 +5,24 @@ mod layers;
 mod round;
 
 use glam::{DVec3, Vec3};
-use voidage_core::number::aabb::Aabb;
 use voidage_core::convex::containment::{Containment, Contains, contains};
-use voidage_core::convex::{self, exact};
 use voidage_core::convex::gjk::{Distance, Intersection, distance, intersect, separates};
-use voidage_core::number::real::{Real, Vector};
 use voidage_core::convex::sat::{BoxTriangle, box_triangle};
 use voidage_core::convex::shape::{
     Adjacency, Capsule, Cone, Cylinder, Ellipsoid, Hull, OrientedBox, Point, Segment, Sphere, Triangle, Vertices,
 };
 use voidage_core::convex::support::{MinkowskiDifference, Rounded, Support, Transformed};
+use voidage_core::convex::{self, exact};
 use voidage_core::convex::{AnyBody, AnyShape, Clearance, chord::Chords, polytope};
-use voidage_core::grid::{Grid, cell_range::{CellRange, RangeKind}};
-use voidage_core::subdivide::{self, Candidate, ClosedSurface, LeafRule, Subdividable, SubdivisionMemory, SubdivisionRule};
+use voidage_core::grid::{
+    Grid,
+    cell_range::{CellRange, RangeKind},
+};
+use voidage_core::number::aabb::Aabb;
+use voidage_core::number::real::{Real, Vector};
+use voidage_core::subdivide::{
+    self, Candidate, ClosedSurface, LeafRule, Subdividable, SubdivisionMemory, SubdivisionRule,
+};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
@@ -59,7 +64,9 @@ fn inside<S: Contains>(body: &S, cell: &Aabb<S::Vector>) -> u32 {
 /// The door to two bodies of any kind.
 fn any<V: Vector>(a: AnyShape<V>, b: AnyShape<V>, axes: [V; 3], radius: V::Scalar) -> u32 {
     let Ok(a) = AnyBody::new(a) else { return 1 };
-    let Ok(b) = AnyBody::new(b).and_then(|b| b.posed(axes, axes[0])?.posed(axes, axes[1])?.rounded(radius)) else { return 2 };
+    let Ok(b) = AnyBody::new(b).and_then(|b| b.posed(axes, axes[0])?.posed(axes, axes[1])?.rounded(radius)) else {
+        return 2;
+    };
     let near = match convex::distance(&a, &b) {
         Clearance::Apart { distance, .. } => distance.to_f64() as u32,
         Clearance::Touching => 1,
@@ -109,7 +116,14 @@ fn shares<V: Vector>(p: &[V], triangles: &[[V; 3]], edges: &[V::Scalar], numbers
         ^ divided(&[Cone::new(a, b, r)], edges, range, kind, numbers, &mut memory)
         ^ divided(&[Cylinder::new(a, b, r)], edges, range, kind, numbers, &mut memory)
         ^ divided(&[Capsule { from: a, to: b, radius: r }], edges, range, kind, numbers, &mut memory)
-        ^ divided(&[Transformed::new(Ellipsoid { center: a, semi_axes: b }, [a, b, a], b, a)], edges, range, kind, numbers, &mut memory)
+        ^ divided(
+            &[Transformed::new(Ellipsoid { center: a, semi_axes: b }, [a, b, a], b, a)],
+            edges,
+            range,
+            kind,
+            numbers,
+            &mut memory,
+        )
         ^ Chords::facet_count(&body) as u32
 }
 
@@ -148,7 +162,14 @@ fn all<V: Vector>(p: &[V], q: &[V], offsets: &[u32], neighbours: &[u32], r: V::S
 
 /// All queries in double precision.
 #[unsafe(no_mangle)]
-pub extern "C" fn nopanic_f64(p: &[DVec3; 40], n: usize, edges: &[u32; 64], triangles: &[[DVec3; 3]; 20], widths: &[f64; 9], r: f64) -> u32 {
+pub extern "C" fn nopanic_f64(
+    p: &[DVec3; 40],
+    n: usize,
+    edges: &[u32; 64],
+    triangles: &[[DVec3; 3]; 20],
+    widths: &[f64; 9],
+    r: f64,
+) -> u32 {
     let (a, b) = p.split_at(20);
     let (a, b) = (a.get(..n).unwrap_or(a), b.get(..n).unwrap_or(b));
     let (offsets, neighbours) = edges.split_at(20);
@@ -157,7 +178,14 @@ pub extern "C" fn nopanic_f64(p: &[DVec3; 40], n: usize, edges: &[u32; 64], tria
 
 /// All queries in single precision.
 #[unsafe(no_mangle)]
-pub extern "C" fn nopanic_f32(p: &[Vec3; 40], n: usize, edges: &[u32; 64], triangles: &[[Vec3; 3]; 20], widths: &[f32; 9], r: f32) -> u32 {
+pub extern "C" fn nopanic_f32(
+    p: &[Vec3; 40],
+    n: usize,
+    edges: &[u32; 64],
+    triangles: &[[Vec3; 3]; 20],
+    widths: &[f32; 9],
+    r: f32,
+) -> u32 {
     let (a, b) = p.split_at(20);
     let (a, b) = (a.get(..n).unwrap_or(a), b.get(..n).unwrap_or(b));
     let (offsets, neighbours) = edges.split_at(20);

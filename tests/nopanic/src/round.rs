@@ -9,10 +9,10 @@ use voidage_core::grid::{Grid, cell_range::RangeKind};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::solids::quadric::{AsQuadric, QuadricSolid, excess, share_of_union};
+use voidage_core::solids::torus::{TorusShape, TorusSolid};
 use voidage_core::solids::{RoundMemory, RoundShape, RoundSolid, RoundSolids};
 use voidage_core::subdivide::{Candidate, LeafRule, SubdivisionMemory, SubdivisionRule};
 use voidage_core::surface::OtherBodies;
-use voidage_core::solids::torus::{TorusShape, TorusSolid};
 
 /// What a visitor of shares is told, and what it is not told, as one number.
 fn told(kind: RangeKind, at: usize, share: f64) -> usize {
@@ -45,7 +45,8 @@ fn quadrics<V: Vector>(grid: &Grid<V::Scalar>, p: [V; 3], r: [V::Scalar; 2], cel
     let [enough, tol] = r.map(Real::to_f64);
     let excess = excess(solids.iter().flatten(), cell, enough).map_or(1, |[low, high]| (low + high) as usize);
     let sum_of_shares = Bounds { lower: enough, upper: tol };
-    let union = share_of_union(solids.iter().flatten(), cell, sum_of_shares, tol).map_or(2, |found| found.lower as usize);
+    let union =
+        share_of_union(solids.iter().flatten(), cell, sum_of_shares, tol).map_or(2, |found| found.lower as usize);
     sum ^ excess ^ union
 }
 
@@ -103,12 +104,24 @@ fn asked<V: Vector>(edges: &[V::Scalar], p: [V; 3], r: [V::Scalar; 2], cell: [[f
 
 /// In double precision.
 #[unsafe(no_mangle)]
-pub extern "C" fn nopanic_round_f64(edges: &[f64; 9], n: usize, p: &[DVec3; 3], r: &[f64; 2], cell: &[[f64; 2]; 3]) -> usize {
+pub extern "C" fn nopanic_round_f64(
+    edges: &[f64; 9],
+    n: usize,
+    p: &[DVec3; 3],
+    r: &[f64; 2],
+    cell: &[[f64; 2]; 3],
+) -> usize {
     asked(edges.get(..n).unwrap_or(edges), *p, *r, *cell, n)
 }
 
 /// In single precision.
 #[unsafe(no_mangle)]
-pub extern "C" fn nopanic_round_f32(edges: &[f32; 9], n: usize, p: &[Vec3; 3], r: &[f32; 2], cell: &[[f64; 2]; 3]) -> usize {
+pub extern "C" fn nopanic_round_f32(
+    edges: &[f32; 9],
+    n: usize,
+    p: &[Vec3; 3],
+    r: &[f32; 2],
+    cell: &[[f64; 2]; 3],
+) -> usize {
     asked(edges.get(..n).unwrap_or(edges), *p, *r, *cell, n)
 }

@@ -2,15 +2,15 @@
 
 use super::Layers;
 use super::error::LayerError;
-use super::surface_areas::{KnownAreas, OpenLayer};
+use super::surface_areas::{KnownAreas, KnownSurface, OpenLayer};
 use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::CellLists;
+use crate::surface::bins::{CellLists, WantedList};
 use crate::surface::cell_unions::{known, side_areas};
 use crate::surface::clip::Polygon;
 use crate::surface::shadow::{CellFaces, Outlines, ShadowMemory, ShadowSlices};
-use crate::surface::surface_area::SurfaceArea;
+use crate::surface::surface_area::{KeptCell, KeptPieces, SurfaceArea};
 use crate::surface::union::Frame;
 
 impl<V: Vector> Layers<'_, V> {
@@ -22,7 +22,8 @@ impl<V: Vector> Layers<'_, V> {
 
     /// The shadows of the union in the cells of layer `k`, and how many cells hold more than the memory: what is given for them are the blocked
     /// shares of their sides. `open` holds the layer's open fractions, `areas` those of [`Layers::finish_areas`], if they are known: where they
-    /// prove that no surface hides behind what a side of the cell shows, nothing is searched. Sheets cast shadows.
+    /// prove that no surface hides behind what a side of the cell shows, nothing is searched. `kept` holds pieces that [`Layers::layer_and_areas`] has kept of
+    /// the layer, which are cut again where there are none. Sheets cast shadows.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length, too few lists.
@@ -30,7 +31,7 @@ impl<V: Vector> Layers<'_, V> {
         &self,
         k: usize,
         open: &OpenLayer<V::Scalar>,
-        areas: Option<KnownAreas<V::Scalar>>,
+        (areas, kept): KnownSurface<V::Scalar>,
         shadows: ShadowSlices<V::Scalar>,
         memory: ShadowMemory<V::Scalar>,
     ) -> Result<usize, LayerError> {
@@ -47,21 +48,30 @@ impl<V: Vector> Layers<'_, V> {
         show_sides(open, nx, &mut share);
         place.iter_mut().for_each(|field| field.fill(V::Scalar::HALF));
         let here = LayerWithFaces { layers: self, k, open, areas };
-        let is_doubtful = |c: usize| {
-            let Some(seen) = here.seen(c) else { return false };
+        let kept_of = |c: usize| kept.and_then(|kept| Some((kept, kept.of(c)?)));
+        let wanted = |c: usize| {
+            let Some(seen) = here.seen(c) else { return WantedList::Nothing };
             for axis in 0..3 {
                 set(share[axis], c, seen.share[axis]);
             }
-            seen.doubtful != [false; 3]
+            match seen.doubtful {
+                [false, false, false] => WantedList::Nothing,
+                _ if kept_of(c).is_some() => WantedList::Cell,
+                _ => WantedList::Triangles,
+            }
         };
         let ShadowMemory { edges, crossed, lists, faces } = memory;
-        let lists = CellLists::new(&self.bins, &self.grid, k, is_doubtful, lists)?;
+        let lists = CellLists::new(&self.bins, &self.grid, k, wanted, lists)?;
         let mut work = Work::new(Outlines::new(edges, crossed), CellFaces::new(faces));
         let mut too_full = 0;
         for c in 0..nx * ny {
             let Some(entries) = lists.of(c) else { continue };
             let (Some(cell), Some(mut found)) = (here.cell_box(c), here.seen(c)) else { continue };
-            too_full += usize::from(here.shadow(cell, entries, &mut work, &mut found).is_none());
+            let loaded = match kept_of(c) {
+                Some((kept, pieces)) => load_kept(cell, kept, pieces, &mut work),
+                None => here.load(cell, entries, &mut work),
+            };
+            too_full += usize::from(loaded.and_then(|()| here.shadow(&mut work, &mut found)).is_none());
             for axis in 0..3 {
                 set(share[axis], c, found.share[axis]);
                 set(place[axis], c, found.place[axis]);
@@ -198,15 +208,8 @@ impl<V: Vector> LayerWithFaces<'_, V> {
         Some(seen)
     }
 
-    /// Raise the doubtful shares of `found` to the shadows; none if there is no room.
-    fn shadow(
-        &self,
-        cell: Aabb<V>,
-        entries: impl Iterator<Item = [u32; 2]>,
-        work: &mut Work<V::Scalar>,
-        found: &mut Seen<V::Scalar>,
-    ) -> Option<()> {
-        self.load(cell, entries, work)?;
+    /// Raise the doubtful shares of `found` to the shadows of the surface that has been loaded; none if there is no room.
+    fn shadow(&self, work: &mut Work<V::Scalar>, found: &mut Seen<V::Scalar>) -> Option<()> {
         for axis in 0..3 {
             if !found.doubtful[axis] {
                 continue;
@@ -274,6 +277,34 @@ impl<V: Vector> LayerWithFaces<'_, V> {
         }
         Some(())
     }
+}
+
+/// Take in the pieces that have been kept of the surface inside a cell; none if there is no room.
+#[inline(never)]
+fn load_kept<V: Vector>(
+    cell: Aabb<V>,
+    kept: KeptPieces<V::Scalar>,
+    own: KeptCell,
+    work: &mut Work<V::Scalar>,
+) -> Option<()> {
+    let (frame, mut last) = (Frame::of(cell), None);
+    work.faces.clear();
+    work.walls = own.walls;
+    for (corners, body, sheet) in kept.pieces(own) {
+        if last.replace(body) != Some(body) {
+            work.faces.begin_solid(sheet);
+        }
+        let polygon = work.faces.next()?;
+        polygon.clear();
+        for corner in corners {
+            polygon.push(frame.framed(*corner));
+        }
+        let doubled = polygon.doubled_area();
+        if doubled != [V::Scalar::ZERO; 3] {
+            work.faces.push(doubled);
+        }
+    }
+    Some(())
 }
 
 /// Memory for one cell at a time.

@@ -9,14 +9,17 @@ use super::slices::LayerSlices;
 use super::solid_bounds::solid_bounds;
 use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
-use crate::grid::fields::exactly;
+use crate::grid::fields::{Fields, exactly};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::cell_unions::{
-    OtherBodies, Refined, Room, Shared, Site, UnionSums, divide, rounding, side_areas, with_effort,
+    OtherBodies, Refined, Room, Shared, Site, UnionSums, divide, known, side_areas, with_effort,
 };
 use crate::surface::cells::Defects;
-use crate::surface::surface_area::{Bodies, CellSurface, LayerSurface, SurfaceArea, UnionSurface, gather_weighted};
+use crate::surface::surface_area::{
+    Bodies, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea, UnionSurface,
+    gather_weighted,
+};
 
 /// Open fractions of a layer that are known already: cells `ny*nx`, x faces `ny*(nx+1)`, y faces `(ny+1)*nx`, z faces below and above
 /// `ny*nx` each; x fastest.
@@ -70,6 +73,8 @@ pub struct AreaReport<R> {
     pub unproved: usize,
     /// The largest wetted area that is in doubt in one cell.
     pub max_doubt: R,
+    /// How much of [`AreaSlices::pieces`] is used.
+    pub kept: PiecesUsed,
 }
 
 /// Where the areas of a layer go, and memory for them.
@@ -81,6 +86,10 @@ pub struct AreaSlices<'a, R> {
     pub sides: &'a mut [CellSides<R>],
     /// Memory, `ny*nx`.
     pub cells: &'a mut [CellSurface<R>],
+    /// Which of `pieces` each cell has, `ny*nx`.
+    pub kept: &'a mut [KeptCell],
+    /// Memory for the pieces of surface, which [`Layers::shadows`] need not cut again; as much as one likes, none will do.
+    pub pieces: PieceMemory<'a, R>,
 }
 
 /// What is told of the porosity of a layer, and of its areas.
@@ -88,6 +97,9 @@ pub type LayerReports<R> = (LayerReport<R>, AreaReport<R>);
 
 /// Areas of the union in a layer, and what is told beside them of some cells.
 pub type KnownAreas<'a, R> = (&'a [SurfaceArea<R>], &'a [CellSides<R>]);
+
+/// What is known of the surface in a layer: its areas, and pieces that have been kept.
+pub type KnownSurface<'a, R> = (Option<KnownAreas<'a, R>>, Option<KeptPieces<'a, R>>);
 
 /// A cell that several bodies share. The default serves as memory.
 #[derive(Clone, Copy, Debug, Default)]
@@ -114,13 +126,19 @@ impl<V: Vector> Layers<'_, V> {
         each_body: impl FnMut(usize, Defects<V::Scalar>),
     ) -> Result<LayerReports<V::Scalar>, LayerError> {
         let [nx, ny, _] = self.grid.cells();
-        let AreaSlices { union, sides, cells } = areas;
-        for found in [union.len(), sides.len(), cells.len()] {
+        let AreaSlices { union, sides, cells, kept, pieces } = areas;
+        for found in [union.len(), sides.len(), cells.len(), kept.len()] {
             exactly(nx * ny, found)?;
         }
-        let mut surface = LayerSurface::new(cells);
+        // Flags of the plane below have then been replaced by those of the plane above.
+        let has_top = !beta.top.is_empty();
+        let mut surface = LayerSurface::new(cells, pieces);
         let report = self.measure(k, (beta, bounds), memory, (&mut (), &mut surface), each_body)?;
-        Ok((report, summed(surface.cells(), union, sides)))
+        let mut areas = summed(surface.cells(), union, sides);
+        areas.kept = surface.used();
+        let walls = Fields::within(&self.grid, &mut *memory.has_surface)?;
+        note_kept(surface.cells(), &walls, has_top, nx, kept);
+        Ok((report, areas))
     }
 
     /// Add to the areas of the union what is wetted in the planes of grid, for which the faces of neighbouring layers must be known, and drop the surface of
@@ -158,6 +176,20 @@ impl<V: Vector> Layers<'_, V> {
             }
         }
         Ok(())
+    }
+}
+
+/// Write which pieces each cell has, and in the planes of which of its sides surface lies.
+fn note_kept<R: Real>(cells: &[CellSurface<R>], walls: &Fields<u8>, has_top: bool, nx: usize, kept: &mut [KeptCell]) {
+    let is_wall = |faces: &[u8], at: usize| faces.get(at).is_none_or(|&flag| flag != 0);
+    for ((c, cell), kept) in cells.iter().enumerate().zip(kept) {
+        let x = c + c.checked_div(nx).unwrap_or(0);
+        let walls = [
+            is_wall(walls.x, x) || is_wall(walls.x, x + 1),
+            is_wall(walls.y, c) || is_wall(walls.y, c + nx),
+            has_top || cell.wall_on_top || is_wall(walls.z, c),
+        ];
+        *kept = KeptCell { pieces: cell.kept, walls };
     }
 }
 
@@ -260,7 +292,7 @@ fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides
     for axis in 0..3 {
         for side in 0..2 {
             let share = blocked[axis][side] - solid[axis][side];
-            if share > rounding() {
+            if share > known() {
                 sum += share * across[axis];
             }
         }
@@ -289,7 +321,7 @@ fn parts_of<V: Vector, O: OtherBodies<V>>(
         let part = Site { grid: &grid, bins: &bins, k, areas: true, halvings: site.halvings.checked_sub(3)? };
         layer.clear();
         let mut cells = [CellSurface::default(); 4];
-        let mut pieces = LayerSurface::new(&mut cells);
+        let mut pieces = LayerSurface::new(&mut cells, PieceMemory::default());
         solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), &mut pieces, |_, _| ());
         for (n, surface) in cells.iter().enumerate() {
             if layer.lower.cell.get(n).is_none_or(|&lower| lower >= V::Scalar::ONE) {

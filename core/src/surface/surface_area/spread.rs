@@ -11,6 +11,8 @@ pub(crate) enum Place {
     Inside,
     /// In the plane of a face; it counts for the cell into which its normal points.
     InPlane,
+    /// In the plane above a layer, whichever way its normal points; told beside the others, and counts for nothing.
+    Top,
 }
 
 /// Hand over the part of a triangle in each cell of layer `k`: the cell's numbers along x and y, the place and the polygon.

@@ -1,10 +1,10 @@
 //! The solids of a run, one by one: volume and areas of each alone, wherever it is and whatever it overlaps.
 
+use crate::geometry::areas;
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
-use crate::geometry::facets;
-use glam::DVec3;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
+use voidage_core::surface::surface_area::SurfaceArea;
 
 /// A solid of a scene file, or the bodies of one name in an STL or OBJ file.
 #[derive(Debug, Clone, Serialize)]
@@ -59,15 +59,7 @@ fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = 
 }
 
 fn report<'a>(bodies: &Bodies, about: SolidSummary, own: impl Iterator<Item = &'a Body>) -> SolidReport {
-    let (mut frontal, mut wetted) = (DVec3::ZERO, 0.0);
-    for body in own {
-        let curved = facets::of_body(body);
-        let surface = curved.as_deref().unwrap_or(&bodies.triangles[body.triangles.clone()]);
-        for [a, b, c] in surface {
-            let area = (b - a).cross(c - a) * 0.5;
-            frontal += area.abs() * 0.5;
-            wetted += area.length();
-        }
-    }
-    SolidReport { about, frontal_area: frontal.to_array(), wetted_area: wetted }
+    let area = own.map(|body| areas::of_body(body, &bodies.triangles[body.triangles.clone()]));
+    let SurfaceArea { frontal, wetted } = area.fold(SurfaceArea::default(), SurfaceArea::plus);
+    SolidReport { about, frontal_area: frontal, wetted_area: wetted }
 }

@@ -7,6 +7,7 @@ use crate::grid::Edges;
 use crate::keys::Source;
 use crate::porosity::congestion::Zone;
 use std::path::Path;
+use voidage_core::number::aabb::Aabb;
 
 /// No file of zones is larger, in bytes.
 const LARGEST_FILE: u64 = 1 << 24;
@@ -17,7 +18,9 @@ const LARGEST_FILE: u64 = 1 << 24;
 /// A file that cannot be read, a key that is wrong, missing or not known, a zone without extent or wholly outside the grid.
 pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
     let whole = edges.bounds();
-    let Some(path) = path else { return Ok(vec![Zone { name: "all".into(), bounds: whole }]) };
+    let Some(path) = path else {
+        return Ok(vec![Zone { name: "all".into(), bounds: Aabb { min: whole[0], max: whole[1] } }]);
+    };
     Source::no_geometry(path, "a list of zones")?;
     let (path, text) = match text_of(path)? {
         Some(text) => (Path::new(INPUT), text),
@@ -42,5 +45,5 @@ fn zone(mut keys: StrictTable<'_>, [lowest, highest]: [glam::DVec3; 2]) -> Resul
     if !(min.cmplt(highest).all() && max.cmpgt(lowest).all()) {
         return Err(keys.fail(format!("lies outside the grid, {lowest} to {highest}")));
     }
-    Ok(Zone { name, bounds: [min, max] })
+    Ok(Zone { name, bounds: Aabb { min, max } })
 }
