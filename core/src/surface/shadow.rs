@@ -357,6 +357,7 @@ impl<'m, R: Real> CellFaces<'m, R> {
 impl<R: Real> ShadowFace<R> {
     /// Does no line along an axis that leaves solid by this face come to another?
     fn hides_from(&self, other: &Self, axis: usize) -> bool {
+        let axis = axis.min(2);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let beside = |a: usize| {
             let (own, (low, high)) = (self.around[a], other.around[a]);
@@ -374,6 +375,7 @@ impl<R: Real> ShadowFace<R> {
 
     /// Does one of its edges, as seen along an axis, have another face on its outer side?
     fn is_beside(&self, other: &Self, axis: usize) -> bool {
+        let axis = axis.min(2);
         let (u, v, corners) = ((axis + 1) % 3, (axis + 2) % 3, self.polygon.corners());
         let Some(mut last) = corners.last() else { return true };
         for corner in corners {

@@ -164,7 +164,7 @@ impl<R: Real> PieceMemory<'_, R> {
         let (first, number) = (used.corners, used.pieces);
         let places = self.corners.get_mut(first..).and_then(|free| free.get_mut(..corners.len()));
         let (Some(places), Some(kept)) = (places, self.pieces.get_mut(number)) else { return CellPieces::Incomplete };
-        places.copy_from_slice(corners);
+        places.iter_mut().zip(corners).for_each(|(place, corner)| *place = *corner);
         *kept = KeptPiece { before, first_corner: first as u32, corners: corners.len() as u32, body, sheet };
         *used = PiecesUsed { pieces: number + 1, corners: first + corners.len() };
         CellPieces::Last(number as u32)
