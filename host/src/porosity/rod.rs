@@ -49,21 +49,25 @@ fn straight(length: f64, volume: f64, wetted: f64) -> Rod {
 /// Sections of round bodies are no larger than those of their diameters by more than this: polygons whose edges turn by less than 40°.
 const ROUND_SECTION: f64 = 1.05;
 
-/// A round body of one closed surface without a way through, which is longer than it extends, is bent: its volume and section tell its length. What has a
-/// way through may be a pipe with a wall.
+/// A body that reaches farther than this many diameters is slender: its ends are a small share of its surface.
+const SLENDER: f64 = 2.0;
+
+/// Volume and surface of a slender round body tell its diameter, even if it is bent, and its length, if that is more than it reaches. It must have one closed
+/// surface without a way through: what has one may be a pipe with a wall.
 fn of_surface(body: &Body, triangles: &[[DVec3; 3]], area: &SurfaceArea<f64>) -> Rod {
     let rod = straight(extent(triangles), body.volume, area.wetted);
-    let along = |rod: Rod| body.volume / (std::f64::consts::FRAC_PI_4 * rod.diameter * rod.diameter);
-    let longer = rod.diameter > 0.0 && along(rod) > ROUND_SECTION * rod.length;
-    if !(longer && is_simple(triangles) && is_round(body, triangles)) {
+    let is_slender = rod.diameter > 0.0 && rod.length > SLENDER * rod.diameter;
+    if !(is_slender && is_simple(triangles) && is_round(body, triangles)) {
         return rod;
     }
-    // The length tells what the ends have of the surface, which is little.
-    (0..BEND_STEPS).fold(rod, |rod, _| straight(along(rod), body.volume, area.wetted))
+    let length = |rod: Rod| body.volume / (std::f64::consts::FRAC_PI_4 * rod.diameter * rod.diameter);
+    let round = (0..ROUND_STEPS).fold(rod, |rod, _| straight(length(rod), body.volume, area.wetted));
+    let is_bent = round.length > ROUND_SECTION * rod.length;
+    Rod { diameter: round.diameter, length: if is_bent { round.length } else { rod.length } }
 }
 
-/// Each step brings diameter and length of a bend nearer by the share that its ends have of its surface.
-const BEND_STEPS: usize = 8;
+/// Each step brings diameter and length nearer by the share that the ends have of the surface.
+const ROUND_STEPS: usize = 16;
 
 /// Is a closed surface that of a ball but for its shape? Corners, edges and faces then come to 2 by Euler.
 fn is_simple(triangles: &[[DVec3; 3]]) -> bool {
