@@ -2,8 +2,10 @@
 
 mod askew;
 mod balance;
+mod clusters;
 mod contracts;
 mod convergence;
+mod edges;
 mod extremes;
 mod inclined;
 mod invariance;

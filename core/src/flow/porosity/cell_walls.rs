@@ -104,13 +104,20 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     }
 
     /// How far gas of a momentum flows through the contraction that a cell is, 1, or along its walls, 0. Gas at rest does not care.
+    ///
+    /// What the fractions differ by is a share of the face: the area of a wall along an axis is that share of the cell's volume over its
+    /// width there. A sum that rounding of the fractions may leave counts as none.
     #[inline(always)]
     pub fn contraction(&self, at: [usize; D], momentum: [R; D]) -> R {
         let CellWalls::Askew(area) = self.walls_of(at) else { return R::ONE };
-        let through: [R; D] = core::array::from_fn(|d| area[d] * momentum[d]);
+        let width = |d: usize| self.mesh.widths[d].get(at[d]).copied().unwrap_or(R::ONE);
+        let flow: [R; D] = core::array::from_fn(|d| momentum[d] / width(d));
+        let through: [R; D] = core::array::from_fn(|d| area[d] * flow[d]);
         let size = sum::<R, D>(through.map(R::abs));
+        let unsure = R::from_f64(16.0) * R::EPSILON * sum::<R, D>(flow.map(R::abs));
+        let passes = sum::<R, D>(through).abs() - unsure;
         // Written so that gas whose momentum is no number gets 1 as well.
-        if size > R::ZERO { R::smaller(sum::<R, D>(through).abs() / size, R::ONE) } else { R::ONE }
+        if size > R::ZERO { R::larger(R::smaller(passes / size, R::ONE), R::ZERO) } else { R::ONE }
     }
 }
 

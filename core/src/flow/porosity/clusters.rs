@@ -4,6 +4,10 @@
 //! the cluster has the share [`SMALL_SHARE`] (the reference takes one half) of the volume that its largest open face asks for; after each step the cluster's cells share one state.
 //! Where nothing moves a cluster is left alone, so gas at rest keeps its densities.
 //!
+//! Clusters stay local. Neighbours that are alike in every respect are joined all, so that mirrored porosity gives mirrored clusters, but only
+//! where that ends at once: along a wall at 45° each small cell stands between two equal neighbours and each of those between two small cells,
+//! and joining all would make one cluster of the whole wall. There the neighbour nearer to the middle of the mesh is taken.
+//!
 //! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution, threshold one half).
 
 use crate::flow::error::{Error, fits};
@@ -20,15 +24,19 @@ pub(in crate::flow) struct Clusters<'a>(pub(in crate::flow) &'a [u32]);
 
 /// Length of the scratch that the search for clusters needs for a number of cells.
 pub const fn cluster_scratch(cells: usize) -> usize {
-    cells.saturating_mul(6)
+    cells.saturating_mul(8)
 }
 
 /// Smoothing passes of the room of a cell: it starts as the open volume, and each pass adds the neighbours' values times the open
 /// fraction between. It ranks equal neighbours without regard to the side they stand on, so that clusters stay small.
 const SMOOTHING_PASSES: usize = 8;
 
-/// What speaks for growing across a face: its opening times the volume of its cell, the volume of the cluster behind it, the room there.
-const REASONS: usize = 3;
+/// What speaks for growing across a face: its opening times the volume of its cell, the volume of the cluster behind it, the room there, and
+/// among equals by these the place ([`Search::rank`]).
+const REASONS: usize = 4;
+
+/// The number of the reason that is the place. It ranks without tolerance.
+const PLACE: usize = 3;
 
 /// Reasons that differ by less than this share are equal: the fractions of mirrored faces agree but for rounding.
 const EQUAL: f64 = 1e-9;
@@ -36,14 +44,14 @@ const EQUAL: f64 = 1e-9;
 /// Are the first `count` reasons of a face as good as the best?
 fn equal_up_to<R: Real>(count: usize, this: &[R; REASONS], best: &[R; REASONS]) -> bool {
     let least = R::ONE - R::larger(R::from_f64(EQUAL), R::from_f64(64.0) * R::EPSILON);
-    this.iter().zip(best).take(count).all(|(this, best)| *this >= least * *best)
+    (0..count).all(|r| this[r] >= if r == PLACE { best[r] } else { least * best[r] })
 }
 
 /// Finds the clusters; returns how many entries of `list` they fill.
 ///
 /// `list` and `parent` are one entry per cell (fewer than 2^31), `scratch` as [`cluster_scratch`]. Clusters grow across their
-/// largest open face, of equal ones across that to the larger volume, of equal ones towards more room, of equal ones across all:
-/// mirrored porosity gives mirrored clusters.
+/// largest open face, of equal ones across that to the larger volume, of equal ones towards more room, of equal ones across all whose
+/// cluster no other one has to share, and where there is none towards the middle of the mesh: porosity mirrored at the middle gives mirrored clusters.
 ///
 /// # Errors
 /// A slice does not fit the mesh, or the mesh has too many cells.
@@ -69,7 +77,9 @@ pub(in crate::flow) fn clusters<R: Real, const D: usize>(
     search.find_room(&space);
     loop {
         search.take_picture(&space);
-        search.choose(&space);
+        (0..PLACE).for_each(|reason| search.choose(&space, reason));
+        search.count_ties(&space);
+        search.choose(&space, PLACE);
         if !search.join(&space) {
             return Ok(search.into_list());
         }
@@ -126,6 +136,35 @@ impl<'a, R: Real, const D: usize> Space<'a, R, D> {
     fn open_volume(&self, cell: usize) -> R {
         self.medium.porosity.volume[cell] * self.whole(cell)
     }
+
+    /// Steps from a cell to its mirror image in the middle of the mesh, axis by axis.
+    fn steps_off_middle(&self, cell: usize) -> [usize; D] {
+        let (at, cells) = (self.medium.mesh.coordinates(cell), self.medium.mesh.cells());
+        core::array::from_fn(|d| (2 * at[d] + 1).abs_diff(cells[d]))
+    }
+
+    /// How near a cell is to the middle of the mesh: above 0, and 1 in the middle itself. Walls at 45° have different values on both sides
+    /// of each of their cells but one.
+    fn nearness(&self, cell: usize) -> R {
+        let most = self.medium.mesh.cells().into_iter().max().unwrap_or(1).max(1);
+        let scale = R::ONE / R::from_usize(most);
+        let squares = self.steps_off_middle(cell).map(|x| {
+            let x = scale * R::from_usize(x);
+            x * x
+        });
+        R::ONE / (R::ONE + sum::<R, D>(squares))
+    }
+
+    /// A number below 1 that looks drawn by chance, the same in mirrored cells.
+    fn lot(&self, cell: usize) -> R {
+        // The finish of a hash: T. Wang's, as others use it, with 32 bits.
+        let mixed = self.steps_off_middle(cell).into_iter().fold(0u32, |all, x| {
+            let x = (x as u32 ^ 61 ^ (x as u32 >> 16)).wrapping_mul(9);
+            let x = (x ^ (x >> 4)).wrapping_mul(0x27d4_eb2d);
+            all.wrapping_add(x ^ (x >> 15))
+        });
+        R::from_f64(f64::from(mixed >> 8) / f64::from(1 << 24))
+    }
 }
 
 /// The growing clusters. Each is a tree of cells; what belongs to a cluster stands at the index of its root.
@@ -137,8 +176,10 @@ struct Search<'s, R> {
     /// Open volume of each cluster, and the largest of its open faces times the volume of its cell.
     held: &'s mut [R],
     wanted: &'s mut [R],
-    /// Best face to grow across: its opening, the volume of the cluster behind it, and the room there.
+    /// Best face to grow across, reason by reason.
     best: [&'s mut [R]; REASONS],
+    /// Faces to each cluster that are tied with others of the cluster that would grow across them.
+    tied: &'s mut [R],
     /// Room of each cell.
     room: &'s mut [R],
 }
@@ -152,11 +193,11 @@ impl<'s, R: Real> Search<'s, R> {
             piece
         };
         let (held, wanted) = (take(), take());
-        let best = [take(), take(), take()];
+        let best = [take(), take(), take(), take()];
         for (i, p) in parent.iter_mut().enumerate() {
             *p = i as u32;
         }
-        Search { parent, root, held, wanted, best, room: take() }
+        Search { parent, root, held, wanted, best, tied: take(), room: take() }
     }
 
     /// Finds the room of every cell.
@@ -204,30 +245,69 @@ impl<'s, R: Real> Search<'s, R> {
         (self.held[r] < R::from_f64(SMALL_SHARE) * self.wanted[r]).then_some(r)
     }
 
+    /// What the place of a cell behind a face says for growing there, once [`Search::count_ties`] has counted: most where no other tie leads to its
+    /// cluster; then where the cluster holds enough, the nearer to the middle of the mesh the better; among clusters that are short themselves a
+    /// lot decides, for whatever leads on from cell to cell would lead all of them to one place.
+    fn rank<const D: usize>(&self, space: &Space<'_, R, D>, cell: usize) -> R {
+        if self.tied[self.root[cell] as usize] <= R::ONE {
+            R::TWO
+        } else if self.short(cell).is_none() {
+            R::ONE + space.nearness(cell)
+        } else {
+            space.lot(cell)
+        }
+    }
+
     /// Every open face of a cell to another cluster: the cell behind it, and what speaks for growing across it.
     fn each_way_out<const D: usize>(&self, space: &Space<'_, R, D>, i: usize, mut f: impl FnMut(usize, [R; REASONS])) {
         let own = space.whole(i);
         space.each_face(i, |_, behind, open| {
             if let Some(b) = behind.filter(|&b| b != i && self.root[b] != self.root[i]) {
-                f(b, [open * own, self.held[self.root[b] as usize], self.room[b]]);
+                // More room leads from cell to cell as well, so it counts where the cluster behind holds enough.
+                let room = if self.short(b).is_some() { R::ZERO } else { self.room[b] };
+                f(b, [open * own, self.held[self.root[b] as usize], room, self.rank(space, b)]);
             }
         });
     }
 
-    /// Chooses where each short cluster grows: the best of each reason among the faces that are equal by all reasons before it.
-    fn choose<const D: usize>(&mut self, space: &Space<'_, R, D>) {
-        for reason in 0..REASONS {
-            self.best[reason].fill(-R::ONE);
+    /// Chooses where each short cluster grows: the best of a reason among the faces that are equal by all reasons before it.
+    fn choose<const D: usize>(&mut self, space: &Space<'_, R, D>, reason: usize) {
+        self.best[reason].fill(-R::ONE);
+        for i in 0..self.root.len() {
+            let Some(r) = self.short(i) else { continue };
+            let known = self.best.each_ref().map(|b| b[r]);
+            let mut best = known[reason];
+            self.each_way_out(space, i, |_, this| {
+                if equal_up_to(reason, &this, &known) {
+                    best = R::larger(this[reason], best);
+                }
+            });
+            self.best[reason][r] = best;
+        }
+    }
+
+    /// Counts the ties by all reasons but the place that lead to each cluster.
+    fn count_ties<const D: usize>(&mut self, space: &Space<'_, R, D>) {
+        self.tied.fill(R::ZERO);
+        // The best place is not known yet: its room holds the number of equal ways out of each cluster.
+        self.best[PLACE].fill(R::ZERO);
+        for counted in [false, true] {
             for i in 0..self.root.len() {
                 let Some(r) = self.short(i) else { continue };
-                let known = self.best.each_ref().map(|b| b[r]);
-                let mut best = known[reason];
-                self.each_way_out(space, i, |_, this| {
-                    if equal_up_to(reason, &this, &known) {
-                        best = R::larger(this[reason], best);
+                let best = self.best.each_ref().map(|b| b[r]);
+                // A cell has at most six faces.
+                let (mut equal, mut count) = ([0; 6], 0);
+                self.each_way_out(space, i, |b, this| {
+                    if equal_up_to(PLACE, &this, &best) {
+                        equal[count] = self.root[b] as usize;
+                        count += 1;
                     }
                 });
-                self.best[reason][r] = best;
+                if !counted {
+                    self.best[PLACE][r] += R::from_usize(count);
+                } else if best[PLACE] > R::ONE {
+                    equal[..count].iter().for_each(|&b| self.tied[b] += R::ONE);
+                }
             }
         }
     }

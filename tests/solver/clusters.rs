@@ -1,0 +1,114 @@
+//! Clusters of small cells stay local, whatever is equal to what: where a wall repeats itself from cell to cell, too.
+
+use voidage_core::flow::{Fractions, Merging, Mesh, Treatment, cluster_scratch, prepare};
+use voidage_core::number::real::Real;
+use voidage_tests::euler::space::{OpenFractions, half_space, open_fractions};
+
+/// The clusters of open fractions of a mesh of equal cells, each a sorted list of cells.
+fn clusters<R: Real, const D: usize>(n: [usize; D], open: &OpenFractions<D>) -> Vec<Vec<usize>> {
+    let widths = n.map(|n| vec![R::ONE; n]);
+    let mesh = Mesh::new(widths.each_ref().map(|w| &w[..])).unwrap();
+    let to = |s: &Vec<f64>| s.iter().map(|&x| R::from_f64(x)).collect::<Vec<R>>();
+    let of = Fractions { volume: to(&open.volume), faces: open.faces.each_ref().map(to), flags: vec![0; mesh.len()] };
+    let merging = |cells| Merging {
+        list: vec![0; cells],
+        parent: vec![0; cells],
+        scratch: vec![R::ZERO; cluster_scratch(cells)],
+    };
+    let space = prepare(&mesh, [false; D], of, Treatment::default(), merging).unwrap();
+    let mut all: Vec<Vec<usize>> = space.view::<R>().clusters().map(|c| c.collect()).collect();
+    all.iter_mut().for_each(|c| c.sort_unstable());
+    all.sort();
+    all
+}
+
+fn at<const D: usize>(n: [usize; D], mut cell: usize) -> [usize; D] {
+    n.map(|n| {
+        let i = cell % n;
+        cell /= n;
+        i
+    })
+}
+
+/// Cells along the longest side of the box around any cluster.
+fn longest<const D: usize>(n: [usize; D], clusters: &[Vec<usize>]) -> usize {
+    let length = |c: &Vec<usize>, d: usize| {
+        let along = || c.iter().map(|&cell| at(n, cell)[d]);
+        along().max().unwrap() - along().min().unwrap() + 1
+    };
+    clusters.iter().flat_map(|c| (0..D).map(|d| length(c, d))).max().unwrap_or(0)
+}
+
+#[test]
+fn clusters_along_walls_with_equal_components_stay_local() {
+    let n = [40, 40];
+    for normal in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, 2.0], [3.0, -1.0]] {
+        for shift in [0.1, 0.25, 0.3, 0.5, 0.6] {
+            let offset = 20.0 * (normal[0] + normal[1]) + shift;
+            let open = open_fractions(n, [0.0; 2], 1.0, |low, high| half_space(normal, offset, low, high));
+            for found in [clusters::<f64, 2>(n, &open), clusters::<f32, 2>(n, &open)] {
+                assert!(longest(n, &found) <= 3, "{normal:?} {shift}: {} cells", longest(n, &found));
+            }
+        }
+    }
+    let n = [16, 16, 16];
+    for normal in
+        [[1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, 1.0, 0.0], [0.0, -1.0, 1.0], [2.0, 1.0, 1.0]]
+    {
+        for shift in [0.2, 0.5, 0.7] {
+            let offset = 8.0 * normal.iter().sum::<f64>() + shift;
+            let open = open_fractions(n, [0.0; 3], 1.0, |low, high| half_space(normal, offset, low, high));
+            for found in [clusters::<f64, 3>(n, &open), clusters::<f32, 3>(n, &open)] {
+                assert!(longest(n, &found) <= 4, "{normal:?} {shift}: {} cells", longest(n, &found));
+            }
+        }
+    }
+}
+
+/// Slices between open cells, and a space of small cells only: each is as good a neighbour as the next.
+#[test]
+fn clusters_of_cells_that_are_all_alike_stay_local() {
+    let n = [64];
+    for every in [2, 3, 1] {
+        let volume = (0..64).map(|i| if i % every == 0 { 0.1 } else { 1.0 }).collect();
+        let open = OpenFractions { volume, faces: [vec![1.0; 65]] };
+        for found in [clusters::<f64, 1>(n, &open), clusters::<f32, 1>(n, &open)] {
+            assert!(!found.is_empty() && longest(n, &found) <= 16, "every {every}: {} cells", longest(n, &found));
+        }
+    }
+    let n = [24, 24];
+    let open = OpenFractions { volume: vec![0.1; 576], faces: [vec![1.0; 600], vec![1.0; 600]] };
+    let found = clusters::<f64, 2>(n, &open);
+    assert!(longest(n, &found) <= 12, "{} cells", longest(n, &found));
+}
+
+#[test]
+fn mirrored_and_exchanged_porosity_gives_mirrored_and_exchanged_clusters() {
+    let n = [30, 30];
+    let wall = |normal: [f64; 2], offset: f64| {
+        clusters::<f64, 2>(n, &open_fractions(n, [-15.0; 2], 1.0, |low, high| half_space(normal, offset, low, high)))
+    };
+    let seen = |clusters: &[Vec<usize>], to: fn([usize; 2]) -> [usize; 2]| {
+        let mut all: Vec<Vec<usize>> = clusters
+            .iter()
+            .map(|c| {
+                let mut c: Vec<usize> = c.iter().map(|&cell| to(at(n, cell))).map(|[i, j]| i + n[0] * j).collect();
+                c.sort_unstable();
+                c
+            })
+            .collect();
+        all.sort();
+        all
+    };
+    let mut found = 0;
+    for (a, b) in [(1.0, 1.0), (1.0, 2.0), (1.0, 0.3)] {
+        for offset in [0.5, 0.7, 3.6] {
+            let one = wall([a, b], offset);
+            found += one.len();
+            assert_eq!(seen(&one, |[i, j]| [29 - i, j]), wall([-a, b], offset), "mirrored {a} {b} {offset}");
+            assert_eq!(seen(&one, |[i, j]| [i, 29 - j]), wall([a, -b], offset), "mirrored {a} {b} {offset}");
+            assert_eq!(seen(&one, |[i, j]| [j, i]), wall([b, a], offset), "exchanged {a} {b} {offset}");
+        }
+    }
+    assert!(found > 100, "{found} clusters");
+}
