@@ -151,9 +151,7 @@ impl Scene {
     /// lone one with sides in parts or with a triangle turned, far from the origin, of any size; triangles shuffled; a
     /// grid along the boxes' faces or not.
     #[must_use]
-    pub fn random(seed: u64) -> Self {
-        let mut rng = Random::new(seed);
-        let rng = &mut rng;
+    pub fn random(rng: &mut Random) -> Self {
         let side = [2, 3, 4, 8][rng.below(4)];
         let double = [0, 0, 0, 1, 2][rng.below(5)];
         let flips = double == 0 && rng.below(3) == 0;
@@ -165,34 +163,85 @@ impl Scene {
             _ => (2f64.powi(rng.below(61) as i32 - 30), 1 << rng.below(24)),
         };
         let mut scene = Scene { bricks, edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
-        // Where parts touch and have two sides as well, T-junctions are beyond what is defined here.
+        // Several parts with two sides and sides in parts are a family of their own.
         let in_parts = rng.below(4) == 0 && (scene.bricks.len() == 1 || double == 0);
-        for n in 0..scene.bricks.len() {
-            let brick = scene.bricks[n];
+        for brick in scene.bricks.clone() {
             for quad in scene.surface(&brick).chunks_exact(4) {
                 let back = double == 1 || (double == 2 && rng.below(6) == 0);
                 for quad in parts_of(quad, in_parts && rng.below(6) == 0) {
-                    let two = if rng.below(2) == 0 { [0, 1, 2, 0, 2, 3] } else { [0, 1, 3, 1, 2, 3] };
-                    for t in two.chunks_exact(3) {
-                        let [a, b, c] = [quad[t[0]], quad[t[1]], quad[t[2]]];
-                        scene.triangles.push(if brick.inverted { [a, c, b] } else { [a, b, c] });
-                        if back {
-                            scene.triangles.push(if brick.inverted { [a, b, c] } else { [a, c, b] });
-                        }
-                    }
+                    scene.push(rng, quad, brick.inverted, back);
                 }
             }
         }
-        if rng.below(2) == 0 {
-            for n in (1..scene.triangles.len()).rev() {
-                scene.triangles.swap(n, rng.below(n + 1));
-            }
-        }
+        scene.shuffle(rng);
         if scene.bricks.len() == 1 && double == 0 {
             let turned = rng.below(scene.triangles.len());
             scene.triangles[turned].swap(1, 2);
         }
         scene
+    }
+
+    /// A scene of one to six double-sided boxes whose sides come in parts that need not meet those beside them corner to corner: all sides have backs,
+    /// or most, or few, or those of some boxes.
+    #[must_use]
+    pub fn in_parts(rng: &mut Random) -> Self {
+        let side = [2, 3, 4, 8][rng.below(4)];
+        let bricks = bricks(rng, side, false, false);
+        let (unit, offset) = match rng.below(3) {
+            0 => (1.0, 0),
+            _ => (2f64.powi(rng.below(61) as i32 - 30), 1 << rng.below(24)),
+        };
+        let mut scene = Scene { bricks, edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
+        let (single_sides, whole_sides) = ([0, 1, 3, 5, 6][rng.below(5)], 1 + rng.below(6));
+        for brick in scene.bricks.clone() {
+            let single_box = single_sides == 6 && rng.below(2) == 0;
+            for quad in scene.surface(&brick).chunks_exact(4) {
+                let back = !single_box && (single_sides == 6 || rng.below(6) >= single_sides);
+                for half in scene.halves(rng, quad, whole_sides) {
+                    for quarter in scene.halves(rng, &half, whole_sides + 2) {
+                        scene.push(rng, quarter, brick.inverted, back);
+                    }
+                }
+            }
+        }
+        scene.shuffle(rng);
+        scene
+    }
+
+    /// One side in `whole` is divided in two along either of its axes, at any coordinate of the lattice; the others are as they were.
+    fn halves(&self, rng: &mut Random, quad: &[DVec3], whole: usize) -> Vec<[DVec3; 4]> {
+        let first = rng.below(4);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| quad[(first + i) % 4]);
+        let steps = ((b - a).abs().max_element() / self.unit) as usize;
+        if rng.below(whole) > 0 || steps < 2 {
+            return vec![[a, b, c, d]];
+        }
+        // Exact: a step is the unit, a power of two.
+        let taken = (1 + rng.below(steps - 1)) as f64;
+        let between = |p: DVec3, q: DVec3| p + (q - p) / steps as f64 * taken;
+        let (ab, dc) = (between(a, b), between(d, c));
+        vec![[a, ab, dc, d], [ab, b, c, dc]]
+    }
+
+    /// Adds the two triangles of a convex quadrilateral, with their backs if asked for.
+    fn push(&mut self, rng: &mut Random, quad: [DVec3; 4], inverted: bool, back: bool) {
+        let two = if rng.below(2) == 0 { [0, 1, 2, 0, 2, 3] } else { [0, 1, 3, 1, 2, 3] };
+        for t in two.chunks_exact(3) {
+            let [a, b, c] = [quad[t[0]], quad[t[1]], quad[t[2]]];
+            self.triangles.push(if inverted { [a, c, b] } else { [a, b, c] });
+            if back {
+                self.triangles.push(if inverted { [a, b, c] } else { [a, c, b] });
+            }
+        }
+    }
+
+    /// Puts the triangles of every second scene in any order.
+    fn shuffle(&mut self, rng: &mut Random) {
+        if rng.below(2) == 0 {
+            for n in (1..self.triangles.len()).rev() {
+                self.triangles.swap(n, rng.below(n + 1));
+            }
+        }
     }
 
     /// The four corners of each of a box' sides, counter-clockwise from outside, in metres.
@@ -395,12 +444,46 @@ pub struct Visited {
 /// By how much a value may leave its bounds.
 pub const SLACK: f64 = 1e-12;
 
-/// Every value of the scene with this seed lies within its bounds.
+/// How scenes are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// [`Scene::random`].
+    Random,
+    /// [`Scene::in_parts`].
+    Parts,
+}
+
+impl Family {
+    /// A scene by some random numbers.
+    #[must_use]
+    pub fn scene(self, rng: &mut Random) -> Scene {
+        match self {
+            Family::Random => Scene::random(rng),
+            Family::Parts => Scene::in_parts(rng),
+        }
+    }
+}
+
+/// Every value of a family's scene with this seed lies within its bounds.
 ///
 /// # Errors
 /// The first value that does not, with its place.
-pub fn bounds_hold(seed: u64) -> Result<Visited, String> {
-    let scene = Scene::random(seed);
+pub fn bounds_hold(family: Family, seed: u64) -> Result<Visited, String> {
+    scene_holds(&family.scene(&mut Random::new(seed))).map_err(|text| format!("{family:?} seed {seed}: {text}"))
+}
+
+/// The first byte chooses the family, the others decide one thing of the scene each.
+///
+/// # Panics
+/// If a value leaves its bounds.
+pub fn bytes_hold(bytes: &[u8]) {
+    let Some((first, rest)) = bytes.split_first() else { return };
+    let family = if first % 2 == 0 { Family::Random } else { Family::Parts };
+    scene_holds(&family.scene(&mut Random::from_bytes(rest))).unwrap_or_else(|text| panic!("{text}"));
+}
+
+/// Every value of a scene lies within its bounds.
+fn scene_holds(scene: &Scene) -> Result<Visited, String> {
     let Some([closed, open]) = scene.truth(true).zip(scene.truth(false)).map(<[FieldSet; 2]>::from) else {
         return Ok(Visited::default());
     };
@@ -413,7 +496,7 @@ pub fn bounds_hold(seed: u64) -> Result<Visited, String> {
             let [least, most, l, u] = [&closed, &open, &lower, &upper].map(|set| set[field][n]);
             if !(l - SLACK <= most && least <= u + SLACK) {
                 return Err(format!(
-                    "seed {seed}: beta_{name}[{n}] is {least} to {most}, its bounds {l} and {u}\n{:?}\n{:?}\n{:?}",
+                    "beta_{name}[{n}] is {least} to {most}, its bounds {l} and {u}\n{:?}\n{:?}\n{:?}",
                     scene.bricks, scene.edges, bodies.warnings
                 ));
             }

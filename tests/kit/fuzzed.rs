@@ -19,7 +19,8 @@ use crate::recipe::Recipe;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets by name.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
+    ("boxes", boxes),
     ("intersect", intersect),
     ("distance", distance),
     ("containment", containment),
@@ -29,6 +30,11 @@ pub const TARGETS: [Target; 8] = [
     ("layers", layers),
     ("quadric", quadric),
 ];
+
+/// Files of boxes against coordinate compression.
+pub fn boxes(bytes: &[u8]) {
+    crate::boxes::bytes_hold(bytes);
+}
 
 /// Porosity of layers of any triangles in any memory.
 pub fn layers(bytes: &[u8]) {

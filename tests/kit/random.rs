@@ -5,25 +5,35 @@ use voidage_core::number::real::{Real, Vector};
 
 /// SplitMix64. Reference: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", *OOPSLA* 2014.
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Random {
+    state: u64,
+    /// Bytes that decide first, the next one last.
+    given: Vec<u8>,
+}
 
 impl Random {
     /// From a seed.
     pub fn new(seed: u64) -> Self {
-        Random(seed)
+        Random { state: seed, given: Vec::new() }
+    }
+
+    /// Each byte decides one integer, so that a fuzzer can change one choice and leave the others; what follows the last byte is from seed 0.
+    pub fn from_bytes(bytes: &[u8]) -> Self {
+        Random { state: 0, given: bytes.iter().rev().copied().collect() }
     }
 
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     }
 
     /// An integer below `n`.
     pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
+        let bits = self.given.pop().map_or_else(|| self.bits(), u64::from);
+        (bits % n as u64) as usize
     }
 
     /// Uniform in `[0, 1)`.

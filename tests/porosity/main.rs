@@ -6,6 +6,7 @@ mod common;
 mod core_alone;
 mod dirty;
 mod drag;
+mod holes;
 mod hulls;
 mod invariance;
 mod known;

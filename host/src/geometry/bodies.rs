@@ -13,14 +13,17 @@ use crate::geometry::repair::edges::EdgeUses;
 use crate::geometry::repair::junctions;
 pub use crate::geometry::repair::nesting::Doubt;
 use crate::geometry::repair::nesting::{self, Closed, Role};
-use crate::geometry::repair::rims::rims;
+use crate::geometry::repair::regions::{self, Regions, Unknown};
+use crate::geometry::repair::rims::{Rim, rims};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::shells::{self, Shell};
+use crate::geometry::repair::two_sided;
 use crate::geometry::repair::weld::{self, Indexed};
 use crate::geometry::resolve::{Part, resolve};
 use crate::geometry::single::SingleSource;
 use crate::words::{counted, either};
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
 use std::ops::Range;
@@ -64,6 +67,9 @@ pub struct Body {
     pub doubt: Doubt,
     /// How far corners may be off where surfaces crossed and were cut; 0 if none were.
     pub rounding: f64,
+    /// Boxes around rims of holes that are not plane: what lies between rim and cap may be solid or open.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub uneven: Vec<[DVec3; 2]>,
     /// No volume: a sheet, which blocks faces where it lies in their plane.
     pub sheet: bool,
     /// Drag given for it, in place of what a law says of its shape.
@@ -156,15 +162,16 @@ impl Bodies {
         };
         let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
         let rounding = rounding(d.bounds, mesh.single_precision);
-        let indexed = clean(&scaled, solid_of, rounding, &mut d, &mut report);
-        let Some((indexed, shells)) = indexed else {
+        let cleaned = clean(&scaled, solid_of, rounding, &mut d, &mut report);
+        let Some(Cleaned { mesh: indexed, shells, clusters }) = cleaned else {
             let reason = format!("all triangles ({}) are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
         let name_of =
             |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
         let closed = close(&indexed, &shells, name_of, rounding, &mut d, &mut report);
-        let closed = resolve(closed, &scaled, &mut d, &mut report);
+        let known = clusters.into_iter().map(|c| c.into_part(&indexed, name_of)).collect();
+        let closed = resolve(closed, known, &scaled, &mut d, &mut report);
         say_copies(&d, &mut report);
         let first = self.bodies.len();
         self.assemble(closed, &mut d, &mut report);
@@ -201,6 +208,7 @@ impl Bodies {
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
             let rounding = joined.iter().fold(shell.rounding, |most, cavity| most.max(cavity.rounding));
             let doubt = if clear { shell.doubt } else { Doubt::Unknown };
+            let uneven = joined.iter().chain([shell]).flat_map(|s| s.uneven.iter().copied()).collect();
             let (name, form, single, porosity) = (names[s].clone(), None, None, 0.0);
             let cavities = count;
             self.bodies.push(Body {
@@ -214,6 +222,7 @@ impl Bodies {
                 cavities,
                 doubt,
                 rounding,
+                uneven,
                 sheet,
                 drag: OwnDrag::default(),
             });
@@ -277,12 +286,12 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
     groups.sort();
     let mut clear = true;
     let mut one = |group: Vec<usize>| {
-        let whole = Closed::new(group.iter().flat_map(|&n| cavities[n].triangles.iter().copied()).collect());
+        let whole = Closed::together(group.iter().map(|&n| cavities[n]));
         match group.len() {
             1 => whole,
             _ => match crossing::untangle(&whole.triangles, whole.bounds) {
                 Found::Simple { .. } => whole,
-                Found::Resolved(made) => Closed::of_parts(made.surface),
+                Found::Resolved(made) => Closed { uneven: whole.uneven, ..Closed::of_parts(made.surface) },
                 Found::Doubtful(_) => {
                     clear = false;
                     whole
@@ -299,6 +308,51 @@ fn measure(triangles: &[[DVec3; 3]]) -> Diagnosis {
     Diagnosis { signed_volume: whole.volume, area: whole.area(), bounds: whole.bounds, ..Diagnosis::default() }
 }
 
+/// A mesh ready to be closed.
+struct Cleaned {
+    mesh: Indexed,
+    shells: Vec<Shell>,
+    clusters: Vec<Cluster>,
+}
+
+/// Double-sided triangles that are no shells, for their edges do not tell what belongs together.
+struct Cluster {
+    triangles: Vec<u32>,
+    /// None if they cannot be told.
+    regions: Option<Regions>,
+}
+
+impl Cluster {
+    /// Of some triangles; none if they are open, which is the matter of caps, or some parts look inward, whose shells tell which are cavities.
+    fn new(mesh: &Indexed, triangles: Vec<u32>) -> Option<Self> {
+        let all = corners(mesh, &triangles);
+        match regions::of_two_sided(&all, Closed::new(all.clone()).bounds) {
+            Err(Unknown::Open | Unknown::Mixed) => None,
+            found => Some(Cluster { triangles, regions: found.ok() }),
+        }
+    }
+
+    fn into_part(self, mesh: &Indexed, name_of: impl Fn(u32) -> String) -> (Part, Option<Regions>) {
+        let first = self.triangles.iter().min_by_key(|&&n| mesh.source(n));
+        let shell = Closed::new(corners(mesh, &self.triangles));
+        let name = first.map_or_else(String::new, |&n| name_of(n));
+        (Part { name, own: shell.triangles.len(), shell, cluster: 0, guessed: false }, self.regions)
+    }
+}
+
+/// The corners of some triangles of a mesh.
+fn corners(mesh: &Indexed, triangles: &[u32]) -> Vec<[DVec3; 3]> {
+    triangles.iter().map(|&n| mesh.triangles[n as usize].map(|v| mesh.points[v as usize])).collect()
+}
+
+/// Takes the clusters of double-sided triangles that their regions tell of from those `alive`.
+fn take_clusters(mesh: &Indexed, alive: &mut [bool], solid_of: impl Fn(u32) -> usize) -> Vec<Cluster> {
+    let found = two_sided::clusters(mesh, alive, solid_of);
+    let clusters: Vec<Cluster> = found.into_par_iter().filter_map(|triangles| Cluster::new(mesh, triangles)).collect();
+    clusters.iter().flat_map(|c| &c.triangles).for_each(|&n| alive[n as usize] = false);
+    clusters
+}
+
 /// Weld, drop what is no surface, split into shells. None if nothing has an area.
 fn clean(
     triangles: &[[DVec3; 3]],
@@ -306,7 +360,7 @@ fn clean(
     rounding: f64,
     d: &mut Diagnosis,
     report: &mut Reporter,
-) -> Option<(Indexed, Vec<Shell>)> {
+) -> Option<Cleaned> {
     let mut mesh = weld::weld(triangles);
     d.points = mesh.points.len();
     let flat = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]) == DVec3::ZERO;
@@ -329,17 +383,19 @@ fn clean(
     let uses = if alive == all { uses } else { EdgeUses::new(&mesh, &all) };
     d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
     d.boundary_edges = d.t_junction_edges;
+    let mut clusters = Vec::new();
     if d.t_junction_edges > 0 {
+        clusters = take_clusters(&mesh, &mut all, &solid_of);
         // Only now can it be seen which triangles repeat others, and what is open without them.
         alive = all;
         [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
     }
-    let mut shells = shells::shells(&mut mesh, &alive, solid_of);
+    let mut shells = shells::shells(&mut mesh, &alive, &solid_of);
     if d.t_junction_edges > 0 {
         copies::doubt_backs(&mesh, &mut shells);
     }
     drop_copies(&mesh, &mut shells, rounding, d);
-    d.shells = shells.len();
+    d.shells = shells.len() + clusters.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {
         report.warn(format!(
@@ -356,7 +412,7 @@ fn clean(
             either(d.one_sided, "it", "them")
         ));
     }
-    Some((mesh, shells))
+    Some(Cleaned { mesh, shells, clusters })
 }
 
 /// Drop the shells that repeat others or are their backs.
@@ -425,39 +481,29 @@ fn close(
     d: &mut Diagnosis,
     report: &mut Reporter,
 ) -> Vec<Part> {
-    let corners = |n: &u32| mesh.triangles[*n as usize].map(|v| mesh.points[v as usize]);
     let mut closed = Vec::new();
     let mut open = Open::default();
     d.area = 0.0;
     for group in groups(mesh, shells, rounding) {
-        let members = group.iter().flat_map(|&s| shells[s].triangles.iter());
-        let mut triangles: Vec<_> = members.clone().map(corners).collect();
+        let members: Vec<u32> = group.iter().flat_map(|&s| shells[s].triangles.iter().copied()).collect();
+        let mut triangles = corners(mesh, &members);
         let own = triangles.len();
         d.area += triangles.iter().map(area).sum::<f64>();
         let boundary = without_opposites(group.iter().flat_map(|&s| shells[s].boundary.iter().copied()));
+        let caps = Caps::new(mesh, &members, &boundary, rounding);
         d.boundary_edges += boundary.len();
-        let mut found = Open::default();
-        for rim in rims(&boundary) {
-            if rim.cancels(&mesh.points, rounding) {
-                d.t_junction_edges += rim.edges.len();
-                continue;
-            }
-            let cap = rim.cap(&mesh.points);
-            found.join(&Open {
-                edges: rim.edges.len(),
-                holes: 1,
-                largest: Some((cap.iter().map(area).sum(), rim.middle(&mesh.points))),
-            });
-            triangles.extend(cap);
-        }
-        d.holes += found.holes;
-        let name = members.min().map_or_else(String::new, |&n| name_of(n));
+        d.t_junction_edges += caps.t_junction_edges;
+        d.holes += caps.open.holes;
+        triangles.extend(caps.triangles);
+        let name = members.iter().min().map_or_else(String::new, |&n| name_of(n));
         let cluster = group.iter().map(|&s| shells[s].cluster).min().unwrap_or(0);
         let guessed = group.iter().any(|&s| shells[s].guessed);
-        let shell = Closed::new(triangles);
+        let mut shell = Closed::new(triangles);
         // That of a sheet is told as such.
         if !shell.is_sheet() {
-            open.join(&found);
+            open.join(&caps.open);
+            open.uneven.extend(&caps.open.uneven);
+            shell.uneven = caps.open.uneven;
         }
         closed.push(Part { name, shell, cluster, guessed, own });
     }
@@ -471,6 +517,48 @@ fn close(
     closed
 }
 
+/// What closes the holes of a surface.
+#[derive(Default)]
+struct Caps {
+    triangles: Vec<[DVec3; 3]>,
+    open: Open,
+    /// Loose edges that close by themselves.
+    t_junction_edges: usize,
+}
+
+impl Caps {
+    /// For some triangles of a mesh and the loose edges around them.
+    fn new(mesh: &Indexed, members: &[u32], boundary: &[[u32; 2]], rounding: f64) -> Self {
+        let mut caps = Caps::default();
+        for rim in rims(boundary) {
+            if rim.cancels(&mesh.points, rounding) {
+                caps.t_junction_edges += rim.edges.len();
+                continue;
+            }
+            let surface = members.iter().map(|&n| mesh.triangles[n as usize]);
+            rim.apart(surface, &mesh.points).iter().for_each(|rim| caps.close(mesh, rim, rounding));
+        }
+        caps
+    }
+
+    fn close(&mut self, mesh: &Indexed, rim: &Rim, rounding: f64) {
+        if rim.cancels(&mesh.points, rounding) {
+            self.t_junction_edges += rim.edges.len();
+            return;
+        }
+        let cap = rim.cap(&mesh.points);
+        let even = rim.is_plane(&mesh.points, rounding);
+        self.open.join(&Open {
+            edges: rim.edges.len(),
+            holes: 1,
+            largest: Some((cap.iter().map(area).sum(), rim.middle(&mesh.points))),
+            uneven: Vec::new(),
+        });
+        self.open.uneven.extend((!even).then(|| rim.bounds(&mesh.points)));
+        self.triangles.extend(cap);
+    }
+}
+
 /// Where bodies are open.
 #[derive(Default)]
 struct Open {
@@ -478,6 +566,8 @@ struct Open {
     holes: usize,
     /// Area and middle of the largest cap.
     largest: Option<(f64, DVec3)>,
+    /// Boxes around rims that are not plane.
+    uneven: Vec<[DVec3; 2]>,
 }
 
 impl Open {
@@ -498,6 +588,14 @@ impl Open {
                 counted(self.holes, "hole", "holes"),
                 either(self.holes, "a cap", "caps"),
                 show(place)
+            ));
+        }
+        if let Some(&[lo, _]) = self.uneven.first() {
+            let volume: f64 = self.uneven.iter().map(|[lo, hi]| (*hi - *lo).element_product()).sum();
+            report.warn(format!(
+                "{} not plane (the first near {}): what lies between its edge and the cap may be solid or open; the bounds of cells hold both in a box around it, {volume:.3e} m3 in all",
+                counted(self.uneven.len(), "hole is", "holes are"),
+                show(lo)
             ));
         }
     }

@@ -13,4 +13,5 @@ pub mod rims;
 pub mod sets;
 pub mod shells;
 pub mod tree;
+pub mod two_sided;
 pub mod weld;

@@ -238,9 +238,7 @@ fn resolve_together(
         let alike = members.iter().all(positive) || !members.iter().any(positive);
         alike && members.iter().all(|&n| !parts[n].is_capped() && parts[n].is_simple(&seen[n]))
     };
-    let whole = |members: &[usize]| {
-        Closed::new(members.iter().flat_map(|&n| parts[n].shell.triangles.iter().copied()).collect())
-    };
+    let whole = |members: &[usize]| Closed::together(members.iter().map(|&n| &parts[n].shell));
     // Winding numbers alone do not tell a cavity from a part that another covers.
     let by_regions = |members: &[usize]| {
         let own: Vec<[DVec3; 3]> = members.iter().flat_map(|&n| parts[n].own().iter().copied()).collect();
@@ -266,8 +264,15 @@ fn resolve_together(
 }
 
 /// Makes every surface that crosses itself the surface of what it winds around, and parts that overlap where they share edges the surface of
-/// their regions, unless each by itself is simple. `file`: all triangles as they were read.
-pub(super) fn resolve(parts: Vec<Part>, file: &[[DVec3; 3]], d: &mut Diagnosis, report: &mut Reporter) -> Vec<Part> {
+/// their regions, unless each by itself is simple. `known`: parts whose regions were told already, or cannot be told. `file`: all triangles as they were
+/// read.
+pub(super) fn resolve(
+    parts: Vec<Part>,
+    known: Vec<(Part, Option<Regions>)>,
+    file: &[[DVec3; 3]],
+    d: &mut Diagnosis,
+    report: &mut Reporter,
+) -> Vec<Part> {
     let (mut parts, source) = (parts, &SourceTriangles::new(file));
     let mut seen: Vec<Seen> = parts.par_iter().map(|part| resolve_alone(part, source)).collect();
     let groups = groups(&parts, &seen, source);
@@ -280,6 +285,10 @@ pub(super) fn resolve(parts: Vec<Part>, file: &[[DVec3; 3]], d: &mut Diagnosis, 
     let mut places = Places::default();
     let mut resolved = Vec::new();
     for ((part, seen), _) in parts.into_iter().zip(seen).zip(gone).filter(|(_, gone)| !gone) {
+        take(part, seen, &mut resolved, d, &mut places);
+    }
+    for (part, regions) in known {
+        let seen = regions.map_or(Seen::As(Found::Doubtful(part.shell.bounds[0])), Seen::Divided);
         take(part, seen, &mut resolved, d, &mut places);
     }
     places.say(d, report);
@@ -299,7 +308,7 @@ fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, pla
     match seen {
         Seen::As(Found::Simple { .. }) => {}
         Seen::As(Found::Resolved(made)) => {
-            part.shell = Closed::of_parts(made.surface);
+            part.shell = Closed { uneven: part.shell.uneven, ..Closed::of_parts(made.surface) };
             d.crossing += 1;
             places.resolved.get_or_insert(made.place);
         }
@@ -309,16 +318,18 @@ fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, pla
             d.doubtful += 1;
             places.unknown.get_or_insert(place);
         }
-        Seen::Divided(Regions { solid, perhaps, backs }) => {
+        Seen::Divided(Regions { solid, perhaps, backs, repeated, cut }) => {
+            let closed = if cut { Closed::of_parts } else { Closed::new };
             d.doubled += backs;
+            d.repeated += repeated;
             if !perhaps.is_empty() {
-                let shell = Closed { doubt: Doubt::Perhaps, ..Closed::of_parts(perhaps) };
+                let shell = Closed { doubt: Doubt::Perhaps, ..closed(perhaps) };
                 places.perhaps.get_or_insert(shell.bounds[0]);
                 d.doubtful += 1;
                 d.crossing += 1;
                 into.push(Part { name: part.name.clone(), own: shell.triangles.len(), shell, ..part });
             }
-            part.shell = Closed::of_parts(solid);
+            part.shell = Closed { uneven: part.shell.uneven, ..closed(solid) };
         }
     }
     into.push(part);

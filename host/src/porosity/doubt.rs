@@ -4,9 +4,11 @@
 //!   without it.
 //! - [`Doubt::Unknown`]: not even that is known. Values are what its surface gives as it winds. The body may as well be a cavity of another, or count
 //!   a part twice, so the bounds of all cells and faces in its box are 0 and 1.
+//! - Holes whose rims are not plane: all that lies in a box around the rim is solid or open.
 
 use super::{FieldSet, Options, Porosity};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
+use glam::DVec3;
 use std::ops::Range;
 use voidage_core::grid::Grid;
 
@@ -42,8 +44,26 @@ pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Po
         }
         found.max_gap = 1.0;
         for (set, value) in found.bounds.iter_mut().flatten().zip([0.0, 1.0]) {
-            change(grid, &cells, set, options.areas, |_| value);
+            change(grid, &cells, set, options.areas, |_, _| value);
         }
+    }
+}
+
+/// Widens the bounds of all cells and faces that boxes around uneven holes reach, by what they have in common.
+pub fn widen_beside_holes(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
+    for [lo, hi] in bodies.bodies.iter().flat_map(|b| b.uneven.iter().copied()) {
+        let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
+        if cells.iter().any(Range::is_empty) {
+            continue;
+        }
+        let share = |place: Place| place.share_within(grid, [lo, hi]);
+        let mut gap = 0.0_f64;
+        if let Some([lower, upper]) = &mut found.bounds {
+            change(grid, &cells, lower, options.areas, |beta, place| (beta - share(place)).max(0.0));
+            change(grid, &cells, upper, options.areas, |beta, place| (beta + share(place)).min(1.0));
+        }
+        each(&cells, |at| gap = gap.max(2.0 * share(Place { axis: None, at })));
+        found.max_gap = (found.max_gap + gap).min(1.0);
     }
 }
 
@@ -63,7 +83,7 @@ pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, f
         let by = share(0) + share(1) + share(2);
         found.max_gap = (found.max_gap + 2.0 * by).min(1.0);
         for (set, sign) in found.bounds.iter_mut().flatten().zip([-1.0, 1.0]) {
-            change(grid, &cells, set, options.areas, |beta| (beta + sign * by).clamp(0.0, 1.0));
+            change(grid, &cells, set, options.areas, |beta, _| (beta + sign * by).clamp(0.0, 1.0));
         }
     }
 }
@@ -73,10 +93,39 @@ fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
     edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
 }
 
+/// A cell of a grid, or the face normal to an axis that begins there.
+#[derive(Clone, Copy)]
+struct Place {
+    axis: Option<usize>,
+    at: [usize; 3],
+}
+
+impl Place {
+    /// Which share of it lies in a box.
+    fn share_within(self, grid: &Grid<f64>, [lo, hi]: [DVec3; 2]) -> f64 {
+        let along = |a: usize| {
+            let edges = grid.edges(a);
+            let from = edges[self.at[a]];
+            if self.axis == Some(a) {
+                return f64::from(u8::from(lo[a] <= from && from <= hi[a]));
+            }
+            let to = edges[self.at[a] + 1];
+            ((to.min(hi[a]) - from.max(lo[a])) / (to - from)).clamp(0.0, 1.0)
+        };
+        along(0) * along(1) * along(2)
+    }
+}
+
 /// Changes the values of some cells and of all their faces.
-fn change(grid: &Grid<f64>, cells: &[Range<usize>; 3], set: &mut FieldSet, areas: bool, to: impl Fn(f64) -> f64) {
-    let to = |value: &mut f64| *value = to(*value);
-    each(cells, |cell| to(&mut set.v[grid.cell_index(cell)]));
+fn change(
+    grid: &Grid<f64>,
+    cells: &[Range<usize>; 3],
+    set: &mut FieldSet,
+    areas: bool,
+    to: impl Fn(f64, Place) -> f64,
+) {
+    let to = |value: &mut f64, axis: Option<usize>, at: [usize; 3]| *value = to(*value, Place { axis, at });
+    each(cells, |cell| to(&mut set.v[grid.cell_index(cell)], None, cell));
     for axis in 0..if areas { 3 } else { 0 } {
         let mut faces = cells.clone();
         faces[axis].end += 1;
@@ -85,7 +134,7 @@ fn change(grid: &Grid<f64>, cells: &[Range<usize>; 3], set: &mut FieldSet, areas
             1 => &mut set.y,
             _ => &mut set.z,
         };
-        each(&faces, |face| to(&mut field[grid.face_index(axis, face)]));
+        each(&faces, |face| to(&mut field[grid.face_index(axis, face)], Some(axis), face));
     }
 }
 

@@ -169,14 +169,21 @@ impl<'a> Meetings<'a> {
         Lines::new(&self.faces, &self.tree, self.on)
     }
 
-    /// Pairs of triangles that no other meets, across edges that they alone use and that lie on no other.
-    pub fn neighbours(&self, edges: &[SideUse]) -> Vec<[u32; 2]> {
-        let free = |&(_, n, side): &SideUse| !self.meets(n) && !self.resting.contains(&(n, side));
+    /// Pairs of triangles across edges that they alone use and that lie on no other.
+    pub fn pairs(&self, edges: &[SideUse]) -> Vec<[u32; 2]> {
+        let free = |&(_, n, side): &SideUse| !self.resting.contains(&(n, side));
         let pair = |uses: &[SideUse]| match uses {
             [a, b] if free(a) && free(b) => Some([a.1, b.1]),
             _ => None,
         };
         edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair).collect()
+    }
+
+    /// Those [pairs](Self::pairs) of which no other triangle meets one.
+    pub fn neighbours(&self, edges: &[SideUse]) -> Vec<[u32; 2]> {
+        let mut pairs = self.pairs(edges);
+        pairs.retain(|pair| !pair.iter().any(|&n| self.meets(n)));
+        pairs
     }
 
     /// The triangles that no other meets, in groups of [neighbours](Self::neighbours).

@@ -18,7 +18,7 @@ use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::sync::OnceLock;
 
 /// Parts connected by edges of their own are asked at so many places.
@@ -33,6 +33,21 @@ pub struct Regions {
     pub perhaps: Vec<[DVec3; 3]>,
     /// So many triangles were the backs of others.
     pub backs: usize,
+    /// So many repeated others that have no backs.
+    pub repeated: usize,
+    /// Some corners were computed where surfaces cross.
+    pub cut: bool,
+}
+
+/// Why the regions of a surface are not told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// The surface has one region on both its sides somewhere: it is open there.
+    Open,
+    /// Some parts look inward and others outward.
+    Mixed,
+    /// The surface contradicts itself, or no proof was found.
+    Unclear,
 }
 
 /// All triangles of a source as they were read: those that lie on a surface tell where it has a back.
@@ -110,6 +125,12 @@ fn side(element: usize, before: bool) -> usize {
     2 * element + usize::from(before)
 }
 
+/// Do two triangles run an edge that both have in the same direction?
+fn run_alike(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
+    let runs = |from: DVec3, to: DVec3| (0..3).any(|i| q[i] == from && q[(i + 1) % 3] == to);
+    (0..3).any(|i| runs(p[i], p[(i + 1) % 3]))
+}
+
 /// A surface in parts that meet only in their edges, and the regions that their sides belong to.
 struct Complex<'a> {
     sided: &'a [Sided],
@@ -137,6 +158,15 @@ impl<'a> Complex<'a> {
         Complex { sided, meetings, elements, of, sets, on }
     }
 
+    /// With all sides joined that are seen to belong to one region.
+    fn joined(sided: &'a [Sided], meetings: &'a Meetings<'a>, edges: &[SideUse], on: f64) -> Self {
+        let mut complex = Self::new(sided, meetings, on);
+        complex.join_neighbours(edges);
+        complex.join_layers();
+        complex.join_visible();
+        complex
+    }
+
     fn outside(&self) -> usize {
         2 * self.elements.len()
     }
@@ -150,9 +180,7 @@ impl<'a> Complex<'a> {
         for [a, b] in self.meetings.neighbours(edges) {
             let (a, b) = (a as usize, b as usize);
             let (&[own, ..], &[other, ..]) = (&self.of[a][..], &self.of[b][..]) else { continue };
-            let (p, q) = (self.sided[a].corners, self.sided[b].corners);
-            let runs = |t: [DVec3; 3], from: DVec3, to: DVec3| (0..3).any(|i| t[i] == from && t[(i + 1) % 3] == to);
-            let same = (0..3).any(|i| runs(q, p[i], p[(i + 1) % 3]));
+            let same = run_alike(self.sided[a].corners, self.sided[b].corners);
             for before in [false, true] {
                 self.sets.join(side(own, before), side(other, before != same));
             }
@@ -247,25 +275,32 @@ impl<'a> Complex<'a> {
         }
     }
 
-    /// Is an element there from the front, and from the back? Also counts what else lies there.
+    /// Is an element there from the front, and from the back?
+    fn looks_of_layers(&self, element: usize) -> [bool; 2] {
+        let normal = self.face(self.elements[element].triangle as usize).normal;
+        let mut looks = [false; 2];
+        for m in self.layers(element) {
+            let Sided { front, back, .. } = self.sided[m];
+            let same = self.face(m).normal.dot(normal) > 0.0;
+            looks[0] |= if same { front } else { back } > 0;
+            looks[1] |= if same { back } else { front } > 0;
+        }
+        looks
+    }
+
+    /// The same, counting what else of the source lies there.
     fn looks(&self, element: usize, source: &SourceTriangles<'_>) -> [bool; 2] {
         let Element { triangle, middle, .. } = self.elements[element];
         let normal = self.face(triangle as usize).normal;
-        let mut looks = [false; 2];
-        let mut see = |face: &Face, front: bool, back: bool| {
-            let same = face.normal.dot(normal) > 0.0;
-            looks[0] |= if same { front } else { back };
-            looks[1] |= if same { back } else { front };
-        };
-        for m in self.layers(element) {
-            see(self.face(m), self.sided[m].front > 0, self.sided[m].back > 0);
-        }
+        let mut looks = self.looks_of_layers(element);
         let lies_here = |f: &Face| {
             f.normal.dot(normal).abs() > 1.0 - FLAT
                 && f.height(middle).abs() <= self.on
                 && f.inward(middle).iter().all(|&d| d > 0.0)
         };
-        source.near(middle, self.on).filter(lies_here).for_each(|face| see(&face, true, false));
+        for face in source.near(middle, self.on).filter(lies_here) {
+            looks[usize::from(face.normal.dot(normal) <= 0.0)] = true;
+        }
         looks
     }
 
@@ -316,6 +351,63 @@ impl<'a> Complex<'a> {
             _ => Kind::Perhaps,
         };
         (!behind_one[open]).then(|| ((0..=outside).map(kind).collect(), inverted))
+    }
+
+    /// What each region is, by its set, for a double-sided surface of parts that touch and all look the same way; and whether they look inward.
+    ///
+    /// Each triangle belongs to one part, whose solid lies on the same side of it everywhere, and so does the triangle beside it across an edge that both have
+    /// for themselves. Solid is what lies opposite to the open, behind such surface elsewhere, and behind triangles without backs. Where a region
+    /// lies before triangles without backs of which no more is known, it may as well be a cavity that touches the outside.
+    fn by_faces(&mut self, edges: &[SideUse]) -> Result<(Vec<Kind>, bool), Unknown> {
+        let outside = self.outside();
+        let open = self.sets.find(outside);
+        let beside: Vec<[usize; 2]> = (0..self.elements.len()).map(|e| self.beside(e)).collect();
+        if beside.iter().any(|[behind, before]| behind == before) {
+            return Err(Unknown::Open);
+        }
+        let looks: Vec<[bool; 2]> = (0..beside.len()).map(|e| self.looks_of_layers(e)).collect();
+        let fronts = |way: [bool; 2]| {
+            let seen = |(looks, [behind, before]): (&[bool; 2], &[usize; 2])| {
+                (*looks == way && *before == open) || (*looks == [way[1], way[0]] && *behind == open)
+            };
+            looks.iter().zip(&beside).any(seen)
+        };
+        let (outward, inward) = (fronts([true, false]), fronts([false, true]));
+        if outward && inward {
+            return Err(Unknown::Mixed);
+        }
+        let mut facing = Facing::new(self.sided, &self.meetings.pairs(edges));
+        let same =
+            |m: usize, e: usize| self.face(m).normal.dot(self.face(self.elements[e].triangle as usize).normal) > 0.0;
+        for (e, [_, before]) in beside.iter().enumerate().filter(|(_, sides)| sides.contains(&open)) {
+            self.layers(e).into_iter().for_each(|m| facing.know(m, (*before == open) == same(m, e)));
+        }
+        let (mut solid, mut behind_one, mut before_one) =
+            (vec![false; outside + 1], vec![false; outside + 1], vec![false; outside + 1]);
+        for (e, &[behind, before]) in beside.iter().enumerate() {
+            let one_sided = looks[e][0] != looks[e][1];
+            let (own, other) = if looks[e][0] != inward { (behind, before) } else { (before, behind) };
+            let mut known = false;
+            for m in self.layers(e) {
+                let Some(solid_behind) = facing.solid_behind(m)? else { continue };
+                known = true;
+                let here = if solid_behind == same(m, e) { behind } else { before };
+                if one_sided && here != own {
+                    return Err(Unknown::Mixed);
+                }
+                solid[here] = true;
+            }
+            if one_sided {
+                (solid[own], behind_one[own]) = (true, true);
+                before_one[other] |= !known;
+            }
+        }
+        let kind = |r: usize| match r {
+            r if r == open => Kind::Open,
+            r if solid[r] && (behind_one[r] || !before_one[r]) => Kind::Solid,
+            _ => Kind::Perhaps,
+        };
+        if solid[open] { Err(Unknown::Unclear) } else { Ok(((0..=outside).map(kind).collect(), inward)) }
     }
 
     /// How many more triangles of an element look to its front than to its back.
@@ -386,6 +478,61 @@ impl<'a> Complex<'a> {
         }
         surface
     }
+
+    /// The surfaces of what is solid and of what may be; none if one of them is not closed, or nothing is solid.
+    fn surfaces(&mut self, kinds: &[Kind], inverted: bool, [lo, hi]: [DVec3; 2]) -> Option<Regions> {
+        let mut of = |kind: Kind| self.surface(|region| kinds[region] == kind);
+        let (solid, perhaps) = (of(Kind::Solid), of(Kind::Perhaps));
+        let middle = (lo + hi) * 0.5;
+        let closed = |surface: &[[DVec3; 3]]| {
+            surface.is_empty() || (is_closed(surface, [lo, hi]) && signed_volume(surface, middle) > 0.0)
+        };
+        if solid.is_empty() || !closed(&solid) || !closed(&perhaps) {
+            return None;
+        }
+        let bits = |p: &DVec3| (*p + 0.0).to_array().map(f64::to_bits);
+        let read: HashSet<[u64; 3]> = self.sided.iter().flat_map(|t| t.corners.iter().map(bits)).collect();
+        let cut = solid.iter().chain(&perhaps).flatten().any(|p| !read.contains(&bits(p)));
+        let way = |surface: Vec<[DVec3; 3]>| match inverted {
+            true => surface.into_iter().map(|[a, b, c]| [a, c, b]).collect(),
+            false => surface,
+        };
+        Some(Regions { solid: way(solid), perhaps: way(perhaps), cut, ..Regions::default() })
+    }
+}
+
+/// On which side of triangles the solid lies of the parts that they belong to. Each has two entries: it lies behind the triangle, or before it.
+struct Facing {
+    sets: Sets,
+    known: Vec<bool>,
+}
+
+impl Facing {
+    /// `pairs`: triangles that belong to one part.
+    fn new(sided: &[Sided], pairs: &[[u32; 2]]) -> Self {
+        let mut sets = Sets::new(2 * sided.len());
+        for [a, b] in pairs.iter().map(|pair| pair.map(|n| n as usize)) {
+            let turned = usize::from(run_alike(sided[a].corners, sided[b].corners));
+            sets.join(2 * a, 2 * b + turned);
+            sets.join(2 * a + 1, 2 * b + 1 - turned);
+        }
+        Facing { sets, known: vec![false; 2 * sided.len()] }
+    }
+
+    fn know(&mut self, triangle: usize, behind: bool) {
+        let entry = self.sets.find(2 * triangle + usize::from(!behind));
+        self.known[entry] = true;
+    }
+
+    /// Does the solid lie behind a triangle? None if that is not known.
+    fn solid_behind(&mut self, triangle: usize) -> Result<Option<bool>, Unknown> {
+        let [behind, before] = [0, 1].map(|n| self.known[self.sets.find(2 * triangle + n)]);
+        match [behind, before] {
+            [true, true] => Err(Unknown::Unclear),
+            [false, false] => Ok(None),
+            _ => Ok(Some(behind)),
+        }
+    }
 }
 
 /// The regions of a surface, a part of `source`; none if they cannot be told. `mixed`: some parts look inward, others outward.
@@ -404,26 +551,29 @@ pub fn arrangement(
         return None;
     }
     let meetings = Meetings::new(&corners, on);
-    let mut complex = Complex::new(&sided, &meetings, on);
-    complex.join_neighbours(&edges);
-    complex.join_layers();
-    complex.join_visible();
+    let mut complex = Complex::joined(&sided, &meetings, &edges, on);
     let looks: Vec<[bool; 2]> = (0..complex.elements.len()).map(|e| complex.looks(e, source)).collect();
     let two_sided = looks.contains(&[true, true]);
     let (kinds, inverted) = if two_sided { complex.by_sides(&looks, mixed)? } else { complex.by_winding()? };
-    let mut of = |kind: Kind| complex.surface(|region| kinds[region] == kind);
-    let (solid, perhaps) = (of(Kind::Solid), of(Kind::Perhaps));
-    let middle = (lo + hi) * 0.5;
-    let closed = |surface: &[[DVec3; 3]]| {
-        surface.is_empty() || (is_closed(surface, [lo, hi]) && signed_volume(surface, middle) > 0.0)
-    };
-    if solid.is_empty() || !closed(&solid) || !closed(&perhaps) {
-        return None;
-    }
-    let way = |surface: Vec<[DVec3; 3]>| match inverted {
-        true => surface.into_iter().map(|[a, b, c]| [a, c, b]).collect(),
-        false => surface,
-    };
     let backs = if two_sided { triangles.len() - sided.len() } else { 0 };
-    Some(Regions { solid: way(solid), perhaps: way(perhaps), backs })
+    Some(Regions { backs, ..complex.surfaces(&kinds, inverted, [lo, hi])? })
+}
+
+/// The regions of a cluster of triangles that share edges, some of which have backs; all look the same way.
+///
+/// # Errors
+/// Why they cannot be told.
+pub fn of_two_sided(triangles: &[[DVec3; 3]], bounds: [DVec3; 2]) -> Result<Regions, Unknown> {
+    let sided = sided(triangles);
+    let corners: Vec<[DVec3; 3]> = sided.iter().map(|t| t.corners).collect();
+    let (on, edges) = (tolerance(bounds), edges(&corners));
+    let meetings = Meetings::new(&corners, on);
+    let mut complex = Complex::joined(&sided, &meetings, &edges, on);
+    let (kinds, inverted) = complex.by_faces(&edges)?;
+    let dropped = |two: bool| {
+        let of = sided.iter().filter(|t| (t.front > 0 && t.back > 0) == two);
+        of.map(|t| (t.front + t.back - 1) as usize).sum()
+    };
+    let found = complex.surfaces(&kinds, inverted, bounds).ok_or(Unknown::Unclear)?;
+    Ok(Regions { backs: dropped(true), repeated: dropped(false), ..found })
 }

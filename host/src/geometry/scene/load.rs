@@ -66,6 +66,7 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
                 cavities,
                 doubt,
                 rounding,
+                uneven: Vec::new(),
                 sheet,
                 drag,
             });
@@ -87,8 +88,18 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
             let corners = bodies.triangles[triangles.clone()].iter().flatten();
             let bounds = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &p| [a.min(p), b.max(p)]);
             let (name, porosity) = (name(solid, at, &body.name), solid.porosity);
+            let uneven = body.uneven.iter().map(|&around| motion.box_around(around)).collect();
             let single = body.single.map(|s| s.moved(motion.matrix(), motion.apply(DVec3::ZERO)));
-            bodies.bodies.push(Body { name, triangles, single, porosity, bounds, drag: solid.drag, ..body.clone() });
+            bodies.bodies.push(Body {
+                name,
+                triangles,
+                single,
+                porosity,
+                bounds,
+                uneven,
+                drag: solid.drag,
+                ..body.clone()
+            });
         }
     }
     let range = first..bodies.bodies.len();

@@ -45,6 +45,17 @@ impl Motion {
             Some((matrix, about)) => matrix * (p - about) + about + self.offset,
         }
     }
+
+    /// A box around what a box becomes.
+    #[must_use]
+    pub fn box_around(&self, [lo, hi]: [DVec3; 2]) -> [DVec3; 2] {
+        let corner = |n: usize| {
+            let from = |axis: usize| if n >> axis & 1 == 0 { lo[axis] } else { hi[axis] };
+            self.apply(DVec3::new(from(0), from(1), from(2)))
+        };
+        let all = (0..8).map(corner);
+        all.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)])
+    }
 }
 
 impl Placement {

@@ -1,0 +1,77 @@
+//! Holes: rims that touch in corners are rims of their own, and a rim that is not plane leaves bounds for any surface that it may hold.
+
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::mesh::Mesh;
+use voidage::grid::Edges;
+use voidage::porosity::{FieldSet, Options, porosity};
+use voidage_tests::solids::{Triangle, sphere};
+
+fn bodies(triangles: Vec<Triangle>) -> Bodies {
+    let mut bodies = Bodies::default();
+    bodies.add(&Mesh { name: "ball".into(), ..Mesh::from(triangles) }, 1.0).expect("a ball has an area");
+    bodies
+}
+
+/// The three triangles beside a fourth are missing: each is put back by itself, whichever of their edges comes first.
+#[test]
+fn holes_that_share_corners_are_closed_one_by_one() {
+    let ball = sphere([0.1, 0.2, 0.3].into(), 1.0, 5);
+    let volume = bodies(ball.clone()).bodies[0].volume;
+    for first in [0, 7, 100] {
+        let middle = ball[first];
+        let shared = |t: &Triangle| t.iter().filter(|p| middle.contains(p)).count();
+        let mut left: Vec<Triangle> = ball.iter().copied().filter(|t| shared(t) != 2).collect();
+        assert_eq!(left.len() + 3, ball.len());
+        for _ in 0..3 {
+            left.rotate_left(ball.len() / 3);
+            let found = bodies(left.clone());
+            assert_eq!(found.diagnoses[0].holes, 3);
+            assert!((found.bodies[0].volume - volume).abs() < 1e-13, "{} of {volume}", found.bodies[0].volume);
+        }
+    }
+}
+
+/// A hole whose rim is not plane, closed otherwise than by the cap: all values lie within the bounds, which differ.
+#[test]
+fn bounds_hold_what_may_close_an_uneven_hole() {
+    let ball = sphere([0.1, 0.2, 0.3].into(), 1.0, 5);
+    let fan = |n: usize| {
+        let corner = ball[n][0];
+        ball.iter().copied().partition::<Vec<Triangle>, _>(|t| t.contains(&corner))
+    };
+    let axis: Vec<f64> = (0..=9).map(|i| f64::from(i) * 0.3 - 1.15).collect();
+    let edges = Edges([0.0, 0.1, 0.2].map(|by| axis.iter().map(|e| e + by).collect()));
+    let measured = |triangles: Vec<Triangle>| {
+        let bodies = bodies(triangles);
+        let found =
+            porosity(&edges.grid(None).expect("a grid"), &bodies, Options { bounds: true, ..Options::default() });
+        (bodies, found)
+    };
+    let of = |set: &FieldSet| [set.v.to_vec(), set.x.to_vec(), set.y.to_vec(), set.z.to_vec()].concat();
+    let mut uneven = 0;
+    for n in (0..ball.len()).step_by(61) {
+        let (missing, left) = fan(n);
+        let corner = ball[n][0];
+        let rim: Vec<_> = missing
+            .iter()
+            .map(|t| {
+                let at = t.iter().position(|p| *p == corner).expect("its corner");
+                [t[(at + 1) % 3], t[(at + 2) % 3]]
+            })
+            .collect();
+        let (bodies, found) = measured(left.clone());
+        let Some([lower, upper]) = &found.bounds else { panic!("bounds were asked for") };
+        if found.max_gap < 1e-9 {
+            continue;
+        }
+        uneven += 1;
+        assert!(bodies.warnings.iter().any(|w| w.contains("not plane")), "{:?}", bodies.warnings);
+        for from in rim.iter().map(|edge| edge[0]) {
+            let cap = rim.iter().filter(|edge| !edge.contains(&from)).map(|&[a, b]| [from, a, b]);
+            let (_, other) = measured(left.iter().copied().chain(cap).collect());
+            let held = of(&other.beta).into_iter().zip(of(lower).into_iter().zip(of(upper)));
+            assert!(held.into_iter().all(|(v, (l, u))| l - 1e-12 <= v && v <= u + 1e-12), "closed from {from}");
+        }
+    }
+    assert!(uneven > 3, "{uneven} holes that are not plane");
+}
