@@ -167,6 +167,9 @@ impl<'a, R: Real, const D: usize> Space<'a, R, D> {
     }
 }
 
+/// The cells behind the open faces of a cell, and what speaks for each.
+type WaysOut<R> = heapless::Vec<(usize, [R; REASONS]), 6>;
+
 /// The growing clusters. Each is a tree of cells; what belongs to a cluster stands at the index of its root.
 struct Search<'s, R> {
     /// The next cell towards the root; the root is its own.
@@ -259,29 +262,35 @@ impl<'s, R: Real> Search<'s, R> {
     }
 
     /// Every open face of a cell to another cluster: the cell behind it, and what speaks for growing across it.
-    fn each_way_out<const D: usize>(&self, space: &Space<'_, R, D>, i: usize, mut f: impl FnMut(usize, [R; REASONS])) {
-        let own = space.whole(i);
+    ///
+    /// Called, not inlined: three passes go over them, and their code would stand in each.
+    #[inline(never)]
+    fn ways_out<const D: usize>(&self, space: &Space<'_, R, D>, i: usize) -> WaysOut<R> {
+        let (own, mut ways) = (space.whole(i), WaysOut::new());
         space.each_face(i, |_, behind, open| {
             if let Some(b) = behind.filter(|&b| b != i && self.root[b] != self.root[i]) {
                 // More room leads from cell to cell as well, so it counts where the cluster behind holds enough.
                 let room = if self.short(b).is_some() { R::ZERO } else { self.room[b] };
-                f(b, [open * own, self.held[self.root[b] as usize], room, self.rank(space, b)]);
+                // A cell has at most six faces, so there is a place.
+                let _ = ways.push((b, [open * own, self.held[self.root[b] as usize], room, self.rank(space, b)]));
             }
         });
+        ways
     }
 
     /// Chooses where each short cluster grows: the best of a reason among the faces that are equal by all reasons before it.
+    #[inline(never)]
     fn choose<const D: usize>(&mut self, space: &Space<'_, R, D>, reason: usize) {
         self.best[reason].fill(-R::ONE);
         for i in 0..self.root.len() {
             let Some(r) = self.short(i) else { continue };
             let known = self.best.each_ref().map(|b| b[r]);
             let mut best = known[reason];
-            self.each_way_out(space, i, |_, this| {
+            for (_, this) in self.ways_out(space, i) {
                 if equal_up_to(reason, &this, &known) {
                     best = R::larger(this[reason], best);
                 }
-            });
+            }
             self.best[reason][r] = best;
         }
     }
@@ -295,18 +304,12 @@ impl<'s, R: Real> Search<'s, R> {
             for i in 0..self.root.len() {
                 let Some(r) = self.short(i) else { continue };
                 let best = self.best.each_ref().map(|b| b[r]);
-                // A cell has at most six faces.
-                let (mut equal, mut count) = ([0; 6], 0);
-                self.each_way_out(space, i, |b, this| {
-                    if equal_up_to(PLACE, &this, &best) {
-                        equal[count] = self.root[b] as usize;
-                        count += 1;
+                for (b, _) in self.ways_out(space, i).iter().filter(|way| equal_up_to(PLACE, &way.1, &best)) {
+                    if !counted {
+                        self.best[PLACE][r] += R::ONE;
+                    } else if best[PLACE] > R::ONE {
+                        self.tied[self.root[*b] as usize] += R::ONE;
                     }
-                });
-                if !counted {
-                    self.best[PLACE][r] += R::from_usize(count);
-                } else if best[PLACE] > R::ONE {
-                    equal[..count].iter().for_each(|&b| self.tied[b] += R::ONE);
                 }
             }
         }
@@ -318,16 +321,9 @@ impl<'s, R: Real> Search<'s, R> {
         for i in 0..self.root.len() {
             let Some(r) = self.short(i) else { continue };
             let best = self.best.each_ref().map(|b| b[r]);
-            // A cell has at most six faces.
-            let (mut joined, mut count) = ([0; 6], 0);
-            self.each_way_out(space, i, |b, this| {
-                if equal_up_to(REASONS, &this, &best) {
-                    joined[count] = b as u32;
-                    count += 1;
-                }
-            });
-            for &b in &joined[..count] {
-                let (p, q) = (self.root_of(i as u32), self.root_of(b));
+            let ways = self.ways_out(space, i);
+            for (b, _) in ways.into_iter().filter(|way| equal_up_to(REASONS, &way.1, &best)) {
+                let (p, q) = (self.root_of(i as u32), self.root_of(b as u32));
                 self.parent[p.max(q) as usize] = p.min(q);
                 grown = true;
             }
