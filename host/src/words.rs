@@ -12,12 +12,6 @@ pub fn either<'a>(n: usize, one: &'a str, many: &'a str) -> &'a str {
     if n == 1 { one } else { many }
 }
 
-/// A number as a message writes it, to six digits.
-#[must_use]
-pub fn rounded(x: f64) -> String {
-    written(format!("{x:.5e}").parse().unwrap_or(x))
-}
-
 /// A number as a message writes it: very large and very small ones by a power of ten.
 #[must_use]
 pub fn written(x: f64) -> String {

@@ -15,7 +15,7 @@ use super::solids::SolidForce;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
-use crate::words::{counted, rounded};
+use crate::words::{counted, written};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use voidage_core::flow::Gas;
@@ -271,7 +271,7 @@ impl Report {
                 progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side"));
             }
         }
-        progress.say(format!("steps         {} to t = {} s", self.steps, rounded(self.time)));
+        progress.say(format!("steps         {} to t = {} s", self.steps, to_six_digits(self.time)));
         let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {}", share(e)));
         progress.say(format!("drift         mass {}{energy}", share(self.mass_drift)));
         progress.say(format!(
@@ -336,4 +336,8 @@ fn say_refine_check(RefineCheck { cells: [nx, ny, nz], peaks, .. }: &RefineCheck
         let pressure = of("overpressure", "Pa", peak.overpressure);
         progress.say(format!("  {:<widest$}{pressure}; {}", peak.name, of("impulse", "Pa s", peak.impulse)));
     }
+}
+
+fn to_six_digits(x: f64) -> String {
+    written(format!("{x:.5e}").parse().unwrap_or(x))
 }
