@@ -1,7 +1,7 @@
 //! Volume and area porosity of real geometry on structured grids.
 //!
 //! The crate is `no_std`, allocates nothing, holds no `unsafe` code but one instruction on ARM (`number/root.rs`) and works in `f32` and `f64` from one text.
-//! Seven rooms; one uses only those above it:
+//! Seven modules; each uses only those above it:
 //!
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof

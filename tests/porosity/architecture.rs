@@ -4,20 +4,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Rooms of the core from the bottom up. The flow uses scalars only, and no geometry uses the flow.
+/// Modules of the core from the bottom up. The flow uses scalars only, and no geometry uses the flow.
 const CORE: [&str; 7] = ["number", "flow", "convex", "grid", "surface", "subdivide", "solids"];
 
-/// Rooms and single files of the host likewise.
+/// Those of the host likewise.
 const HOST: [&str; 12] =
     ["error", "text", "words", "huge", "keys", "grid", "geometry", "porosity", "flow", "files", "picture", "command"];
 
 #[test]
-fn rooms_import_downwards_only() {
+fn modules_import_downwards_only() {
     for (package, order) in [("core", &CORE[..]), ("host", &HOST[..])] {
         let sources = Sources::read(package);
         let place = |module: &Module| {
-            let room = module.first().expect("lib.rs imports nothing");
-            order.iter().position(|r| r == room).unwrap_or_else(|| panic!("{package}: the order lacks {room}"))
+            let first = module.first().expect("lib.rs imports nothing");
+            order.iter().position(|r| r == first).unwrap_or_else(|| panic!("{package}: the order lacks {first}"))
         };
         let arrows = sources.arrows();
         assert!(arrows.len() > 50, "imports were seen");
@@ -47,7 +47,7 @@ fn no_files_use_each_other_in_a_circle() {
 #[test]
 fn only_the_command_speaks_to_a_terminal() {
     for (module, text) in &Sources::read("host").files {
-        if module.first().is_some_and(|room| room == "command") {
+        if module.first().is_some_and(|first| first == "command") {
             continue;
         }
         for word in ["clap", "indicatif", "ctrlc", "stdout(", "stderr(", "println!(", "std::env", "command::"] {

@@ -74,14 +74,14 @@ pub trait Chords: Support {
     /// A box around the body, exact where it ends in exact planes.
     fn bounds(&self) -> Aabb<Self::Vector> {
         let (zero, one) = (ScalarOf::<Self>::ZERO, ScalarOf::<Self>::ONE);
-        let room = self.radius() + self.slack() + if Self::ROUNDED { chord_rounding(self) } else { zero };
+        let margin = self.radius() + self.slack() + if Self::ROUNDED { chord_rounding(self) } else { zero };
         let [mut min, mut max] = [[zero; 3]; 2];
         for axis in 0..3 {
             let mut along = [zero; 3];
             along[axis] = one;
             let along = Self::Vector::from_array(along);
-            min[axis] = self.farthest(-along).point.to_array()[axis] - room;
-            max[axis] = self.farthest(along).point.to_array()[axis] + room;
+            min[axis] = self.farthest(-along).point.to_array()[axis] - margin;
+            max[axis] = self.farthest(along).point.to_array()[axis] + margin;
         }
         for plane in (0..self.facet_count()).map(|i| self.facet(i)).filter(|p| p.exact) {
             for (axis, n) in plane.normal.to_array().into_iter().enumerate() {

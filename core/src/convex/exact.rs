@@ -1,11 +1,11 @@
-//! The exact second stage for bodies given by vertices: disjoint, touching or overlapping, with nothing left open.
+//! The exact second stage for bodies given by vertices: disjoint, touching or overlapping, never undecided.
 //!
-//! The same search as in [`crate::convex::gjk`], in exact integers: every sign is right, each round comes strictly nearer to the
-//! origin, so it ends. Where the nearest point is the origin itself, on a face, an edge or a vertex of the simplex, the question is whether
+//! The same search as in [`crate::convex::gjk`], in exact integers: every sign is right, and each iteration comes strictly nearer to the
+//! origin, so the search ends. Where the nearest point is the origin itself, on a face, an edge or a vertex of the simplex, the question is whether
 //! the difference has points on both sides of every plane through that face, edge or vertex; this is answered by turning a plane about it.
 //!
 //! `integer` holds the numbers, `lattice` brings coordinates to them, `simplex` has the signs, `search` finds the nearest point, `touch`
-//! looks around the origin, `distance` rounds what was found.
+//! decides where the origin lies on the simplex, `distance` rounds the result.
 //!
 //! Signs are of degree 4 at most in the coordinates. Integers are used and not floating-point expansions because a product of expansions is
 //! no longer exact once a term underflows. How many words they have follows from the scalar.

@@ -23,7 +23,7 @@ pub struct Facet<V: Vector> {
 }
 
 impl<V: Vector> Facet<V> {
-    /// No plane and no surface, to fill memory.
+    /// A plane that nothing lies beyond, and an empty box: to fill memory.
     pub fn none() -> Self {
         let plane = FacetPlane { normal: V::ZERO, offset: V::Scalar::INFINITY, exact: false };
         Facet { plane, bounds: Aabb::empty() }
@@ -55,7 +55,7 @@ pub enum NotConvex {
         /// The triangle.
         triangle: usize,
     },
-    /// A triangle is too thin to know its plane, and lies in none of the others.
+    /// A triangle is too thin for its corners to give its plane, and lies in none of the other planes.
     Unknown {
         /// The triangle.
         triangle: usize,
@@ -69,7 +69,7 @@ impl core::fmt::Display for NotConvex {
             NotConvex::Full => f.write_str("the slice for the facets is too short"),
             NotConvex::Beyond { triangle } => write!(f, "a vertex lies beyond the plane of triangle {triangle}"),
             NotConvex::Unknown { triangle } => {
-                write!(f, "triangle {triangle} is too thin, and lies in no plane of the others")
+                write!(f, "triangle {triangle} is too thin for a plane of its own, and lies in no plane of the others")
             }
         }
     }
@@ -85,17 +85,17 @@ impl core::error::Error for NotConvex {}
 /// [`NotConvex`] tells the first triangle that contradicts.
 pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet<V>]) -> Result<usize, NotConvex> {
     let hull = Hull::new(vertices);
-    // A quarter of `rounding`: the subdivision spends the rest when it tests points against these planes.
-    let room = chord_rounding(&hull) * V::Scalar::from_f64(0.25);
-    if triangles.is_empty() || !room.is_finite() {
+    // A quarter of `chord_rounding`: the subdivision needs the other three when it tests points against these planes.
+    let tolerance = chord_rounding(&hull) * V::Scalar::from_f64(0.25);
+    if triangles.is_empty() || !tolerance.is_finite() {
         return Err(NotConvex::NoBody);
     }
     let lies_in = |plane: &FacetPlane<V>, corners: &[V; 3]| {
-        let limit = if plane.exact { V::Scalar::ZERO } else { room };
+        let limit = if plane.exact { V::Scalar::ZERO } else { tolerance };
         corners.iter().all(|c| (c.dot(plane.normal) - plane.offset).abs() <= limit)
     };
     let mut count = 0_usize;
-    // First the triangles that know their plane; then the thin ones, which must lie in a plane known.
+    // First the triangles whose own corners give their plane accurately; then the thin ones, which must lie in one of these planes.
     for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
@@ -126,14 +126,15 @@ pub fn facets<V: Vector>(vertices: &[V], triangles: &[[V; 3]], into: &mut [Facet
             facet.ok_or(NotConvex::Unknown { triangle })?.join(corners);
         }
     }
-    if deep_inside(&hull, known, room) { Ok(count) } else { Err(NotConvex::NoBody) }
+    if deep_inside(&hull, known, tolerance) { Ok(count) } else { Err(NotConvex::NoBody) }
 }
 
-/// Some point lies well inside all facets: then what is inside all facets, less the rounding, is inside the surface.
-fn deep_inside<V: Vector>(hull: &Hull<V>, facets: &[Facet<V>], room: V::Scalar) -> bool {
+/// Whether the mean of the vertices lies inside all facets by 16 times the tolerance. Then whatever lies inside all facets by more than the
+/// tolerance is inside the surface.
+fn deep_inside<V: Vector>(hull: &Hull<V>, facets: &[Facet<V>], tolerance: V::Scalar) -> bool {
     let count = V::Scalar::from_usize(hull.vertices().len());
     let mean = hull.vertices().iter().fold(V::ZERO, |sum, &v| sum + v) * (V::Scalar::ONE / count);
-    facets.iter().all(|f| mean.dot(f.plane.normal) - f.plane.offset < -(room * V::Scalar::from_f64(16.0)))
+    facets.iter().all(|f| mean.dot(f.plane.normal) - f.plane.offset < -(tolerance * V::Scalar::from_f64(16.0)))
 }
 
 impl<'a, V: Vector> Polytope<'a, V> {

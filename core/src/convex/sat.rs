@@ -1,8 +1,8 @@
 //! A triangle against an axis-aligned box, by the thirteen directions that could separate them.
 //!
-//! Those are the three axes of the box, the normal of the triangle, and the nine products of a box edge with a triangle edge: one of them
-//! is normal to a facet of the Minkowski difference wherever it has one. If the projections overlap on all of them, so do the interiors.
-//! A flat box is welcome: a cell face is one.
+//! Those are the three axes of the box, the normal of the triangle, and the nine products of a box edge with a triangle edge: each
+//! facet of the Minkowski difference is normal to one of them. If the projections overlap on all of them, so do the interiors.
+//! The box may be flat, as a cell face is.
 //!
 //! Reference: T. Akenine-Möller, "Fast 3D triangle-box overlap testing", *J. Graphics Tools* 6 (2001); with a bound on every rounding.
 
@@ -11,7 +11,7 @@ use crate::convex::support::Support;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 
-/// What [`box_triangle`] found. There is no fourth answer: it may be matched without a rest.
+/// What [`box_triangle`] found. There will be no fourth variant, so callers may match without a wildcard arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BoxTriangle<V> {
     /// No interior point is shared: `axis` separates them and points from the box to the triangle. No point of the box projects farther
@@ -33,9 +33,13 @@ const PROJECTION_ROUNDINGS: f64 = 12.0;
 
 /// The order of two projections.
 enum Order {
-    Apart,
-    Beyond,
+    /// The triangle lies above the box.
+    Above,
+    /// The triangle lies below the box.
+    Below,
+    /// Their interiors overlap.
     Overlap,
+    /// Closer to touching than rounding can tell.
     Unsure,
 }
 
@@ -48,9 +52,9 @@ fn order<V: Vector>(axis: V, size: V, low: V::Scalar, high: V::Scalar, reach: V:
     let bottom = x.smaller(zero) + y.smaller(zero) + z.smaller(zero);
     let error = V::Scalar::from_f64(PROJECTION_ROUNDINGS) * V::Scalar::EPSILON * reach + V::Scalar::UNDERFLOW;
     if low >= top + error {
-        Order::Apart
+        Order::Above
     } else if high <= bottom - error {
-        Order::Beyond
+        Order::Below
     } else if low < top - error && high > bottom + error {
         Order::Overlap
     } else {
@@ -111,8 +115,8 @@ pub fn box_triangle<V: Vector>(cell: &Aabb<V>, triangle: &Triangle<V>) -> BoxTri
     let area = V::new(e[1] * f[2] + e[2] * f[1], e[2] * f[0] + e[0] * f[2], e[0] * f[1] + e[1] * f[0]);
     let height = normal.dot(p[0]);
     match order(normal, size, height, height, area.dot(far)) {
-        Order::Apart => return BoxTriangle::Apart { axis: normal },
-        Order::Beyond => return BoxTriangle::Apart { axis: -normal },
+        Order::Above => return BoxTriangle::Apart { axis: normal },
+        Order::Below => return BoxTriangle::Apart { axis: -normal },
         Order::Overlap => {}
         Order::Unsure => sure = false,
     }
@@ -130,8 +134,8 @@ pub fn box_triangle<V: Vector>(cell: &Aabb<V>, triangle: &Triangle<V>) -> BoxTri
             let low = along[0].smaller(along[1]).smaller(along[2]);
             let high = along[0].larger(along[1]).larger(along[2]);
             match order(axis, size, low, high, reach) {
-                Order::Apart => return BoxTriangle::Apart { axis },
-                Order::Beyond => return BoxTriangle::Apart { axis: -axis },
+                Order::Above => return BoxTriangle::Apart { axis },
+                Order::Below => return BoxTriangle::Apart { axis: -axis },
                 Order::Overlap => {}
                 Order::Unsure => sure = false,
             }

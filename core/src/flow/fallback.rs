@@ -91,7 +91,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         (density, pressure): (R, R),
     ) -> Conserved<R, D> {
         let least = |around: R| R::larger(R::from_f64(FLOOR_SHARE) * around, R::MIN_POSITIVE);
-        // What fits the scalar with room for what a step multiplies it by.
+        // The largest number that stays finite when a step multiplies it.
         let fits = |x: R| x.abs() < R::MAX * R::EPSILON;
         let kinetic_of = |rho: R, v: [R; D]| R::HALF * rho * sum::<R, D>(v.map(|v| v * v));
         let sound =

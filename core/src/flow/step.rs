@@ -244,20 +244,20 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         mut attempt: impl FnMut(&mut FieldsMut<'_, R, D>, Option<&[u8]>, &mut Report<R, D>) -> Result<(), Error>,
     ) -> Result<(), Error> {
         fits(self.mesh.len(), marks.len())?;
-        let mut rounds = 0;
+        let mut repetitions = 0;
         loop {
-            attempt(new, if rounds > 0 { Some(&*marks) } else { None }, report)?;
+            attempt(new, if repetitions > 0 { Some(&*marks) } else { None }, report)?;
             self.merge(old, new, report)?;
             if report.unphysical == 0 {
                 return Ok(());
             }
-            if rounds == 0 {
+            if repetitions == 0 {
                 marks.fill(0);
             }
-            if rounds == FALLBACKS || self.mark_troubled(&new.as_fields(), marks)? == 0 {
+            if repetitions == FALLBACKS || self.mark_troubled(&new.as_fields(), marks)? == 0 {
                 return self.apply_floors(old, new, report);
             }
-            rounds += 1;
+            repetitions += 1;
         }
     }
 }

@@ -351,8 +351,8 @@ impl<V: Vector> OtherBodies<V> for RoundSolids<'_, V> {
     }
 
     fn reach(&mut self, cell: Aabb<V>) -> bool {
-        let room = cell.size() * V::Scalar::from_f64(NEAR);
-        let cell = Aabb { min: cell.min - room, max: cell.max + room };
+        let margin = cell.size() * V::Scalar::from_f64(NEAR);
+        let cell = Aabb { min: cell.min - margin, max: cell.max + margin };
         self.solids.iter().filter(|s| s.bounds.touches(cell)).any(|s| {
             self.queries.queries += 1;
             !matches!(intersect(&cell, &s.shape, None), Intersection::Apart { .. })

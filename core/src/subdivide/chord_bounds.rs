@@ -51,7 +51,7 @@ impl<R: Real> Columns<R> {
         while best.gap() > self.enough && parts < self.parts.min(MAX_PARTS) {
             let finer_parts = if parts == 1 { 2 } else { self.wanted(best.gap(), parts) };
             let finer = place.along(axis, finer_parts);
-            // What a smooth surface would gain, with room for its rim.
+            // What a smooth surface would gain, with a margin for its rim.
             let gain = R::from_usize(parts * parts) / R::from_usize(finer_parts * finer_parts);
             let smooth = finer.gap() <= best.gap() * gain.sqrt().max(gain * R::TWO);
             best = Bounds { lower: best.lower.max(finer.lower), upper: best.upper.min(finer.upper) };
@@ -196,11 +196,11 @@ impl<'a, B: Chords> BoxInBody<'a, B> {
         let share = u.share * v.share / (full * R::<B>::from_usize(u.parts * v.parts));
         let relative = R::<B>::EPSILON * R::<B>::from_f64(SUM_ROUNDINGS);
         // Heights are differences of coordinates.
-        let room = relative + self.grow / full;
-        let lower = if sum.all { u.share * v.share } else { sum.lower * share * (one - relative) - room };
+        let margin = relative + self.grow / full;
+        let lower = if sum.all { u.share * v.share } else { sum.lower * share * (one - relative) - margin };
         let whole = sum.all && u.share == one && v.share == one;
         let lower = if whole { one } else { (lower - relative).max(zero) };
-        Bounds { lower, upper: (sum.upper * share * (one + relative) + room).min(one) }
+        Bounds { lower, upper: (sum.upper * share * (one + relative) + margin).min(one) }
     }
 }
 

@@ -55,7 +55,7 @@ impl<'a> ActiveFacets<'a> {
         (self.count <= self.items.len()).then_some(self.count)
     }
 
-    /// How many facets were pushed and not dropped, with those that found no room.
+    /// How many facets were pushed and not dropped, with those for which there was no memory.
     #[inline(always)]
     pub(crate) fn count(&self) -> usize {
         self.count

@@ -101,8 +101,8 @@ impl<B: Chords> Subdividable for B {
                 0 => return Occupancy::Closed,
                 1 => return Occupancy::Cut,
                 _ if holds_inner_point(self, cell, active.items(), margin) => {
-                    let room = B::Vector::splat(margin + margin);
-                    let around = Aabb { min: cell.min - room, max: cell.max + room };
+                    let twice = B::Vector::splat(margin + margin);
+                    let around = Aabb { min: cell.min - twice, max: cell.max + twice };
                     active.retain(|id| self.facet_bounds(id as usize).is_none_or(|b| b.touches(around)));
                     return if active.count() == 0 { Occupancy::Closed } else { Occupancy::Cut };
                 }

@@ -97,9 +97,9 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
         let (mut count, mut facets_end, mut overflow) = (0, list.facets_end, false);
         for candidate in known.get_mut(list.first..).unwrap_or(&mut []) {
             let Some(body) = self.bodies.get(candidate.body as usize) else { continue };
-            let (listed, room) = facets.split_at_mut(facets_end.min(facets.len()));
+            let (listed, unused) = facets.split_at_mut(facets_end.min(facets.len()));
             let near = listed.get(candidate.first as usize..candidate.end as usize).unwrap_or(&[]);
-            let mut active = ActiveFacets::new(room);
+            let mut active = ActiveFacets::new(unused);
             match body.occupancy(cell, near, &mut active, &mut candidate.warm, &mut self.count) {
                 Occupancy::Open => {}
                 Occupancy::Closed => return Filtered::Closed,
@@ -270,8 +270,8 @@ impl<'a, 'm, B: Subdividable> Subdivision<'a, 'm, B> {
             }
         }
         let rows = R::<B>::from_usize(1 << self.rule.depth);
-        let room = reach * rows * R::<B>::EPSILON * R::<B>::TWO;
-        Bounds { lower: (bounds.lower - room).max(zero), upper: (bounds.upper + room).min(one) }
+        let margin = reach * rows * R::<B>::EPSILON * R::<B>::TWO;
+        Bounds { lower: (bounds.lower - margin).max(zero), upper: (bounds.upper + margin).min(one) }
     }
 }
 
@@ -298,7 +298,7 @@ fn box_of<V: Vector>(grid: &Grid<V::Scalar>, kind: RangeKind, range: CellRange) 
     }
     let exact = Aabb { min: V::from_array(min), max: V::from_array(max) };
     let Some(axis) = (0..3).find(|&axis| normal_to(axis) && max[axis] > min[axis]) else { return exact };
-    let room = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG) + slab_margin(&exact);
-    (min[axis], max[axis]) = (min[axis] - room, max[axis] + room);
+    let margin = (max[axis] - min[axis]) * V::Scalar::from_f64(OVERHANG) + slab_margin(&exact);
+    (min[axis], max[axis]) = (min[axis] - margin, max[axis] + margin);
     Aabb { min: V::from_array(min), max: V::from_array(max) }
 }

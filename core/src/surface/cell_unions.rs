@@ -57,7 +57,7 @@ pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
         site: &Site<V>,
         at: (usize, Aabb<V>),
         refined: Option<&Refined<V::Scalar>>,
-        room: Room<V>,
+        spare: SpareMemory<V>,
     );
 }
 
@@ -76,7 +76,7 @@ impl<V: Vector> UnionSums<V> for () {
         _: &Site<V>,
         _: (usize, Aabb<V>),
         _: Option<&Refined<V::Scalar>>,
-        _: Room<V>,
+        _: SpareMemory<V>,
     ) {
     }
 }
@@ -120,7 +120,7 @@ pub(super) type FindParts<V, O> = fn(
     &Site<V>,
     &Grid<<V as Vector>::Scalar>,
     Range<usize>,
-    Room<V>,
+    SpareMemory<V>,
 ) -> Option<Parts<<V as Vector>::Scalar>>;
 
 /// A layer of a grid, the triangles sorted into it, and how often its cells may still be halved along some axis.
@@ -135,17 +135,17 @@ pub(super) struct Site<'a, V: Vector> {
 }
 
 /// Memory of one level of division; what it leaves serves the levels below.
-pub(super) struct Room<'m, V: Vector> {
+pub(super) struct SpareMemory<'m, V: Vector> {
     pub reals: &'m mut [V::Scalar],
     pub flags: &'m mut [u8],
     pub numbers: &'m mut [u32],
     pub groups: &'m mut [Group<V>],
 }
 
-impl<V: Vector> Room<'_, V> {
+impl<V: Vector> SpareMemory<'_, V> {
     /// The same memory for a shorter time.
-    pub fn reborrow(&mut self) -> Room<'_, V> {
-        Room { reals: self.reals, flags: self.flags, numbers: self.numbers, groups: self.groups }
+    pub fn reborrow(&mut self) -> SpareMemory<'_, V> {
+        SpareMemory { reals: self.reals, flags: self.flags, numbers: self.numbers, groups: self.groups }
     }
 }
 
@@ -233,12 +233,12 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
     pieces: &mut P,
 ) -> Resolved {
     let [nx, ny, _] = site.grid.cells();
     let mut resolved = Resolved::default();
-    let Room { reals, flags, numbers, groups } = room;
+    let SpareMemory { reals, flags, numbers, groups } = spare;
     let Some((rows, numbers)) = numbers.split_at_mut_checked(2 * (ny + 1)) else { return resolved };
     let Some((columns, numbers)) = numbers.split_at_mut_checked(2 * (nx + 1)) else { return resolved };
     count_reaching(site.grid.edges(1), boxes(shared, site).map(|(b, s)| ([b.min.y(), b.max.y()], s)), rows);
@@ -270,7 +270,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
             let believed = |u: &Refined<V::Scalar>| at.agrees(layer, u, site.areas);
             let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, believed).unzip();
-            let mut rest = Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
+            let mut rest = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
             if refined.is_none() && open > shared.tol {
                 resolved.divided += 1;
                 refined = divide(shared, site, cell, rest.reborrow());
@@ -293,10 +293,10 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) {
     let [nx, ny, _] = site.grid.cells();
-    let Room { reals, flags, numbers, groups } = room;
+    let SpareMemory { reals, flags, numbers, groups } = spare;
     for j in 0..ny {
         let mut row = None;
         for i in 0..nx {
@@ -313,7 +313,7 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
             let Some(row) = &mut row else { continue };
             let refined = match union::<_, _, ()>(shared, site, cell, row, |_| true) {
                 None if open > shared.tol => {
-                    divide(shared, site, cell, Room { reals, flags, numbers: row.rest.0, groups: row.rest.1 })
+                    divide(shared, site, cell, SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 })
                 }
                 found => found.map(|(refined, _)| refined),
             };
@@ -412,9 +412,9 @@ pub(super) fn find_parts<V: Vector, O: OtherBodies<V>>(
     site: &Site<V>,
     grid: &Grid<V::Scalar>,
     layers: Range<usize>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) -> Option<Parts<V::Scalar>> {
-    with_effort(shared, site, layers.clone(), |shared| (shared.parts)(shared, site, grid, layers, room))
+    with_effort(shared, site, layers.clone(), |shared| (shared.parts)(shared, site, grid, layers, spare))
 }
 
 /// Divides a cell, or a part of one that holds the triangles of some layers of a site; none if the effort is spent.
@@ -448,7 +448,7 @@ pub(super) fn divide<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) -> Option<Refined<V::Scalar>> {
     let size = cell.size().to_array();
     let longest = size.into_iter().fold(V::Scalar::ZERO, Real::max);
@@ -459,7 +459,7 @@ pub(super) fn divide<V: Vector, O: OtherBodies<V>>(
     let grid = Grid::new(list(0), list(1), list(2)).ok()?;
     let halvings = halved.iter().map(|&h| u32::from(h)).sum();
     let part = Site { halvings: site.halvings.checked_sub(halvings)?, ..*site };
-    let parts = find_parts(shared, &part, &grid, site.k..site.k + 1, room)?;
+    let parts = find_parts(shared, &part, &grid, site.k..site.k + 1, spare)?;
     Some(Refined::from_parts(&parts, grid.cells()))
 }
 

@@ -8,7 +8,7 @@ use heapless::Vec;
 use crate::number::real::Real;
 use crate::number::space::{cross, sub};
 
-/// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is room for the cuts by
+/// Most corners of a polygon. A triangle cut by the six planes of a box has at most 9; the rest is for the cuts by
 /// other bodies' planes in one cell. A full polygon is halved before the next cut.
 pub const MAX_CORNERS: usize = 16;
 

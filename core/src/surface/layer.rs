@@ -1,4 +1,4 @@
-//! The door of this room: porosity of the layers of a grid from bodies of triangles, overlaps counted once.
+//! The public interface of this module: porosity of the layers of a grid from bodies of triangles, overlaps counted once.
 //!
 //! [`Layers`] checks bodies and sorts their triangles by layer, once. [`Layers::layer`] then gives the open fractions of one layer of cells
 //! and of its faces: each body's share by [`crate::surface::cells`] and [`crate::surface::z_faces`], exact unions where bodies share
@@ -27,7 +27,7 @@ use crate::grid::Grid;
 use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, BinsError, BinsNeeded, Group, Surface};
-use crate::surface::cell_unions::{Effort, OtherBodies, Room, Shared, Site, UnionSums};
+use crate::surface::cell_unions::{Effort, OtherBodies, Shared, Site, SpareMemory, UnionSums};
 use crate::surface::cells::{Defects, Scratch};
 use fractions::{count_cells, open_field, to_open_fractions};
 use parts::{LEVEL, parts};
@@ -175,7 +175,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         let LayerMemory { sum, spare, scratch, has_surface, reals, flags, numbers, groups, union, .. } = memory;
         let mut shared = Shared { tol, others, union: union.reborrow(), parts, effort: Effort::default() };
         let site = Site { grid: &self.grid, bins: &self.bins, k, halvings: 3 * depth.min(MOST_HALVINGS), areas };
-        let mut room = Room { reals, flags, numbers, groups };
+        let mut divisions = SpareMemory { reals, flags, numbers, groups };
         let mut layer = Layer {
             lower: Fields::within(&self.grid, spare)?,
             sum: Fields::within(&self.grid, sum)?,
@@ -191,11 +191,11 @@ impl<'a, V: Vector> Layers<'a, V> {
             wanted.lower.cell = cell;
         }
         let mut report =
-            solid_bounds(&mut shared, &site, &mut wanted, &mut scratch, room.reborrow(), pieces, each_body);
+            solid_bounds(&mut shared, &site, &mut wanted, &mut scratch, divisions.reborrow(), pieces, each_body);
         count_cells(&site, &wanted, solid_end, &mut report);
         to_open_fractions(&mut wanted, areas, bounds.as_mut(), solid_end, &mut report.max_gap);
         if !top.is_empty() {
-            solid_bounds_on_top(&mut shared, &site, &mut layer, &mut scratch, room);
+            solid_bounds_on_top(&mut shared, &site, &mut layer, &mut scratch, divisions);
             let [low, high] = match &mut bounds {
                 Some([low, high]) => [Some(&mut *low.top), Some(&mut *high.top)],
                 None => [None, None],

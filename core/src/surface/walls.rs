@@ -7,7 +7,7 @@ use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group};
 use crate::surface::cell_unions::{
-    OtherBodies, Room, Shared, Site, find_parts, known, narrow, rounding, with_least_blur,
+    OtherBodies, Shared, Site, SpareMemory, find_parts, known, narrow, rounding, with_least_blur,
 };
 use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory};
 
@@ -16,10 +16,10 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
-    mut room: Room<V>,
+    mut spare: SpareMemory<V>,
 ) {
     for axis in 0..3 {
-        resolve_axis(shared, site, axis, site.k, layer, room.reborrow());
+        resolve_axis(shared, site, axis, site.k, layer, spare.reborrow());
     }
 }
 
@@ -28,9 +28,9 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) {
-    resolve_axis(shared, site, 2, site.k + 1, layer, room);
+    resolve_axis(shared, site, 2, site.k + 1, layer, spare);
 }
 
 /// Narrow the bounds of the shared faces normal to one axis; `plane` is their index along z.
@@ -40,7 +40,7 @@ fn resolve_axis<V: Vector, O: OtherBodies<V>>(
     axis: usize,
     plane: usize,
     layer: &mut Layer<V::Scalar>,
-    mut room: Room<V>,
+    mut spare: SpareMemory<V>,
 ) {
     let [row, _, _] = site.grid.face_shape(axis);
     if !layer.has_surface.faces(axis).contains(&1) {
@@ -52,7 +52,7 @@ fn resolve_axis<V: Vector, O: OtherBodies<V>>(
         let (Some(lower), Some(sum)) = (lowers.get_mut(f), sums.get_mut(f)) else { continue };
         if in_wall && gap(*lower, *sum) > known() {
             let face = [f % row.max(1), f / row.max(1), plane];
-            narrow(lower, sum, wall(shared, site, axis, face, room.reborrow()));
+            narrow(lower, sum, wall(shared, site, axis, face, spare.reborrow()));
         }
     }
 }
@@ -63,7 +63,7 @@ fn wall<V: Vector, O: OtherBodies<V>>(
     site: &Site<V>,
     axis: usize,
     face: [usize; 3],
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) -> Bounds<V::Scalar> {
     let top = site.grid.cells()[2] - 1;
     let side = |below: bool| {
@@ -79,7 +79,7 @@ fn wall<V: Vector, O: OtherBodies<V>>(
     }
     let other = sides.iter().any(|side| shared.others.reach(side.cell));
     let whole = if other { None } else { whole_wall(shared, site.bins, axis, &sides) };
-    whole.or_else(|| divided_wall(shared, site, axis, &sides, room)).unwrap_or(Bounds::UNKNOWN)
+    whole.or_else(|| divided_wall(shared, site, axis, &sides, spare)).unwrap_or(Bounds::UNKNOWN)
 }
 
 /// The union on a face with walls: exact, or with the least blur that gives a proof.
@@ -101,7 +101,7 @@ fn divided_wall<V: Vector, O: OtherBodies<V>>(
     site: &Site<V>,
     axis: usize,
     [below, above]: &[WallSide<V>; 2],
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) -> Option<Bounds<V::Scalar>> {
     let (lower, lo, hi) = (below.cell.min.to_array(), above.cell.min.to_array(), above.cell.max.to_array());
     let middle = |lo: V::Scalar, hi: V::Scalar| lo + (hi - lo) * V::Scalar::HALF;
@@ -111,7 +111,7 @@ fn divided_wall<V: Vector, O: OtherBodies<V>>(
     });
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
     let part = Site { halvings: site.halvings.checked_sub(3)?, ..*site };
-    let parts = find_parts(shared, &part, &grid, below.k..above.k + 1, room)?;
+    let parts = find_parts(shared, &part, &grid, below.k..above.k + 1, spare)?;
     parts.planes.get(axis).map(|planes| planes[1])
 }
 

@@ -15,7 +15,7 @@ use super::heatmap::{Area, EdgeAxis, Heatmap, NORMAL, SMALL, pointer, triangle};
 use super::ticks::{Ticks, number, number_to, ticks};
 use crate::error::{Error, Result};
 use crate::grid::AXES;
-use layout::{BAR, Layout, Panel, Rooms};
+use layout::{BAR, Layout, Panel, Sizes};
 
 /// Marks where the other slices lie.
 const MARK: Colour = [214, 84, 32];
@@ -92,12 +92,12 @@ impl Figure<'_> {
     fn draw_usable(&self, blocked: Option<&[f64]>) -> std::result::Result<Canvas, String> {
         let cells = self.check()?;
         let lengths = self.edges.map(|e| e[e.len() - 1] - e[0]);
-        let rooms = Rooms {
+        let sizes = Sizes {
             left: &|axis, height| self.axis(axis).room_left(height),
             title: &|panel| text_width(&self.panel_title(panel), NORMAL).ceil() as usize,
             bar: self.bar_room(),
         };
-        let layout = Layout::best(lengths, cells, &rooms);
+        let layout = Layout::best(lengths, cells, &sizes);
         let note = text_width(self.note, SMALL) + legend_width();
         let title = text_width(&format!("{}{}", self.title, self.moment), TITLE);
         let head = title.max(note).min(layout::WIDTH as f64);

@@ -163,8 +163,8 @@ impl<'a> Road<'a> {
         let end = |axis: usize| [grid.edges(axis)[0], grid.edges(axis)[grid.cells()[axis]]];
         let [x, y, z] = [0, 1, 2].map(end);
         let [min, max] = [0, 1].map(|n| DVec3::new(x[n], y[n], z[n]));
-        let room = 2.0 * slab_margin(&Aabb { min, max });
-        let [below, above] = [grid.edges(2)[planes[0]] - room, grid.edges(2)[planes[1]] + room];
+        let margin = 2.0 * slab_margin(&Aabb { min, max });
+        let [below, above] = [grid.edges(2)[planes[0]] - margin, grid.edges(2)[planes[1]] + margin];
         let mut triangles = std::mem::take(&mut lists.triangles);
         triangles.clear();
         let near = self.bodies.iter().filter(|(b, _)| b.min.z <= above && b.max.z >= below);
@@ -345,8 +345,8 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
     }
 
     fn reach(&mut self, cell: Aabb<DVec3>) -> bool {
-        let room = cell.size() * ROOM;
-        let cell = Aabb { min: cell.min - room, max: cell.max + room };
+        let margin = cell.size() * MARGIN;
+        let cell = Aabb { min: cell.min - margin, max: cell.max + margin };
         let mut formulas = self.road.formulas.iter().filter(|f| f.bounds.touches(cell));
         if formulas.clone().any(|f| f.torus_may_reach(cell)) {
             return true;
@@ -362,4 +362,4 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
 }
 
 /// What is so near a cell counts as reaching its sides, in cells.
-const ROOM: f64 = 1.0 / 1024.0;
+const MARGIN: f64 = 1.0 / 1024.0;

@@ -11,7 +11,7 @@ use crate::number::words::Words;
 /// An exact distance, rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactDistance {
-    /// The distance, to a relative error of 16 ε or a step of the subnormal numbers; 0 exactly if a point is shared.
+    /// The distance, to a relative error of 16 ε, below the normal numbers to their last bit; 0 exactly if a point is shared.
     pub distance: f64,
     /// The nearest point of the first body, to rounding.
     pub a: [f64; 3],
@@ -19,7 +19,7 @@ pub struct ExactDistance {
     pub b: [f64; 3],
 }
 
-/// The distance of two bodies, from exact signs and exact products: right to the last digits however the vertices lie. A distance beyond
+/// The distance of two bodies, from exact signs and exact products: right to 16 ε however the vertices lie. A distance beyond
 /// the largest number is infinite.
 pub fn distance<A, B>(a: &A, b: &B, hint: Option<A::Vector>) -> Result<ExactDistance, NotFinite>
 where
@@ -55,7 +55,7 @@ where
         times_power(m, e - top)
     });
     let total: f64 = weights.iter().sum();
-    // No gap is so small that it may pass for a shared point.
+    // A distance that underflows stays above 0, which means a shared point.
     let least = if is_zero(&search.direction) { 0.0 } else { f64::from_bits(1) };
     let mut nearest =
         ExactDistance { distance: Real::max(sq.root(pair.lattice.unit), least), a: [0.0; 3], b: [0.0; 3] };
@@ -77,17 +77,19 @@ struct Ratio {
 }
 
 impl Ratio {
+    /// `numerator / denominator`.
     fn new<W: Words>(numerator: Int<W>, denominator: Int<W>) -> Self {
         let ((m, e), (n, f)) = (numerator.as_float(), denominator.as_float());
         Ratio { m: m / n, e: e - f }
     }
 
+    /// `root² / denominator`.
     fn square_over(root: Int<impl Words>, denominator: Int<impl Words>) -> Self {
         let ((m, e), (n, f)) = (root.as_float(), denominator.as_float());
         Ratio { m: m * m / n, e: 2 * e - f }
     }
 
-    /// Square root, times `2^unit`.
+    /// The square root, times `2^unit`.
     fn root(&self, unit: i32) -> f64 {
         let odd = self.e & 1;
         let m = if odd == 0 { self.m } else { 2.0 * self.m };

@@ -39,7 +39,7 @@ pub struct Int<W> {
 }
 
 impl<W: Words> Int<W> {
-    /// 0.
+    /// Zero.
     pub const ZERO: Self = Int { negative: false, len: 0, words: W::ZERO };
 
     /// `mantissa · 2^shift`; bits above the capacity are lost.
@@ -77,7 +77,7 @@ impl<W: Words> Int<W> {
         out
     }
 
-    /// Its order to 0.
+    /// How it compares with 0.
     pub fn sign(&self) -> Ordering {
         match (self.len, self.negative) {
             (0, _) => Ordering::Equal,
@@ -96,7 +96,7 @@ impl<W: Words> Int<W> {
         self.sign() == Ordering::Less
     }
 
-    /// 0.
+    /// Equal to 0.
     pub fn is_zero(&self) -> bool {
         self.len == 0
     }

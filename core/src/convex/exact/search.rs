@@ -13,9 +13,9 @@ use crate::number::real::{Real, Vector};
 pub(super) struct Search<R: Real> {
     /// The smallest simplex that holds the nearest point.
     pub(super) simplex: Points<R>,
-    /// Towards it from the origin; zero if it is the origin.
+    /// The direction from the origin to that point; zero if the origin is that point.
     pub(super) direction: V3<R>,
-    /// An axis along which nothing of the difference lies below the origin, if one came up.
+    /// An axis along which no point of the difference lies below the origin and some are level with it, if the search met one.
     pub(super) weak: Option<V3<R>>,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct LatticePair<'a, A, B> {
 }
 
 /// Rounding of a scalar product of a rounded direction and a vertex, in units of ε |d|₁ (largest coordinate): three roundings of the product,
-/// two of the direction; twice, as two of them are compared; the rest is room.
+/// two of the direction; doubled, as two products are compared, which makes 10; the rest is a margin.
 const FILTER_ROUNDINGS: f64 = 16.0;
 
 impl<A, B> LatticePair<'_, A, B>
@@ -35,7 +35,7 @@ where
     A: Vertices,
     B: Vertices<Vector = A::Vector>,
 {
-    /// The vertex farthest along a direction; a filter in floating point leaves few to compare exactly.
+    /// The vertex farthest along a direction. A filter in floating point leaves the few vertices that are compared exactly.
     fn farthest<S: Vertices<Vector = A::Vector>>(&self, shape: &S, d: &V3<ScalarOf<A>>) -> u32 {
         let rounded = direction(d);
         let norm = rounded[0].abs() + rounded[1].abs() + rounded[2].abs();
@@ -74,6 +74,7 @@ where
         best.map(|b| b.0).or(single).unwrap_or(0)
     }
 
+    /// The scalar product of a direction and a vertex.
     fn along<S: Vertices<Vector = A::Vector>>(&self, shape: &S, d: &V3<ScalarOf<A>>, i: u32) -> Int4<ScalarOf<A>> {
         dot(d, &self.lattice.point(shape.vertex(i as usize)))
     }
@@ -84,7 +85,7 @@ where
         self.lattice.difference(self.a, self.b, pair)
     }
 
-    /// GJK in exact arithmetic: each round replaces the simplex by a strictly nearer one, so it ends. `hint` is a direction from the first body to
+    /// GJK in exact arithmetic: each iteration replaces the simplex by a strictly nearer one, so it ends. `hint` is a direction from the first body to
     /// the second. With `stop_when_separated` it returns at the first strictly separating axis, else at the nearest point.
     pub(super) fn search(&self, hint: Option<A::Vector>, stop_when_separated: bool) -> Search<ScalarOf<A>> {
         let first = match hint {
@@ -92,7 +93,7 @@ where
                 let d = hint.to_array().map(|x| {
                     let (m, e) = (x.to_f64(), 60 - exponent(hint));
                     let (negative, m, e) = parts(if (-2000..2000).contains(&e) { times_power(m, e) } else { 0.0 });
-                    // Below the unit it does not matter: a hint need not be exact.
+                    // Components below the unit are dropped: a hint need not be exact.
                     if m == 0 || e < 0 { Int::ZERO } else { Int::shifted(negative, m, e as u32) }
                 });
                 self.lowest(&d)
@@ -117,7 +118,7 @@ where
             let nearer = |p: &ExactDifference<_>| {
                 dot::<_, _, Degree4<ScalarOf<A>>>(&direction, &minus(&new.w, &p.w)).is_negative()
             };
-            // A simplex of four points holds the origin, so that there always is room.
+            // A simplex of four points holds the origin and has returned above, so the push does not fail.
             if !simplex.first().is_some_and(nearer) || simplex.push(new).is_err() {
                 return Search { simplex, direction, weak };
             }

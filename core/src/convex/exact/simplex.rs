@@ -51,7 +51,7 @@ pub(super) fn nearest<R: Real>(simplex: &Points<R>) -> (Points<R>, V3<R>) {
     (simplex.clone(), [Int::ZERO; 3])
 }
 
-/// The points of a subset, given by their positions; none if there are not so many.
+/// The points at the positions of a subset; none if there are fewer points.
 fn chosen<R: Real>(from: &Points<R>, subset: &[usize]) -> Option<Points<R>> {
     let mut part = Points::new();
     for &i in subset {
@@ -60,7 +60,8 @@ fn chosen<R: Real>(from: &Points<R>, subset: &[usize]) -> Option<Points<R>> {
     Some(part)
 }
 
-/// From the origin to the nearest point of the hull of some points, if that lies strictly inside it.
+/// The direction from the origin to its foot on the plane, line or point that some points span, zero in a tetrahedron; none unless the foot
+/// lies strictly inside their hull.
 fn towards<R: Real>(points: &[ExactDifference<R>]) -> Option<V3<R>> {
     match points {
         [p] => Some(resized(&p.w)),
@@ -100,7 +101,7 @@ fn towards<R: Real>(points: &[ExactDifference<R>]) -> Option<V3<R>> {
     }
 }
 
-/// The part of a cone nearest to `target`, and what remains from there to the target.
+/// The part of a cone that holds its point nearest to `target`, and the direction from that point to the target.
 pub(super) fn nearest_in_cone<R: Real>(target: &V1<R>, cone: &Points<R>) -> (Points<R>, V3<R>) {
     let fits = |residual: &V3<R>| !cone.iter().any(|p| dot::<_, _, Degree4<R>>(residual, &p.w).is_positive());
     let whole = resized(target);
@@ -118,7 +119,8 @@ pub(super) fn nearest_in_cone<R: Real>(target: &V1<R>, cone: &Points<R>) -> (Poi
     (Points::new(), [Int::ZERO; 3])
 }
 
-/// What remains of `target` across the cone of some points, if its foot lies strictly inside that cone.
+/// The direction of the part of `target` that is perpendicular to the span of some points; none unless the rest lies strictly inside
+/// their cone.
 fn beside<R: Real>(target: &V1<R>, points: &[ExactDifference<R>]) -> Option<V3<R>> {
     match points {
         [p] => {

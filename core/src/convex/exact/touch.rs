@@ -1,4 +1,5 @@
-//! The origin is a point of the difference: is it inside? By turning a plane about the face, edge or vertex that holds it.
+//! Whether the origin, known to be a point of the Minkowski difference, is an inner point of it. A plane is turned about the face, edge or
+//! vertex of the simplex that holds the origin, until it has all points on one side or every such plane has points on both.
 
 use core::cmp::Ordering;
 
@@ -33,7 +34,8 @@ where
         }
     }
 
-    /// Points strictly on both sides of the plane through the origin across `d`, or the axis that has none below.
+    /// A point strictly below and one strictly above the plane through the origin with normal `d`; else the axis, `d` or its opposite, along
+    /// which no point lies below the origin.
     fn both_sides(&self, d: &V3<ScalarOf<A>>) -> Result<Sides<ScalarOf<A>>, ExactAxis<ScalarOf<A>>> {
         let low = self.lowest(d);
         if !dot::<_, _, Degree4<ScalarOf<A>>>(d, &low.w).is_negative() {
@@ -47,7 +49,7 @@ where
         Ok((low, high))
     }
 
-    /// The origin is between two points: seen along that edge, are there points in every half plane?
+    /// The origin is between two points: seen along that edge, does every half plane through the origin hold points?
     pub(super) fn about_edge(
         &self,
         p: &ExactDifference<ScalarOf<A>>,
@@ -58,7 +60,7 @@ where
             Ok(found) => found,
             Err(axis) => return Relation::Touching(axis),
         };
-        // Turns `last` away from `first` until the sector between them is all, a half plane, or cannot grow.
+        // Turns `last` away from `first` until the sector between them exceeds a half plane, is one, or cannot grow.
         if turn::<ScalarOf<A>>(&e, &first.w, &last.w) == Ordering::Less {
             (first, last) = (last, first);
         }
@@ -82,7 +84,8 @@ where
         }
     }
 
-    /// The origin is a vertex of the difference. Some other point is taken, and the cone of all points searched for its opposite.
+    /// The origin is a vertex of the simplex. Takes some other point of the difference and searches the cone of all points for the opposite
+    /// direction: if the cone holds it, the origin lies between points of the difference, else a plane through the origin has all on one side.
     pub(super) fn about_vertex(&self) -> Relation<ScalarOf<A>> {
         let axis = [one(), Int::ZERO, Int::ZERO];
         let anchor = match self.both_sides(&axis) {
@@ -107,7 +110,7 @@ where
             if !dot::<_, _, Degree4<ScalarOf<A>>>(&down, &new.w).is_negative() {
                 return Relation::Touching(ExactAxis::new(down));
             }
-            // The part that is kept has three edges at most, so that there always is room.
+            // The part that is kept has three edges at most, so the push does not fail.
             if cone.push(new).is_err() {
                 return Relation::Touching(ExactAxis::new(down));
             }
@@ -115,7 +118,7 @@ where
     }
 }
 
-/// Some vector across `e`, not zero.
+/// Some vector perpendicular to `e`, not zero.
 fn across<R: Real>(e: &V1<R>) -> V3<R> {
     let [x, y, _] = resized(e);
     let zero = Int::ZERO;

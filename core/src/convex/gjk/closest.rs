@@ -1,6 +1,6 @@
 //! The point of the difference nearest to the origin: the distance of two bodies, and the boolean of rounded ones.
 //!
-//! Each round yields two bounds of the distance. The support plane across `v`, the nearest point so far, is a lower bound; the length of `v`
+//! Each iteration yields two bounds of the distance. The support plane across `v`, the nearest point so far, is a lower bound; the length of `v`
 //! itself an upper one; rounding widens both. Their difference is the duality gap: how far the stated distance can be from the truth.
 
 use super::outcome::{Intersection, OverlapProof, Reason, within_radii};
@@ -10,7 +10,7 @@ use crate::convex::simplex::{NearestPoint, Simplex};
 use crate::convex::support::{ScalarOf, Support};
 use crate::number::real::{Real, Vector};
 
-/// How many support points a distance query may look at. Polytopes need some twenty; smooth bodies converge by a factor a round.
+/// How many support points a distance query may look at. Polytopes need some twenty; for smooth bodies each one makes the gap smaller by a factor.
 pub const MAX_DISTANCE_ITERATIONS: u32 = 160;
 
 /// Rounding of a convex combination of four differences, in units of ε times their largest component: the differences, the weights, their
@@ -20,8 +20,8 @@ const COMBINATION_ROUNDINGS: f64 = 16.0;
 /// Gap at which a search stops, in units of ε times the distance: a few roundings, below which no step makes progress.
 const GAP_ROUNDINGS: f64 = 16.0;
 
-/// How many steps of a search, in a row or not, may go by without a gain. Fewer leave distances to needles off by their thickness; more cost time
-/// near touch.
+/// How many steps of a search, in a row or not, may fail to improve a bound. With fewer, distances to needles are off by their thickness; more
+/// take longer where bodies nearly touch.
 const PATIENCE: u32 = 8;
 
 /// The boolean for rounded bodies: the cores' distance against the sum of the radii, stopping as soon as that is decided.

@@ -54,7 +54,7 @@ where
     }
     let mut found = closest_point(pair, hint, Goal::Distance);
     if found.inside.is_none() && !(found.lower > Real::ZERO) {
-        // Near the origin a symmetry may keep it on the simplex's rim: the boolean knows a way round that.
+        // Where bodies overlap, a symmetry may keep the origin on the rim of every simplex: the boolean search has leaning directions for that.
         if let Intersection::Overlapping { proof: OverlapProof::Inside(simplex) } = search(pair, None, true) {
             found.inside = Some(simplex);
         }

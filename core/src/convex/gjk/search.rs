@@ -9,12 +9,13 @@ use crate::convex::simplex::{OriginSide, Simplex, side};
 use crate::convex::support::{ScalarOf, Support, lengthened};
 use crate::number::real::{Real, Vector};
 
-/// How many support points a search may look at. Polytopes of some hundred vertices need twenty at most; after that it is a symmetry, or a
-/// smooth body near touch, and another search takes over.
+/// How many support points a search may look at. Polytopes of some hundred vertices need twenty at most; what needs more is a symmetry or a
+/// smooth body that nearly touches, and goes to another search.
 pub const MAX_ITERATIONS: u32 = 32;
 
-/// Do the bodies of a pair share an inner point? From `hint`, or along their centres. With `lean` it looks in leaning directions, for bodies so
-/// placed that a symmetry keeps the origin on the rim of every simplex; without, what it cannot tell is searched harder.
+/// Do the bodies of a pair share an inner point? The first direction is `hint`, or that between their centres. With `lean` the directions lean
+/// away from those that the search would take, for bodies so placed that a symmetry keeps the origin on the rim of every simplex; without, a pair
+/// that is undecided goes to [`search_harder`].
 #[inline(always)]
 pub(super) fn search<A, B, const SCALED: bool>(
     pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
@@ -33,10 +34,10 @@ where
     let mut reason = Reason::Iterations;
     // The last support plane passes the origin by more than rounding: the bodies overlap, yet no simplex proves it.
     let mut deep = false;
-    for round in 0..MAX_ITERATIONS {
-        let surrounding = lean && round < 4;
+    for iteration in 0..MAX_ITERATIONS {
+        let surrounding = lean && iteration < 4;
         if lean {
-            axis = leaning_axis(axis, round);
+            axis = leaning_axis(axis, iteration);
         }
         let size = match sized(axis) {
             Ok((direction, size)) => {
@@ -49,20 +50,20 @@ where
                 break;
             }
         };
-        let room = margin * size;
-        let Some(found) = nearer(pair, axis, starts, room) else { return Intersection::Apart { axis } };
+        let tolerance = margin * size;
+        let Some(found) = nearer(pair, axis, starts, tolerance) else { return Intersection::Apart { axis } };
         starts = found.starts();
-        // A point again can only come where there is no progress to speak of.
-        let stalled = simplex.count > 0 && found.w.dot(axis) + room >= simplex.w[0].dot(axis);
+        // A point can only come again where the search makes no progress beyond rounding.
+        let stalled = simplex.count > 0 && found.w.dot(axis) + tolerance >= simplex.w[0].dot(axis);
         if stalled && simplex.holds(found.w) {
             if surrounding {
                 continue;
             }
-            (reason, deep) = (Reason::Rounding, found.w.dot(axis) < -room);
+            (reason, deep) = (Reason::Rounding, found.w.dot(axis) < -tolerance);
             break;
         }
         simplex.push(&found, &mut pairs);
-        if surrounding && round < 3 {
+        if surrounding && iteration < 3 {
             continue;
         }
         match simplex.step(pair.slack) {
@@ -78,24 +79,24 @@ where
     Intersection::Undecided { reason, axis }
 }
 
-/// The support point of the difference along an axis; none if it lies beyond the origin by more than `room` for certain.
+/// The support point of the difference along an axis; none if it lies beyond the origin by more than `tolerance` for certain.
 #[inline(always)]
 fn nearer<A, B, const SCALED: bool>(
     pair: &BodyPair<A, B, ScalarOf<A>, SCALED>,
     axis: A::Vector,
     starts: (u32, u32),
-    room: ScalarOf<A>,
+    tolerance: ScalarOf<A>,
 ) -> Option<Probe<A::Vector>>
 where
     A: Support,
     B: Support<Vector = A::Vector>,
 {
     let found = pair.probe(axis, starts);
-    if !(found.w.dot(axis) > room) {
+    if !(found.w.dot(axis) > tolerance) {
         return Some(found);
     }
     let found = pair.probe_surely(axis, found);
-    (!(found.w.dot(axis) > room)).then_some(found)
+    (!(found.w.dot(axis) > tolerance)).then_some(found)
 }
 
 #[inline(always)]
@@ -104,7 +105,7 @@ fn overlapping<V: Vector>(simplex: Simplex<V>) -> Intersection<V> {
 }
 
 /// Tries again with leaning directions, for bodies so placed that simplices keep the origin on an edge; then, for curved bodies, with
-/// the distance, which has more patience.
+/// the search for the distance, which takes more steps.
 #[cold]
 #[inline(never)]
 fn search_harder<V: Vector, const SCALED: bool>(
@@ -155,19 +156,19 @@ const CORNERS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, 
 const LEANINGS: [[f64; 3]; 5] =
     [[0.71, -0.53, 0.34], [-0.47, 0.29, 0.83], [0.31, 0.92, -0.41], [-0.88, -0.37, -0.23], [0.19, -0.77, 0.61]];
 
-/// The direction of a round of the search with leaning directions: first around a body, then near where the search would look.
-fn leaning_axis<V: Vector>(axis: V, round: u32) -> V {
-    let axis = match CORNERS.get(round as usize) {
+/// The direction of an iteration of the search with leaning directions: first around a body, then near where the search would look.
+fn leaning_axis<V: Vector>(axis: V, iteration: u32) -> V {
+    let axis = match CORNERS.get(iteration as usize) {
         Some(corner) => V::from_array(corner.map(V::Scalar::from_f64)),
         None => axis,
     };
-    leaning(axis, round)
+    leaning(axis, iteration)
 }
 
-/// A direction near another; a different one each round, and after the first five ever nearer, so that shallow overlaps are not passed over.
-fn leaning<V: Vector>(axis: V, round: u32) -> V {
-    let [x, y, z] = LEANINGS[(round % 5) as usize];
+/// A direction near another: a different one in each iteration, and after the first five ever nearer, so that shallow overlaps are not missed.
+fn leaning<V: Vector>(axis: V, iteration: u32) -> V {
+    let [x, y, z] = LEANINGS[(iteration % 5) as usize];
     let real = V::Scalar::from_f64;
-    let by = axis.norm_max() * real(0.5 / f64::from(1u32 << round.clamp(3, 31)));
+    let by = axis.norm_max() * real(0.5 / f64::from(1u32 << iteration.clamp(3, 31)));
     axis + V::new(real(x), real(y), real(z)) * by
 }

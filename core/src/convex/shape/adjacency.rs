@@ -35,7 +35,7 @@ const LISTED: usize = 16;
 /// Four times four on each face of the cube.
 const SECTORS: usize = 6 * 16;
 
-/// Rounding of a vertex along a corner of the cube, in units of ε times the largest coordinate: twice three terms of two roundings, and room.
+/// Rounding of a vertex along a corner of the cube, in units of ε times the largest coordinate: twice three terms of two roundings, and a margin.
 const CORNER_ROUNDINGS: f64 = 16.0;
 
 impl<'a> Adjacency<'a> {
@@ -43,8 +43,8 @@ impl<'a> Adjacency<'a> {
     /// edges cost time, not truth. Looks at each vertex some hundred times.
     pub fn new<V: Vector>(vertices: &'a [V], offsets: &'a [u32], neighbours: &'a [u32]) -> Self {
         let extent = vertices.iter().fold(V::Scalar::ZERO, |m, &v| m.max(magnitude(v)));
-        let room = V::Scalar::from_f64(CORNER_ROUNDINGS) * (extent + V::Scalar::MIN_POSITIVE) * V::Scalar::EPSILON;
-        let sectors = core::array::from_fn(|i| Sector::new(vertices, i, room));
+        let margin = V::Scalar::from_f64(CORNER_ROUNDINGS) * (extent + V::Scalar::MIN_POSITIVE) * V::Scalar::EPSILON;
+        let sectors = core::array::from_fn(|i| Sector::new(vertices, i, margin));
         Adjacency { offsets, neighbours, sectors, vertices: identity(vertices) }
     }
 
@@ -81,15 +81,15 @@ fn identity<V>(vertices: &[V]) -> (usize, usize) {
 }
 
 impl Sector {
-    /// The sector of a number; `room` covers the rounding of two vertices along a corner, in their unit times the cube's.
-    fn new<V: Vector>(vertices: &[V], sector: usize, room: V::Scalar) -> Self {
+    /// The sector of a number; `margin` covers the rounding of two vertices along a corner, in their unit times the cube's.
+    fn new<V: Vector>(vertices: &[V], sector: usize, margin: V::Scalar) -> Self {
         let (middle, corners) = cone::<V>(sector);
         let middle = scan(vertices, middle);
         let mut found = Sector { start: middle, candidates: Vec::new() };
         // The best along the corners first: they rule most others out.
         let best = corners.map(|corner| scan(vertices, corner));
         let firsts = core::iter::once(middle).chain(best);
-        let all_listed = firsts.chain(0..vertices.len() as u32).all(|i| found.offer(vertices, i, &corners, room));
+        let all_listed = firsts.chain(0..vertices.len() as u32).all(|i| found.offer(vertices, i, &corners, margin));
         found.start = found.candidates.first().copied().unwrap_or(middle);
         if !all_listed {
             found.candidates.clear();
@@ -99,11 +99,11 @@ impl Sector {
     }
 
     /// Lists a vertex unless a listed one is farther, and drops those it is farther than itself; false if the list is full.
-    fn offer<V: Vector>(&mut self, vertices: &[V], i: u32, corners: &[V; 4], room: V::Scalar) -> bool {
+    fn offer<V: Vector>(&mut self, vertices: &[V], i: u32, corners: &[V; 4], margin: V::Scalar) -> bool {
         let at = |i: u32| vertices.get(i as usize).copied().unwrap_or(V::ZERO);
         let v = at(i);
         let reach = corners.map(|corner| v.dot(corner));
-        let beyond = |p: [V::Scalar; 4], q: [V::Scalar; 4]| p.iter().zip(q).all(|(&p, q)| p > q + room);
+        let beyond = |p: [V::Scalar; 4], q: [V::Scalar; 4]| p.iter().zip(q).all(|(&p, q)| p > q + margin);
         let reach_of = |j: u32| corners.map(|corner| at(j).dot(corner));
         if self.candidates.iter().any(|&j| at(j) == v || beyond(reach_of(j), reach)) {
             return true;

@@ -43,13 +43,13 @@ impl<V: Vector> FacetPlane<V> {
     #[inline(always)]
     pub(crate) fn clip(&self, origin: V, direction: V, grow: V::Scalar, t: &mut [V::Scalar; 2]) -> bool {
         let zero = V::Scalar::ZERO;
-        let room = self.offset + if self.exact { zero } else { grow } - self.normal.dot(origin);
+        let distance = self.offset + if self.exact { zero } else { grow } - self.normal.dot(origin);
         let rate = self.normal.dot(direction);
         if rate > zero {
-            t[1] = t[1].min(room / rate);
+            t[1] = t[1].min(distance / rate);
         } else if rate < zero {
-            t[0] = t[0].max(room / rate);
-        } else if room < zero {
+            t[0] = t[0].max(distance / rate);
+        } else if distance < zero {
             return false;
         }
         t[0] <= t[1]

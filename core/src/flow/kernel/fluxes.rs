@@ -114,7 +114,7 @@ fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
 }
 
 /// Tells the watched cells below and above a row of faces along axis `d`, as far as they are `own`, what the fluxes do to their walls. `at` is the cell
-/// above the first face. Apart, so that a step that watches nothing has no room for it on the stack.
+/// above the first face. Apart, so that a step that watches nothing does not hold it on the stack.
 #[cold]
 #[inline(never)]
 fn tell_walls<R: Real, const D: usize>(

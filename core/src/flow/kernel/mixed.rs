@@ -57,10 +57,10 @@ pub(crate) fn slopes<R: Real, S: Slope>(capacity: Three<'_, R>, axis: &impl Diff
 /// Lowers the slopes of the capacities of a row, `here` in the cells, where their sum could pass one of the bounds.
 pub(crate) fn bound_slopes<R: Real, const D: usize>(here: &[R], slope: &mut [&mut [R]; D], [least, most]: [R; 2]) {
     for (i, &own) in here.iter().enumerate() {
-        let room = R::larger(R::smaller(own - least, most - own), R::ZERO);
+        let margin = R::larger(R::smaller(own - least, most - own), R::ZERO);
         let reach = R::HALF * sum::<R, D>(each(|d| slope[d][i].abs()));
-        if reach > room {
-            let share = room / reach;
+        if reach > margin {
+            let share = margin / reach;
             slope.iter_mut().for_each(|s| s[i] = share * s[i]);
         }
     }

@@ -409,7 +409,7 @@ pub(crate) fn fluxes<R: Real, S: Solver, const D: usize, const ENERGY: bool, con
 }
 
 /// Open fraction up to which a face is closed to the pressure of the paper's form, which would act on all of `beta_v`: the rounding
-/// of geometry, with room. Larger: pressure is not felt through narrow gaps.
+/// of geometry, with a margin. Larger: pressure is not felt through narrow gaps.
 const SHUT: f64 = 1e-9;
 
 /// `FORM`: 0 plain, 1 geometric, 2 paper.

@@ -27,12 +27,12 @@ pub const fn cluster_scratch(cells: usize) -> usize {
     cells.saturating_mul(8)
 }
 
-/// Smoothing passes of the room of a cell: it starts as the open volume, and each pass adds the neighbours' values times the open
+/// Passes that make the smoothed volume of a cell: it starts as the open volume, and each pass adds those of the neighbours times the open
 /// fraction between. It ranks equal neighbours without regard to the side they stand on, so that clusters stay small.
 const SMOOTHING_PASSES: usize = 8;
 
-/// What speaks for growing across a face: its opening times the volume of its cell, the volume of the cluster behind it, the room there, and
-/// among equals by these the place ([`Search::rank`]).
+/// What speaks for growing across a face: its opening times the volume of its cell, the volume of the cluster behind it, the smoothed volume
+/// of the cell behind it, and among equals by these the place ([`Search::rank`]).
 const REASONS: usize = 4;
 
 /// The number of the reason that is the place. It ranks without tolerance.
@@ -50,7 +50,7 @@ fn equal_up_to<R: Real>(count: usize, this: &[R; REASONS], best: &[R; REASONS]) 
 /// Finds the clusters; returns how many entries of `list` they fill.
 ///
 /// `list` and `parent` are one entry per cell (fewer than 2^31), `scratch` as [`cluster_scratch`]. Clusters grow across their
-/// largest open face, of equal ones across that to the larger volume, of equal ones towards more room, of equal ones across all whose
+/// largest open face, of equal ones across that to the larger volume, of equal ones towards the larger smoothed volume, of equal ones across all whose
 /// cluster no other one has to share, and where there is none towards the middle of the mesh: porosity mirrored at the middle gives mirrored clusters.
 ///
 /// # Errors
@@ -74,7 +74,7 @@ pub(in crate::flow) fn clusters<R: Real, const D: usize>(
         return Err(Error::TooManyCells);
     }
     let mut search = Search::new(n, list, parent, scratch);
-    search.find_room(&space);
+    search.smooth(&space);
     loop {
         search.take_picture(&space);
         (0..PLACE).for_each(|reason| search.choose(&space, reason));
@@ -183,8 +183,8 @@ struct Search<'s, R> {
     best: [&'s mut [R]; REASONS],
     /// Faces to each cluster that are tied with others of the cluster that would grow across them.
     tied: &'s mut [R],
-    /// Room of each cell.
-    room: &'s mut [R],
+    /// Smoothed volume of each cell, see [`SMOOTHING_PASSES`].
+    smoothed: &'s mut [R],
 }
 
 impl<'s, R: Real> Search<'s, R> {
@@ -200,21 +200,21 @@ impl<'s, R: Real> Search<'s, R> {
         for (i, p) in parent.iter_mut().enumerate() {
             *p = i as u32;
         }
-        Search { parent, root, held, wanted, best, tied: take(), room: take() }
+        Search { parent, root, held, wanted, best, tied: take(), smoothed: take() }
     }
 
-    /// Finds the room of every cell.
-    fn find_room<const D: usize>(&mut self, space: &Space<'_, R, D>) {
-        let (room, before) = (&mut *self.room, &mut *self.best[2]);
-        for (cell, room) in room.iter_mut().enumerate() {
-            *room = space.open_volume(cell);
+    /// Finds the smoothed volume of every cell.
+    fn smooth<const D: usize>(&mut self, space: &Space<'_, R, D>) {
+        let (smoothed, before) = (&mut *self.smoothed, &mut *self.best[2]);
+        for (cell, volume) in smoothed.iter_mut().enumerate() {
+            *volume = space.open_volume(cell);
         }
         for _ in 0..SMOOTHING_PASSES {
-            before.copy_from_slice(room);
-            for (cell, room) in room.iter_mut().enumerate() {
+            before.copy_from_slice(smoothed);
+            for (cell, volume) in smoothed.iter_mut().enumerate() {
                 let mut beside = [R::ZERO; D];
                 space.each_face(cell, |d, behind, open| beside[d] += open * behind.map_or(R::ZERO, |b| before[b]));
-                *room += sum::<R, D>(beside);
+                *volume += sum::<R, D>(beside);
             }
         }
     }
@@ -269,10 +269,11 @@ impl<'s, R: Real> Search<'s, R> {
         let (own, mut ways) = (space.whole(i), WaysOut::new());
         space.each_face(i, |_, behind, open| {
             if let Some(b) = behind.filter(|&b| b != i && self.root[b] != self.root[i]) {
-                // More room leads from cell to cell as well, so it counts where the cluster behind holds enough.
-                let room = if self.short(b).is_some() { R::ZERO } else { self.room[b] };
+                // By rising smoothed volumes short clusters would join one after the other, so they count only where the cluster behind
+                // is large enough.
+                let smoothed = if self.short(b).is_some() { R::ZERO } else { self.smoothed[b] };
                 // A cell has at most six faces, so there is a place.
-                let _ = ways.push((b, [open * own, self.held[self.root[b] as usize], room, self.rank(space, b)]));
+                let _ = ways.push((b, [open * own, self.held[self.root[b] as usize], smoothed, self.rank(space, b)]));
             }
         });
         ways
@@ -298,7 +299,7 @@ impl<'s, R: Real> Search<'s, R> {
     /// Counts the ties by all reasons but the place that lead to each cluster.
     fn count_ties<const D: usize>(&mut self, space: &Space<'_, R, D>) {
         self.tied.fill(R::ZERO);
-        // The best place is not known yet: its room holds the number of equal ways out of each cluster.
+        // The best place is not known yet: until then its slice holds the number of equal ways out of each cluster.
         self.best[PLACE].fill(R::ZERO);
         for counted in [false, true] {
             for i in 0..self.root.len() {

@@ -36,7 +36,7 @@ pub struct Tidied {
     pub matched_faces: usize,
 }
 
-/// Open fractions as measured, and room for the flags of the cells. Vectors, or slices that can be written.
+/// Open fractions as measured, and memory for the flags of the cells. Vectors, or slices that can be written.
 #[derive(Debug)]
 pub struct Fractions<V, F, const D: usize> {
     /// `beta_v`, one per cell, x fastest.

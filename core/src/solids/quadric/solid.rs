@@ -1,4 +1,4 @@
-//! The door of this room: solids, and what they tell of a layer.
+//! The public interface of this module: solids, and what they tell of a layer.
 
 use super::ends::End;
 use super::part::Part;

@@ -8,12 +8,12 @@ use crate::number::real::Real;
 /// Lowest and highest coordinate.
 pub(super) type Extent = [f64; 2];
 
-/// Room for rounding, as a share of coordinates and sizes.
-const ROOM: f64 = 1e-12;
+/// Margin for rounding, as a share of coordinates and sizes.
+const MARGIN: f64 = 1e-12;
 
 fn widened([lo, hi]: Extent) -> Extent {
-    let room = (lo.abs().max(hi.abs()) + (hi - lo)) * ROOM;
-    [lo - room, hi + room]
+    let margin = (lo.abs().max(hi.abs()) + (hi - lo)) * MARGIN;
+    [lo - margin, hi + margin]
 }
 
 impl Part {
@@ -49,7 +49,7 @@ impl Part {
                     if lo > 0.0 { lo } else { hi.min(0.0) }
                 };
                 let (a, b) = (off(Axis::Y, y), off(Axis::Z, z));
-                let square = radius * radius * (1.0 + ROOM) - a * a - b * b;
+                let square = radius * radius * (1.0 + MARGIN) - a * a - b * b;
                 let reach = Real::sqrt(square.max(0.0));
                 (square >= 0.0).then(|| widened([self.origin[0] - reach, self.origin[0] + reach]))
             }
@@ -69,12 +69,12 @@ impl Part {
                     let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
                     (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
                 }
-                let room = ROOM * (1.0 + first.abs() + last.abs());
-                if !(first <= last + room) {
+                let margin = MARGIN * (1.0 + first.abs() + last.abs());
+                if !(first <= last + margin) {
                     return None;
                 }
                 let at = |t: f64| a[0] + t.clamp(0.0, 1.0) * (b[0] - a[0]);
-                let (s, t) = (at(first - room), at(last + room));
+                let (s, t) = (at(first - margin), at(last + margin));
                 let reach = radius * self.curved.across[0];
                 Some(widened([s.min(t) - reach, s.max(t) + reach]))
             }

@@ -1,4 +1,4 @@
-//! The door of this room: a torus or a pipe bend, and what it tells of a layer.
+//! The public interface of this module: a torus or a pipe bend, and what it tells of a layer.
 
 use super::ring::{Ends, Ring, ahead, length2};
 use super::section::{Rectangle, Reference, Section};
@@ -40,8 +40,8 @@ const SIZES: Range<f64> = 1e-30..1e30;
 /// What rounding takes of a volume, as a share of a cell and for each of its sizes to the axis.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Room for rounding, as a share of coordinates and sizes.
-const ROOM: f64 = 1e-12;
+/// Margin for rounding, as a share of coordinates and sizes.
+const MARGIN: f64 = 1e-12;
 
 /// The vector of length 1 in the direction of one within these sizes; components that could only underflow are zero.
 fn direction(v: P3) -> Option<P3> {
@@ -209,7 +209,7 @@ impl TorusSolid {
         Axis::ALL.map(|n| self.ring.center[n] + p[n])
     }
 
-    /// Lowest and highest coordinate along an axis, with room for rounding; NaN along axes beyond 2.
+    /// Lowest and highest coordinate along an axis, with a margin for rounding; NaN along axes beyond 2.
     #[must_use]
     pub fn extent(&self, axis: usize) -> P2 {
         Axis::new(axis).map_or([f64::NAN; 2], |axis| self.extent_along(axis))
@@ -222,8 +222,8 @@ impl TorusSolid {
             self.outermost(direction)[axis]
         };
         let [lo, hi] = [toward(-1.0), toward(1.0)];
-        let room = (lo.abs().max(hi.abs()) + self.ring.radius + self.ring.tube) * ROOM;
-        [lo - room, hi + room]
+        let margin = (lo.abs().max(hi.abs()) + self.ring.radius + self.ring.tube) * MARGIN;
+        [lo - margin, hi + margin]
     }
 
     /// Tells the shares in layer `k` as [`crate::solids::quadric::QuadricSolid::layer`] does, each with what it may be off by. Returns by how much the worst
@@ -451,8 +451,8 @@ impl Ring {
         let axis = self.frame[2];
         let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
         for (&[lo, hi], along) in sides.iter().zip(axis) {
-            let room = (hi - lo) * 1e-3;
-            let (lo, hi) = (lo - room, hi + room);
+            let margin = (hi - lo) * 1e-3;
+            let (lo, hi) = (lo - margin, hi + margin);
             if along == 0.0 {
                 if lo > 0.0 || hi < 0.0 {
                     return false;

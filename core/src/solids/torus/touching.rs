@@ -185,8 +185,8 @@ pub(super) fn azimuths(middle: P2, half: f64) -> [f64; 2] {
         return [0.0, 2.0 * PI];
     }
     let phi = libm::atan2(middle[1], middle[0]);
-    let room = libm::asin(half / distance).min(FRAC_PI_2) * 1.05 + 1e-9;
-    [phi - room, phi + room]
+    let margin = libm::asin(half / distance).min(FRAC_PI_2) * 1.05 + 1e-9;
+    [phi - margin, phi + margin]
 }
 
 /// Where a chord of a disc about `center` of radius `tube` ends: the line `slope · p = constant`, p from the disc's centre.

@@ -7,7 +7,7 @@ use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Bins;
-use crate::surface::cell_unions::{OtherBodies, Parts, Room, Shared, Site};
+use crate::surface::cell_unions::{OtherBodies, Parts, Shared, Site, SpareMemory};
 use crate::surface::cells::Scratch;
 use core::ops::Range;
 
@@ -28,24 +28,29 @@ pub(super) struct SmallGrid<'m, V: Vector> {
     pub bins: Bins<'m, V>,
     pub layer: Layer<'m, V::Scalar>,
     pub scratch: Scratch<'m, V::Scalar>,
-    pub room: Room<'m, V>,
+    pub spare: SpareMemory<'m, V>,
 }
 
 impl<'m, V: Vector> SmallGrid<'m, V> {
     /// None if memory is spent.
-    pub fn new(site: &Site<'m, V>, grid: &Grid<V::Scalar>, layers: Range<usize>, room: Room<'m, V>) -> Option<Self> {
-        let Room { reals, flags, numbers, groups } = room;
+    pub fn new(
+        site: &Site<'m, V>,
+        grid: &Grid<V::Scalar>,
+        layers: Range<usize>,
+        spare: SpareMemory<'m, V>,
+    ) -> Option<Self> {
+        let SpareMemory { reals, flags, numbers, groups } = spare;
         let (bins, (numbers, groups)) = site.bins.part(grid, layers, numbers, groups).ok()?;
         let fields = Fields::<u8>::needed(grid);
         let (lower, reals) = reals.split_at_mut_checked(fields)?;
         let (sum, reals) = reals.split_at_mut_checked(fields)?;
         let (scratch, reals) = reals.split_at_mut_checked(Scratch::needed(grid))?;
         let (has_surface, flags) = flags.split_at_mut_checked(fields)?;
-        let room = Room { reals, flags, numbers, groups };
+        let spare = SpareMemory { reals, flags, numbers, groups };
         let scratch = Scratch::new(grid, scratch).ok()?;
         let (lower, sum) = (Fields::within(grid, lower).ok()?, Fields::within(grid, sum).ok()?);
         let layer = Layer::new(lower, sum, Fields::within(grid, has_surface).ok()?).ok()?;
-        Some(SmallGrid { bins, layer, scratch, room })
+        Some(SmallGrid { bins, layer, scratch, spare })
     }
 }
 
@@ -55,19 +60,19 @@ pub(super) fn parts<V: Vector, O: OtherBodies<V>>(
     site: &Site<V>,
     grid: &Grid<V::Scalar>,
     layers: Range<usize>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) -> Option<Parts<V::Scalar>> {
-    let SmallGrid { bins, mut layer, mut scratch, mut room } = SmallGrid::new(site, grid, layers, room)?;
+    let SmallGrid { bins, mut layer, mut scratch, mut spare } = SmallGrid::new(site, grid, layers, spare)?;
     let mut means = Means::default();
     let count = grid.cells()[2];
     for k in 0..count {
         let part = Site { grid, bins: &bins, k, areas: true, ..*site };
         layer.clear();
-        solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), &mut (), |_, _| ());
+        solid_bounds(shared, &part, &mut layer, &mut scratch, spare.reborrow(), &mut (), |_, _| ());
         means.add_layer(&layer, k);
         if k + 1 == count {
             layer.sum.z.fill(V::Scalar::ZERO);
-            solid_bounds_on_top(shared, &part, &mut layer, &mut scratch, room.reborrow());
+            solid_bounds_on_top(shared, &part, &mut layer, &mut scratch, spare.reborrow());
             means.add_plane(&layer, count);
         }
     }

@@ -4,7 +4,7 @@ use super::report::LayerReport;
 use crate::grid::fields::Layer;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Group;
-use crate::surface::cell_unions::{self, OtherBodies, Room, Shared, Site, UnionSums};
+use crate::surface::cell_unions::{self, OtherBodies, Shared, Site, SpareMemory, UnionSums};
 use crate::surface::cells::{Defects, Scratch, SurfaceError, add_body_and};
 use crate::surface::surface_area::PieceSums;
 use crate::surface::walls;
@@ -17,7 +17,7 @@ pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
     scratch: &mut Scratch<V::Scalar>,
-    mut room: Room<V>,
+    mut spare: SpareMemory<V>,
     pieces: &mut P,
     mut each_body: impl FnMut(usize, Defects<V::Scalar>),
 ) -> LayerReport<V::Scalar> {
@@ -32,8 +32,8 @@ pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     }
     shared.others.add(site.grid, site.k, site.areas, layer);
     if groups.len() > usize::from(shared.others.is_empty()) {
-        let resolved = cell_unions::resolve(shared, site, layer, room.reborrow(), pieces);
-        walls::resolve(shared, site, layer, room);
+        let resolved = cell_unions::resolve(shared, site, layer, spare.reborrow(), pieces);
+        walls::resolve(shared, site, layer, spare);
         (report.cells.ambiguous, report.divided) = (resolved.ambiguous, resolved.divided);
     }
     report
@@ -63,7 +63,7 @@ pub(super) fn solid_bounds_on_top<V: Vector, O: OtherBodies<V>>(
     site: &Site<V>,
     layer: &mut Layer<V::Scalar>,
     scratch: &mut Scratch<V::Scalar>,
-    mut room: Room<V>,
+    mut spare: SpareMemory<V>,
 ) {
     layer.lower.z.fill(V::Scalar::ZERO);
     layer.has_surface.z.fill(0);
@@ -73,6 +73,6 @@ pub(super) fn solid_bounds_on_top<V: Vector, O: OtherBodies<V>>(
         let _ = add_section(site.grid, site.k + 1, Side::Below, triangles, ids, scratch, layer);
     }
     shared.others.add_plane(site.grid, site.k + 1, layer);
-    cell_unions::resolve_top(shared, site, layer, room.reborrow());
-    walls::resolve_top(shared, site, layer, room);
+    cell_unions::resolve_top(shared, site, layer, spare.reborrow());
+    walls::resolve_top(shared, site, layer, spare);
 }

@@ -13,7 +13,7 @@ use crate::grid::fields::{Fields, exactly};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::cell_unions::{
-    OtherBodies, Refined, Room, Shared, Site, UnionSums, divide, known, side_areas, with_effort,
+    OtherBodies, Refined, Shared, Site, SpareMemory, UnionSums, divide, known, side_areas, with_effort,
 };
 use crate::surface::cells::Defects;
 use crate::surface::surface_area::{
@@ -270,16 +270,16 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         site: &Site<V>,
         (number, cell): (usize, Aabb<V>),
         refined: Option<&Refined<V::Scalar>>,
-        mut room: Room<V>,
+        mut spare: SpareMemory<V>,
     ) {
         let Some(surface) = self.cell_mut(number) else { return };
         let layers = site.k..site.k + 1;
-        let inside = with_effort(shared, site, layers, |shared| parts_of(shared, site, cell, room.reborrow()));
+        let inside = with_effort(shared, site, layers, |shared| parts_of(shared, site, cell, spare.reborrow()));
         let (area, doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
         let middles =
             |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
         let sides = match refined {
-            None if surface.in_plane > V::Scalar::ZERO => divide(shared, site, cell, room).as_ref().map(middles),
+            None if surface.in_plane > V::Scalar::ZERO => divide(shared, site, cell, spare).as_ref().map(middles),
             refined => refined.map(middles),
         };
         surface.union = Some(UnionSurface { area, doubt, sides, exact: false });
@@ -309,20 +309,20 @@ fn parts_of<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
-    room: Room<V>,
+    spare: SpareMemory<V>,
 ) -> Option<(SurfaceArea<V::Scalar>, V::Scalar)> {
     let (lo, size) = (cell.min.to_array(), cell.size().to_array());
     let (hi, at) = (cell.max.to_array(), V::Scalar::from_f64(DIVIDED_AT));
     let edges = [0, 1, 2].map(|a| [lo[a], lo[a] + size[a] * at, hi[a]]);
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).ok()?;
-    let SmallGrid { bins, mut layer, mut scratch, mut room } = SmallGrid::new(site, &grid, site.k..site.k + 1, room)?;
+    let SmallGrid { bins, mut layer, mut scratch, mut spare } = SmallGrid::new(site, &grid, site.k..site.k + 1, spare)?;
     let (mut total, mut doubt) = (SurfaceArea::default(), V::Scalar::ZERO);
     for k in 0..2 {
         let part = Site { grid: &grid, bins: &bins, k, areas: true, halvings: site.halvings.checked_sub(3)? };
         layer.clear();
         let mut cells = [CellSurface::default(); 4];
         let mut pieces = LayerSurface::new(&mut cells, PieceMemory::default());
-        solid_bounds(shared, &part, &mut layer, &mut scratch, room.reborrow(), &mut pieces, |_, _| ());
+        solid_bounds(shared, &part, &mut layer, &mut scratch, spare.reborrow(), &mut pieces, |_, _| ());
         for (n, surface) in cells.iter().enumerate() {
             if layer.lower.cell.get(n).is_none_or(|&lower| lower >= V::Scalar::ONE) {
                 continue;

@@ -57,7 +57,7 @@ const CORNER: Arrangement = Arrangement { places: &[(0, 0), (0, 1), (1, 1)], bar
 const COLUMN: Arrangement = Arrangement { places: &[(0, 0), (0, 1), (0, 2)], bar: (1, 0) };
 
 /// Pixels that texts need.
-pub(super) struct Rooms<'a> {
+pub(super) struct Sizes<'a> {
     /// Left of a panel, by its upright axis and height.
     pub left: &'a dyn Fn(usize, usize) -> usize,
     /// Above a panel.
@@ -67,18 +67,18 @@ pub(super) struct Rooms<'a> {
 }
 
 impl Layout {
-    pub fn best(lengths: [f64; 3], cells: [usize; 3], rooms: &Rooms) -> Layout {
+    pub fn best(lengths: [f64; 3], cells: [usize; 3], sizes: &Sizes) -> Layout {
         let normals = slices(cells);
         let candidates = if normals.len() == 1 { &[ONE][..] } else { &[ROW, CORNER, COLUMN][..] };
-        let left = [1, 2].map(|axis| (rooms.left)(axis, HEIGHT / 3)).into_iter().fold(0, usize::max);
+        let left = [1, 2].map(|axis| (sizes.left)(axis, HEIGHT / 3)).into_iter().fold(0, usize::max);
         let mut best: Option<(f64, Layout)> = None;
         for arrangement in candidates {
-            let scale = arrangement.scale(normals, lengths, left, rooms.bar);
+            let scale = arrangement.scale(normals, lengths, left, sizes.bar);
             if best.as_ref().is_none_or(|(old, _)| scale > BETTER * old) {
-                best = Some((scale, arrangement.place(normals, lengths, scale, left, rooms)));
+                best = Some((scale, arrangement.place(normals, lengths, scale, left, sizes)));
             }
         }
-        best.map_or_else(|| ONE.place(normals, lengths, 1.0, left, rooms), |(_, layout)| layout)
+        best.map_or_else(|| ONE.place(normals, lengths, 1.0, left, sizes), |(_, layout)| layout)
     }
 }
 
@@ -120,18 +120,18 @@ impl Arrangement {
         (free_width / wide.iter().sum::<f64>()).min(free_height / high.iter().sum::<f64>())
     }
 
-    fn place(&self, normals: &[usize], lengths: [f64; 3], scale: f64, left: usize, rooms: &Rooms) -> Layout {
+    fn place(&self, normals: &[usize], lengths: [f64; 3], scale: f64, left: usize, sizes: &Sizes) -> Layout {
         let (columns, rows) = self.cells();
         let (mut wide, mut high) = (vec![0; columns], vec![0; rows]);
         let mut panels = vec![];
         for (place, normal) in self.places.iter().zip(normals) {
             let panel = sized(*normal, lengths, scale);
-            wide[place.0] = wide[place.0].max(left + panel.area.width.max((rooms.title)(&panel)) + RIGHT);
+            wide[place.0] = wide[place.0].max(left + panel.area.width.max((sizes.title)(&panel)) + RIGHT);
             high[place.1] = high[place.1].max(ABOVE + panel.area.height + BELOW);
             panels.push(panel);
         }
         let offset = if self.bar_shares_column() { left } else { 0 };
-        wide[self.bar.0] = wide[self.bar.0].max(offset + BAR + rooms.bar);
+        wide[self.bar.0] = wide[self.bar.0].max(offset + BAR + sizes.bar);
         high[self.bar.1] = high[self.bar.1].max(ABOVE + BAR_HEIGHT[0] + BELOW);
         let start = |sizes: &[usize], n: usize| sizes[..n].iter().sum::<usize>();
         for (panel, (column, row)) in panels.iter_mut().zip(self.places) {
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     fn layout(lengths: [f64; 3], cells: [usize; 3]) -> Layout {
-        Layout::best(lengths, cells, &Rooms { left: &|_, _| 60, title: &|_| 220, bar: 90 })
+        Layout::best(lengths, cells, &Sizes { left: &|_, _| 60, title: &|_| 220, bar: 90 })
     }
 
     fn overlap(a: Area, b: Area) -> bool {
