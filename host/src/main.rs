@@ -2,11 +2,26 @@
 
 use clap::error::{ContextKind, ErrorKind};
 use clap::{CommandFactory, Parser};
+use std::io::IsTerminal;
 use std::process::ExitCode;
 use voidage::command::cli::{Cli, Command};
-use voidage::command::progress::{all_said, print, print_aside, visible};
+use voidage::command::progress::{all_said, output_is_closed, print, print_aside, visible};
 use voidage::command::{docs, inspect, interrupt, porosity, solve, stress, study};
-use voidage::error::{Error, Result, said};
+use voidage::error::{Error, Result};
+
+/// Runs before the standard library starts, which opens /dev/null in the place of a standard stream that is closed: afterwards nobody can tell.
+#[cfg(target_os = "linux")]
+#[used]
+#[unsafe(link_section = ".init_array")]
+static BEFORE_THE_START: extern "C" fn() = look_at_the_output;
+
+#[cfg(target_os = "linux")]
+extern "C" fn look_at_the_output() {
+    let is_there = |path: &str| std::fs::symlink_metadata(path).is_ok();
+    if is_there("/proc/self/fd") && !is_there("/proc/self/fd/1") {
+        output_is_closed();
+    }
+}
 
 fn main() -> ExitCode {
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
@@ -41,14 +56,16 @@ fn told(mut answer: clap::Error) -> ExitCode {
     if answer.kind() == ErrorKind::UnknownArgument {
         answer.remove(ContextKind::Suggested);
     }
-    match answer.print() {
-        // Where errors are not taken nobody reads them; help and version are what was asked for.
-        Err(e) if !answer.use_stderr() && e.kind() != std::io::ErrorKind::BrokenPipe => {
-            print_aside(&format!("error: cannot write to standard output: {}", said(&e)));
-            ExitCode::FAILURE
+    // Help and version are what was asked for; where errors are not taken nobody reads them.
+    if !answer.use_stderr() && !std::io::stdout().is_terminal() {
+        if let Err(error) = print(answer.render().to_string().as_bytes()) {
+            print_aside(&format!("error: {error}"));
+            return ExitCode::FAILURE;
         }
-        _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2)),
+    } else {
+        let _ = answer.print();
     }
+    ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2))
 }
 
 fn execute(command: Command) -> Result<()> {

@@ -100,6 +100,41 @@ fn slips_in_studies_have_lines() {
     }
 }
 
+/// Words in capitals, one value in place of a list of one, a probe far off, a law without a scene, a bend along its own axis.
+#[test]
+fn slips_that_one_can_mend_from_the_message() {
+    let at = Scratch::new();
+    let case = [GRID, GAS, INITIAL, WALLS, TIME].concat();
+    for (more, words) in [
+        (
+            "[scheme]\nriemann = \"HLLC\"\n",
+            "\"HLLC\" is not known: hllc, hllc-low-mach, hlle, rusanov; did you mean hllc?",
+        ),
+        ("[drag]\nlaw = \"PDR\"\n", "\"PDR\" is not known: none, bluff, pdr; did you mean pdr?"),
+        ("[drag]\nlaw = \"pdr\"\n", "key drag.law: goes with porosity.scene: it is about the solids of a scene"),
+        (
+            "[output]\nprobes = [{ name = \"far\", at = [0, 0, 50] }]\n",
+            "key output.probes[0].at: of \"far\" is outside the grid: the grid reaches from 0 to 1 along z",
+        ),
+    ] {
+        fails(&solve(&at, &format!("{case}{more}"), "out", &[]), 1, &["case.toml: line ", words, "^"]);
+    }
+    let bend = "[[solid]]\nshape = \"torus\"\ncenter = [0, 0, 0]\naxis = \"z\"\nradius = 1\ntube = 0.1\nangle = 90\n";
+    for start in ["\"z\"", "[0, 0, -1e-3]"] {
+        fs::write(at.file("bend.toml"), format!("{bend}start = {start}\n")).expect("a scene");
+        let words = "line 8, column 9: solid 1: start points along the axis: a bend begins where start points away from the axis";
+        fails(&run(&at, &["porosity", "bend.toml"]), 1, &[words, "^"]);
+    }
+    fs::write(at.file("box.toml"), BOX).expect("a scene");
+    let study = "repeats = 1\nthreads = 1\n[[scene]]\nfiles = \"box.toml\"\n[[method]]\n[[grid]]\norigin = [0, 0, 0]\n\
+                 spacing = [0.5, 0.5, 0.5]\ncells = [2, 2, 2]\n[[flow]]\nproblem = \"sod\"\ncells = [20, 40]\n";
+    fs::write(at.file("study.toml"), study).expect("a study");
+    let output = run(&at, &["study", "study.toml", "-o", "study", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let page = fs::read_to_string(at.file("study").join("study.md")).expect("a page");
+    assert!(page.contains("- It is ") && page.contains(" (sod).") && !page.contains("- From "), "{page}");
+}
+
 /// A geometry in place of a case, a case in place of a geometry.
 #[test]
 fn files_of_another_kind() {

@@ -176,6 +176,41 @@ fn a_full_disk_at_the_standard_output() {
     }
 }
 
+/// The standard output that is closed, or can only be read, takes no result; without one to print it is not needed.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_standard_output_is_an_error() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), SCENE).expect("written");
+    let run = |stream: &str, arguments: &[&str]| {
+        let line = format!("exec \"$0\" \"$@\" {stream}");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", &line]).arg(program()).args(arguments).current_dir(&at.0).output().expect("the program runs")
+    };
+    let calls: [&[&str]; 8] = [
+        &["porosity", "scene.toml"],
+        &["porosity", "scene.toml", "--report", "-"],
+        &["inspect", "scene.toml"],
+        &["docs", "case"],
+        &["--help"],
+        &["--version"],
+        &["completions", "bash"],
+        &["solve", "--template"],
+    ];
+    for arguments in calls {
+        for (stream, reason) in [(">&-", "it is closed"), ("1</dev/null", "Bad file descriptor")] {
+            let output = run(stream, arguments);
+            let words = format!("error: cannot write to standard output: {reason}");
+            assert_eq!(output.status.code(), Some(1), "{stream} {arguments:?}");
+            assert!(stderr(&output).contains(&words), "{stream} {arguments:?}: {}", stderr(&output));
+        }
+        assert_eq!(run(">/dev/null", arguments).status.code(), Some(0), "{arguments:?}");
+    }
+    let quiet = run(">&-", &["porosity", "scene.toml", "-q", "--npy", "beta"]);
+    assert_eq!(quiet.status.code(), Some(0), "{}", stderr(&quiet));
+    assert!(at.file("beta").join("beta_v.npy").is_file());
+}
+
 #[test]
 fn the_version_tells_the_build() {
     let text = stdout(&voidage(&[&"--version"]));

@@ -6,24 +6,46 @@ use crate::picture::not_drawn;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+/// Whether the standard output was closed when the program began.
+static OUTPUT_CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Remember that the standard output was closed when the program began.
+pub fn output_is_closed() {
+    OUTPUT_CLOSED.store(true, Ordering::Relaxed);
+}
+
 /// Print a result to standard output, however quiet the run. A reader that closes early is no failure.
 ///
 /// # Errors
-/// Standard output takes no more.
+/// Standard output is closed, cannot be written or takes no more.
 pub fn print(bytes: &[u8]) -> Result<()> {
-    let mut out = std::io::stdout();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::new(format!("cannot write to standard output: {}", said(&e))))
-        }
+    let refused = |reason: String| Err(Error::new(format!("cannot write to standard output: {reason}")));
+    if OUTPUT_CLOSED.load(Ordering::Relaxed) {
+        return refused("it is closed".to_owned());
+    }
+    match write_out(bytes) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => refused(said(&e)),
         _ => Ok(()),
     }
+}
+
+/// Write to the standard output as to a file: [`std::io::Stdout`] takes bytes for written that go to a stream which can only be read.
+#[cfg(unix)]
+fn write_out(bytes: &[u8]) -> std::io::Result<()> {
+    use std::os::fd::AsFd;
+    std::fs::File::from(std::io::stdout().as_fd().try_clone_to_owned()?).write_all(bytes)
+}
+
+#[cfg(not(unix))]
+fn write_out(bytes: &[u8]) -> std::io::Result<()> {
+    let mut out = std::io::stdout();
+    out.write_all(bytes).and_then(|()| out.flush())
 }
 
 /// Print a line beside the results, to standard error. Where that takes no more, nobody reads it: no failure of the work.
@@ -41,7 +63,7 @@ pub fn visible(sentence: &str) -> String {
 /// The first sentence that the standard output did not take.
 static UNSAID: Mutex<Option<Error>> = Mutex::new(None);
 
-/// All that was said has been taken.
+/// Fails if the standard output did not take all that was printed to it.
 ///
 /// # Errors
 /// The standard output is full, or the like.
@@ -64,7 +86,7 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Something may be told now.
+    /// Whether a line may be printed now: on a terminal always, else when [`PAUSE`] has passed since the last one.
     pub fn is_due(&self) -> bool {
         let Some(last) = &self.plain else { return !self.bar.is_hidden() };
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
@@ -75,7 +97,7 @@ impl Meter {
         due
     }
 
-    /// Tell it.
+    /// Shows how far it is: beside the bar on a terminal, else as a line.
     pub fn tell(&self, sentence: &str) {
         match self.plain {
             Some(_) => print_aside(sentence),
@@ -83,7 +105,7 @@ impl Meter {
         }
     }
 
-    /// A step is done.
+    /// Counts a step that is done.
     pub fn step(&self) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.inc(1);

@@ -133,17 +133,18 @@ const OTHERS_SAY: [(&str, &str); 26] = [
     ("centre", "center"),
 ];
 
-/// The known word that means what was typed, or differs least from it, if it differs little.
+/// The known word that means what was typed, whatever its case, or differs least from it, if it differs little.
 #[must_use]
 pub fn nearest<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     let same = |word: &&str| OTHERS_SAY.contains(&(&typed.to_lowercase()[..], word));
-    if let Some(word) = known.iter().copied().find(same) {
+    let in_other_case = |word: &&str| word.eq_ignore_ascii_case(typed);
+    if let Some(word) = known.iter().copied().find(same).or_else(|| known.iter().copied().find(in_other_case)) {
         return Some(word);
     }
     let far = |word: &str| (distance(typed, word), word.len());
     let near = known.iter().copied().min_by_key(|word| far(word))?;
     let (apart, letters) = (far(near).0, typed.chars().count());
-    (apart <= 1 + letters / 4 && (apart < letters || near.eq_ignore_ascii_case(typed))).then_some(near)
+    (apart <= 1 + letters / 4 && apart < letters).then_some(near)
 }
 
 /// Letters to insert, delete, replace or swap with their neighbour to make one word of the other (optimal string alignment).

@@ -22,6 +22,10 @@ const WARNED: [&str; 5] = [
 #[test]
 fn bad_inputs_behave_as_their_manifest_says() {
     let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures/bad_inputs");
+    if !dir.exists() && std::env::var("CI").as_deref() != Ok("true") {
+        println!("SKIPPED: the package of this crate alone does not hold {}", dir.display());
+        return;
+    }
     let manifest: serde_json::Value =
         serde_json::from_slice(&std::fs::read(dir.join("manifest.json")).unwrap()).unwrap();
     let mut counts = std::collections::BTreeMap::new();

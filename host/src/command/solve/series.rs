@@ -190,7 +190,8 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
         let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
         file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
         let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
-            file.wrong(&format!("{key}.at"), format!("{:?} of \"{name}\" is outside the grid", probe.at))
+            let reaches = (0..3).find_map(|axis| setup.edges.misses(axis, probe.at[axis])).unwrap_or_default();
+            file.wrong(&format!("{key}.at"), format!("of \"{name}\" is outside the grid: {reaches}"))
         })?;
         let cell = position(at, setup.edges.cells());
         if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {

@@ -203,7 +203,7 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
         ("output.forces", !file.case.output.forces.is_empty()),
     ];
     match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {
-        Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene")),
+        Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene: it is about the solids of a scene")),
         None => law(file).map(drop),
     }
 }

@@ -34,7 +34,7 @@
 use super::flows::keys::{FlowRecipe, flow_recipes};
 use super::recipe::{Recipe, recipes};
 use super::scaling::{ScalingRecipe, scaling_recipe};
-use super::values::{distinct, few, some};
+use super::values::{few, some};
 use crate::command::stages::room_for;
 use crate::error::{Result, said};
 use crate::geometry::scene::table::{self, StrictTable};
@@ -183,7 +183,7 @@ pub fn parse(path: &Path, text: &str) -> Result<StudyCase> {
     keys.is_a("a study")?;
     let title = keys.get("title", table::text)?.unwrap_or_default();
     let repeats = keys.get("repeats", few)?.unwrap_or(3);
-    let threads = keys.get("threads", distinct(table::list(few)))?.unwrap_or_else(|| vec![1]);
+    let threads = keys.get("threads", some(few))?.unwrap_or_else(|| vec![1]);
     let areas = keys.get("areas", table::truth)?.unwrap_or(true);
     let refine = keys.get("refine", some(few))?.unwrap_or_else(|| vec![1]);
     let left_out = keys.get("left_out", table::truth)?.unwrap_or(false);
@@ -244,7 +244,7 @@ fn subject(mut keys: StrictTable, path: &Path, grids: &[Edges]) -> Result<Subjec
     let name = keys.named()?;
     let beside = path.parent().unwrap_or(Path::new(""));
     let there = |value: &DeValue| existing(beside, value);
-    let files = keys.get("files", distinct(table::list(there)))?.unwrap_or_default();
+    let files = keys.get("files", some(there))?.unwrap_or_default();
     let solids = scene::solids(&mut keys)?;
     let exact = keys.get("exact", table::positive)?;
     let probe = keys.table("probe")?.map(|mut k| probe(&mut k, grids)).transpose()?;

@@ -238,7 +238,10 @@ fn flow_sentences(found: &StudyFindings, orders: &[FlowOrder]) -> Vec<String> {
         orders.iter().min_by(|a, b| a.order.total_cmp(&b.order)),
         orders.iter().max_by(|a, b| a.order.total_cmp(&b.order)),
     ) {
-        words.push(format!("From {:.2} ({}) to {:.2} ({}).", low.order, low.flow, high.order, high.flow));
+        words.push(match orders {
+            [only] => format!("It is {:.2} ({}).", only.order, only.flow),
+            _ => format!("From {:.2} ({}) to {:.2} ({}).", low.order, low.flow, high.order, high.flow),
+        });
     }
     words
 }

@@ -80,7 +80,7 @@ pub fn readable(x: f64, reading: Reading) -> String {
         Reading::Small => format!("{x:.1e}"),
         Reading::Seconds => format!("{x:.*}", digits(4) as usize),
         Reading::Volume => format!("{x:.*}", digits(10) as usize),
-        Reading::Percent if x.abs() < 1e-7 && x != 0.0 => format!("{:+.0e} %", 100.0 * x),
+        Reading::Percent if x.abs() < 5e-7 && x != 0.0 => format!("{:+.0e} %", 100.0 * x),
         Reading::Percent => format!("{:+.4} %", 100.0 * x),
         Reading::Share => format!("{:.0} %", 100.0 * x),
         Reading::Fraction => format!("{x:.6}"),
@@ -113,7 +113,7 @@ impl Listing {
         text
     }
 
-    /// The columns that people see: those of theirs that hold anything.
+    /// The columns that people see, without those that are empty.
     fn seen(&self) -> Vec<usize> {
         let holds = |c: usize| self.rows.iter().filter_map(|r| r.get(c)).any(|v| !v.readable().is_empty());
         self.columns.iter().enumerate().filter(|(c, column)| column.1 && holds(*c)).map(|(c, _)| c).collect()

@@ -1,4 +1,4 @@
-//! Values of a study file: numbers that are few, words of the command line, lists that may be one value.
+//! Values of a study file: counts with an upper limit, words of the command line, lists that may be one value.
 
 use crate::geometry::scene::table;
 use crate::keys::first_repeated;
@@ -71,9 +71,7 @@ pub fn some<T: PartialEq>(read: impl Fn(&DeValue) -> Wanted<T>) -> impl FnOnce(&
 ///
 /// # Errors
 /// What `list` should be; the second of two equal values.
-pub fn distinct<T: PartialEq>(
-    list: impl FnOnce(&DeValue) -> Wanted<Vec<T>>,
-) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
+fn distinct<T: PartialEq>(list: impl FnOnce(&DeValue) -> Wanted<Vec<T>>) -> impl FnOnce(&DeValue) -> Wanted<Vec<T>> {
     move |value| {
         let all = list(value)?;
         match first_repeated(&all) {

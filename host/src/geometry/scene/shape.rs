@@ -286,6 +286,10 @@ fn torus(keys: &mut StrictTable) -> Result<Shape> {
     }
     let start = start.unwrap_or_else(|| axis.any_orthonormal_vector());
     let shape = TorusShape { center, axis, start, radius, tube, angle: angle.unwrap_or(360.0) };
+    let scaled = |v: DVec3| v / v.abs().max_element();
+    if scaled(start).cross(scaled(axis)) == DVec3::ZERO {
+        return Err(keys.wrong("start", "points along the axis: a bend begins where start points away from the axis"));
+    }
     if TorusSolid::new(&shape).is_none() {
         let key = if angle.is_some() { "start" } else { "axis" };
         return Err(keys.wrong(
