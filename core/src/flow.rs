@@ -30,7 +30,7 @@
 //! The core holds no state and allocates nothing: the caller owns the old field, the new field and some scratch, and may cut the
 //! new field into slabs and advance them side by side.
 //!
-//! The door in order, as the types ask for it: [`prepare`] makes open fractions ready, [`Problem`] takes them, [`Problem::start`] a
+//! The calls of a caller in the order that the types enforce: [`prepare`] makes open fractions ready, [`Problem`] takes them, [`Problem::start`] a
 //! starting field, [`Problem::step`] steps. The crate page has an example. Lengths are checked where slices come in, so nothing
 //! panics on a caller's data.
 //!

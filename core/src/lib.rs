@@ -6,7 +6,7 @@
 //! 1. [`number`]: the two scalars, their vectors, boxes
 //! 2. [`convex`]: convex bodies: do two meet (GJK), how far apart are they, with proof
 //! 3. [`grid`]: cells, faces, index order; solid fractions of a layer, as bounds that bodies share
-//! 4. [`surface`]: fractions from triangulated surfaces, overlaps counted once; its door is [`surface::layer`], with an example
+//! 4. [`surface`]: fractions from triangulated surfaces, overlaps counted once; callers use [`surface::layer`], with an example
 //!    in [`surface`]
 //! 5. [`subdivide`]: fractions of bodies by subdivision, GJK deciding
 //! 6. [`solids`]: fractions of solids by formula, by closed forms and quadrature, alone and beside bodies of triangles

@@ -437,7 +437,7 @@ pub struct Visited {
     pub two_sided: bool,
     /// Sides in parts: edges without partners.
     pub t_junctions: bool,
-    /// It is so far from the origin that it is seen from the grid's corner.
+    /// It is so far from the origin that coordinates are counted from the corner of the grid.
     pub far: bool,
 }
 
@@ -472,7 +472,7 @@ pub fn bounds_hold(family: Family, seed: u64) -> Result<Visited, String> {
     scene_holds(&family.scene(&mut Random::new(seed))).map_err(|text| format!("{family:?} seed {seed}: {text}"))
 }
 
-/// The first byte chooses the family, the others decide one thing of the scene each.
+/// The first byte chooses the family, each other one decides one random number of the scene.
 ///
 /// # Panics
 /// If a value leaves its bounds.

@@ -4,11 +4,11 @@ use glam::DVec3;
 use std::cell::Cell;
 
 thread_local! {
-    /// Chords that may still be drawn.
+    /// How many chords may still be computed.
     static CHORDS: Cell<u64> = const { Cell::new(u64::MAX) };
 }
 
-/// What a quadrature finds with at most so many chords; none if it needs more: where chords are rough by rounding, halving ends nowhere.
+/// What a quadrature finds with at most so many chords; none if it needs more: where rounding makes chords rough, halving does not converge.
 pub fn with_chords<T>(most: u64, work: impl FnOnce() -> T) -> Option<T> {
     CHORDS.set(most);
     let found = work();
@@ -108,7 +108,7 @@ impl Exact {
         }
     }
 
-    /// Chords of large solids are rough by rounding, and halving them further finds nothing: by how much tolerances must be wider.
+    /// The factor by which tolerances are wider for large solids, whose chords are rough by rounding, so that halving further finds nothing.
     fn roughness(&self) -> f64 {
         let size = match *self {
             Exact::Ball(_, r) => r,

@@ -7,7 +7,7 @@ use voidage_core::number::real::{Real, Vector};
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
-    /// Bytes that decide first, the next one last.
+    /// Bytes that decide before the seed does, in reverse order: the next one stands last.
     given: Vec<u8>,
 }
 

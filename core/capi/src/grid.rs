@@ -6,7 +6,7 @@ use crate::types;
 use voidage_core::grid::Grid;
 use voidage_core::number::real::Real;
 
-/// A grid that is one.
+/// The grid of the caller's edges, checked.
 ///
 /// # Safety
 /// As of [`Arrays::read`].

@@ -54,7 +54,7 @@ impl Arrays {
         Ok(())
     }
 
-    /// An array to be read; none need be given of no entries.
+    /// An array to be read; of no entries it may be null.
     ///
     /// # Safety
     /// A pointer that passes the checks points at `count` values that live as long as the result and are not written meanwhile.
@@ -66,7 +66,7 @@ impl Arrays {
         Ok(unsafe { slice::from_raw_parts(first, count) })
     }
 
-    /// An array to be written; none need be given of no entries.
+    /// An array to be written; of no entries it may be null.
     ///
     /// # Safety
     /// A pointer that passes the checks points at `count` values that live as long as the result and that nothing else uses meanwhile.
@@ -105,7 +105,7 @@ pub unsafe fn give<T>(at: *mut T, value: T) {
     }
 }
 
-/// Refuses the first number that is not `good`.
+/// Refuses an array by its first number that is not `good`.
 pub fn all<R: Real>(values: &[R], good: impl Fn(R) -> bool, name: &'static CStr) -> Answer {
     match values.iter().position(|&v| !good(v)) {
         Some(index) => Err(Status::Value.of(name).index(index)),

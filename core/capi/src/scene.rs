@@ -10,7 +10,7 @@ use voidage_core::number::real::{Real, Vector};
 use voidage_core::solids::{RoundMemory, RoundShape, RoundSolid, RoundSolids};
 use voidage_core::subdivide::{Candidate, LeafRule, SubdivisionMemory, SubdivisionRule};
 
-/// Solids, each of which can be computed with.
+/// The solids of the caller, checked.
 struct CheckedSolids<'a, V: Vector> {
     bodies: &'a [Body<V::Scalar>],
 }
@@ -60,7 +60,7 @@ fn work<'a: 'm, 'm, V: Vector, M: Memory<'m>>(
     SceneWork {
         surface: asked.work(memory, count > 0),
         solids: match number(0) {
-            // All of them have been checked: none is missing.
+            // All of them have been checked, so none is missing.
             Some(first) => memory.take(count, |n| number(n).unwrap_or_else(|| first.clone())),
             None => &mut [],
         },

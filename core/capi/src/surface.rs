@@ -12,7 +12,7 @@ use voidage_core::surface::bins::{BinsNeeded, Group, Surface};
 use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerReport, LayerSlices, Layers, MemoryNeeded};
 use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
 
-/// What is asked: bodies in a grid, and choices.
+/// The arguments of a call: bodies in a grid, and options.
 #[derive(Clone, Copy)]
 pub struct Question<R> {
     pub grid: *const types::Grid<R>,
@@ -91,7 +91,7 @@ impl<'a, V: Vector> Bodies<'a, V> {
     }
 }
 
-/// A question that can be answered.
+/// Arguments of a call that have been checked.
 pub struct Checked<'a, V: Vector> {
     pub window: Window<'a, V::Scalar>,
     pub bodies: Bodies<'a, V>,

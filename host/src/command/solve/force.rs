@@ -8,7 +8,7 @@ use crate::flow::{CellPush, Flow};
 use rayon::prelude::*;
 use voidage_core::flow::PressureForm;
 
-/// Cells are summed in portions of this size, whatever the number of threads.
+/// Cells are summed in portions of this many, so that the bits of the sum do not depend on the number of threads.
 const PORTION: usize = 4096;
 
 /// The cells that gas can enter and in which there is something to push; a flow keeps its space, so they are found once. A cell of no volume behind open
@@ -30,7 +30,7 @@ pub fn pushed_cells<const D: usize>(flow: &Flow<f64, D>) -> Vec<usize> {
     (0..flow.len()).into_par_iter().filter(|&cell| pushed(cell)).collect()
 }
 
-/// Something in a cell drags.
+/// Whether a cell has a resistance.
 pub(super) fn drags<const D: usize>(flow: &Flow<f64, D>, cell: usize) -> bool {
     flow.drag().any(|c| c.get(cell).is_some_and(|c| *c > 0.0))
 }
@@ -40,19 +40,19 @@ pub(super) fn taken_volume<const D: usize>(flow: &Flow<f64, D>, cell: usize) -> 
     flow.volume(flow.coordinates(cell)) - flow.open_volume(cell)
 }
 
-/// How much of what acts in a cell counts.
+/// What the pressures and drags of a cell are multiplied by, to make forces of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weights<const D: usize> {
-    /// Area of the cell that what acts on the low and the high sides is for.
+    /// For each axis the area, in m², on which the pressure on the walls at the low and at the high side acts.
     pub sides: [[f64; 2]; D],
-    /// Volume of the cell that its drag is for.
+    /// Volume, in m³, on which the drag acts.
     pub drag: f64,
-    /// Volume of gas displaced.
+    /// Volume of gas displaced, in m³.
     pub displaced: f64,
 }
 
 impl<const D: usize> Weights<D> {
-    /// All that acts in a cell.
+    /// Those of all solids in a cell together.
     fn of(flow: &Flow<f64, D>, cell: usize) -> Self {
         let at = flow.coordinates(cell);
         Weights {
@@ -62,7 +62,7 @@ impl<const D: usize> Weights<D> {
         }
     }
 
-    /// The force in a cell.
+    /// The force in a cell, in N along each axis.
     pub(super) fn force(&self, flow: &Flow<f64, D>, cell: usize, push: &CellPush<f64, D>) -> [f64; D] {
         std::array::from_fn(|d| {
             let [low, high] = [0, 1].map(|side| push.sides[d][side] * self.sides[d][side]);

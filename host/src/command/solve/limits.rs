@@ -4,7 +4,7 @@ use super::case_file::CaseFile;
 use crate::error::Result;
 use std::time::Duration;
 
-/// When to do what.
+/// When a run ends, and when it writes.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// The time at which the run ends.

@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct Lock(#[expect(dead_code, reason = "the lock lasts as long as the file is open")] File);
 
 impl Lock {
-    /// Of a directory; none if it is not there yet, or where the system locks no directories.
+    /// Locks a directory; none if it is not there yet, or where the system locks no directories.
     ///
     /// # Errors
     /// Another run writes there.

@@ -1,4 +1,4 @@
-//! What the cases share: random numbers, solids, truths by closed forms and by counting, and the doors of the program.
+//! What the cases share: random numbers, solids, truths by closed forms and by counting, and the calls of the program.
 //!
 //! Nothing but [`doors`] asks the program for a result.
 

@@ -29,7 +29,7 @@ pub struct Session<'a> {
     path: Option<PathBuf>,
     head: Head,
     file: Option<File>,
-    /// Points, and their cost in units that only ratios matter of.
+    /// The number of points, and their cost in a unit of which only ratios matter.
     planned: (usize, f64),
     /// Points done or left out, whether kept or measured, and their cost.
     done: (usize, f64),
@@ -129,7 +129,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// A point: that of a run before, or else it is measured and kept. `cost` is in the units of the plan; `told` makes a line of it.
+    /// A point: kept from an earlier run, or measured now and kept. `cost` is in the unit of `planned`; `told` makes a line for the terminal of it.
     ///
     /// # Errors
     /// Those of `measure`; it cannot be kept.
@@ -155,7 +155,7 @@ impl<'a> Session<'a> {
         Ok(point)
     }
 
-    /// Work that points need and that is none itself: told while it goes on.
+    /// Work that points need and that is no point itself; the user is told that it goes on.
     ///
     /// # Errors
     /// Those of `work`.
@@ -178,8 +178,8 @@ impl<'a> Session<'a> {
         self.done = (self.done.0 + points, self.done.1 + cost);
     }
 
-    /// How long what is left will take, if it costs as much as what was measured. Nothing, as long as little was measured: small grids
-    /// tell next to nothing of the time of large ones.
+    /// How long what is left will take, if it costs as much as what was measured. None as long as little was measured: small grids
+    /// tell next to nothing about the time of large ones.
     fn left(&self) -> String {
         let ((cost, seconds), rest) = (self.measured, (self.planned.1 - self.done.1).max(0.0));
         let known = cost >= ENOUGH * (cost + rest);

@@ -1,4 +1,4 @@
-//! Porosity in single precision, through the door of the core: what a solver that is linked in `f32` gets.
+//! Porosity in single precision, by the public interface of the core: what a solver gets that links it in `f32`.
 
 use super::spread::{Spread, timed};
 use crate::error::{Error, Result};

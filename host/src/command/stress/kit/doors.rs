@@ -1,4 +1,4 @@
-//! The doors of the program, the same that a linker takes. Every result that a case judges comes through here.
+//! The calls by which cases ask the program, the public ones that linked programs use. Every result that a case judges comes through here.
 //!
 //! With the feature `fault`, which is for tests of the battery only, every result is spoiled by a thousandth or two, no two by the same, and
 //! every hundredth answer about two bodies is another one: a case that still passes judges nothing.
