@@ -129,6 +129,9 @@ fn slips_that_one_can_mend_from_the_message() {
     let study = "repeats = 1\nthreads = 1\n[[scene]]\nfiles = \"box.toml\"\n[[method]]\n[[grid]]\norigin = [0, 0, 0]\n\
                  spacing = [0.5, 0.5, 0.5]\ncells = [2, 2, 2]\n[[flow]]\nproblem = \"sod\"\ncells = [20, 40]\n";
     fs::write(at.file("study.toml"), study).expect("a study");
+    let shouted = study.replace("\"sod\"", "\"SOD\"");
+    fs::write(at.file("shouted.toml"), shouted).expect("a study");
+    fails(&run(&at, &["study", "shouted.toml"]), 1, &["inclined-wall; did you mean sod?", "^^^^^"]);
     let output = run(&at, &["study", "study.toml", "-o", "study", "-q"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let page = fs::read_to_string(at.file("study").join("study.md")).expect("a page");

@@ -33,13 +33,35 @@ fn grids_in_json_have_lines() {
         ),
         ("  \"z\": [-2, \"ä\"]\n}", "grid.json: line 4, column 13: key z[1]: takes a number, not a text"),
         ("  \"z\": [2, -2]\n}", "grid.json: line 4, column 12: key z[1]: edge -2 does not lie above"),
-        ("  \"z\": [-2, 2]\n  \"w\": 3\n}", "grid.json: line 5, column 3: this is no JSON: expected `,` or `}`\n"),
+        (
+            "  \"z\": [-2, 2]\n  \"w\": 3\n}",
+            "grid.json: line 5, column 3: this is no JSON: a comma is missing here, or the `}` of the table before\n",
+        ),
         ("  \"zz\": [-2, 2]}", "grid.json: line 4, column 3: key zz is not known here; did you mean z?"),
         (
             "  \"z\": [-2, 2], \"q\\\"\": [[], {}, null, true, -1e2]}",
             "grid.json: line 4, column 17: key q\": not known",
         ),
-        ("  \"z\": [-2,", "grid.json: line 4, column 11: this is no JSON: EOF while parsing a value"),
+        (
+            "  \"z\": [-2,",
+            "grid.json: line 4, column 11: this is no JSON: the text ends too early: a bracket or a quote",
+        ),
+        (
+            "  \"z\": [-2, NaN]\n}",
+            "grid.json: line 4, column 13: this is no JSON: no value stands here: numbers are written as",
+        ),
+        (
+            "  \"z\": [-2, 2,]\n}",
+            "grid.json: line 4, column 15: this is no JSON: no comma may stand before this bracket",
+        ),
+        (
+            "  \"z\": [-2 2]\n}",
+            "grid.json: line 4, column 12: this is no JSON: a comma is missing here, or the `]` of the list",
+        ),
+        ("  \"z\" [-2, 2]\n}", "grid.json: line 4, column 7: this is no JSON: a colon is missing behind this key"),
+        ("  z: [-2, 2]\n}", "grid.json: line 4, column 3: this is no JSON: a key in quotes is missing here"),
+        ("  \"z\": [-2, 2]\n}\n}", "grid.json: line 6, column 1: this is no JSON: something stands behind its end"),
+        ("  \"z\": [-2, 1e999]\n}", "this is no JSON: this number is too large"),
     ] {
         let text = said(&format!("{begin}{rest}"));
         assert!(text.contains(place) && text.contains('^'), "{place}: {text}");

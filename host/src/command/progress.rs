@@ -86,7 +86,7 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Whether a line may be printed now: on a terminal always, else when [`PAUSE`] has passed since the last one.
+    /// Whether a line may be printed now: on a terminal always, else when ten seconds have passed since the last one.
     pub fn is_due(&self) -> bool {
         let Some(last) = &self.plain else { return !self.bar.is_hidden() };
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);

@@ -21,8 +21,28 @@ fn no_json(text: &str, error: &serde_json::Error) -> Misfit {
     let line = text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum::<usize>();
     let at = text.floor_char_boundary(line + error.column().saturating_sub(1));
     let end = text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
-    (Some(at..end), format!("this is no JSON: {reason}"))
+    let words = WORDS.iter().find(|(beginning, _)| reason.starts_with(beginning)).map_or(reason, |(_, words)| words);
+    (Some(at..end), format!("this is no JSON: {words}"))
 }
+
+/// What the reader of JSON says, by its beginning, and the same in the words of who wrote the text.
+const WORDS: [(&str, &str); 12] = [
+    ("EOF while parsing", "the text ends too early: a bracket or a quote is not closed"),
+    ("expected `:`", "a colon is missing behind this key"),
+    ("expected `,` or `]`", "a comma is missing here, or the `]` of the list before"),
+    ("expected `,` or `}`", "a comma is missing here, or the `}` of the table before"),
+    ("trailing comma", "no comma may stand before this bracket"),
+    ("trailing characters", "something stands behind its end"),
+    ("key must be a string", "a key in quotes is missing here"),
+    (
+        "expected",
+        "no value stands here: numbers are written as 2.5 or 1e-3, texts in quotes; NaN and infinity are none",
+    ),
+    ("invalid number", "this is no number: they are written as 2.5 or 1e-3"),
+    ("number out of range", "this number is too large"),
+    ("control character", "this text has no closing quote on its line"),
+    ("recursion limit", "lists and tables stand too deep in each other"),
+];
 
 /// A place in a text that is known to be JSON, so that every character says what follows.
 struct Scanner<'a> {

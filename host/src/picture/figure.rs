@@ -15,7 +15,7 @@ use super::heatmap::{Area, EdgeAxis, Heatmap, NORMAL, SMALL, pointer, triangle};
 use super::ticks::{Ticks, number, number_to, ticks};
 use crate::error::{Error, Result};
 use crate::grid::AXES;
-use layout::{BAR, Layout, Panel, Sizes};
+use layout::{BAR, Layout, Panel, TextSizes};
 
 /// Marks where the other slices lie.
 const MARK: Colour = [214, 84, 32];
@@ -92,7 +92,7 @@ impl Figure<'_> {
     fn draw_usable(&self, blocked: Option<&[f64]>) -> std::result::Result<Canvas, String> {
         let cells = self.check()?;
         let lengths = self.edges.map(|e| e[e.len() - 1] - e[0]);
-        let sizes = Sizes {
+        let sizes = TextSizes {
             left: &|axis, height| self.axis(axis).room_left(height),
             title: &|panel| text_width(&self.panel_title(panel), NORMAL).ceil() as usize,
             bar: self.bar_room(),

@@ -2,6 +2,7 @@
 
 use crate::geometry::scene::table;
 use crate::keys::first_repeated;
+use crate::keys::reader::meant;
 use clap::ValueEnum;
 use toml::de::DeValue;
 
@@ -47,7 +48,8 @@ pub fn choice<T: ValueEnum>(value: &DeValue) -> Wanted<T> {
     let text = table::text(value)?;
     T::from_str(&text, false).map_err(|_| {
         let all: Vec<String> = T::value_variants().iter().map(|v| word(v.clone())).collect();
-        format!("\"{text}\" is not known: {}", all.join(", "))
+        let known: Vec<&str> = all.iter().map(String::as_str).collect();
+        format!("\"{text}\" is not known: {}{}", all.join(", "), meant(&text, &known))
     })
 }
 

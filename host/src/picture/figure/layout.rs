@@ -57,7 +57,7 @@ const CORNER: Arrangement = Arrangement { places: &[(0, 0), (0, 1), (1, 1)], bar
 const COLUMN: Arrangement = Arrangement { places: &[(0, 0), (0, 1), (0, 2)], bar: (1, 0) };
 
 /// Pixels that texts need.
-pub(super) struct Sizes<'a> {
+pub(super) struct TextSizes<'a> {
     /// Left of a panel, by its upright axis and height.
     pub left: &'a dyn Fn(usize, usize) -> usize,
     /// Above a panel.
@@ -67,7 +67,7 @@ pub(super) struct Sizes<'a> {
 }
 
 impl Layout {
-    pub fn best(lengths: [f64; 3], cells: [usize; 3], sizes: &Sizes) -> Layout {
+    pub fn best(lengths: [f64; 3], cells: [usize; 3], sizes: &TextSizes) -> Layout {
         let normals = slices(cells);
         let candidates = if normals.len() == 1 { &[ONE][..] } else { &[ROW, CORNER, COLUMN][..] };
         let left = [1, 2].map(|axis| (sizes.left)(axis, HEIGHT / 3)).into_iter().fold(0, usize::max);
@@ -120,7 +120,7 @@ impl Arrangement {
         (free_width / wide.iter().sum::<f64>()).min(free_height / high.iter().sum::<f64>())
     }
 
-    fn place(&self, normals: &[usize], lengths: [f64; 3], scale: f64, left: usize, sizes: &Sizes) -> Layout {
+    fn place(&self, normals: &[usize], lengths: [f64; 3], scale: f64, left: usize, sizes: &TextSizes) -> Layout {
         let (columns, rows) = self.cells();
         let (mut wide, mut high) = (vec![0; columns], vec![0; rows]);
         let mut panels = vec![];
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     fn layout(lengths: [f64; 3], cells: [usize; 3]) -> Layout {
-        Layout::best(lengths, cells, &Sizes { left: &|_, _| 60, title: &|_| 220, bar: 90 })
+        Layout::best(lengths, cells, &TextSizes { left: &|_, _| 60, title: &|_| 220, bar: 90 })
     }
 
     fn overlap(a: Area, b: Area) -> bool {
