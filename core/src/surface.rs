@@ -45,7 +45,7 @@
 //! 5. [`z_faces`]: its z faces, from the section with their plane
 //! 6. [`union`]: the exact union of bodies in a cell, from BSP trees of their surfaces
 //! 7. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies
-//! 8. [`layer`]: the door: porosity of the layers of a grid, and the surface in them
+//! 8. [`layer`]: what callers use: porosity of the layers of a grid, and the surface in them
 
 pub mod bins;
 mod cell_unions;

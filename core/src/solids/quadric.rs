@@ -29,7 +29,7 @@
 //! 3. `end_line`, `outline`: what a solid has of a rectangle; `ends`: flat ends; `solid_angle`: of sections of a ball; `cone`: fluxes through those of a cone
 //! 4. `part`: one curved surface between flat ends, its fluxes and its volume in a cell; `window`: the cells it may reach
 //! 5. `spread`: the shares of a part in a layer
-//! 6. `solid`: the door; `shapes`: the shapes that GJK knows, as such solids
+//! 6. `solid`: what callers use; `shapes`: the shapes that GJK knows, as such solids
 //! 7. `tangent`: planes between which a part lies in a box
 //! 8. `slice`: what several parts have in common of a rectangle in a plane; `shared`: what several solids share of a cell or face
 

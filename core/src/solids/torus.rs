@@ -33,7 +33,7 @@
 //! 2. `ring`: a torus between ends, and what lines have of it; `disc`: what a disc has of a polygon
 //! 3. `touching`: where lines of a plane touch a torus
 //! 4. `section`: what a torus has of a rectangle
-//! 5. `solid`: the door; `tangent`: planes between which it lies in a box
+//! 5. `solid`: what callers use; `tangent`: planes between which it lies in a box
 
 mod disc;
 mod ring;

@@ -44,7 +44,7 @@ impl<V: Vector> OtherBodies<V> for () {
 
 /// What else is made of the surface of unions. The unit type makes nothing of it.
 pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
-    /// What it wants to know of a union.
+    /// What is kept of the surface of a union for it.
     type Found: KeptSurface<V::Scalar>;
     /// Is the surface of the union in a cell of the layer asked for?
     fn wants_union(&self, cell: usize) -> bool;

@@ -213,7 +213,7 @@ impl<'a, R: Real> Axis<'a, R> {
     }
 }
 
-/// Polygons in the works.
+/// Buffers of the polygons that are being cut.
 #[derive(Default)]
 struct Buffers<R: Real> {
     /// What is still to be spread over rows.

@@ -62,7 +62,7 @@ impl<R: Real> Polygon<R> {
         self.corners.push(corner).is_ok()
     }
 
-    /// No corners any more.
+    /// Removes all corners.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.corners.clear();
@@ -98,7 +98,7 @@ impl<R: Real> Polygon<R> {
         halves
     }
 
-    /// No room for another corner.
+    /// Whether it holds as many corners as it can.
     #[must_use]
     #[inline(always)]
     pub fn is_full(&self) -> bool {

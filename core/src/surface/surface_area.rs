@@ -53,7 +53,7 @@ impl<R: Real> SurfaceArea<R> {
 
 /// What else the sums of a layer make of the pieces of surface that they add up. The unit type makes nothing, at no cost.
 pub(super) trait PieceSums<R> {
-    /// Something is made of them.
+    /// Whether anything is made of the pieces; if not, none is told.
     const WANTED: bool;
     /// The pieces that follow are of this body, which may be a sheet without volume.
     fn begin_body(&mut self, body: u32, sheet: bool);
@@ -116,7 +116,7 @@ pub enum CellPieces {
     None,
     /// The last of them, by its number in the layer.
     Last(u32),
-    /// Not all: there was no room, or a piece has coordinates of its own.
+    /// Not all of them were kept: memory was spent, or a piece has coordinates of its own.
     Incomplete,
 }
 
@@ -274,7 +274,7 @@ pub(super) struct LayerSurface<'a, R> {
 }
 
 impl<'a, R: Real> LayerSurface<'a, R> {
-    /// Of nothing yet; pieces are kept as far as there is room.
+    /// Of no surface yet; pieces are kept as far as the memory goes.
     pub fn new(cells: &'a mut [CellSurface<R>], pieces: PieceMemory<'a, R>) -> Self {
         cells.fill(CellSurface::default());
         LayerSurface { cells, body: 0, sheet: false, pieces, used: PiecesUsed::default() }

@@ -19,7 +19,7 @@ pub struct UnionEffort {
     pub most: usize,
 }
 
-/// A solid that is told in boxes.
+/// A solid that tells, for any box, polytopes within it and around it.
 pub trait Enclosed {
     /// Tells what is known of each of its convex parts in a box.
     fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure));
@@ -27,7 +27,7 @@ pub trait Enclosed {
     /// Its share of a box, as near as it is known.
     fn share(&self, place: &BoxAround) -> Bounds<f64>;
 
-    /// As many boxes can be looked at in the time that takes.
+    /// How many boxes can be looked at in the time that this share takes.
     fn price(&self) -> f64;
 }
 

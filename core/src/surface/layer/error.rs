@@ -1,4 +1,4 @@
-//! What the door refuses.
+//! Why a layer is refused.
 
 use crate::grid::fields::ShapeMismatch;
 use core::fmt;
