@@ -200,6 +200,18 @@ impl<'a, R: Real> Axis<'a, R> {
         self.edges.get(index as usize).map_or(R::INFINITY, |&e| e - self.origin)
     }
 
+    /// A coordinate of a point in a cell, its sides included, as the grid has it.
+    #[inline(always)]
+    fn in_grid(&self, cell: isize, value: R) -> R {
+        let at = self.first as isize + cell;
+        let edge = |at: isize| usize::try_from(at).ok().and_then(|at| self.edges.get(at).copied());
+        match (edge(at), edge(at + 1)) {
+            (Some(lo), _) if value <= lo - self.origin => lo,
+            (_, Some(hi)) if value >= hi - self.origin => hi,
+            _ => value + self.origin,
+        }
+    }
+
     /// Is `value` the lower edge of a cell?
     #[inline(always)]
     pub fn opens(&self, cell: isize, value: R) -> bool {
@@ -447,9 +459,22 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         let Window { i0, j0, .. } = self.window;
         let (i, j) = (i0.wrapping_add_signed(c), j0.wrapping_add_signed(row));
         if i < nx && j < ny {
-            let in_grid = self.x.origin == R::ZERO && self.y.origin == R::ZERO;
-            self.pieces.add(j * nx + i, place, doubled_area, in_grid.then_some(piece));
+            let at = j * nx + i;
+            if place == Place::Inside && (self.x.origin != R::ZERO || self.y.origin != R::ZERO) {
+                self.pieces.add(at, place, doubled_area, &self.in_grid(row, c, piece));
+            } else {
+                self.pieces.add(at, place, doubled_area, piece);
+            }
         }
+    }
+
+    /// A piece inside a cell, in the coordinates of the grid: what lies in the plane of a side lies exactly there, and nothing beyond.
+    fn in_grid(&self, row: isize, c: isize, piece: &Polygon<R>) -> Polygon<R> {
+        let mut moved = Polygon::default();
+        for &[x, y, z] in piece.corners() {
+            moved.push([self.x.in_grid(c, x), self.y.in_grid(row, y), z]);
+        }
+        moved
     }
 
     /// Add the integrals over a piece, fanned from its first corner so that only differences enter.

@@ -181,7 +181,8 @@ impl<'m, R: Real> Outlines<'m, R> {
     #[inline(never)]
     pub fn shadow(&mut self, axis: usize) -> Option<R> {
         let outline = self.axes.get_mut(axis.min(2))?;
-        let count = joined(outline.edges.get_mut(..outline.count)?);
+        let count = cancelled(outline.edges.get_mut(..outline.count)?, self.crossed);
+        let count = joined(outline.edges.get_mut(..count)?);
         let edges = outline.edges.get_mut(..count)?;
         Sweep { edges, crossed: self.crossed, count: 0, starting: outline.starting }.shadow()
     }
@@ -409,6 +410,58 @@ impl<R: Real> ShadowFace<R> {
     }
 }
 
+/// A place of a hash table that holds no edge.
+const NO_EDGE: u32 = u32::MAX;
+
+/// What the four coordinates of an edge are multiplied with, and their sum, to scatter it over a hash table.
+const SCATTER: [f64; 5] =
+    [0.754_877_666_246_693, 0.569_840_290_998_053, 0.426_040_474_321_852, 0.322_185_354_626_086, 1e9];
+
+/// Drop the edges between two faces that look the same way, which are most of those of fine surfaces; how many others are left, before them. A table of
+/// at least as many `places` finds edges with the same ends; without it nothing is dropped. Those left need not be all different.
+fn cancelled<R: Real>(edges: &mut [ShadowEdge<R>], places: &mut [u32]) -> usize {
+    let size = (edges.len().saturating_mul(4) / 3).next_power_of_two();
+    let Some(table) = places.get_mut(..size) else { return edges.len() };
+    table.fill(NO_EDGE);
+    let [a, b, c, d, all] = SCATTER.map(R::from_f64);
+    let mut kept = 0_usize;
+    for n in 0..edges.len() {
+        let Some(&edge) = edges.get(n) else { break };
+        let ShadowEdge { low, high, .. } = edge;
+        let mut at = ((low[0] * a + low[1] * b + high[0] * c + high[1] * d) * all).to_usize() & (size - 1);
+        // A quarter of the table is empty.
+        while let Some(place) = table.get_mut(at) {
+            match edges.get_mut(*place as usize) {
+                Some(other) if other.low == low && other.high == high => {
+                    other.covering = other.covering.saturating_add(edge.covering);
+                    other.starting = other.starting.saturating_add(edge.starting);
+                    break;
+                }
+                Some(_) => at = (at + 1) & (size - 1),
+                None => {
+                    *place = kept as u32;
+                    if let Some(place) = edges.get_mut(kept) {
+                        *place = edge;
+                    }
+                    kept += 1;
+                    break;
+                }
+            }
+        }
+    }
+    let mut left = 0;
+    for n in 0..kept {
+        let Some(&edge) = edges.get(n) else { break };
+        if (edge.covering, edge.starting) != (0, 0) {
+            if let Some(place) = edges.get_mut(left) {
+                *place = edge;
+            }
+            left += 1;
+        }
+    }
+    left
+}
+
 /// Sort edges by their low ends and make one of those with the same ends; how many are left that count.
 fn joined<R: Real>(edges: &mut [ShadowEdge<R>]) -> usize {
     sort(edges);
@@ -447,7 +500,7 @@ fn sort<R: Real>(edges: &mut [ShadowEdge<R>]) {
                 }
                 at -= gap;
             }
-            if let Some(place) = edges.get_mut(at) {
+            if let Some(place) = edges.get_mut(at).filter(|_| at < start) {
                 *place = edge;
             }
         }

@@ -57,8 +57,8 @@ pub(super) trait PieceSums<R> {
     const WANTED: bool;
     /// The pieces that follow are of this body, which may be a sheet without volume.
     fn begin_body(&mut self, body: u32, sheet: bool);
-    /// A piece that counts for a cell of the layer, by twice its area vector; the piece itself, if its coordinates are those of the grid.
-    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: Option<&Polygon<R>>);
+    /// A piece that counts for a cell of the layer, by twice its area vector, and itself, in the coordinates of the grid if it lies inside the cell.
+    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: &Polygon<R>);
 }
 
 impl<R> PieceSums<R> for () {
@@ -66,7 +66,7 @@ impl<R> PieceSums<R> for () {
     #[inline(always)]
     fn begin_body(&mut self, _: u32, _: bool) {}
     #[inline(always)]
-    fn add(&mut self, _: usize, _: Place, _: [R; 3], _: Option<&Polygon<R>>) {}
+    fn add(&mut self, _: usize, _: Place, _: [R; 3], _: &Polygon<R>) {}
 }
 
 /// What one cell holds of single bodies' surfaces. The default serves as memory.
@@ -116,7 +116,7 @@ pub enum CellPieces {
     None,
     /// The last of them, by its number in the layer.
     Last(u32),
-    /// Not all of them were kept: memory was spent, or a piece has coordinates of its own.
+    /// Not all of them were kept: memory was spent.
     Incomplete,
 }
 
@@ -157,9 +157,11 @@ impl<R: Real> PieceMemory<'_, R> {
         used: &mut PiecesUsed,
         before: CellPieces,
         (body, sheet): (u32, bool),
-        piece: Option<&Polygon<R>>,
+        piece: &Polygon<R>,
     ) -> CellPieces {
-        let (Some(piece), true) = (piece, before != CellPieces::Incomplete) else { return CellPieces::Incomplete };
+        if before == CellPieces::Incomplete {
+            return before;
+        }
         let corners = piece.corners();
         let (first, number) = (used.corners, used.pieces);
         let places = self.corners.get_mut(first..).and_then(|free| free.get_mut(..corners.len()));
@@ -304,7 +306,7 @@ impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
     }
 
     #[inline(always)]
-    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: Option<&Polygon<R>>) {
+    fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: &Polygon<R>) {
         let Some(cell) = self.cells.get_mut(cell) else { return };
         if place == Place::Inside {
             let owner = (self.body, self.sheet);
