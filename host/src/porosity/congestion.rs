@@ -133,7 +133,6 @@ fn solid(grid: &Grid<f64>, result: &Porosity) -> f64 {
 
 /// Solid volume in a box, on the cells of the grid that it cuts.
 fn solid_within(grid: &Grid<f64>, bodies: &Bodies, within: Aabb<DVec3>, options: Options) -> f64 {
-    let options = Options { bounds: false, areas: false, resistance: false, ..options };
     let edges = Edges([0, 1, 2].map(|axis| {
         let [lo, hi] = [within.min[axis], within.max[axis]];
         // A plane that is one with a side but for rounding would leave cells of no width.
@@ -141,6 +140,12 @@ fn solid_within(grid: &Grid<f64>, bodies: &Bodies, within: Aabb<DVec3>, options:
         let between = grid.edges(axis).iter().copied().filter(|&e| e > lo + apart && e < hi - apart);
         std::iter::once(lo).chain(between).chain([hi]).collect()
     }));
+    solid_between(&edges, bodies, options)
+}
+
+/// Solid volume in the cells between edges; 0 if these make no grid.
+fn solid_between(edges: &Edges, bodies: &Bodies, options: Options) -> f64 {
+    let options = Options { bounds: false, areas: false, resistance: false, ..options };
     edges.grid(None).map_or(0.0, |own| solid(&own, &porosity(&own, bodies, options)))
 }
 
@@ -205,8 +210,7 @@ impl Obstacle {
         let alone = Body { triangles: 0..triangles.len(), ..body.clone() };
         let alone = Bodies { triangles, bodies: vec![alone], ..Bodies::default() };
         let edges = Edges([0, 1, 2].map(|axis| vec![within.min[axis], within.max[axis]]));
-        let options = Options { bounds: false, areas: false, resistance: false, ..options };
-        edges.grid(None).map_or(0.0, |own| solid(&own, &porosity(&own, &alone, options)))
+        solid_between(&edges, &alone, options)
     }
 }
 
