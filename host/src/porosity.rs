@@ -4,11 +4,12 @@
 //! any number of threads.
 //!
 //! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
-//! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `surface_layers`,
+//! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `solid_layers`, `curved_cells`, `surface_layers`,
 //! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], what follows from it.
 
 pub mod congestion;
 pub mod convex;
+mod curved_cells;
 mod doubt;
 pub mod drag;
 mod fields;
@@ -23,6 +24,7 @@ pub mod rod;
 pub mod shadows;
 pub mod snap;
 mod solid;
+mod solid_layers;
 pub mod surface_fields;
 mod surface_layers;
 mod targets;

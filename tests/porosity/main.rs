@@ -4,6 +4,7 @@ mod architecture;
 mod boxes;
 mod common;
 mod core_alone;
+mod curved;
 mod dirty;
 mod drag;
 mod holes;

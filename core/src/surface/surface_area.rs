@@ -191,6 +191,23 @@ pub struct KeptCell {
     pub(super) pieces: CellPieces,
     /// Surface may lie in the plane of a side normal to x, y, z.
     pub(super) walls: [bool; 3],
+    /// The body that alone has surface in the cell or in the planes of its sides, seen from it.
+    pub(super) alone: Option<u32>,
+    /// No line along x, y or z enters solid twice in the cell.
+    pub(super) entered_once: bool,
+}
+
+impl KeptCell {
+    /// The number of the body that alone has surface in the cell, or in the planes of its sides as seen from the cell.
+    #[must_use]
+    pub fn alone(&self) -> Option<u32> {
+        self.alone
+    }
+
+    /// Nobody has surface there but one convex body, whose frontal areas are those that are known: then these tell the shadows.
+    pub fn set_convex(&mut self) {
+        self.entered_once = true;
+    }
 }
 
 impl<'a, R> KeptPieces<'a, R> {

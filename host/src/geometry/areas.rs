@@ -4,12 +4,10 @@
 //! duplication of B. C. Carlson, *Numerical computation of real or complex elliptic integrals*, Numerical Algorithms 10, 1995.
 
 use super::bodies::Body;
-use super::facets;
 use super::form::Form;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use voidage_core::convex::shape::{Cone, Ellipsoid};
+use voidage_core::convex::shape::Ellipsoid;
 use voidage_core::convex::support::Transformed;
 use voidage_core::solids::torus::TorusShape;
 use voidage_core::surface::surface_area::SurfaceArea;
@@ -49,7 +47,7 @@ pub fn of_form(form: &Form) -> Option<SurfaceArea<f64>> {
             SurfaceArea { frontal, wetted: 4.0 * PI * r * r + TAU * r * axis.length() }
         }
         Form::Cylinder(s) => of_cone(s.ends(), [s.base_radius(); 2]),
-        Form::Cone(s) => of_truncated_cone(s),
+        Form::Cone(s) => of_cone(s.ends(), [s.base_radius(), s.top_radius()]),
         Form::Ellipsoid(s) => of_ellipsoid(s),
         Form::Torus(s) => of_torus(s),
         Form::Box(_) | Form::Hull(_) => return None,
@@ -57,20 +55,20 @@ pub fn of_form(form: &Form) -> Option<SurfaceArea<f64>> {
     Some(area)
 }
 
-/// The largest share by which the facets that stand for a curved body in cells miss one of the areas of the whole body; 0 without such bodies.
+/// The largest share by which the facets that stand for a curved body miss one of the areas of the whole body; 0 without such bodies. Each body comes with its
+/// facets, which those that have triangles of their own lack.
 #[must_use]
-pub fn facet_error(bodies: &[Body]) -> f64 {
-    let error = |body: &Body| {
-        let (facets, true_area) = (of_triangles(&facets::of_body(body)?), body.form.as_ref().and_then(of_form)?);
+pub fn facet_error<'a>(bodies: impl Iterator<Item = (&'a Body, &'a Vec<[DVec3; 3]>)>) -> f64 {
+    let error = |(body, facets): (&Body, &Vec<[DVec3; 3]>)| {
+        if facets.is_empty() {
+            return None;
+        }
+        let (facets, true_area) = (of_triangles(facets), body.form.as_ref().and_then(of_form)?);
         let miss = |facets: f64, truth: f64| if truth > 0.0 { (facets / truth - 1.0).abs() } else { 0.0 };
         let frontal = facets.frontal.into_iter().zip(true_area.frontal).map(|(facets, truth)| miss(facets, truth));
         Some(frontal.fold(miss(facets.wetted, true_area.wetted), f64::max))
     };
-    bodies.par_iter().filter_map(error).reduce(|| 0.0, f64::max)
-}
-
-fn of_truncated_cone(cone: &Cone<DVec3>) -> SurfaceArea<f64> {
-    of_cone(cone.ends(), [cone.base_radius(), cone.top_radius()])
+    bodies.filter_map(error).fold(0.0, f64::max)
 }
 
 /// A cone between two discs across its axis.
@@ -190,7 +188,8 @@ fn carlson([mut x, mut y, mut z]: [f64; 3]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use voidage_core::convex::shape::{Capsule, Cylinder, Sphere};
+    use crate::geometry::facets;
+    use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 
     /// E and R_G against the midpoint rule, whose sum over a period of a smooth function is exact to rounding.
     #[test]

@@ -12,6 +12,7 @@ use super::levels::levels;
 use super::resistance::Resistance;
 use super::shadows::{cells, faces_of_cell};
 use super::solid::with_solid_layers;
+use super::solid_layers::SolidLayers;
 use super::{FieldSet, Options, Porosity, porosity};
 use crate::geometry::bodies::{Bodies, Body};
 use crate::geometry::form::Form;
@@ -85,7 +86,7 @@ pub fn drag(
         own => [1.0, 0.0, own.cd.unwrap_or(coefficients.sharp)],
     };
     let weights: Vec<[f64; 3]> = bodies.bodies.iter().zip(&round).map(weight).collect();
-    let sums = with_solid_layers(grid, bodies, options, |grid, layers| {
+    let sums = with_solid_layers(grid, bodies, options, |grid, SolidLayers { layers, .. }| {
         let [nx, ny, nz] = grid.cells();
         let mut sums = vec![[[0.0; 3]; 3]; nx * ny * nz];
         sums.par_chunks_mut(nx * ny).enumerate().for_each(|(k, sums)| {

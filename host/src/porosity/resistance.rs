@@ -42,6 +42,8 @@ pub struct Totals {
     pub unproved: usize,
     /// The largest wetted area in doubt in one of them.
     pub max_doubt: f64,
+    /// The largest share by which facets miss one of the areas of a whole curved body: they stand for it in cells that it shares with others.
+    pub facet_error: f64,
 }
 
 /// The obstacles among `bodies` on `grid`; `result` holds their porosities, faces included. Runs in the current rayon pool.
@@ -93,7 +95,7 @@ fn thinned(mut levels: Vec<f64>) -> Vec<f64> {
 }
 
 /// Totals in the order of cells, so that their bits do not depend on the number of threads.
-fn totals(SurfaceFields { areas, sum, unproved, max_doubt, .. }: &SurfaceFields) -> Totals {
+fn totals(SurfaceFields { areas, sum, unproved, max_doubt, facet_error, .. }: &SurfaceFields) -> Totals {
     let surface = areas.iter().filter(|area| area.wetted > 0.0);
     let union = surface.fold(SurfaceArea::default(), |total, area| total.plus(*area));
     Totals {
@@ -103,6 +105,7 @@ fn totals(SurfaceFields { areas, sum, unproved, max_doubt, .. }: &SurfaceFields)
         wetted_area_of_bodies: sum.wetted,
         unproved: *unproved,
         max_doubt: *max_doubt,
+        facet_error: *facet_error,
     }
 }
 

@@ -1,10 +1,11 @@
 //! The layers of the bodies that are solid, for what is measured beside their porosity.
 
+use super::solid_layers::SolidLayers;
 use super::surface_fields::SurfaceFields;
 use super::surface_layers::of_layers;
 use super::{FieldSet, Options, Porosity, levels, local, porosity, snap, surfaces};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
-use crate::geometry::facets;
+use crate::geometry::{areas, facets};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -23,7 +24,7 @@ pub(super) fn with_solid_surface<T>(
     let alone = solid_alone(grid, bodies, options);
     let Porosity { beta, surface, .. } = alone.as_ref().unwrap_or(result);
     let found = surface.clone().unwrap_or_else(|| {
-        with_solid_layers(grid, bodies, options, |grid, layers| Arc::new(of_layers(grid, layers, options, beta)))
+        with_solid_layers(grid, bodies, options, |grid, solids| Arc::new(of_layers(grid, solids, options, beta)))
     });
     work(&found, beta)
 }
@@ -47,16 +48,16 @@ pub(super) fn with_solid_layers<T>(
     grid: &Grid<f64>,
     bodies: &Bodies,
     options: Options,
-    work: impl FnOnce(&Grid<f64>, &Layers<DVec3>) -> T,
+    work: impl FnOnce(&Grid<f64>, &SolidLayers) -> T,
 ) -> T {
     let moved = snap::into_planes(grid, bodies);
     let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
     match local::from_corner(grid, bodies, triangles) {
         Some((edges, seen)) => {
             let near = edges.grid(None).expect("edges apart stay apart");
-            with_layers_of(&near, &seen, &seen.triangles, options, |layers| work(&near, layers))
+            with_layers_of(&near, &seen, &seen.triangles, options, |solids| work(&near, solids))
         }
-        None => with_layers_of(grid, bodies, triangles, options, |layers| work(grid, layers)),
+        None => with_layers_of(grid, bodies, triangles, options, |solids| work(grid, solids)),
     }
 }
 
@@ -66,7 +67,7 @@ fn with_layers_of<T>(
     bodies: &Bodies,
     triangles: &[[DVec3; 3]],
     options: Options,
-    work: impl FnOnce(&Layers<DVec3>) -> T,
+    work: impl FnOnce(&SolidLayers) -> T,
 ) -> T {
     let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
     let curved: Vec<Vec<[DVec3; 3]>> =
@@ -80,5 +81,6 @@ fn with_layers_of<T>(
     let needed = Layers::needed(grid, &surfaces);
     let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
     let layers = Layers::new(grid, &surfaces, options.into(), &mut numbers, &mut groups).expect("memory as needed");
-    work(&layers)
+    let facet_error = areas::facet_error(bodies.bodies.iter().zip(&curved));
+    work(&SolidLayers { bodies, layers: &layers, facet_error })
 }

@@ -15,6 +15,8 @@ pub struct SurfaceFields {
     pub unproved: usize,
     /// The largest wetted area in doubt in one of them.
     pub max_doubt: f64,
+    /// The largest share by which the facets that stand for curved bodies in cells that they share miss one of the areas of a whole body.
+    pub facet_error: f64,
     /// Its shadows.
     pub shadows: Arc<Shadows>,
 }

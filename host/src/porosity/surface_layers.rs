@@ -1,12 +1,13 @@
 //! The surface in the cells of layers, found on the way to their porosity and finished when all faces are known.
 
-use super::Options;
 use super::fields::FieldSet;
 use super::road::Road;
 use super::shadows::Shadows;
+use super::solid_layers::SolidLayers;
 use super::surface_fields::SurfaceFields;
 use super::targets::targets;
 use super::worker::{Summary, Workers};
+use super::{Options, curved_cells};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -16,15 +17,22 @@ use voidage_core::surface::surface_area::SurfaceArea;
 
 /// Of bodies in layers, whose open fractions are known otherwise.
 #[must_use]
-pub fn of_layers(grid: &Grid<f64>, layers: &Layers<DVec3>, options: Options, beta: &FieldSet) -> SurfaceFields {
+pub fn of_layers(
+    grid: &Grid<f64>,
+    SolidLayers { bodies, layers, facet_error }: &SolidLayers,
+    options: Options,
+    beta: &FieldSet,
+) -> SurfaceFields {
     let (mut own, mut areas) = (FieldSet::new(grid, true), no_areas(grid));
     let (workers, road) = (Workers::new(), Road::new(Vec::new(), options));
-    let summaries: Vec<Summary> = targets(grid, &mut own, None, Some(&mut areas))
+    let mut summaries: Vec<Summary> = targets(grid, &mut own, None, Some(&mut areas))
         .into_par_iter()
         .enumerate()
         .map(|(k, target)| workers.layer(grid, layers, &road, k, target))
         .collect();
-    finish(grid, layers, beta, areas, &summaries)
+    let change = curved_cells::measure(grid, bodies, &mut areas, &mut summaries);
+    let found = finish(grid, layers, beta, areas, &summaries);
+    SurfaceFields { sum: found.sum.plus(change), facet_error: *facet_error, ..found }
 }
 
 /// From the areas that layers have given, now that all faces are known.
@@ -49,6 +57,7 @@ pub fn finish(
         sum: reports.clone().fold(SurfaceArea::default(), |sum, r| sum.plus(r.sum)),
         unproved: reports.clone().map(|r| r.unproved).sum(),
         max_doubt: reports.fold(0.0, |most, r| r.max_doubt.max(most)),
+        facet_error: 0.0,
         areas,
         shadows,
     }

@@ -56,6 +56,17 @@ pub struct Kept {
 }
 
 impl Kept {
+    /// What has been kept of each cell of the layer.
+    #[must_use]
+    pub fn cells(&self) -> &[KeptCell] {
+        &self.cells
+    }
+
+    /// The same, to be told what else is known.
+    pub fn cells_mut(&mut self) -> &mut [KeptCell] {
+        &mut self.cells
+    }
+
     /// As the core takes it.
     #[must_use]
     pub fn pieces(&self) -> KeptPieces<'_, f64> {

@@ -215,7 +215,15 @@ impl<V: Vector> LayerWithFaces<'_, V> {
                 continue;
             }
             found.place[axis] = work.faces.place(axis);
-            let all = if work.walls[axis] { None } else { self.passed_once(axis, work, found) };
+            let all = match found.frontal {
+                // Of a convex body lines meet on the area that they enter, and that on which they begin in it.
+                Some(frontal) if work.entered_once => {
+                    let [low, high] = found.blocked[axis];
+                    Some(frontal[axis] + (low + high) * V::Scalar::HALF)
+                }
+                _ if work.walls[axis] => None,
+                _ => self.passed_once(axis, work, found),
+            };
             if V::Scalar::ONE - found.share[axis] <= known() || all.is_some() {
                 found.raise(axis, all.unwrap_or_default());
                 found.doubtful[axis] = false;
@@ -258,7 +266,7 @@ impl<V: Vector> LayerWithFaces<'_, V> {
         let sides = [cell.min.to_array(), cell.max.to_array()];
         let mut last = None;
         work.faces.clear();
-        work.walls = [false; 3];
+        (work.walls, work.entered_once) = ([false; 3], false);
         for [n, id] in entries {
             let Some(group) = groups.get(n as usize) else { continue };
             let Some(triangle) = bins.triangles(group).get(id as usize) else { continue };
@@ -289,7 +297,7 @@ fn load_kept<V: Vector>(
 ) -> Option<()> {
     let (frame, mut last) = (Frame::of(cell), None);
     work.faces.clear();
-    work.walls = own.walls;
+    (work.walls, work.entered_once) = (own.walls, own.entered_once);
     for (corners, body, sheet) in kept.pieces(own) {
         if last.replace(body) != Some(body) {
             work.faces.begin_solid(sheet);
@@ -313,11 +321,14 @@ struct Work<'m, R: Real> {
     faces: CellFaces<'m, R>,
     /// Surface lies in the plane of a side, along x, y and z.
     walls: [bool; 3],
+    /// No line enters solid twice.
+    entered_once: bool,
     scratch: [Polygon<R>; 2],
 }
 
 impl<'m, R: Real> Work<'m, R> {
     fn new(outlines: Outlines<'m, R>, faces: CellFaces<'m, R>) -> Self {
-        Work { outlines, faces, walls: [false; 3], scratch: [Polygon::default(), Polygon::default()] }
+        let scratch = [Polygon::default(), Polygon::default()];
+        Work { outlines, faces, walls: [false; 3], entered_once: false, scratch }
     }
 }

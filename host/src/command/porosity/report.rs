@@ -6,7 +6,6 @@ use crate::command::obstacles::{Obstacles, digits_of_areas};
 use crate::command::progress::Progress;
 use crate::command::stages::command_line;
 use crate::command::version::{BUILD, Build};
-use crate::geometry::areas;
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::picture::ticks::{measure, part};
@@ -56,8 +55,6 @@ pub(super) struct Report {
 struct ObstacleReport {
     #[serde(flatten)]
     totals: Totals,
-    /// The largest share by which facets miss an area of a whole curved solid.
-    facet_error: f64,
     /// Along x, y and z.
     hidden_passages: [HiddenPassages; 3],
     /// Cells that hold too much surface for a shadow.
@@ -85,12 +82,7 @@ struct DragReport {
 }
 
 impl ObstacleReport {
-    fn new(
-        args: &PorosityArgs,
-        bodies: &Bodies,
-        (found, obstacles): (&Resistance, &Obstacles),
-        congestion: Vec<Congestion>,
-    ) -> Self {
+    fn new(args: &PorosityArgs, (found, obstacles): (&Resistance, &Obstacles), congestion: Vec<Congestion>) -> Self {
         let drag = args.drag.zip(obstacles.drag.as_ref()).map(|(law, drag)| DragReport {
             law,
             cd: args.cd.unwrap_or_default(),
@@ -101,7 +93,6 @@ impl ObstacleReport {
         let Shadows { hidden, too_full, .. } = &*found.shadows;
         ObstacleReport {
             totals: found.totals,
-            facet_error: areas::facet_error(&bodies.bodies),
             hidden_passages: *hidden,
             unproved_shadows: *too_full,
             lowered_faces: obstacles.lowered_faces,
@@ -183,7 +174,7 @@ impl Report {
             obstacles: obstacles
                 .resistance
                 .as_ref()
-                .map(|found| ObstacleReport::new(args, bodies, (found, obstacles), congestion)),
+                .map(|found| ObstacleReport::new(args, (found, obstacles), congestion)),
         }
     }
 
