@@ -1,17 +1,19 @@
-//! Walls that are not aligned with the grid: streams along them, a wedge, a cylinder, a turned shock tube.
+//! Walls that are not aligned with the grid: streams along them, a wedge, a turned shock tube.
 
 use glam::DVec3;
 use voidage::flow::{Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, PressureForm, Primitive};
 use voidage_core::number::real::Real;
 use voidage_tests::euler::property::Source;
-use voidage_tests::euler::space::{OpenFractions, disc, half_space, open_fractions};
+use voidage_tests::euler::space::{OpenFractions, half_space, open_fractions};
 use voidage_tests::euler::{Riemann, State};
 use voidage_tests::random::Random;
 
-const GAMMA: f64 = 1.4;
+/// Ratio of specific heats of all gas here.
+pub const GAMMA: f64 = 1.4;
 
-fn flow<R: Scalar, const D: usize>(
+/// A flow in cells of a width, with default settings but for the form of the pressure.
+pub fn flow<R: Scalar, const D: usize>(
     n: [usize; D],
     width: f64,
     boundaries: [[Boundary<R, D>; 2]; D],
@@ -27,7 +29,7 @@ fn flow<R: Scalar, const D: usize>(
 }
 
 /// A stream of density 1 and pressure 1.
-fn stream<R: Real, const D: usize>(velocity: [f64; D]) -> Primitive<R, D> {
+pub fn stream<R: Real, const D: usize>(velocity: [f64; D]) -> Primitive<R, D> {
     Primitive { density: R::ONE, velocity: velocity.map(R::from_f64), pressure: R::ONE }
 }
 
@@ -154,8 +156,9 @@ fn a_periodic_stream_between_inclined_walls_stays_as_it_is() {
     }
 }
 
-/// Angle of the shock on a wedge of some degrees at a Mach number, from the flow over `n` cells along it.
-fn wedge_shock(degrees: f64, mach: f64, n: [usize; 2]) -> f64 {
+/// A stream of a Mach number onto a wedge of some degrees: the angle of its shock from the flow over `n` cells along it, and over the latter half of the
+/// wall the pressures of the cells that it cuts, with their open fractions.
+fn wedge(degrees: f64, mach: f64, n: [usize; 2]) -> (f64, Vec<[f64; 2]>) {
     let width = 2.0 / n[0] as f64;
     let (sin, cos) = degrees.to_radians().sin_cos();
     let tip = 0.25;
@@ -164,16 +167,18 @@ fn wedge_shock(degrees: f64, mach: f64, n: [usize; 2]) -> f64 {
     let boundaries = [[Boundary::FarField(far), Boundary::ZeroGradient], [Boundary::Wall, Boundary::ZeroGradient]];
     let mut flow: Flow<f64, 2> = flow(n, width, boundaries, &open, PressureForm::Geometric);
     flow.fill(|_| far);
-    flow.run(0.8, 3.0).unwrap();
+    flow.run(0.8, 2.5).unwrap();
     assert_eq!(flow.total.floored, 0);
+    let latter = n[0] / 2..n[0] - 4;
     // The height at which the pressure has half risen, column by column, and a line through the heights.
     let behind = flow.get((n[1] / 2) * n[0] + n[0] - 2).pressure;
     let half = 0.5 * (1.0 + behind);
-    let points: Vec<(f64, f64)> = (n[0] / 2..n[0] - 4)
+    let p = |i: usize, j: usize| flow.get(j * n[0] + i).pressure;
+    let points: Vec<(f64, f64)> = latter
+        .clone()
         .map(|i| {
-            let p = |j: usize| flow.get(j * n[0] + i).pressure;
-            let j = (0..n[1]).rev().find(|&j| p(j) > half).unwrap();
-            let share = (p(j) - half) / (p(j) - p(j + 1));
+            let j = (0..n[1]).rev().find(|&j| p(i, j) > half).unwrap();
+            let share = (p(i, j) - half) / (p(i, j) - p(i, j + 1));
             (width * (i as f64 + 0.5), width * (j as f64 + 0.5 + share))
         })
         .collect();
@@ -181,7 +186,9 @@ fn wedge_shock(degrees: f64, mach: f64, n: [usize; 2]) -> f64 {
     let mean = points.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / count, m.1 + p.1 / count));
     let slope = points.iter().map(|p| (p.0 - mean.0) * (p.1 - mean.1)).sum::<f64>()
         / points.iter().map(|p| (p.0 - mean.0).powi(2)).sum::<f64>();
-    slope.atan().to_degrees()
+    let cells = latter.flat_map(|i| (0..n[1]).map(move |j| (i, j)));
+    let cut = cells.map(|(i, j)| [p(i, j), open.volume[j * n[0] + i]]).filter(|c| c[1] > 0.0 && c[1] < 1.0);
+    (slope.atan().to_degrees(), cut.collect())
 }
 
 /// The weak shock angle that turns a stream by theta, from the theta-beta-M relation (Anderson, *Modern Compressible Flow*,
@@ -201,36 +208,24 @@ fn shock_angle(degrees: f64, mach: f64) -> f64 {
 
 #[test]
 fn a_wedge_turns_a_supersonic_stream_by_its_shock() {
-    let exact = shock_angle(15.0, 2.5);
+    let mach: f64 = 2.5;
+    let exact = shock_angle(15.0, mach);
     assert!((exact - 36.94).abs() < 0.01);
-    let found = wedge_shock(15.0, 2.5, [80, 64]);
-    assert!((found - exact).abs() < 0.4, "{found}° instead of {exact}°");
+    let (found, wall) = wedge(15.0, mach, [100, 80]);
+    // Behind an oblique shock the pressure is that behind a normal one of the Mach number across it.
+    let across = mach * exact.to_radians().sin();
+    let behind = 1.0 + 2.0 * GAMMA / (GAMMA + 1.0) * (across * across - 1.0);
+    let most = wall.iter().map(|[p, _]| (p / behind - 1.0).abs()).fold(0.0, f64::max);
+    let mean = wall.iter().map(|[p, open]| p * open).sum::<f64>() / wall.iter().map(|c| c[1]).sum::<f64>() / behind;
+    println!(
+        "{found:.3}° instead of {exact:.3}°; pressure at the wall {mean:.5} of the exact one, in single cells off by up to {most:.5}"
+    );
+    assert!((found - exact).abs() < 0.1, "{found}° instead of {exact}°");
+    assert!((mean - 1.0).abs() < 1e-3 && most < 2e-3, "pressure at the wall: mean {mean}, largest error {most}");
 }
 
-#[test]
-fn a_cylinder_holds_its_bow_shock_off() {
-    // Half of it, on the axis of symmetry; the radius is 1.
-    let (n, width, mach) = ([60, 80], 0.05, 3.0);
-    let open = open_fractions(n, [-3.0, 0.0], width, |low, high| disc(1.0, low, high));
-    let far = stream([mach * GAMMA.sqrt(), 0.0]);
-    let boundaries = [[Boundary::FarField(far), Boundary::ZeroGradient], [Boundary::Wall, Boundary::ZeroGradient]];
-    let mut flow: Flow<f64, 2> = flow(n, width, boundaries, &open, PressureForm::Geometric);
-    flow.fill(|_| far);
-    flow.run(0.8, 8.0).unwrap();
-    assert_eq!(flow.total.floored, 0);
-    let p = |i: usize| flow.get(i).pressure;
-    // Behind a normal shock the pressure is 1 + 2γ/(γ + 1) (M² − 1).
-    let half = 0.5 * (2.0 + 2.0 * GAMMA / (GAMMA + 1.0) * (mach * mach - 1.0));
-    let i = (0..n[0]).find(|&i| p(i) > half).unwrap();
-    let x = -3.0 + width * (i as f64 + 0.5 - (p(i) - half) / (p(i) - p(i - 1)));
-    // F. S. Billig, J. Spacecraft 4 (1967) 822.
-    let billig = 0.386 * (4.67 / (mach * mach)).exp();
-    let found = -1.0 - x;
-    assert!((found / billig - 1.0).abs() < 0.08, "{found} instead of {billig}");
-}
-
-/// Mean error of the velocity of Sod's shock tube, turned by some degrees to the grid, between two walls.
-fn turned_tube(degrees: f64, n: usize) -> f64 {
+/// Mean error of the velocity of Sod's shock tube, turned by some degrees to the grid, between two walls; and by which share the velocity of any cell is too high.
+fn turned_tube(degrees: f64, n: usize) -> [f64; 2] {
     let width = 1.0 / n as f64;
     let (sin, cos) = degrees.to_radians().sin_cos();
     let across = |x: f64, y: f64| -sin * x + cos * y;
@@ -252,7 +247,7 @@ fn turned_tube(degrees: f64, n: usize) -> f64 {
     let t = 0.15;
     flow.run(0.8, t).unwrap();
     let exact = Riemann::new(left, right, GAMMA);
-    let (mut error, mut volume) = (0.0, 0.0);
+    let (mut error, mut volume, mut fastest) = (0.0, 0.0, 0.0);
     for c in 0..flow.len() {
         let (x, y) = (width * ((c % n) as f64 + 0.5), width * ((c / n) as f64 + 0.5));
         let s = along(x - x0, y - y0);
@@ -261,17 +256,42 @@ fn turned_tube(degrees: f64, n: usize) -> f64 {
             let u = along(w.velocity[0], w.velocity[1]);
             error += open.volume[c] * (u - exact.at(s / t).u).abs();
             volume += open.volume[c];
+            fastest = if open.volume[c] > 0.0 { u.max(fastest) } else { fastest };
         }
     }
-    error / volume
+    [error / volume, fastest / exact.at(0.0).u - 1.0]
 }
 
 #[test]
 fn a_shock_tube_may_be_turned() {
-    let straight = turned_tube(0.0, 100);
-    for degrees in [20.0, 37.0, 45.0] {
-        let turned = turned_tube(degrees, 100);
-        println!("L1(u) {turned:.4} at {degrees}°, {straight:.4} along the grid");
+    let [straight, _] = turned_tube(0.0, 100);
+    // In the front of the shock beside a wall the gas of single cells is too fast. With slopes from what stands in the solid by 6.2 % at 20°, 8.4 % at 37°.
+    for (degrees, limit) in [(20.0, 0.05), (37.0, 0.083), (45.0, 0.04)] {
+        let [turned, over] = turned_tube(degrees, 100);
+        println!("{degrees}°: L1(u) {turned:.4}, along the grid {straight:.4}; {over:.4} too fast");
         assert!(turned < 0.02 && turned < 2.0 * straight, "{degrees}°: {turned}, straight {straight}");
+        assert!(over < limit, "{degrees}°: {over} too fast");
+    }
+}
+
+/// Slopes beside an inclined wall took the difference to the state in the solid, which is whatever a flow began with.
+#[test]
+fn what_stands_in_a_solid_does_not_matter() {
+    let n = [24, 24];
+    for degrees in [20.0, 45.0, 63.0] {
+        let (open, _) = above_wall(n, degrees, [1.23, 1.17]);
+        let run = |inside: Primitive<f64, 2>| {
+            let sides = [[Boundary::ZeroGradient; 2]; 2];
+            let mut flow: Flow<f64, 2> = flow(n, 0.1, sides, &open, PressureForm::Geometric);
+            flow.fill(|x| Primitive { pressure: if x[0] < 1.0 { 8.0 } else { 1.0 }, ..stream([0.0; 2]) });
+            (0..flow.len()).filter(|&c| open.volume[c] == 0.0).for_each(|c| flow.set(c, &inside));
+            flow.run(0.8, 0.5).unwrap();
+            let seen = (0..flow.len()).filter(|&c| open.volume[c] > 0.0);
+            seen.map(|c| flow.get(c))
+                .map(|w| [w.density, w.velocity[0], w.velocity[1], w.pressure].map(f64::to_bits))
+                .collect::<Vec<_>>()
+        };
+        let other = Primitive { density: 3.0, velocity: [0.2, -0.1], pressure: 5.0 };
+        assert!(run(stream([0.0; 2])) == run(other), "{degrees}°");
     }
 }

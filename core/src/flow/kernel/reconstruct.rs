@@ -4,7 +4,9 @@ use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::slab::{RowAt, Slab};
-use crate::flow::kernel::walls_and_jumps::{CellSlopes, limited, slopes_at_boundaries, slopes_at_breaks};
+use crate::flow::kernel::walls_and_jumps::{
+    CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
+};
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
 use crate::flow::porosity::flags::{KIND, any_marked, break_high, break_low, marked};
 use crate::flow::porosity::fractions::least_volume;
@@ -111,6 +113,7 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     }
     slopes_at_boundaries(slab, d, row, cells.values(1 + d), axis, out);
     if slab.medium.is_some() {
+        flatten_beside_closed_faces::<R, D, MIXED>(slab, d, row, out);
         let one = CellSlopes { axis, compliance, limit: limited::<R, S, D> };
         slopes_at_breaks::<R, D, MIXED>(slab, d, row, cells, &one, out);
     }
