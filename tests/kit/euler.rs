@@ -8,6 +8,7 @@ pub mod expression;
 pub mod hostile;
 pub mod property;
 pub mod space;
+pub mod spherical;
 pub mod two_gases;
 
 use voidage_core::flow::Primitive;

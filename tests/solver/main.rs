@@ -2,6 +2,8 @@
 
 mod askew;
 mod balance;
+mod blast;
+mod blunt_bodies;
 mod clusters;
 mod contracts;
 mod convergence;
