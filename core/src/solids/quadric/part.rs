@@ -73,6 +73,31 @@ impl Part {
         Part { origin, curved, ends, xi }
     }
 
+    /// Is it a pipe along axis `n` that has no end between two coordinates, nor at them? Then all its sections there are the same.
+    pub fn is_prism_between(&self, n: Axis, [lo, hi]: [f64; 2]) -> bool {
+        let ends = || self.ends.iter().flatten();
+        matches!(self.curved.wall, Wall::Cylinder { .. })
+            && self.curved.across[n] == 0.0
+            && ends().all(|end| if end.inward[n] > 0.0 { end.center[n] < lo } else { end.center[n] > hi })
+    }
+
+    /// A pipe without those ends that are far from a box: all of it is on their inner sides. None if both are near, or it is no pipe.
+    pub fn without_far_ends(&self, place: [[f64; 2]; 3]) -> Option<Self> {
+        if !matches!(self.curved.wall, Wall::Cylinder { .. }) {
+            return None;
+        }
+        let far = |end: &End| {
+            let (mut least, mut size) = (0.0, 0.0);
+            for n in Axis::ALL {
+                let [low, high] = place[n].map(|x| end.inward[n] * (x - end.center[n]));
+                (least, size) = (least + low.min(high), size + low.abs() + high.abs());
+            }
+            least > FAR_END * size
+        };
+        let ends = self.ends.map(|end| end.filter(|end| !far(end)));
+        (ends.iter().flatten().count() < self.ends.iter().flatten().count()).then_some(Part { ends, ..*self })
+    }
+
     /// A plane across axis `n`.
     #[inline]
     pub fn plane(&self, n: Axis, coordinate: f64) -> Plane {
@@ -326,6 +351,9 @@ const FAR: f64 = 0.25;
 fn is_far(size: f64, middle: [f64; 3]) -> bool {
     size < FAR && middle.iter().map(|x| x * x).sum::<f64>() > size * size
 }
+
+/// Share of the distances along the axes by which a box is to be off a flat end, against rounding.
+const FAR_END: f64 = 1e-9;
 
 /// Share of its radius and of its distance by which the reach of an end's disc is enlarged, against rounding of its place.
 const MARGIN: f64 = 1e-12;

@@ -84,6 +84,24 @@ impl<'a> Row<'a> {
     }
 }
 
+/// What is told of a cell: shares of it, of its low faces, and of its high x and y faces.
+#[derive(Clone, Copy)]
+struct Shares {
+    cell: f64,
+    low: [f64; 3],
+    high: [f64; 2],
+}
+
+impl Shares {
+    const WHOLE: Self = Shares { cell: 1.0, low: [1.0; 3], high: [1.0; 2] };
+}
+
+/// Most cells of a row that are told once more in the next one.
+const MOST_REPEATED: usize = 32;
+
+/// The cells of a row that a pipe along y shares with the rows beside it: all are told alike between its ends.
+type Repeated = heapless::Vec<(usize, Shares), MOST_REPEATED>;
+
 /// The fraction of a face.
 fn fraction(face: &FaceFlux, area: f64) -> f64 {
     if face.whole { 1.0 } else { (face.area / area).clamp(0.0, 1.0) }
@@ -105,18 +123,34 @@ pub(super) fn layer<R: Real>(
     if lowest > zs[1] || highest < zs[0] {
         return 0.0;
     }
-    let z = zs.map(|z| part.plane(Axis::Z, z));
-    let rows = reached(ys, part.extent(Axis::Y));
+    let all = [f64::NEG_INFINITY, f64::INFINITY];
+    let within = part.extent_within([all, all, zs]);
+    let (columns, rows) = (reached(xs, within[0]), reached(ys, within[1]));
+    let around = |edges: &[R], cells: &Range<usize>| {
+        let edge = |n: usize| edges.get(n).map_or(f64::NAN, |e| e.to_f64());
+        [edge(cells.start), edge(cells.end)]
+    };
+    let without = part.without_far_ends([around(xs, &columns), around(ys, &rows), zs]);
+    let near = without.as_ref().unwrap_or(part);
+    let z = zs.map(|z| near.plane(Axis::Z, z));
     let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, visit };
-    let Some(first) = ys.get(rows.start) else { return 0.0 };
-    let mut below = part.plane(Axis::Y, first.to_f64());
+    let mut below: Option<(usize, Plane)> = None;
+    let mut repeated = Repeated::new();
     for j in rows.clone() {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
-        let y = [below, part.plane(Axis::Y, y1.to_f64())];
-        below = y[1];
-        let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
         let last_row = j + 1 == rows.end;
-        told.row(xs, &Row::new(part, &y, &z), j, last_row, reached(xs, run));
+        let same = part.is_prism_between(Axis::Y, [y0.to_f64(), y1.to_f64()]);
+        if same && !repeated.is_empty() {
+            told.repeat(&repeated, j, last_row);
+            continue;
+        }
+        repeated.clear();
+        let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
+        let low =
+            below.filter(|(row, _)| *row == j).map_or_else(|| near.plane(Axis::Y, y0.to_f64()), |(_, plane)| plane);
+        let y = [low, near.plane(Axis::Y, y1.to_f64())];
+        below = Some((j + 1, y[1]));
+        told.row(xs, &Row::new(near, &y, &z), (j, last_row), reached(xs, run), same.then_some(&mut repeated));
     }
     told.worst
 }
@@ -135,62 +169,83 @@ impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
         }
     }
 
-    fn row<R: Real>(&mut self, xs: &[R], row: &Row, j: usize, last_row: bool, cells: Range<usize>) {
-        let [nx, _] = self.cells;
-        let [dy, dz] = [row.y, row.z].map(|[lo, hi]| hi.h.value - lo.h.value);
+    fn row<R: Real>(
+        &mut self,
+        xs: &[R],
+        row: &Row,
+        (j, last_row): (usize, bool),
+        cells: Range<usize>,
+        mut repeated: Option<&mut Repeated>,
+    ) {
         let inside = row.inside();
         let from_origin = |i: usize| xs.get(i).map_or(f64::NAN, |x| x.to_f64() - row.part.origin[0]);
         let mut before: Option<Column> = None;
+        let mut alike: Option<Shares> = None;
+        if cells.len() > MOST_REPEATED {
+            repeated = None;
+        }
         for i in cells.clone() {
-            let last = i + 1 == cells.end;
             let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
-            let c = j * nx + i;
-            if inside.covers(from_origin(i), from_origin(i + 1)) {
+            let same = row.part.is_prism_between(Axis::X, [x0.to_f64(), x1.to_f64()]);
+            let shares = if inside.covers(from_origin(i), from_origin(i + 1)) {
                 before = None;
-                self.closed(c, j, last, last_row);
-                continue;
+                Shares::WHOLE
+            } else if let Some(shares) = alike.filter(|_| same) {
+                before = None;
+                shares
+            } else {
+                let low = before.unwrap_or_else(|| row.column(x0.to_f64()));
+                let high = row.column(x1.to_f64());
+                before = Some(high);
+                self.shares(row, &low, &high)
+            };
+            alike = same.then_some(shares);
+            if let Some(list) = &mut repeated {
+                let _ = list.push((i, shares));
             }
-            let low = before.unwrap_or_else(|| row.column(x0.to_f64()));
-            let high = row.column(x1.to_f64());
-            before = Some(high);
-            let found = row.cell(&low, &high);
-            let dx = high.plane.h.value - low.plane.h.value;
-            let share = found.volume / (dx * dy * dz);
-            self.worst = self.worst.max(share - 1.0).max(-share);
-            if share.is_nan() {
-                self.worst = f64::INFINITY;
-            }
-            self.tell(RangeKind::Cells, c, share.min(1.0));
-            if !self.areas {
-                continue;
-            }
-            let [x, y, z] = &found.faces;
-            self.tell(RangeKind::Faces(0), c + j, fraction(&x[0], dy * dz));
-            self.tell(RangeKind::Faces(1), c, fraction(&y[0], dz * dx));
-            self.tell(RangeKind::Faces(2), c, fraction(&z[0], dx * dy));
-            if last {
-                self.tell(RangeKind::Faces(0), c + j + 1, fraction(&x[1], dy * dz));
-            }
-            if last_row {
-                self.tell(RangeKind::Faces(1), c + nx, fraction(&y[1], dz * dx));
-            }
+            self.tell_cell(i, (j, last_row), i + 1 == cells.end, &shares);
         }
     }
 
-    /// A cell all inside.
-    fn closed(&mut self, c: usize, j: usize, last: bool, last_row: bool) {
-        self.tell(RangeKind::Cells, c, 1.0);
+    /// The shares of the cell between two columns of a row.
+    #[inline]
+    fn shares(&mut self, row: &Row, low: &Column, high: &Column) -> Shares {
+        let [dy, dz] = [row.y, row.z].map(|[lo, hi]| hi.h.value - lo.h.value);
+        let dx = high.plane.h.value - low.plane.h.value;
+        let found = row.cell(low, high);
+        let share = found.volume / (dx * dy * dz);
+        self.worst = self.worst.max(share - 1.0).max(-share);
+        if share.is_nan() {
+            self.worst = f64::INFINITY;
+        }
+        let [x, y, z] = &found.faces;
+        let low = [fraction(&x[0], dy * dz), fraction(&y[0], dz * dx), fraction(&z[0], dx * dy)];
+        Shares { cell: share.min(1.0), low, high: [fraction(&x[1], dy * dz), fraction(&y[1], dz * dx)] }
+    }
+
+    /// Tells what is known of cell `i` of a row, the high faces of the last cell and the last row.
+    fn tell_cell(&mut self, i: usize, (j, last_row): (usize, bool), last: bool, shares: &Shares) {
+        let [nx, _] = self.cells;
+        let c = j * nx + i;
+        self.tell(RangeKind::Cells, c, shares.cell);
         if !self.areas {
             return;
         }
         for (axis, at) in [(0, c + j), (1, c), (2, c)] {
-            self.tell(RangeKind::Faces(axis), at, 1.0);
+            self.tell(RangeKind::Faces(axis), at, shares.low[axis]);
         }
         if last {
-            self.tell(RangeKind::Faces(0), c + j + 1, 1.0);
+            self.tell(RangeKind::Faces(0), c + j + 1, shares.high[0]);
         }
         if last_row {
-            self.tell(RangeKind::Faces(1), c + self.cells[0], 1.0);
+            self.tell(RangeKind::Faces(1), c + nx, shares.high[1]);
+        }
+    }
+
+    /// Tells the cells of a row once more, in row `j`.
+    fn repeat(&mut self, repeated: &Repeated, j: usize, last_row: bool) {
+        for (n, (i, shares)) in repeated.iter().enumerate() {
+            self.tell_cell(*i, (j, last_row), n + 1 == repeated.len(), shares);
         }
     }
 }

@@ -11,6 +11,9 @@ pub(super) type Extent = [f64; 2];
 /// Margin for rounding, as a share of coordinates and sizes.
 const MARGIN: f64 = 1e-12;
 
+/// A box that holds nothing.
+const NOWHERE: [Extent; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+
 fn widened([lo, hi]: Extent) -> Extent {
     let margin = (lo.abs().max(hi.abs()) + (hi - lo)) * MARGIN;
     [lo - margin, hi + margin]
@@ -37,6 +40,53 @@ impl Part {
         let center = |end: Option<super::ends::End>| end.map_or(self.origin, |e| e.center);
         let radius = |end: Option<super::ends::End>| end.map_or(0.0, |e| e.radius);
         ([center(one), center(other)], radius(one).max(radius(other)))
+    }
+
+    /// Where it may be in a box, which it reaches; limits in the wrong order if it does not.
+    pub fn extent_within(&self, place: [Extent; 3]) -> [Extent; 3] {
+        let around: [Extent; 3] = match &self.curved.wall {
+            Wall::Ellipsoid(_) => return place,
+            Wall::Ball { radius } => {
+                let off = Axis::ALL.map(|n| {
+                    let [lo, hi] = widened(place[n].map(|x| x - self.origin[n]));
+                    if lo > 0.0 { lo } else { hi.min(0.0) }
+                });
+                let squares = off.map(|x| x * x);
+                let left = radius * radius * (1.0 + MARGIN) - (squares[0] + squares[1] + squares[2]);
+                if !(left >= 0.0) {
+                    return NOWHERE;
+                }
+                Axis::ALL.map(|n| {
+                    let reach = Real::sqrt(left + squares[n]);
+                    widened([self.origin[n] - reach, self.origin[n] + reach])
+                })
+            }
+            Wall::Cylinder { .. } | Wall::Cone { .. } => {
+                let ([a, b], radius) = self.segment();
+                let reach = self.curved.across.map(|across| radius * across);
+                let (mut first, mut last) = (0.0_f64, 1.0_f64);
+                for n in Axis::ALL {
+                    let [lo, hi] = widened([place[n][0] - reach[n], place[n][1] + reach[n]]);
+                    let along = b[n] - a[n];
+                    if along != 0.0 {
+                        let (s, t) = ((lo - a[n]) / along, (hi - a[n]) / along);
+                        (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
+                    } else if a[n] < lo || a[n] > hi {
+                        last = f64::NEG_INFINITY;
+                    }
+                }
+                let margin = MARGIN * (1.0 + first.abs() + last.abs());
+                if !(first <= last + margin) {
+                    return NOWHERE;
+                }
+                Axis::ALL.map(|n| {
+                    let at = |t: f64| a[n] + t.clamp(0.0, 1.0) * (b[n] - a[n]);
+                    let (s, t) = (at(first - margin), at(last + margin));
+                    widened([s.min(t) - reach[n], s.max(t) + reach[n]])
+                })
+            }
+        };
+        Axis::ALL.map(|n| [place[n][0].max(around[n][0]), place[n][1].min(around[n][1])])
     }
 
     /// Along x, of what lies between two planes across y and two across z; none if nothing does.
