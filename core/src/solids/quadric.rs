@@ -31,10 +31,13 @@
 //! 5. `spread`: the shares of a part in a layer
 //! 6. `solid`: what callers use; `shapes`: the shapes that GJK knows, as such solids
 //! 7. `tangent`: planes between which a part lies in a box
-//! 8. `slice`: what several parts have in common of a rectangle in a plane; `shared`: what several solids share of a cell or face
+//! 8. `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
+//!    `crossing`: what two pipes have in common of a box, by planes along both axes; `shared`: what several solids share of a cell or face
 
 mod arc;
+mod concave;
 mod cone;
+mod crossing;
 mod end_line;
 mod ends;
 mod outline;

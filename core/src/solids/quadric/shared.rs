@@ -3,10 +3,15 @@
 //! Of faces it is the area that their sections have in common ([`super::slice`]), exact but for rounding. Of cells it is the integral of such
 //! areas. The square root of the area in which planes cut a convex body is a concave function of the height (Brunn and Minkowski); so chords
 //! between slices are lower bounds and the chords' extensions upper ones, and slices are added where these are apart.
+//!
+//! Pipes along one axis of the grid have the same slice everywhere; two others are looked at by planes along both of them ([`super::crossing`]).
 
+use super::concave::{crossing, lowest, squares};
+use super::crossing::Crossing;
 use super::part::Part;
 use super::slice::{MOST_PARTS, Slice, Window};
 use super::solid::QuadricSolid;
+use super::wall::Wall;
 use crate::grid::bounds::Bounds;
 use crate::number::axis::Axis;
 use crate::number::plane::P2;
@@ -57,7 +62,9 @@ pub fn share_of_union<'a>(
         if lo < hi { size *= hi - lo } else { close = CLOSE_AREAS }
     }
     let [low, high] = excess(solids, cell, close * size)?.map(|common| common / size);
-    Some(Bounds { lower: (sum.lower - high).max(0.0), upper: (sum.upper - low).min(1.0) })
+    let (lower, upper) = ((sum.lower - high).max(0.0), (sum.upper - low).min(1.0));
+    // Where rounding makes them contradict each other, what lies between them.
+    Some(Bounds { lower: lower.min(upper), upper: lower.max(upper) })
 }
 
 /// Bounds of the sum of the volumes of some solids in a cell, given by its low and high coordinates, less the volume of their union there; of
@@ -92,7 +99,12 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
         let one = parts.get(next)?;
         let of_set = || set.iter().filter_map(|&n| parts.get(n));
         let extent = of_set().fold(one.extent, |extent, other| meet(&extent, &other.extent));
-        if of_set().any(|other| other.solid == one.solid) || !reaches(&extent, flat) {
+        if of_set().any(|other| other.solid == one.solid) {
+            next += 1;
+            continue;
+        }
+        let extent = if set.is_empty() { extent } else { narrowed(of_set().chain([one]), extent) };
+        if !reaches(&extent, flat) {
             next += 1;
             continue;
         }
@@ -116,6 +128,12 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
         set.push(next).ok()?;
         next += 1;
     }
+}
+
+/// The box in which some parts may have something in common: each of them in the box that those before it leave.
+fn narrowed<'a>(parts: impl Iterator<Item = &'a OnePart<'a>> + Clone, extent: [P2; 3]) -> [P2; 3] {
+    let once = |extent| parts.clone().fold(extent, |extent, one| one.part.extent_within(extent));
+    once(once(extent))
 }
 
 /// How many pairs of parts of different solids may have something in common.
@@ -161,7 +179,15 @@ fn common<'a, const N: usize>(
     plane: Option<(Axis, f64)>,
     enough: f64,
 ) -> P2 {
-    let Some((n, coordinate)) = plane else { return volume::<N>(parts, extent, enough) };
+    let Some((n, coordinate)) = plane else {
+        let all = extent.iter().fold(1.0, |all, [lo, hi]| all * (hi - lo));
+        if all <= 0.25 * enough {
+            return [0.0, all];
+        }
+        let of_two = || if N == 2 { Crossing::volume(parts.clone(), extent, enough) } else { None };
+        let found = prism::<N>(parts.clone(), extent, enough).or_else(of_two);
+        return found.unwrap_or_else(|| volume::<N>(parts, extent, enough));
+    };
     let window = window(extent, n, enough);
     Slice::<N>::new(parts, window, coordinate).common().area
 }
@@ -230,6 +256,31 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
         }
     }
     found
+}
+
+/// Bounds of the volume that pipes along one axis of the grid have in common in a box: all sections across it are the same. None of other parts.
+#[inline(never)]
+fn prism<'a, const N: usize>(
+    parts: impl Iterator<Item = &'a Part> + Clone,
+    extent: &[P2; 3],
+    enough: f64,
+) -> Option<P2> {
+    let n = parts.clone().next()?.xi;
+    let [mut low, mut high] = extent[n];
+    for part in parts.clone() {
+        if !matches!(part.curved.wall, Wall::Cylinder { .. }) || part.curved.across[n] != 0.0 {
+            return None;
+        }
+        for end in part.ends.iter().flatten() {
+            if end.inward[n] > 0.0 { low = low.max(end.center[n]) } else { high = high.min(end.center[n]) }
+        }
+    }
+    if !(low < high) {
+        return Some([0.0; 2]);
+    }
+    let long = high - low;
+    let within = window(extent, n, 0.5 * enough / long);
+    Some(Slice::<N>::new(parts, within, 0.5 * (low + high)).common().area.map(|area| area * long))
 }
 
 /// The same between two heights, of windows of an area `all` and a height `rows`, with slices at hand; and how many there were.
@@ -323,42 +374,5 @@ fn greatest(lines: [Option<P2>; 2]) -> f64 {
             let ends = l[0].min(r[0]).max(l[1].min(r[1]));
             crossing(l, r).map_or(ends, |at| ends.max(l[0] + (l[1] - l[0]) * at))
         }
-    }
-}
-
-/// The share of the way at which two lines cross, if they do on it; lines by their values at both ends.
-fn crossing(l: P2, r: P2) -> Option<f64> {
-    let (p, q) = (l[0] - r[0], l[1] - r[1]);
-    (p * q < 0.0).then(|| p / (p - q))
-}
-
-/// The mean of the squares of a linear function where it is positive, by its ends.
-fn squares(p: f64, q: f64) -> f64 {
-    let (low, high) = (p.min(q), p.max(q));
-    if low >= 0.0 {
-        (low * low + low * high + high * high) / 3.0
-    } else if high <= 0.0 {
-        0.0
-    } else {
-        high * high * (high / (high - low)) / 3.0
-    }
-}
-
-/// The mean of the squares of the lowest of some lines, none higher than `most`.
-fn lowest(lines: [Option<P2>; 2], most: f64) -> f64 {
-    let flat = [most; 2];
-    // Of one line only: where it is above the other it counts no more.
-    let under = |l: P2, r: P2| match crossing(l, r) {
-        Some(at) => {
-            let middle = l[0] + (l[1] - l[0]) * at;
-            squares(l[0].min(r[0]), middle) * at + squares(middle, l[1].min(r[1])) * (1.0 - at)
-        }
-        None if l[0] + l[1] < r[0] + r[1] => squares(l[0], l[1]),
-        None => squares(r[0], r[1]),
-    };
-    match lines {
-        [None, None] => most * most,
-        [Some(l), None] | [None, Some(l)] => under(l, flat),
-        [Some(l), Some(r)] => under(l, r).min(under(l, flat)).min(under(r, flat)),
     }
 }

@@ -1,0 +1,514 @@
+//! What two pipes have in common of a box, by planes along the axes of both.
+//!
+//! Such a plane cuts a strip out of each pipe, as long as the pipe is between its flat ends. So what both have in common of the box is a polygon there,
+//! and its sides move with the plane at speeds that are known. The square root of its area is a concave function of the plane's height (Brunn and
+//! Minkowski), of which a polygon tells the value and the slope.
+//!
+//! So between two planes chords bound it from below and tangents from above, and planes are added where these are apart.
+//!
+//! Rounding moves each side by no more than [`Crossing::noise`], as if the body were that much larger or smaller, which is added to the bounds: a polygon
+//! with sides so moved, and its slope, are those of such a body.
+
+use super::concave::{lowest, squares};
+use super::part::Part;
+use super::wall::Wall;
+use crate::number::axis::Axis;
+use crate::number::plane::{P2, cross, dot, on_way, sub};
+use crate::number::real::Real;
+use crate::number::space::{self, P3};
+use heapless::Vec;
+
+/// Axes with a smaller sine between them are left to sections.
+const LEAST_SINE: f64 = 1e-5;
+
+/// Sides of the first strip between its ends, of the second one, its ends, and the sides of the box.
+const MOST_LINES: usize = 14;
+
+/// Each line cuts off a corner and adds two, at most.
+const MOST_CORNERS: usize = MOST_LINES;
+
+/// Most planes asked for where the common part lies.
+const MOST_TRIES: usize = 48;
+
+/// Most planes, and how many times as many as a smooth body needs; most that wait to be reached, and how often bounds between planes are made closer.
+const MOST_PLANES: f64 = 65536.0;
+const PLANES: f64 = 16.0;
+const MOST_WAITING: usize = 40;
+const MOST_TIMES: usize = 4;
+
+/// Most steps of Newton's method at one of the ends, and how far from it they begin, as a share of the heights.
+const MOST_STEPS: usize = 8;
+const NEAR_END: f64 = 1.0 / 32.0;
+
+/// Rounding of lengths, as a share of the lengths that they are computed from.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Sides of polygons are off by so many times as much as the lines that they lie on.
+const ROUNDED_SIDES: f64 = 64.0;
+
+/// Inside is where `normal · x + offset + rise · height`, plus half the width of a strip, is not negative.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    normal: P2,
+    offset: f64,
+    rise: f64,
+    /// The length of the normal.
+    size: f64,
+    /// The strip that it is a side of, if of any.
+    strip: Option<usize>,
+}
+
+/// A corner of a polygon, and the line of the side after it.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    at: P2,
+    line: u8,
+}
+
+type Corners = Vec<Corner, MOST_CORNERS>;
+
+/// Half the widths of both strips at a height, and by how much these grow with it.
+struct Strips {
+    half: P2,
+    growth: P2,
+}
+
+/// What a plane has of both pipes in the box.
+#[derive(Clone, Copy, Debug)]
+enum Polygon {
+    /// Bounds of the square root of its area; by how much that grows with the height, and by how much that growth may be off: no numbers where that is
+    /// not known.
+    Some { root: P2, rise: P2 },
+    /// Nothing, and there is nothing up to another height either; none if that is not known.
+    Nothing(Option<Beyond>),
+}
+
+/// Heights at which there is nothing.
+#[derive(Clone, Copy, Debug)]
+enum Beyond {
+    Below(f64),
+    Above(f64),
+    All,
+}
+
+/// What a plane at a height tells: bounds of the square root of its area, and by how much that grows with the height and may be off; no numbers where
+/// that is not known.
+#[derive(Clone, Copy)]
+struct Sample {
+    at: f64,
+    root: P2,
+    rise: P2,
+    beyond: Option<Beyond>,
+}
+
+impl Sample {
+    /// Its tangent's values here and so far from here; none if it is not known.
+    fn tangent(&self, far: f64) -> Option<P2> {
+        let there = self.root[1] + self.rise[0] * far + self.rise[1] * far.abs();
+        there.is_finite().then_some([self.root[1], there])
+    }
+
+    /// The line through what is certain of another sample and through this one, here and in a third place: an upper bound beyond this one.
+    fn line(&self, other: Option<&Self>, at: f64) -> Option<P2> {
+        let other = other.filter(|o| o.root[0] > 0.0)?;
+        let there = self.root[1] + (self.root[1] - other.root[0]) / (self.at - other.at) * (at - self.at);
+        there.is_finite().then_some([self.root[1], there])
+    }
+
+    /// Bounds of the volume from here to a higher plane, of areas up to `most`; samples below and above may help.
+    fn between(&self, to: &Self, [below, above]: [Option<&Self>; 2], most: f64) -> P2 {
+        let nothing = matches!(self.beyond, Some(Beyond::Above(_) | Beyond::All))
+            || matches!(to.beyond, Some(Beyond::Below(_) | Beyond::All));
+        if nothing {
+            return [0.0; 2];
+        }
+        let width = to.at - self.at;
+        let ahead = self.tangent(width).or_else(|| self.line(below, to.at));
+        let back = to.tangent(-width).or_else(|| to.line(above, self.at)).map(|[near, far]| [far, near]);
+        let high = lowest([ahead, back], Real::sqrt(most)) * width;
+        let both = self.root[0] > 0.0 && to.root[0] > 0.0;
+        [if both { squares(self.root[0], to.root[0]) * width } else { 0.0 }, high]
+    }
+}
+
+/// Two pipes that cross in a box.
+#[derive(Debug)]
+pub(super) struct Crossing {
+    radii: P2,
+    /// The heights of both axes.
+    axes: P2,
+    lines: Vec<Line, MOST_LINES>,
+    /// How long the first strip is, at most.
+    along: P2,
+    /// Heights between which both pipes and the box lie.
+    heights: P2,
+    /// By how much rounding may move a side.
+    noise: f64,
+}
+
+/// Radius, axis, and centre and inward sense of both ends, of a cylinder.
+struct Pipe {
+    radius: f64,
+    axis: P3,
+    /// From the middle of the box to the nearest point of the axis.
+    foot: P3,
+    /// Ends along the axis, from that point.
+    ends: P2,
+    reach: f64,
+}
+
+impl Pipe {
+    fn new(part: &Part, extent: &[P2; 3]) -> Option<Self> {
+        let Wall::Cylinder { radius } = part.curved.wall else { return None };
+        let axis = part.curved.axis;
+        let from = Axis::ALL.map(|n| 0.5 * ((extent[n][0] - part.origin[n]) + (extent[n][1] - part.origin[n])));
+        let along = space::dot(from, axis);
+        let foot = Axis::ALL.map(|n| along * axis[n] - from[n]);
+        let mut ends = [f64::NEG_INFINITY, f64::INFINITY];
+        for end in part.ends.iter().flatten() {
+            let at = space::dot(end.shift, axis) - along;
+            if space::dot(end.inward, axis) > 0.0 { ends[0] = ends[0].max(at) } else { ends[1] = ends[1].min(at) }
+        }
+        let reach = from.iter().map(|x| x.abs()).sum::<f64>() + radius;
+        reach.is_finite().then_some(Pipe { radius, axis, foot, ends, reach })
+    }
+}
+
+impl Crossing {
+    /// Of two parts in a box; none if they are no pipes, or nearly parallel.
+    fn new(parts: [&Part; 2], extent: &[P2; 3]) -> Option<Self> {
+        let [one, other] = [Pipe::new(parts[0], extent)?, Pipe::new(parts[1], extent)?];
+        let across = space::cross(one.axis, other.axis);
+        let sine = space::length(across);
+        if !(sine > LEAST_SINE) {
+            return None;
+        }
+        // Rounding leaves it less upright to the axes than its length allows; upright to the first it is to the second too.
+        let (lean, up) = (space::dot(across, one.axis), across);
+        let up = space::unit(Axis::ALL.map(|n| up[n] - lean * one.axis[n]))?;
+        let aside = space::cross(up, one.axis);
+        let across = space::cross(up, other.axis);
+        // Points of a plane by their places along the first axis and beside it, from that axis.
+        let in_plane = |v: P3| [space::dot(v, one.axis), space::dot(v, aside)];
+        let apart = space::sub(other.foot, one.foot);
+        let (axes, radii) = ([0.0, space::dot(apart, up)], [one.radius, other.radius]);
+        let half = Axis::ALL.map(|n| 0.5 * (extent[n][1] - extent[n][0]));
+        let size = half[0] + half[1] + half[2];
+        let noise = ROUNDING * (one.reach + other.reach + size);
+        let middle = -space::dot(one.foot, up);
+        // Nothing is to be seen of a box that rounding may close.
+        if !half.iter().all(|h| *h > 16.0 * ROUNDED_SIDES * noise) {
+            return None;
+        }
+        let tall = half[0] * up[0].abs() + half[1] * up[1].abs() + half[2] * up[2].abs();
+        let heights = [
+            (-one.radius).max(axes[1] - other.radius).max(middle - tall),
+            one.radius.min(axes[1] + other.radius).min(middle + tall),
+        ];
+        let mut found = Crossing { radii, axes, lines: Vec::new(), along: [0.0; 2], heights, noise };
+        // The second strip, which limits the first one along its axis; so do its ends, and the box.
+        let normal = in_plane(across);
+        let place = dot(normal, in_plane(apart));
+        let within = |middle: f64, half: f64, ends: P2| [ends[0].max(middle - half), ends[1].min(middle + half)];
+        let long = (other.radius + normal[1].abs() * one.radius) / normal[0].abs();
+        let along = within(-space::dot(one.foot, one.axis), size, one.ends);
+        found.along = within(place / normal[0], long + noise / sine, along);
+        found.add_first();
+        for sign in [1.0, -1.0] {
+            found.add(normal.map(|x| x * sign), -place * sign, 0.0, Some(1));
+        }
+        let (normal, from) = (in_plane(other.axis), space::dot(apart, other.axis));
+        found.add(normal, -from - other.ends[0], 0.0, None);
+        found.add(normal.map(|x| -x), from + other.ends[1], 0.0, None);
+        for n in Axis::ALL {
+            let normal = [one.axis[n], aside[n]];
+            found.add(normal, half[n] + one.foot[n], up[n], None);
+            found.add(normal.map(|x| -x), half[n] - one.foot[n], -up[n], None);
+        }
+        let finite = found.heights.iter().chain(&found.along).all(|x| x.is_finite());
+        finite.then_some(found)
+    }
+
+    /// Bounds of the volume that two parts have in common in a box, about `enough` apart; none if they are no pipes, or nearly parallel, or it takes too many
+    /// planes. Not inlined: what it needs of the stack others need not carry.
+    #[inline(never)]
+    pub fn volume<'a>(mut parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3], enough: f64) -> Option<P2> {
+        let mut crossing = Self::new([parts.next()?, parts.next()?], extent)?;
+        if !crossing.narrow(0.25 * enough)? {
+            return Some([0.0, 0.25 * enough]);
+        }
+        let (long, [most, outline]) = (crossing.heights[1] - crossing.heights[0], crossing.most());
+        let rounded = 4.0 * crossing.noise * (outline * long + 2.0 * most);
+        let enough = (enough - 2.0 * rounded).max(0.5 * enough);
+        // About as many planes as it takes.
+        let planes = Real::sqrt(most * long / enough);
+        let mut least = 1.0 / (32.0 + 2.0 * planes);
+        let planes = (PLANES * planes).clamp(512.0, MOST_PLANES) as usize;
+        for _ in 0..MOST_TIMES {
+            let ([low, high], steps) = crossing.between_planes(most, enough, least, planes);
+            if high - low <= enough {
+                return Some([(low - rounded).max(0.0), high + rounded]);
+            }
+            if steps >= planes {
+                break;
+            }
+            least *= 0.125;
+        }
+        None
+    }
+
+    /// The same by planes such that the bounds between two of them are apart by no more than the share of the heights and the `least` share of
+    /// what is enough; and how many planes that took, `planes` at most.
+    fn between_planes(&self, most: f64, enough: f64, least: f64, planes: usize) -> (P2, usize) {
+        let [first, last] = self.heights;
+        let mut waiting: Vec<Sample, MOST_WAITING> = Vec::new();
+        let _ = waiting.push(self.sample(last, most));
+        let (mut below, mut a): (Option<Sample>, _) = (None, self.sample(first, most));
+        let (mut steps, mut found) = (0, [0.0; 2]);
+        while let Some(b) = waiting.last() {
+            let above = waiting.len().checked_sub(2).and_then(|n| waiting.get(n));
+            let [low, high] = a.between(b, [below.as_ref(), above], most);
+            let width = b.at - a.at;
+            let far = high - low > enough * (0.5 * (width / (last - first)) + least);
+            let middle = a.at + 0.5 * width;
+            if far && steps < planes && !waiting.is_full() && a.at < middle && middle < b.at {
+                steps += 1;
+                let _ = waiting.push(self.sample(middle, most));
+            } else {
+                found = [found[0] + low, found[1] + high];
+                (below, a) = (Some(a), *b);
+                let _ = waiting.pop();
+            }
+        }
+        (found, steps)
+    }
+
+    fn sample(&self, at: f64, most: f64) -> Sample {
+        let unknown = Sample { at, root: [0.0, Real::sqrt(most)], rise: [f64::NAN; 2], beyond: None };
+        match self.polygon(at) {
+            Polygon::Some { root, rise } => Sample { root, rise, ..unknown },
+            Polygon::Nothing(None) => unknown,
+            Polygon::Nothing(beyond) => Sample { root: [0.0; 2], beyond, ..unknown },
+        }
+    }
+
+    /// The sides of the first strip between its ends, in the order of [`Crossing::first`].
+    fn add_first(&mut self) {
+        let [from, to] = self.along;
+        let side = |normal: P2, offset: f64, strip: Option<usize>| Line { normal, offset, rise: 0.0, size: 1.0, strip };
+        let sides = [
+            side([0.0, 1.0], 0.0, Some(0)),
+            side([-1.0, 0.0], to, None),
+            side([0.0, -1.0], 0.0, Some(0)),
+            side([1.0, 0.0], -from, None),
+        ];
+        self.lines.extend(sides);
+    }
+
+    /// Adds a line, unless all of the first strip is inside; one that is the same all along a plane limits the heights.
+    fn add(&mut self, normal: P2, offset: f64, rise: f64, strip: Option<usize>) {
+        let [low, high] = self.heights;
+        let far = self.along[0].abs().max(self.along[1].abs());
+        let wide = normal[0].abs() * far + normal[1].abs() * self.radii[0];
+        if strip.is_none() {
+            let along = (normal[0] * self.along[0]).min(normal[0] * self.along[1]);
+            let least = offset + (rise * low).min(rise * high) + along - normal[1].abs() * self.radii[0];
+            if least >= -self.noise {
+                return;
+            }
+            if wide <= self.noise && rise != 0.0 {
+                let at = -offset / rise;
+                self.heights = if rise > 0.0 { [low.max(at), high] } else { [low, high.min(at)] };
+                return;
+            }
+        }
+        let _ = self.lines.push(Line { normal, offset, rise, size: Real::sqrt(dot(normal, normal)), strip });
+    }
+
+    /// Of all heights, the largest area that there can be, and the longest outline.
+    fn most(&self) -> P2 {
+        let [long, wide] = [(self.along[1] - self.along[0]).max(0.0), 2.0 * self.radii[0]];
+        [long * wide, 2.0 * (long + wide)]
+    }
+
+    fn strips(&self, height: f64) -> Strips {
+        let (mut half, mut growth) = ([0.0; 2], [0.0; 2]);
+        for n in 0..2 {
+            let off = height - self.axes[n];
+            half[n] = Real::sqrt(((self.radii[n] - off) * (self.radii[n] + off)).max(0.0));
+            growth[n] = -off / half[n];
+        }
+        Strips { half, growth }
+    }
+
+    /// By how much a line moves outward as the height grows, in units of its normal.
+    fn growth(line: &Line, strips: &Strips) -> f64 {
+        line.rise + line.strip.map_or(0.0, |n| strips.growth[n & 1])
+    }
+
+    /// What a plane has of the first strip between its ends.
+    fn first(&self, half: f64) -> Corners {
+        let [from, to] = self.along;
+        let mut corners = Corners::new();
+        for (at, line) in [([from, -half], 0), ([to, -half], 1), ([to, half], 2), ([from, half], 3)] {
+            let _ = corners.push(Corner { at, line });
+        }
+        corners
+    }
+
+    /// What both have in common in the plane at a height.
+    fn polygon(&self, height: f64) -> Polygon {
+        let strips = self.strips(height);
+        if !(strips.half[0] > 0.0 && strips.half[1] > 0.0 && self.along[0] < self.along[1]) {
+            return Polygon::Nothing(None);
+        }
+        let mut corners = self.first(strips.half[0]);
+        for (number, line) in self.lines.iter().enumerate().skip(4) {
+            let offset = line.offset + line.rise * height + line.strip.map_or(0.0, |n| strips.half[n & 1]);
+            match cut(&corners, line.normal, offset, number as u8) {
+                Cut::All => {}
+                Cut::Part(kept) => corners = kept,
+                Cut::None(nearest) => return Polygon::Nothing(self.beyond(height, &strips, number, nearest)),
+            }
+        }
+        self.measured(&corners, &strips)
+    }
+
+    /// Area, and by how much it grows: the length of each side, as often as that moves outward.
+    fn measured(&self, corners: &Corners, strips: &Strips) -> Polygon {
+        let (mut area, mut rise) = (0.0, 0.0);
+        let (mut outline, mut speed) = (0.0, 0.0);
+        let Some(base) = corners.first() else { return Polygon::Nothing(None) };
+        for (n, corner) in corners.iter().enumerate() {
+            let Some(next) = corners.get(n + 1).or(corners.first()) else { break };
+            let side = sub(next.at, corner.at);
+            area += 0.5 * cross(sub(corner.at, base.at), side);
+            let Some(line) = self.lines.get(usize::from(corner.line)) else { break };
+            let growth = Self::growth(line, strips);
+            let length = Real::sqrt(dot(side, side));
+            outline += length;
+            if growth != 0.0 {
+                let growth = growth / line.size;
+                rise += growth * length;
+                speed += growth.abs();
+            }
+        }
+        if !(area > 0.0) {
+            return Polygon::Nothing(None);
+        }
+        // Of small polygons rounding turns the sides.
+        let rounded = ROUNDED_SIDES * self.noise;
+        let room = rounded * outline;
+        let off = rounded * (speed + rise.abs() * (outline / area));
+        let root = [(area - room).max(0.0), area + room].map(Real::sqrt);
+        let rise = if area > 16.0 * room { [rise, off].map(|r| 0.5 * r / root[0]) } else { [f64::NAN; 2] };
+        Polygon::Some { root, rise: [rise[0], rise[1] + rise[0].abs() * (room / area)] }
+    }
+
+    /// Heights at which there is nothing because a line leaves nothing of a polygon of which a corner, between two other lines, is the nearest to
+    /// it: if the line's normal is a sum of theirs, turned and not negative, then so is what the line leaves at any height, at most.
+    fn beyond(&self, height: f64, strips: &Strips, number: usize, [before, after]: [u8; 2]) -> Option<Beyond> {
+        let line = self.lines.get(number)?;
+        let [one, other] = [self.lines.get(usize::from(before))?, self.lines.get(usize::from(after))?];
+        let turned = cross(one.normal, other.normal);
+        let shares = [cross(other.normal, line.normal) / turned, cross(line.normal, one.normal) / turned];
+        if !shares.iter().all(|s| s.is_finite() && *s >= -1e-12) {
+            return None;
+        }
+        let offset = |l: &Line| l.offset + l.rise * height + l.strip.map_or(0.0, |n| strips.half[n & 1]);
+        let sum = |of: &dyn Fn(&Line) -> f64| of(line) + shares[0] * of(one) + shares[1] * of(other);
+        let missing = -sum(&offset) - self.noise * (1.0 + shares[0].abs() + shares[1].abs());
+        let growth = sum(&|l| Self::growth(l, strips));
+        match missing / growth {
+            _ if !(missing > 0.0) => None,
+            _ if growth == 0.0 => Some(Beyond::All),
+            way if way > 0.0 => Some(Beyond::Below(height + way)),
+            way if way < 0.0 => Some(Beyond::Above(height + way)),
+            _ => None,
+        }
+    }
+
+    /// Narrows the heights to where there may be something, until there is; false if there is nothing but for a volume that does not count.
+    /// None if that takes too long.
+    fn narrow(&mut self, enough: f64) -> Option<bool> {
+        let [most, _] = self.most();
+        for _ in 0..MOST_TRIES {
+            let [low, high] = self.heights;
+            if !((high - low) * most > enough) {
+                return Some(false);
+            }
+            let middle = 0.5 * (low + high);
+            match self.polygon(middle) {
+                Polygon::Some { .. } => {
+                    self.narrow_ends();
+                    return Some(true);
+                }
+                Polygon::Nothing(None) => return None,
+                Polygon::Nothing(Some(Beyond::All)) => self.heights = [low, low],
+                Polygon::Nothing(Some(Beyond::Below(at))) => self.heights = [at.max(middle), high],
+                Polygon::Nothing(Some(Beyond::Above(at))) => self.heights = [low, at.min(middle)],
+            }
+        }
+        None
+    }
+
+    /// Narrows the heights from both ends to where there is something not far from there: as Newton's method does, by tangents of what is missing.
+    fn narrow_ends(&mut self) {
+        for end in 0..2 {
+            for _ in 0..MOST_STEPS {
+                let [low, high] = self.heights;
+                let near = self.heights[end] + (self.heights[1 - end] - self.heights[end]) * NEAR_END;
+                let at = match (end, self.polygon(near)) {
+                    (0, Polygon::Nothing(Some(Beyond::Below(at)))) => at.limited(near, high),
+                    (1, Polygon::Nothing(Some(Beyond::Above(at)))) => at.limited(low, near),
+                    _ => break,
+                };
+                self.heights[end] = at;
+            }
+        }
+    }
+}
+
+/// What a line leaves of a polygon.
+#[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
+enum Cut {
+    All,
+    Part(Corners),
+    /// Nothing: the lines before and after the corner that is nearest to it.
+    None([u8; 2]),
+}
+
+/// The part of a polygon where `normal · x + offset` is not negative; its side along that line gets a number.
+fn cut(corners: &Corners, normal: P2, offset: f64, number: u8) -> Cut {
+    let mut values: Vec<f64, MOST_CORNERS> = Vec::new();
+    let (mut inside, mut nearest) = (0, (f64::NEG_INFINITY, 0));
+    for (n, corner) in corners.iter().enumerate() {
+        let value = dot(normal, corner.at) + offset;
+        inside += usize::from(value >= 0.0);
+        if value > nearest.0 {
+            nearest = (value, n);
+        }
+        let _ = values.push(value);
+    }
+    if inside == corners.len() {
+        return Cut::All;
+    }
+    if inside == 0 {
+        let line = |n: usize| corners.get(n).map_or(0, |c| c.line);
+        let last = corners.len().saturating_sub(1);
+        return Cut::None([line(nearest.1.checked_sub(1).unwrap_or(last)), line(nearest.1)]);
+    }
+    let mut kept = Corners::new();
+    let next = |n: usize| if n + 1 < corners.len() { n + 1 } else { 0 };
+    for (n, (corner, &here)) in corners.iter().zip(&values).enumerate() {
+        let (Some(to), Some(&there)) = (corners.get(next(n)), values.get(next(n))) else { break };
+        if here >= 0.0 {
+            let _ = kept.push(*corner);
+        }
+        if (here >= 0.0) != (there >= 0.0) {
+            let line = if here >= 0.0 { number } else { corner.line };
+            let _ = kept.push(Corner { at: on_way(corner.at, to.at, here / (here - there)), line });
+        }
+    }
+    Cut::Part(kept)
+}
