@@ -21,5 +21,4 @@ pub mod random;
 pub mod recipe;
 pub mod solids;
 pub mod truth;
-pub mod turned;
 pub mod unzip;
