@@ -2,6 +2,7 @@
 //!
 //! - [`real`]: `f32` and `f64`, and the vectors of glam over them, from one text
 //! - [`aabb`]: axis-aligned boxes
+//! - [`kronrod`]: integrals with an estimate of their error
 //! - [`words`]: words for exact integers of their values
 //! - `axis`: the coordinate axes, as indices that need no check
 //! - `plane`: points of planes across an axis, as arrays
@@ -10,6 +11,7 @@
 
 pub mod aabb;
 pub(crate) mod axis;
+pub mod kronrod;
 pub(crate) mod plane;
 pub mod real;
 #[cfg(not(feature = "std"))]

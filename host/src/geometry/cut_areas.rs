@@ -10,6 +10,7 @@ use super::form::Form;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use voidage_core::number::aabb::Aabb;
+use voidage_core::number::kronrod::{panel, plus};
 use voidage_core::solids::torus::TorusShape;
 use voidage_core::surface::surface_area::SurfaceArea;
 
@@ -25,24 +26,8 @@ const PARALLEL: f64 = 1e-28;
 /// An end this near to a plane, as a share of the box, lies in it.
 const IN_PLANE: f64 = 1e-12;
 
-/// Nodes and weights of Kronrod's rule of fifteen points, and of Gauss' in every other node; the last is the middle.
-const NODES: [[f64; 3]; 8] = [
-    [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
-    [0.949_107_912_342_758_5, 0.063_092_092_629_978_56, 0.129_484_966_168_869_7],
-    [0.864_864_423_359_769_1, 0.104_790_010_322_250_18, 0.0],
-    [0.741_531_185_599_394_4, 0.140_653_259_715_525_92, 0.279_705_391_489_276_64],
-    [0.586_087_235_467_691_1, 0.169_004_726_639_267_9, 0.0],
-    [0.405_845_151_377_397_2, 0.190_350_578_064_785_4, 0.381_830_050_505_118_9],
-    [0.207_784_955_007_898_47, 0.204_432_940_075_298_9, 0.0],
-    [0.0, 0.209_482_141_084_727_82, 0.417_959_183_673_469_4],
-];
-
 /// Areas along x, y and z, not yet halved, and the wetted area.
 type Sums = [f64; 4];
-
-fn plus(a: Sums, b: Sums, factor: f64) -> Sums {
-    std::array::from_fn(|n| a[n] + b[n] * factor)
-}
 
 /// What the surface of a curved solid has inside a box, in m²; none of solids that are bounded by planes. Surface in the plane of a side has no frontal
 /// area, and is wetted if its normal points into the box. Within 1e-10 of the largest side of the box.
@@ -516,12 +501,7 @@ impl Cuts {
 
 /// The integral of `at` from one place to another. Calls itself for halves, at most so many levels deep.
 fn summed(at: &mut dyn FnMut(f64) -> Sums, [from, to]: [f64; 2], tolerance: f64, halvings: u32) -> Sums {
-    let (middle, half) = ((from + to) * 0.5, (to - from) * 0.5);
-    let (mut fine, mut coarse) = ([0.0; 4], [0.0; 4]);
-    for [node, kronrod, gauss] in NODES {
-        let both = if node == 0.0 { at(middle) } else { plus(at(middle - half * node), at(middle + half * node), 1.0) };
-        (fine, coarse) = (plus(fine, both, kronrod * half), plus(coarse, both, gauss * half));
-    }
+    let (middle, [fine, coarse]) = ((from + to) * 0.5, panel([from, to], &mut *at));
     let error = (0..4).map(|n| (fine[n] - coarse[n]).abs()).fold(0.0, f64::max);
     if !(error > tolerance) || halvings == 0 {
         return fine;

@@ -19,6 +19,24 @@ fn widened([lo, hi]: Extent) -> Extent {
     [lo - margin, hi + margin]
 }
 
+/// A part of the axis of a cylinder or cone, by shares of the way between its ends, and the largest radius.
+struct Stretch {
+    ends: [[f64; 3]; 2],
+    radius: f64,
+    shares: [f64; 2],
+}
+
+impl Stretch {
+    /// How far along an axis of the grid the part's surface may be from here.
+    #[inline]
+    fn extent(&self, part: &Part, axis: Axis) -> Extent {
+        let [a, b] = self.ends;
+        let [s, t] = self.shares.map(|share| a[axis] + share.clamp(0.0, 1.0) * (b[axis] - a[axis]));
+        let reach = self.radius * part.curved.across[axis];
+        widened([s.min(t) - reach, s.max(t) + reach])
+    }
+}
+
 impl Part {
     /// Along an axis.
     pub fn extent(&self, axis: Axis) -> Extent {
@@ -42,6 +60,26 @@ impl Part {
         ([center(one), center(other)], radius(one).max(radius(other)))
     }
 
+    /// The stretch of the axis from which it may reach between planes across some axes; none if it reaches nothing there.
+    #[inline]
+    fn stretch(&self, limits: impl Iterator<Item = (Axis, Extent)>) -> Option<Stretch> {
+        let ([a, b], radius) = self.segment();
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for (axis, limits) in limits {
+            let reach = radius * self.curved.across[axis];
+            let [lo, hi] = widened([limits[0] - reach, limits[1] + reach]);
+            let along = b[axis] - a[axis];
+            if along != 0.0 {
+                let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
+                (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
+            } else if a[axis] < lo || a[axis] > hi {
+                return None;
+            }
+        }
+        let margin = MARGIN * (1.0 + first.abs() + last.abs());
+        (first <= last + margin).then_some(Stretch { ends: [a, b], radius, shares: [first - margin, last + margin] })
+    }
+
     /// Where it may be in a box, which it reaches; limits in the wrong order if it does not.
     pub fn extent_within(&self, place: [Extent; 3]) -> [Extent; 3] {
         let around: [Extent; 3] = match &self.curved.wall {
@@ -62,28 +100,8 @@ impl Part {
                 })
             }
             Wall::Cylinder { .. } | Wall::Cone { .. } => {
-                let ([a, b], radius) = self.segment();
-                let reach = self.curved.across.map(|across| radius * across);
-                let (mut first, mut last) = (0.0_f64, 1.0_f64);
-                for n in Axis::ALL {
-                    let [lo, hi] = widened([place[n][0] - reach[n], place[n][1] + reach[n]]);
-                    let along = b[n] - a[n];
-                    if along != 0.0 {
-                        let (s, t) = ((lo - a[n]) / along, (hi - a[n]) / along);
-                        (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
-                    } else if a[n] < lo || a[n] > hi {
-                        last = f64::NEG_INFINITY;
-                    }
-                }
-                let margin = MARGIN * (1.0 + first.abs() + last.abs());
-                if !(first <= last + margin) {
-                    return NOWHERE;
-                }
-                Axis::ALL.map(|n| {
-                    let at = |t: f64| a[n] + t.clamp(0.0, 1.0) * (b[n] - a[n]);
-                    let (s, t) = (at(first - margin), at(last + margin));
-                    widened([s.min(t) - reach[n], s.max(t) + reach[n]])
-                })
+                let Some(stretch) = self.stretch(Axis::ALL.into_iter().zip(place)) else { return NOWHERE };
+                Axis::ALL.map(|n| stretch.extent(self, n))
             }
         };
         Axis::ALL.map(|n| [place[n][0].max(around[n][0]), place[n][1].min(around[n][1])])
@@ -104,29 +122,8 @@ impl Part {
                 (square >= 0.0).then(|| widened([self.origin[0] - reach, self.origin[0] + reach]))
             }
             Wall::Cylinder { .. } | Wall::Cone { .. } => {
-                let ([a, b], radius) = self.segment();
-                let (mut first, mut last) = (0.0_f64, 1.0_f64);
-                for (axis, extent) in [(Axis::Y, y), (Axis::Z, z)] {
-                    let reach = radius * self.curved.across[axis];
-                    let [lo, hi] = widened([extent[0] - reach, extent[1] + reach]);
-                    let along = b[axis] - a[axis];
-                    if along == 0.0 {
-                        if a[axis] < lo || a[axis] > hi {
-                            return None;
-                        }
-                        continue;
-                    }
-                    let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
-                    (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
-                }
-                let margin = MARGIN * (1.0 + first.abs() + last.abs());
-                if !(first <= last + margin) {
-                    return None;
-                }
-                let at = |t: f64| a[0] + t.clamp(0.0, 1.0) * (b[0] - a[0]);
-                let (s, t) = (at(first - margin), at(last + margin));
-                let reach = radius * self.curved.across[0];
-                Some(widened([s.min(t) - reach, s.max(t) + reach]))
+                let stretch = self.stretch([(Axis::Y, y), (Axis::Z, z)].into_iter())?;
+                Some(stretch.extent(self, Axis::X))
             }
         }
     }

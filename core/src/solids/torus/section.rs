@@ -12,6 +12,7 @@ use super::disc::{self, Polygon};
 use super::ring::{Ring, ahead, length2};
 use super::touching::{Events, Lines, azimuths, chord};
 use crate::number::axis::Axis;
+use crate::number::kronrod::{panel, plus};
 use crate::number::plane::{self, P2};
 use crate::number::real::Real;
 use crate::number::space::P3;
@@ -85,24 +86,8 @@ const MEASURED: f64 = 1e-10;
 /// Kronrod's, which is used, is far smaller.
 const ERROR: f64 = 1e-12;
 
-/// Nodes and weights of Kronrod's rule, and of Gauss' in every other node; the last is the middle.
-const NODES: [[f64; 3]; 8] = [
-    [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
-    [0.949_107_912_342_758_5, 0.063_092_092_629_978_56, 0.129_484_966_168_869_7],
-    [0.864_864_423_359_769_1, 0.104_790_010_322_250_18, 0.0],
-    [0.741_531_185_599_394_4, 0.140_653_259_715_525_92, 0.279_705_391_489_276_64],
-    [0.586_087_235_467_691_1, 0.169_004_726_639_267_9, 0.0],
-    [0.405_845_151_377_397_2, 0.190_350_578_064_785_4, 0.381_830_050_505_118_9],
-    [0.207_784_955_007_898_47, 0.204_432_940_075_298_9, 0.0],
-    [0.0, 0.209_482_141_084_727_82, 0.417_959_183_673_469_4],
-];
-
 /// Length of the runs of a line, their moment and their flux.
 type Sums = [f64; 3];
-
-fn plus(a: Sums, b: Sums, factor: f64) -> Sums {
-    [a[0] + b[0] * factor, a[1] + b[1] * factor, a[2] + b[2] * factor]
-}
 
 impl Ring {
     /// What the solid has of a rectangle; the azimuth of the flux counts from the rectangle's middle, or from a reference.
@@ -344,13 +329,7 @@ impl LinesOfFace<'_> {
         let (mut total, mut worst, mut panels) = ([0.0; 3], 0.0, 0);
         while let Some((lo, hi, depth)) = waiting.pop() {
             panels += 1;
-            let (m, w) = ((lo + hi) * 0.5, (hi - lo) * 0.5);
-            let (mut fine, mut coarse) = ([0.0; 3], [0.0; 3]);
-            for [x, weight, rough] in NODES {
-                let values = if x == 0.0 { at(m) } else { plus(at(m - w * x), at(m + w * x), 1.0) };
-                fine = plus(fine, values, weight * w);
-                coarse = plus(coarse, values, rough * w);
-            }
+            let (m, [fine, coarse]) = ((lo + hi) * 0.5, panel([lo, hi], at));
             let apart = scale(plus(fine, coarse, -1.0));
             let enough =
                 !(apart > ERROR) || panels >= MOST_PANELS || depth >= MOST_HALVINGS || waiting.len() + 2 > WAITING;
