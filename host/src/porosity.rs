@@ -117,7 +117,7 @@ fn in_frame(
     });
     let mut joined = levels::join(&levels, unions);
     doubt::allow_for_rounding(grid, bodies, options, &mut joined);
-    doubt::widen_beside_holes(grid, bodies, options, &mut joined);
+    doubt::widen_unknown(grid, bodies, options, &mut joined);
     doubt::widen(grid, bodies, options, &mut joined);
     joined
 }

@@ -359,8 +359,8 @@ impl Scene {
     }
 }
 
-/// Boxes with corners on a lattice; `hollow`: with one more inside one of them, which looks the other way and may touch it from within.
-fn bricks(rng: &mut Random, side: usize, flips: bool, hollow: bool) -> Vec<Brick> {
+/// Boxes with corners on a lattice of `side` steps of 4 units; `hollow`: with one more inside one of them, which looks the other way and may touch it from within.
+pub(crate) fn bricks(rng: &mut Random, side: usize, flips: bool, hollow: bool) -> Vec<Brick> {
     let corner = |rng: &mut Random| [0; 3].map(|_: i64| 4 * rng.below(side + 1) as i64);
     let mut bricks: Vec<Brick> = Vec::new();
     let count = 1 + rng.below(6);

@@ -21,4 +21,5 @@ pub mod random;
 pub mod recipe;
 pub mod solids;
 pub mod truth;
+pub mod turned;
 pub mod unzip;

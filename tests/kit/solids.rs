@@ -177,7 +177,7 @@ pub fn formulas(forms: &[Form]) -> Bodies {
         cavities: 0,
         doubt: Doubt::None,
         rounding: 0.0,
-        uneven: Vec::new(),
+        unknown: Vec::new(),
         sheet: false,
         drag: OwnDrag::default(),
     };

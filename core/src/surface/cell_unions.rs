@@ -102,12 +102,16 @@ const MOST_EFFORT: usize = 1 << 17;
 /// Where halving thins a cell, six levels sort each triangle some thirty times, which is some sixty times those of its first part.
 const MOST_TIMES: usize = 64;
 
+/// A try for a union that gives no proof costs as much as sorting so many times its triangles. Where bodies miss each other by rounding, or wind around
+/// nothing, each part along their surface is tried with every blur.
+const TRY: usize = 2;
+
 /// What the division of a cell has cost.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
     /// Depth of the part at hand; 0 for a whole cell.
     level: u32,
-    /// Triangles sorted for parts of this cell.
+    /// Triangles sorted for parts of this cell, and those of tries that gave no proof.
     triangles: usize,
     /// So many may be.
     most: usize,
@@ -346,8 +350,10 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     if shared.others.reach(cell) {
         return None;
     }
-    with_least_blur(shared.tol, |blur| {
+    let mut tried = 0_usize;
+    let found = with_least_blur(shared.tol, |blur| {
         let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
+        tried = tried.saturating_add(bodies.piece_count());
         let mut surface = P::Found::default();
         let found = bodies.cell_and_surface(&mut |kept| {
             if P::WANTED {
@@ -361,7 +367,11 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
         let error = found.error;
         let refined = Refined::from_union(found);
         if believed(&refined) { Ok(((refined, surface), error)) } else { Err(NoProof::Ambiguous) }
-    })
+    });
+    if found.is_none() {
+        shared.effort.triangles = shared.effort.triangles.saturating_add(tried.saturating_mul(TRY));
+    }
+    found
 }
 
 /// Areas of a cell's sides normal to x, y and z.

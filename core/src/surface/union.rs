@@ -208,6 +208,11 @@ impl<'a, R: Real> CellUnion<'a, R> {
         Ok(())
     }
 
+    /// So many pieces of surface have been added.
+    pub fn piece_count(&self) -> usize {
+        self.piece_count
+    }
+
     /// Build the trees of the bodies added since the last time; not before it is known that all their pieces find room.
     fn build_trees(&mut self) -> Result<(), NoProof> {
         for n in self.built..self.part_count {

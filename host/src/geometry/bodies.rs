@@ -9,7 +9,7 @@ use crate::geometry::form::Form;
 use crate::geometry::mesh::{LARGEST, Mesh};
 use crate::geometry::repair::copies;
 use crate::geometry::repair::crossing::{self, Found};
-use crate::geometry::repair::edges::EdgeUses;
+use crate::geometry::repair::edges::{EdgeUses, Use, key};
 use crate::geometry::repair::junctions;
 pub use crate::geometry::repair::nesting::Doubt;
 use crate::geometry::repair::nesting::{self, Closed, Role};
@@ -67,9 +67,9 @@ pub struct Body {
     pub doubt: Doubt,
     /// How far corners may be off where surfaces crossed and were cut; 0 if none were.
     pub rounding: f64,
-    /// Boxes around rims of holes that are not plane: what lies between rim and cap may be solid or open.
+    /// Boxes in which it is not known what is solid: around rims of holes that are not plane, and around parts that may have each other's triangles.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub uneven: Vec<[DVec3; 2]>,
+    pub unknown: Vec<[DVec3; 2]>,
     /// No volume: a sheet, which blocks faces where it lies in their plane.
     pub sheet: bool,
     /// Drag given for it, in place of what a law says of its shape.
@@ -163,13 +163,14 @@ impl Bodies {
         let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
         let rounding = rounding(d.bounds, mesh.single_precision);
         let cleaned = clean(&scaled, solid_of, rounding, &mut d, &mut report);
-        let Some(Cleaned { mesh: indexed, shells, clusters }) = cleaned else {
+        let Some(Cleaned { mesh: indexed, shells, clusters, all_uses }) = cleaned else {
             let reason = format!("all triangles ({}) are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
         let name_of =
             |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
-        let closed = close(&indexed, &shells, name_of, rounding, &mut d, &mut report);
+        let contested = |edge: &[u32; 2]| all_uses.as_ref().is_some_and(|uses| is_contested(&indexed, uses, *edge));
+        let closed = close(&indexed, &shells, name_of, contested, rounding, &mut d, &mut report);
         let known = clusters.into_iter().map(|c| c.into_part(&indexed, name_of)).collect();
         let closed = resolve(closed, known, &scaled, &mut d, &mut report);
         say_copies(&d, &mut report);
@@ -208,7 +209,7 @@ impl Bodies {
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
             let rounding = joined.iter().fold(shell.rounding, |most, cavity| most.max(cavity.rounding));
             let doubt = if clear { shell.doubt } else { Doubt::Unknown };
-            let uneven = joined.iter().chain([shell]).flat_map(|s| s.uneven.iter().copied()).collect();
+            let unknown = joined.iter().chain([shell]).flat_map(|s| s.unknown.iter().copied()).collect();
             let (name, form, single, porosity) = (names[s].clone(), None, None, 0.0);
             let cavities = count;
             self.bodies.push(Body {
@@ -222,7 +223,7 @@ impl Bodies {
                 cavities,
                 doubt,
                 rounding,
-                uneven,
+                unknown,
                 sheet,
                 drag: OwnDrag::default(),
             });
@@ -291,7 +292,7 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
             1 => whole,
             _ => match crossing::untangle(&whole.triangles, whole.bounds) {
                 Found::Simple { .. } => whole,
-                Found::Resolved(made) => Closed { uneven: whole.uneven, ..Closed::of_parts(made.surface) },
+                Found::Resolved(made) => Closed { unknown: whole.unknown, ..Closed::of_parts(made.surface) },
                 Found::Doubtful(_) => {
                     clear = false;
                     whole
@@ -313,6 +314,8 @@ struct Cleaned {
     mesh: Indexed,
     shells: Vec<Shell>,
     clusters: Vec<Cluster>,
+    /// Of the edges by all triangles, those that were dropped too, if some are the backs of others.
+    all_uses: Option<EdgeUses>,
 }
 
 /// Double-sided triangles that are no shells, for their edges do not tell what belongs together.
@@ -336,7 +339,7 @@ impl Cluster {
         let first = self.triangles.iter().min_by_key(|&&n| mesh.source(n));
         let shell = Closed::new(corners(mesh, &self.triangles));
         let name = first.map_or_else(String::new, |&n| name_of(n));
-        (Part { name, own: shell.triangles.len(), shell, cluster: 0, guessed: false }, self.regions)
+        (Part { name, own: shell.triangles.len(), shell, cluster: 0, guessed: false, contested: false }, self.regions)
     }
 }
 
@@ -384,15 +387,17 @@ fn clean(
     d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
     d.boundary_edges = d.t_junction_edges;
     let mut clusters = Vec::new();
-    if d.t_junction_edges > 0 {
+    let has_backs = copies::any_backs(&mesh, &all);
+    let all_uses = has_backs.then(|| EdgeUses::new(&mesh, &all));
+    if d.t_junction_edges > 0 || has_backs {
         clusters = take_clusters(&mesh, &mut all, &solid_of);
         // Only now can it be seen which triangles repeat others, and what is open without them.
         alive = all;
         [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
     }
     let mut shells = shells::shells(&mut mesh, &alive, &solid_of);
-    if d.t_junction_edges > 0 {
-        copies::doubt_backs(&mesh, &mut shells);
+    if d.t_junction_edges > 0 || has_backs {
+        copies::doubt_backs(&mesh, &mut shells, d.t_junction_edges > 0);
     }
     drop_copies(&mesh, &mut shells, rounding, d);
     d.shells = shells.len() + clusters.len();
@@ -412,7 +417,7 @@ fn clean(
             either(d.one_sided, "it", "them")
         ));
     }
-    Some(Cleaned { mesh, shells, clusters })
+    Some(Cleaned { mesh, shells, clusters, all_uses })
 }
 
 /// Drop the shells that repeat others or are their backs.
@@ -477,6 +482,7 @@ fn close(
     mesh: &Indexed,
     shells: &[Shell],
     name_of: impl Fn(u32) -> String,
+    contested: impl Fn(&[u32; 2]) -> bool,
     rounding: f64,
     d: &mut Diagnosis,
     report: &mut Reporter,
@@ -494,6 +500,7 @@ fn close(
         d.boundary_edges += boundary.len();
         d.t_junction_edges += caps.t_junction_edges;
         d.holes += caps.open.holes;
+        let is_capped = !caps.triangles.is_empty();
         triangles.extend(caps.triangles);
         let name = members.iter().min().map_or_else(String::new, |&n| name_of(n));
         let cluster = group.iter().map(|&s| shells[s].cluster).min().unwrap_or(0);
@@ -503,9 +510,10 @@ fn close(
         if !shell.is_sheet() {
             open.join(&caps.open);
             open.uneven.extend(&caps.open.uneven);
-            shell.uneven = caps.open.uneven;
+            shell.unknown = caps.open.uneven;
         }
-        closed.push(Part { name, shell, cluster, guessed, own });
+        let contested = is_capped && boundary.iter().any(&contested);
+        closed.push(Part { name, shell, cluster, guessed, contested, own });
     }
     if d.t_junction_edges > 0 {
         report.warn(format!(
@@ -515,6 +523,17 @@ fn close(
     }
     open.say(report);
     closed
+}
+
+/// Do different triangles end at a loose edge, some of which others may have been joined to that belong to it?
+fn is_contested(mesh: &Indexed, uses: &EdgeUses, [a, b]: [u32; 2]) -> bool {
+    let sorted = |u: &Use| {
+        let mut corners = mesh.triangles[u.triangle as usize];
+        corners.sort_unstable();
+        corners
+    };
+    let mut of_edge = uses.of(key(a, b)).iter().map(|(_, u)| sorted(u));
+    of_edge.next().is_some_and(|first| of_edge.any(|other| other != first))
 }
 
 /// What closes the holes of a surface.

@@ -19,6 +19,8 @@ pub(super) struct Part {
     /// As those of [`crate::geometry::repair::shells::Shell`].
     pub cluster: usize,
     pub guessed: bool,
+    /// It was capped where other triangles end, in a surface some of which has two sides: they may close it.
+    pub contested: bool,
     /// So many of its triangles are its own; what follows are caps.
     pub own: usize,
 }
@@ -167,6 +169,9 @@ impl<'a> Grouping<'a> {
         for (n, part) in self.parts.iter().enumerate().filter(|(_, part)| part.guessed) {
             clusters.entry(part.cluster).or_default().push(n);
         }
+        for n in (0..self.parts.len()).filter(|&n| self.parts[n].contested) {
+            (self.doubtful[n], self.grouped[n]) = (true, true);
+        }
         for members in clusters.values() {
             let forward = members.iter().filter(|&&n| self.volume(n) > 0.0).count();
             let odd = members.iter().any(|&n| signs[n].odd);
@@ -225,14 +230,16 @@ fn groups(parts: &[Part], seen: &[Seen], source: &SourceTriangles<'_>) -> Vec<Gr
     all.groups()
 }
 
-/// What parts are together, all their triangles, and which they are. None if each by itself is simple and all look the same way, or
-/// nothing better can be told and none is doubtful.
-fn resolve_together(
-    group: &Group,
-    parts: &[Part],
-    seen: &[Seen],
-    source: &SourceTriangles<'_>,
-) -> Option<(Vec<usize>, Closed, Seen)> {
+/// What parts are together.
+enum Together {
+    /// Which they are, all their triangles, and what these hold.
+    One(Vec<usize>, Closed, Seen),
+    /// Which they are of whose triangles it cannot be told to whom they belong, and a box around all of them.
+    Doubtful(Vec<usize>, [DVec3; 2]),
+}
+
+/// What parts are together. None if each by itself is simple and all look the same way, or nothing better can be told and none is doubtful.
+fn resolve_together(group: &Group, parts: &[Part], seen: &[Seen], source: &SourceTriangles<'_>) -> Option<Together> {
     let positive = |&n: &usize| parts[n].shell.volume > 0.0;
     let simple = |members: &[usize]| {
         let alike = members.iter().all(positive) || !members.iter().any(positive);
@@ -244,7 +251,7 @@ fn resolve_together(
         let own: Vec<[DVec3; 3]> = members.iter().flat_map(|&n| parts[n].own().iter().copied()).collect();
         let (whole, mixed) = (whole(members), !members.iter().all(positive));
         let seen = divided(&own, whole.bounds, source, mixed && members.iter().any(positive))?;
-        Some((members.to_vec(), whole, seen))
+        Some(Together::One(members.to_vec(), whole, seen))
     };
     if simple(&group.members) {
         return None;
@@ -253,11 +260,7 @@ fn resolve_together(
         if group.doubtful.is_empty() || simple(&group.doubtful) {
             return None;
         }
-        let doubtful = || {
-            let whole = whole(&group.doubtful);
-            let seen = Seen::As(Found::Doubtful(whole.bounds[0]));
-            (group.doubtful.clone(), whole, seen)
-        };
+        let doubtful = || Together::Doubtful(group.doubtful.clone(), whole(&group.doubtful).bounds);
         let fewer = group.doubtful.len() < group.members.len();
         Some(fewer.then(|| by_regions(&group.doubtful)).flatten().unwrap_or_else(doubtful))
     })
@@ -278,9 +281,20 @@ pub(super) fn resolve(
     let groups = groups(&parts, &seen, source);
     let together: Vec<_> = groups.par_iter().map(|group| resolve_together(group, &parts, &seen, source)).collect();
     let mut gone = vec![false; parts.len()];
-    for (members, whole, all) in together.into_iter().flatten() {
-        members[1..].iter().for_each(|&n| gone[n] = true);
-        (parts[members[0]].shell, seen[members[0]]) = (whole, all);
+    for found in together.into_iter().flatten() {
+        match found {
+            Together::One(members, whole, all) => {
+                members[1..].iter().for_each(|&n| gone[n] = true);
+                (parts[members[0]].shell, seen[members[0]]) = (whole, all);
+            }
+            // Each is measured as it winds; together they would wind around each other, which costs much and tells nothing.
+            Together::Doubtful(members, around) => {
+                for n in members {
+                    parts[n].shell.unknown.push(around);
+                    seen[n] = Seen::As(Found::Doubtful(around[0]));
+                }
+            }
+        }
     }
     let mut places = Places::default();
     let mut resolved = Vec::new();
@@ -308,7 +322,7 @@ fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, pla
     match seen {
         Seen::As(Found::Simple { .. }) => {}
         Seen::As(Found::Resolved(made)) => {
-            part.shell = Closed { uneven: part.shell.uneven, ..Closed::of_parts(made.surface) };
+            part.shell = Closed { unknown: part.shell.unknown, ..Closed::of_parts(made.surface) };
             d.crossing += 1;
             places.resolved.get_or_insert(made.place);
         }
@@ -329,7 +343,7 @@ fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, pla
                 d.crossing += 1;
                 into.push(Part { name: part.name.clone(), own: shell.triangles.len(), shell, ..part });
             }
-            part.shell = Closed { uneven: part.shell.uneven, ..closed(solid) };
+            part.shell = Closed { unknown: part.shell.unknown, ..closed(solid) };
         }
     }
     into.push(part);

@@ -49,9 +49,9 @@ pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Po
     }
 }
 
-/// Widens the bounds of all cells and faces that boxes around uneven holes reach, by what they have in common.
-pub fn widen_beside_holes(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
-    for [lo, hi] in bodies.bodies.iter().flat_map(|b| b.uneven.iter().copied()) {
+/// Widens the bounds of all cells and faces that boxes in which it is not known what is solid reach, by what they have in common.
+pub fn widen_unknown(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
+    for [lo, hi] in bodies.bodies.iter().flat_map(|b| b.unknown.iter().copied()) {
         let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
         if cells.iter().any(Range::is_empty) {
             continue;

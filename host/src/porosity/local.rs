@@ -26,7 +26,7 @@ pub fn from_corner(grid: &Grid<f64>, bodies: &Bodies, triangles: &[[DVec3; 3]]) 
     seen.triangles = triangles.iter().map(|t| t.map(|p| p - corner)).collect();
     for body in &mut seen.bodies {
         body.bounds = body.bounds.map(|p| p - corner);
-        body.uneven.iter_mut().flatten().for_each(|p| *p -= corner);
+        body.unknown.iter_mut().flatten().for_each(|p| *p -= corner);
         body.single = None;
     }
     Some((Edges(edges), seen))

@@ -7,7 +7,7 @@ use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::shells::Shell;
 use crate::geometry::repair::weld::{Indexed, edges_of};
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 /// A triangle's corners from the lowest on: equal for equal triangles of one orientation.
 fn from_lowest(t: [u32; 3]) -> [u32; 3] {
@@ -76,6 +76,14 @@ fn clusters(mesh: &Indexed, members: &[u32]) -> Vec<Vec<u32>> {
 /// The triangle seen from behind, corners from the lowest on.
 fn back([a, b, c]: [u32; 3]) -> [u32; 3] {
     from_lowest([a, c, b])
+}
+
+/// Is one of some triangles the back of another?
+#[must_use]
+pub fn any_backs(mesh: &Indexed, alive: &[bool]) -> bool {
+    let living = || mesh.triangles.iter().zip(alive).filter(|(_, alive)| **alive).map(|(t, _)| *t);
+    let all: HashSet<[u32; 3]> = living().map(from_lowest).collect();
+    living().any(|t| all.contains(&back(t)))
 }
 
 /// A surface with rims is a body with holes if their caps are below this share of its area, else a sheet. It matters where both its
@@ -186,9 +194,9 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Redundant {
     found
 }
 
-/// Doubts what belongs together where shells share edges and some of them are backs of others: in a surface with two sides that was cut at
-/// T-junctions. Two closed shells that are each other's back, and a shell alone, are beyond doubt; so are parts that touch and all look outward.
-pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell]) {
+/// Doubts what belongs together where shells share edges and some of them are backs of others. A shell alone is beyond doubt, and so are parts that all
+/// look outward, and closed shells each with its back; but in a surface that was `cut` at T-junctions only two shells that are each other's back.
+pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
     let mut sets = Sets::new(shells.len());
     let mut owner: HashMap<u64, usize> = HashMap::default();
     for (s, shell) in shells.iter().enumerate() {
@@ -202,15 +210,22 @@ pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell]) {
     (0..shells.len()).for_each(|s| members.entry(sets.find(s)).or_default().push(s));
     for (cluster, members) in members {
         let all = || members.iter().flat_map(|&s| shells[s].triangles.iter().map(move |&n| (s, n)));
-        let has_backs = all().any(|(_, n)| !backs_of(n).is_empty())
-            && members.iter().any(|&s| !(Seen::new(mesh, &shells[s], 0.0).volume > 0.0));
+        let outward = |s: usize| Seen::new(mesh, &shells[s], 0.0).volume > 0.0;
+        let has_backs = all().any(|(_, n)| !backs_of(n).is_empty()) && !members.iter().all(|&s| outward(s));
+        let closed = |s: usize| shells[s].boundary.is_empty();
+        let is_back_of =
+            |s: usize, of: usize| closed(s) && closed(of) && shells[s].triangles.iter().all(|&n| backs_of(n) == [of]);
+        // The backs of a whole closed shell, or of some sides of closed shells.
+        let is_behind = |s: usize| {
+            let fronts = |n: u32| backs_of(n).iter().copied().find(|&front| closed(front) && outward(front));
+            let mut all = shells[s].triangles.iter().map(|&n| fronts(n));
+            let first = shells[s].triangles.first().and_then(|&n| fronts(n));
+            if closed(s) { first.is_some_and(|front| is_back_of(s, front)) } else { all.all(|front| front.is_some()) }
+        };
         let beyond_doubt = match members[..] {
             [_] => true,
-            [a, b] => {
-                let closed = shells[a].boundary.is_empty() && shells[b].boundary.is_empty();
-                closed && all().all(|(s, n)| backs_of(n) == [a + b - s])
-            }
-            _ => false,
+            [a, b] => is_back_of(a, b) && is_back_of(b, a),
+            _ => !cut && members.iter().all(|&s| outward(s) || is_behind(s)),
         };
         if has_backs && !beyond_doubt {
             for s in members {
@@ -238,7 +253,7 @@ fn twins(mesh: &Indexed, shells: &[Shell]) -> HashMap<[u32; 3], Vec<usize>> {
     let members = || shells.iter().enumerate().flat_map(|(s, shell)| shell.triangles.iter().map(move |&n| (s, n)));
     let mut all: Vec<[u32; 3]> = members().map(|(_, n)| sorted(n)).collect();
     all.sort_unstable();
-    let twice: rustc_hash::FxHashSet<[u32; 3]> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
+    let twice: HashSet<[u32; 3]> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
     let mut owners: HashMap<[u32; 3], Vec<usize>> = HashMap::default();
     if !twice.is_empty() {
         for (s, n) in members().filter(|&(_, n)| twice.contains(&sorted(n))) {

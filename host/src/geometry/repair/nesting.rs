@@ -36,8 +36,8 @@ pub struct Closed {
     pub doubt: Doubt,
     /// How far corners may be off that were not read but computed; 0 if there are none.
     pub rounding: f64,
-    /// Boxes around rims of holes that are not plane.
-    pub uneven: Vec<[DVec3; 2]>,
+    /// Boxes in which it is not known what is solid: around rims of holes that are not plane, and around parts that may have each other's triangles.
+    pub unknown: Vec<[DVec3; 2]>,
 }
 
 impl Closed {
@@ -52,7 +52,7 @@ impl Closed {
             triangles,
             doubt: Doubt::None,
             rounding: 0.0,
-            uneven: Vec::new(),
+            unknown: Vec::new(),
         }
     }
 
@@ -60,7 +60,7 @@ impl Closed {
     #[must_use]
     pub fn together<'a>(shells: impl Iterator<Item = &'a Closed> + Clone) -> Self {
         let whole = Self::new(shells.clone().flat_map(|s| s.triangles.iter().copied()).collect());
-        Closed { uneven: shells.flat_map(|s| s.uneven.iter().copied()).collect(), ..whole }
+        Closed { unknown: shells.flat_map(|s| s.unknown.iter().copied()).collect(), ..whole }
     }
 
     /// Measure triangles that were cut where they cross.

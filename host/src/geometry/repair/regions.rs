@@ -228,9 +228,10 @@ impl<'a> Complex<'a> {
         let own: Vec<u32> = self.layers(element).into_iter().map(|m| m as u32).collect();
         let lines = self.meetings.lines();
         let way = lines.follow(from, direction, &own);
-        let first = way.through.iter().fold(f64::INFINITY, |first, hit| first.min(hit.0));
-        let here = first + lines.slack();
-        if way.unclear.is_some_and(|unclear| unclear <= here) {
+        let known = |hit: &(f64, u32)| lines.clear / self.face(hit.1 as usize).normal.dot(direction).abs();
+        let first =
+            way.through.iter().fold((f64::INFINITY, 0), |first, hit| if hit.0 < first.0 { *hit } else { first });
+        if way.unclear.is_some_and(|unclear| unclear <= first.0 + lines.slack()) {
             return;
         }
         let own = side(element, before);
@@ -238,12 +239,15 @@ impl<'a> Complex<'a> {
             let outside = self.outside();
             return self.sets.join(own, outside);
         }
-        let hits: Vec<usize> = way.through.iter().filter(|hit| hit.0 <= here).map(|hit| hit.1 as usize).collect();
-        let normal = self.face(hits[0]).normal;
-        if hits.iter().any(|&m| self.face(m).normal.dot(normal).abs() < 1.0 - FLAT) {
+        // What may be met as early must lie on what is met first: between two walls a rounding apart is a region of its own.
+        let last = first.0 + known(&first);
+        let mut as_early = way.through.iter().filter(|hit| hit.1 != first.1 && hit.0 - known(hit) <= last);
+        if !as_early.all(|hit| self.meetings.covering(first.1).any(|m| m == hit.1)) {
             return;
         }
-        if let Some(e) = self.part_at(hits[0], from + direction * first) {
+        let (along, met) = (first.0, first.1 as usize);
+        let normal = self.face(met).normal;
+        if let Some(e) = self.part_at(met, from + direction * along) {
             self.sets.join(own, side(e, normal.dot(direction) < 0.0));
         }
     }

@@ -66,7 +66,7 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
                 cavities,
                 doubt,
                 rounding,
-                uneven: Vec::new(),
+                unknown: Vec::new(),
                 sheet,
                 drag,
             });
@@ -88,7 +88,7 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
             let corners = bodies.triangles[triangles.clone()].iter().flatten();
             let bounds = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &p| [a.min(p), b.max(p)]);
             let (name, porosity) = (name(solid, at, &body.name), solid.porosity);
-            let uneven = body.uneven.iter().map(|&around| motion.box_around(around)).collect();
+            let unknown = body.unknown.iter().map(|&around| motion.box_around(around)).collect();
             let single = body.single.map(|s| s.moved(motion.matrix(), motion.apply(DVec3::ZERO)));
             bodies.bodies.push(Body {
                 name,
@@ -96,7 +96,7 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
                 single,
                 porosity,
                 bounds,
-                uneven,
+                unknown,
                 drag: solid.drag,
                 ..body.clone()
             });
