@@ -348,9 +348,29 @@ fn corners(mesh: &Indexed, triangles: &[u32]) -> Vec<[DVec3; 3]> {
     triangles.iter().map(|&n| mesh.triangles[n as usize].map(|v| mesh.points[v as usize])).collect()
 }
 
-/// Takes the clusters of double-sided triangles that their regions tell of from those `alive`.
-fn take_clusters(mesh: &Indexed, alive: &mut [bool], solid_of: impl Fn(u32) -> usize) -> Vec<Cluster> {
-    let found = two_sided::clusters(mesh, alive, solid_of);
+/// The triangles of shells of which edges do not tell enough: that are open or hold their own backs, or of which it is a guess which triangles belong to
+/// them.
+fn unclear(mesh: &Indexed, alive: &[bool], solid_of: impl Fn(u32) -> usize, rounding: f64) -> Vec<bool> {
+    let (mut mesh, mut unclear) = (mesh.clone(), vec![false; alive.len()]);
+    let mut shells = shells::shells(&mut mesh, alive, solid_of);
+    drop_copies(&mesh, &mut shells, rounding, &mut Diagnosis::default());
+    let is_unclear = |shell: &Shell| {
+        shell.guessed || !shell.boundary.is_empty() || copies::hold_backs(&mesh, shell.triangles.iter().copied())
+    };
+    let of_shells = shells.iter().filter(|shell| is_unclear(shell)).flat_map(|shell| &shell.triangles);
+    of_shells.for_each(|&n| unclear[n as usize] = true);
+    unclear
+}
+
+/// Takes the clusters of double-sided triangles that their regions tell of from those `alive`; only those with a triangle that is `asked` for.
+fn take_clusters(
+    mesh: &Indexed,
+    alive: &mut [bool],
+    solid_of: impl Fn(u32) -> usize,
+    asked: impl Fn(u32) -> bool,
+) -> Vec<Cluster> {
+    let mut found = two_sided::clusters(mesh, alive, solid_of);
+    found.retain(|triangles| triangles.iter().any(|&n| asked(n)));
     let clusters: Vec<Cluster> = found.into_par_iter().filter_map(|triangles| Cluster::new(mesh, triangles)).collect();
     clusters.iter().flat_map(|c| &c.triangles).for_each(|&n| alive[n as usize] = false);
     clusters
@@ -387,17 +407,20 @@ fn clean(
     d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
     d.boundary_edges = d.t_junction_edges;
     let mut clusters = Vec::new();
-    let has_backs = copies::any_backs(&mesh, &all);
+    let has_backs = copies::hold_backs(&mesh, (0..all.len() as u32).filter(|&n| all[n as usize]));
     let all_uses = has_backs.then(|| EdgeUses::new(&mesh, &all));
-    if d.t_junction_edges > 0 || has_backs {
-        clusters = take_clusters(&mesh, &mut all, &solid_of);
+    let cut = d.t_junction_edges > 0;
+    if cut || has_backs {
+        // Where edges tell what belongs together, they tell more than regions: which parts touch, and what is open between them.
+        let unclear = if cut { Vec::new() } else { unclear(&mesh, &alive, &solid_of, rounding) };
+        clusters = take_clusters(&mesh, &mut all, &solid_of, |n| cut || unclear[n as usize]);
         // Only now can it be seen which triangles repeat others, and what is open without them.
         alive = all;
         [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
     }
     let mut shells = shells::shells(&mut mesh, &alive, &solid_of);
-    if d.t_junction_edges > 0 || has_backs {
-        copies::doubt_backs(&mesh, &mut shells, d.t_junction_edges > 0);
+    if cut || has_backs {
+        copies::doubt_backs(&mesh, &mut shells, cut);
     }
     drop_copies(&mesh, &mut shells, rounding, d);
     d.shells = shells.len() + clusters.len();

@@ -80,10 +80,10 @@ fn back([a, b, c]: [u32; 3]) -> [u32; 3] {
 
 /// Is one of some triangles the back of another?
 #[must_use]
-pub fn any_backs(mesh: &Indexed, alive: &[bool]) -> bool {
-    let living = || mesh.triangles.iter().zip(alive).filter(|(_, alive)| **alive).map(|(t, _)| *t);
-    let all: HashSet<[u32; 3]> = living().map(from_lowest).collect();
-    living().any(|t| all.contains(&back(t)))
+pub fn hold_backs(mesh: &Indexed, triangles: impl Iterator<Item = u32> + Clone) -> bool {
+    let corners = triangles.map(|n| from_lowest(mesh.triangles[n as usize]));
+    let all: HashSet<[u32; 3]> = corners.clone().collect();
+    corners.into_iter().any(|t| all.contains(&back(t)))
 }
 
 /// A surface with rims is a body with holes if their caps are below this share of its area, else a sheet. It matters where both its
@@ -213,18 +213,17 @@ pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
         let outward = |s: usize| Seen::new(mesh, &shells[s], 0.0).volume > 0.0;
         let has_backs = all().any(|(_, n)| !backs_of(n).is_empty()) && !members.iter().all(|&s| outward(s));
         let closed = |s: usize| shells[s].boundary.is_empty();
-        let is_back_of =
-            |s: usize, of: usize| closed(s) && closed(of) && shells[s].triangles.iter().all(|&n| backs_of(n) == [of]);
-        // The backs of a whole closed shell, or of some sides of closed shells.
+        let is_back_of = |s: usize, of: usize| {
+            let (own, other) = (&shells[s].triangles, &shells[of].triangles);
+            closed(s) && closed(of) && own.len() == other.len() && own.iter().all(|&n| backs_of(n).contains(&of))
+        };
         let is_behind = |s: usize| {
-            let fronts = |n: u32| backs_of(n).iter().copied().find(|&front| closed(front) && outward(front));
-            let mut all = shells[s].triangles.iter().map(|&n| fronts(n));
-            let first = shells[s].triangles.first().and_then(|&n| fronts(n));
-            if closed(s) { first.is_some_and(|front| is_back_of(s, front)) } else { all.all(|front| front.is_some()) }
+            let has_front = |&n: &u32| backs_of(n).iter().any(|&front| closed(front) && outward(front));
+            shells[s].triangles.iter().all(has_front)
         };
         let beyond_doubt = match members[..] {
             [_] => true,
-            [a, b] => is_back_of(a, b) && is_back_of(b, a),
+            [a, b] if cut => is_back_of(a, b) && is_back_of(b, a),
             _ => !cut && members.iter().all(|&s| outward(s) || is_behind(s)),
         };
         if has_backs && !beyond_doubt {
