@@ -1,21 +1,24 @@
-//! Random scenes of boxes against their oracle: `boxes FIRST COUNT [random|parts|turned]`, seeds from FIRST on. Prints those that fail, and totals.
+//! Random scenes of boxes against their oracle: `boxes FIRST COUNT [random|parts|turned|room|stack]`, seeds from FIRST on. Prints those that fail, and totals.
 
 use rayon::prelude::*;
 use voidage_tests::boxes::{self, Family, Visited};
-use voidage_tests::turned;
+use voidage_tests::random::Random;
+use voidage_tests::turned::{self, Turned};
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (first, count, family) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [first, count] => (first, count, "random"),
-        [first, count, family @ ("random" | "parts" | "turned")] => (first, count, family),
-        _ => panic!("boxes FIRST COUNT [random|parts|turned]"),
+        [first, count, family @ ("random" | "parts" | "turned" | "room" | "stack")] => (first, count, family),
+        _ => panic!("boxes FIRST COUNT [random|parts|turned|room|stack]"),
     };
     let [first, count]: [u64; 2] = [first, count].map(|n| n.parse().expect("a number"));
     match family {
         "random" => along_axes(Family::Random, first, count),
         "parts" => along_axes(Family::Parts, first, count),
-        _ => turned(first, count),
+        "turned" => turned(first, count, Turned::boxes),
+        "room" => turned(first, count, Turned::room),
+        _ => turned(first, count, Turned::stack),
     }
 }
 
@@ -47,8 +50,8 @@ fn along_axes(family: Family, first: u64, count: u64) {
 }
 
 /// Boxes that are turned, with backs and without.
-fn turned(first: u64, count: u64) {
-    let seen = all(first, count, turned::bounds_hold);
+fn turned(first: u64, count: u64, make: fn(&mut Random) -> Turned) {
+    let seen = all(first, count, |seed| turned::bounds_hold(seed, make));
     let of = |what: fn(&turned::Seen) -> bool| seen.iter().filter(|s| what(s)).count();
     println!(
         "turned seeds {first}..{}: 0 wrong; {} exact, {} with backs everywhere, {} of them exact, {} in doubt",

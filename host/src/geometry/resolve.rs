@@ -3,7 +3,7 @@
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
-use crate::geometry::repair::regions::{self, Regions, SourceTriangles};
+use crate::geometry::repair::regions::{self, Regions, SourceTriangles, Unknown};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use crate::words::{counted, either};
@@ -78,20 +78,27 @@ fn untangle(shell: &Closed) -> Found {
 
 /// The regions of a surface. `mixed`: some of its parts look inward, others outward.
 fn divided(own: &[[DVec3; 3]], bounds: [DVec3; 2], source: &SourceTriangles<'_>, mixed: bool) -> Option<Seen> {
-    regions::arrangement(own, bounds, source, mixed).map(Seen::Divided)
+    regions::arrangement(own, bounds, source, mixed).ok().map(Seen::Divided)
 }
 
-/// Two walls may have more between them than the shell winds around: then fronts and backs of parts that touch were joined to one shell.
+/// The volume of regions is larger than that of a shell if it is so by more than rounding.
 const MORE: f64 = 1.0 + 1e-9;
+
+/// What lies between the walls of a part that holds nothing elsewhere than what it winds around, as far as that tells. Two walls may have more between them than
+/// the part winds around: then fronts and backs of parts that touch were joined to one shell.
+fn between_walls(part: &Part, source: &SourceTriangles<'_>) -> Seen {
+    let Closed { bounds: [lo, hi], volume, .. } = part.shell;
+    let more = |r: &Regions| signed_volume(&r.solid, (lo + hi) * 0.5).abs() > MORE * volume.abs();
+    match regions::arrangement(part.own(), [lo, hi], source, false) {
+        Ok(regions) if more(&regions) => Seen::Divided(regions),
+        Err(Unknown::Unclear) if have_backs(part.own()).any(|back| back) => Seen::As(Found::Doubtful(lo)),
+        _ => Seen::As(Found::Simple { walls: true }),
+    }
+}
 
 fn resolve_alone(part: &Part, source: &SourceTriangles<'_>) -> Seen {
     match untangle(&part.shell) {
-        Found::Simple { walls: true } if !part.guessed => {
-            let middle = (part.shell.bounds[0] + part.shell.bounds[1]) * 0.5;
-            regions::arrangement(part.own(), part.shell.bounds, source, false)
-                .filter(|r| signed_volume(&r.solid, middle).abs() > MORE * part.shell.volume.abs())
-                .map_or(Seen::As(Found::Simple { walls: true }), Seen::Divided)
-        }
+        Found::Simple { walls: true } if !part.guessed => between_walls(part, source),
         // Which of several parts that were joined is turned cannot be told.
         Found::Resolved(made) if made.touches && !part.guessed => {
             divided(part.own(), part.shell.bounds, source, made.both_ways)

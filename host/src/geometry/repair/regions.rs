@@ -42,7 +42,7 @@ pub struct Regions {
 /// Why the regions of a surface are not told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
-    /// The surface has one region on both its sides somewhere: it is open there.
+    /// The surface has an edge that only one triangle uses, or one region on both its sides: it is open there.
     Open,
     /// Some parts look inward and others outward.
     Mixed,
@@ -313,6 +313,13 @@ impl<'a> Complex<'a> {
         [false, true].map(|before| self.sets.find(side(element, before)))
     }
 
+    /// Are there two regions? A side of which nothing is known, as that of a sliver that no line meets clear of its edges, is none.
+    fn separates(&mut self) -> bool {
+        let mut size = vec![0_usize; self.outside() + 1];
+        (0..size.len()).for_each(|side| size[self.sets.find(side)] += 1);
+        (0..self.elements.len()).map(|e| self.beside(e)).any(|[a, b]| a != b && size[a] > 1 && size[b] > 1)
+    }
+
     /// What each region is, by its set, for a surface that has two sides in places; none if the surface contradicts itself.
     ///
     /// Beside the open it is solid, and so it is behind triangles without backs; where it lies before such triangles and not behind others it may
@@ -539,28 +546,32 @@ impl Facing {
     }
 }
 
-/// The regions of a surface, a part of `source`; none if they cannot be told. `mixed`: some parts look inward, others outward.
-#[must_use]
+/// The regions of a surface, a part of `source`. `mixed`: some parts look inward, others outward.
+///
+/// # Errors
+/// Why they cannot be told.
 pub fn arrangement(
     triangles: &[[DVec3; 3]],
     [lo, hi]: [DVec3; 2],
     source: &SourceTriangles<'_>,
     mixed: bool,
-) -> Option<Regions> {
+) -> Result<Regions, Unknown> {
     let sided = sided(triangles);
     let corners: Vec<[DVec3; 3]> = sided.iter().map(|t| t.corners).collect();
     let on = tolerance([lo, hi]);
     let edges = edges(&corners);
     if edges.chunk_by(|a, b| a.0 == b.0).any(|uses| uses.len() == 1) {
-        return None;
+        return Err(Unknown::Open);
     }
     let meetings = Meetings::new(&corners, on);
     let mut complex = Complex::joined(&sided, &meetings, &edges, on);
     let looks: Vec<[bool; 2]> = (0..complex.elements.len()).map(|e| complex.looks(e, source)).collect();
     let two_sided = looks.contains(&[true, true]);
-    let (kinds, inverted) = if two_sided { complex.by_sides(&looks, mixed)? } else { complex.by_winding()? };
+    let kinds = if two_sided { complex.by_sides(&looks, mixed) } else { complex.by_winding() };
     let backs = if two_sided { triangles.len() - sided.len() } else { 0 };
-    Some(Regions { backs, ..complex.surfaces(&kinds, inverted, [lo, hi])? })
+    let found = kinds.and_then(|(kinds, inverted)| complex.surfaces(&kinds, inverted, [lo, hi]));
+    let why = if complex.separates() { Unknown::Unclear } else { Unknown::Open };
+    Ok(Regions { backs, ..found.ok_or(why)? })
 }
 
 /// The regions of a cluster of triangles that share edges, some of which have backs; all look the same way.
