@@ -98,6 +98,10 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
             if f64::larger(much, little) <= BEND {
                 return true;
             }
+            // An offset below leaves more too much, one above more too little: none fits.
+            if f64::smaller(much, little) > BEND {
+                return false;
+            }
             if much > little { low = middle } else { high = middle }
         }
         false
