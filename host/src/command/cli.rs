@@ -317,8 +317,11 @@ pub struct StressArgs {
     /// Also what takes long: more pairs, steps and bodies, and the cases that need many
     #[arg(long)]
     pub long: bool,
+    /// Hand the cases spoiled results: each of them must fail, or it judges nothing
+    #[arg(long)]
+    pub spoil: bool,
     /// Print the table of cases, and run none
-    #[arg(long, conflicts_with_all = ["long", "json", "threads"])]
+    #[arg(long, conflicts_with_all = ["long", "json", "threads", "spoil"])]
     pub list: bool,
     /// Write the outcomes as JSON; - is the standard output
     #[arg(long, value_name = "FILE.json")]

@@ -1,6 +1,6 @@
 //! The calls by which cases ask the program, the public ones that linked programs use. Every result that a case judges comes through here.
 //!
-//! With the feature `fault`, which is for tests of the battery only, every result is spoiled by a thousandth or two, no two by the same, and
+//! After [`spoil_results`], which is for tests of the battery only, every result is spoiled by a thousandth or two, no two by the same, and
 //! every hundredth answer about two bodies is another one: a case that still passes judges nothing.
 
 use crate::error::Result;
@@ -9,23 +9,35 @@ use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::porosity::{Options, Porosity, porosity};
 use glam::DVec3;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use voidage_core::convex::exact::Contact;
 use voidage_core::convex::{AnyBody, Clearance, distance, meets};
 use voidage_core::flow::Error as FlowError;
 
-/// How many results were asked for.
+/// Whether results are spoiled in this run.
+static SPOILED: AtomicBool = AtomicBool::new(false);
+
+/// How many results were asked for, if they are spoiled.
 static ASKED: AtomicUsize = AtomicUsize::new(0);
+
+/// From now on every result is spoiled.
+pub fn spoil_results() {
+    SPOILED.store(true, Ordering::Relaxed);
+}
+
+/// The number of this result among those asked for, if it is to be spoiled.
+fn asked() -> Option<usize> {
+    SPOILED.load(Ordering::Relaxed).then(|| ASKED.fetch_add(1, Ordering::Relaxed))
+}
 
 /// By how much this result is to be spoiled, if it is: another amount for each.
 fn fault() -> Option<f64> {
-    let asked = || ASKED.fetch_add(1, Ordering::Relaxed) % 1000;
-    cfg!(feature = "fault").then(|| 1e-3 + 1e-6 * asked() as f64)
+    asked().map(|n| 1e-3 + 1e-6 * (n % 1000) as f64)
 }
 
 /// Whether this answer about two bodies is to be spoiled.
 fn wrong_answer() -> bool {
-    cfg!(feature = "fault") && ASKED.fetch_add(1, Ordering::Relaxed).is_multiple_of(100)
+    asked().is_some_and(|n| n.is_multiple_of(100))
 }
 
 /// Porosities of bodies on a grid.
