@@ -28,12 +28,13 @@
 //! 2. `wall`: curved surfaces: lines through them, conics in planes
 //! 3. `end_line`, `outline`: what a solid has of a rectangle; `ends`: flat ends; `solid_angle`: of sections of a ball; `cone`: fluxes through those of a cone
 //! 4. `part`: one curved surface between flat ends, its fluxes and its volume in a cell; `window`: the cells it may reach
-//! 5. `spread`: the shares of a part in a layer
+//! 5. `aligned`: the shares of a pipe along an axis of the grid in a layer; `spread`: those of any part
 //! 6. `solid`: what callers use; `shapes`: the shapes that GJK knows, as such solids
 //! 7. `tangent`: planes between which a part lies in a box
 //! 8. `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
 //!    `crossing`: what two pipes have in common of a box, by planes along both axes; `shared`: what several solids share of a cell or face
 
+mod aligned;
 mod arc;
 mod concave;
 mod cone;

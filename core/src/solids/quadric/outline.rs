@@ -91,7 +91,10 @@ fn crossing(from: P2, to: P2, line: &EndLine, part: f64) -> P2 {
     at
 }
 
-/// Width and height of a polygon, a little enlarged.
+/// By how much boxes around polygons are enlarged.
+const MARGIN: f64 = 1.001;
+
+/// Width and height of a polygon.
 fn size(corners: &Corners) -> P2 {
     let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for corner in corners {
@@ -99,7 +102,7 @@ fn size(corners: &Corners) -> P2 {
             (lo[k], hi[k]) = (lo[k].min(corner.at[k]), hi[k].max(corner.at[k]));
         }
     }
-    sub(hi, lo).map(|x| x * 1.001)
+    sub(hi, lo)
 }
 
 /// A straight piece of an outline; without `joined`, an arc leads to it from the piece before.
@@ -171,7 +174,7 @@ impl Section {
                 && apart(&spans[1], v0, v1)
                 && apart(&spans[3], v0, v1)
             {
-                return self.ellipse_within(&rectangle.corners());
+                return self.ellipse_in(rectangle);
             }
         }
         let corners = corners.unwrap_or_else(|| rectangle.corners());
@@ -203,8 +206,17 @@ impl Section {
 
     /// Does half of the ellipse fit a polygon? Not if the conic is none.
     fn half_fits(&self, corners: &Corners) -> MayBeMajor {
-        let [width, height] = size(corners);
+        let [width, height] = size(corners).map(|x| x * MARGIN);
         self.ellipse.is_some_and(|e| e.area * 0.5 <= width * height && self.conic.is_within([width, height]))
+    }
+
+    /// The whole conic, if it is an ellipse about a point of a rectangle.
+    fn ellipse_in(&self, rectangle: &Rectangle) -> Region {
+        let Some(ellipse) = self.ellipse else { return Region::Empty };
+        let [u, v] = ellipse.center;
+        let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
+        let about = u0 < u && u < u1 && v0 < v && v < v1;
+        if about && self.fits([u1 - u0, v1 - v0]) { Region::Ellipse(ellipse) } else { Region::Empty }
     }
 
     /// The whole conic, if it is an ellipse about a point of a polygon.
@@ -215,9 +227,13 @@ impl Section {
             let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
             inside &= cross(sub(next, corner.at), sub(ellipse.center, corner.at)) > 0.0;
         }
-        // Of a plane that touches a cone along a line rounding may make an ellipse of any size.
-        let fits = self.conic.is_within(size(corners).map(|x| x * 0.5));
-        if inside && fits { Region::Ellipse(ellipse) } else { Region::Empty }
+        if inside && self.fits(size(corners)) { Region::Ellipse(ellipse) } else { Region::Empty }
+    }
+
+    /// Is an ellipse no larger than a box of this size, but for rounding? Of a plane that touches a cone along a line rounding may make an ellipse of
+    /// any size.
+    fn fits(&self, size: P2) -> bool {
+        self.conic.is_within(size.map(|x| x * (0.5 * MARGIN)))
     }
 
     /// Area of a region, and its first moments about the middle of the rectangle.

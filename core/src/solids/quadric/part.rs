@@ -73,14 +73,6 @@ impl Part {
         Part { origin, curved, ends, xi }
     }
 
-    /// Is it a pipe along axis `n` that has no end between two coordinates, nor at them? Then all its sections there are the same.
-    pub fn is_prism_between(&self, n: Axis, [lo, hi]: [f64; 2]) -> bool {
-        let ends = || self.ends.iter().flatten();
-        matches!(self.curved.wall, Wall::Cylinder { .. })
-            && self.curved.across[n] == 0.0
-            && ends().all(|end| if end.inward[n] > 0.0 { end.center[n] < lo } else { end.center[n] > hi })
-    }
-
     /// A pipe without those ends that are far from a box: all of it is on their inner sides. None if both are near, or it is no pipe.
     pub fn without_far_ends(&self, place: [[f64; 2]; 3]) -> Option<Self> {
         if !matches!(self.curved.wall, Wall::Cylinder { .. }) {
@@ -119,15 +111,14 @@ impl Part {
         self.ends.iter().flatten().map(inside).fold(self.span(m, planes), Span::intersection)
     }
 
-    /// Area and flux of a face between planes, `spans` those of its sides in the order of [`Rectangle::corners`].
+    /// Area and flux of a face, `spans` those of its sides in the order of [`Rectangle::corners`].
     #[inline]
-    pub fn face(&self, plane: &Plane, u: [&Plane; 2], v: [&Plane; 2], spans: &[Span; 4]) -> FaceFlux {
-        let rectangle = Rectangle { u: u.map(|p| p.h.value), v: v.map(|p| p.h.value) };
-        let region = plane.section.region(&rectangle, spans, &plane.lines);
+    pub fn face(&self, plane: &Plane, rectangle: &Rectangle, spans: &[Span; 4]) -> FaceFlux {
+        let region = plane.section.region(rectangle, spans, &plane.lines);
         if matches!(region, Region::Empty) {
             return FaceFlux::default();
         }
-        let moments = plane.section.moments(&region, &rectangle);
+        let moments = plane.section.moments(&region, rectangle);
         let (n, h) = (plane.n, plane.h.value);
         let flux = match &self.curved.wall {
             Wall::Cylinder { .. } if n == self.xi => 0.0,
@@ -137,12 +128,12 @@ impl Part {
             }
             Wall::Cone { radius, slope } => {
                 let plane_of = PlaneOfCone { curved: &self.curved, radius: *radius, slope: *slope, n, h };
-                plane_of.flux(&plane.section, &region, &rectangle)
+                plane_of.flux(&plane.section, &region, rectangle)
             }
             // In a plane through the centre the field has no normal component.
             Wall::Ball { .. } | Wall::Ellipsoid(_) if h == 0.0 => 0.0,
             Wall::Ball { .. } | Wall::Ellipsoid(_) => {
-                let angle = self.solid_angle(plane, &region, &rectangle);
+                let angle = self.solid_angle(plane, &region, rectangle);
                 (moments.area * h - angle.copysign(h)) / 3.0
             }
         };

@@ -1,18 +1,20 @@
 //! The shares of one part in a layer of cells, row by row.
 
+use super::aligned::{AlignedPipe, Shares};
+use super::outline::Rectangle;
 use super::part::{FaceFlux, Part, Plane};
 use super::wall::Span;
-use super::window::Extent;
+use super::window::reached;
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
 use crate::number::real::Real;
 use core::ops::Range;
+use heapless::Vec;
 
-/// The cells along an axis that an extent reaches or touches.
-fn reached<R: Real>(edges: &[R], [lo, hi]: Extent) -> Range<usize> {
-    let first = edges.partition_point(|e| e.to_f64() < lo).saturating_sub(1);
-    first..edges.partition_point(|e| e.to_f64() <= hi).min(edges.len().saturating_sub(1))
+/// The rectangle between planes across the two axes of another one.
+fn rectangle(u: [&Plane; 2], v: [&Plane; 2]) -> Rectangle {
+    Rectangle { u: u.map(|p| p.h.value), v: v.map(|p| p.h.value) }
 }
 
 /// A part over one row of cells: planes below and above along y and z, and lines along x, `[y][z]`.
@@ -62,45 +64,54 @@ impl<'a> Row<'a> {
         let y_lines = [z0, z1].map(|z| part.span(Axis::Y, [z, &plane]));
         let z_lines = [y0, y1].map(|y| part.span(Axis::Z, [&plane, y]));
         let spans = [y_lines[0], z_lines[1], y_lines[1], z_lines[0]];
-        let face = part.face(&plane, [y0, y1], [z0, z1], &spans);
+        let face = part.face(&plane, &rectangle([y0, y1], [z0, z1]), &spans);
         Column { plane, y_lines, z_lines, face }
     }
 
+    /// `low_y`: the low face along y, if it is known.
     #[inline]
-    fn cell(&self, low: &Column, high: &Column) -> CellShares {
+    fn cell(&self, low: &Column, high: &Column, low_y: Option<FaceFlux>) -> CellShares {
         let (part, [y0, y1], [z0, z1]) = (self.part, self.y, self.z);
         let (x, x_lines) = ([&low.plane, &high.plane], &self.x_lines);
         let across_y = |j: usize| {
             let spans = [low.z_lines[j], x_lines[j][1], high.z_lines[j], x_lines[j][0]];
-            part.face(&self.y[j], [z0, z1], x, &spans)
+            part.face(&self.y[j], &rectangle([z0, z1], x), &spans)
         };
         let across_z = |k: usize| {
             let spans = [x_lines[0][k], high.y_lines[k], x_lines[1][k], low.y_lines[k]];
-            part.face(&self.z[k], x, [y0, y1], &spans)
+            part.face(&self.z[k], &rectangle(x, [y0, y1]), &spans)
         };
-        let faces = [[low.face, high.face], [across_y(0), across_y(1)], [across_z(0), across_z(1)]];
+        let faces =
+            [[low.face, high.face], [low_y.unwrap_or_else(|| across_y(0)), across_y(1)], [across_z(0), across_z(1)]];
         let volume = part.volume(&[x, [y0, y1], [z0, z1]], &faces);
         CellShares { volume, faces }
     }
 }
 
-/// What is told of a cell: shares of it, of its low faces, and of its high x and y faces.
-#[derive(Clone, Copy)]
-struct Shares {
-    cell: f64,
-    low: [f64; 3],
-    high: [f64; 2],
+/// Most faces between two rows that are computed but once.
+const MOST_KEPT: usize = 64;
+
+/// The high faces along y of a row's cells as far as they were computed, from the row's first cell on.
+#[derive(Default)]
+struct HighFaces {
+    row: usize,
+    first: usize,
+    faces: Vec<Option<FaceFlux>, MOST_KEPT>,
 }
 
-impl Shares {
-    const WHOLE: Self = Shares { cell: 1.0, low: [1.0; 3], high: [1.0; 2] };
+impl HighFaces {
+    /// Begins a row.
+    fn begin(&mut self, row: usize, first: usize) {
+        (self.row, self.first) = (row, first);
+        self.faces.clear();
+    }
+
+    /// Of a cell in the row below another one.
+    fn below(&self, row: usize, i: usize) -> Option<FaceFlux> {
+        let face = self.faces.get(i.checked_sub(self.first)?)?;
+        face.filter(|_| self.row + 1 == row)
+    }
 }
-
-/// Most cells of a row that are told once more in the next one.
-const MOST_REPEATED: usize = 32;
-
-/// The cells of a row that a pipe along y shares with the rows beside it: all are told alike between its ends.
-type Repeated = heapless::Vec<(usize, Shares), MOST_REPEATED>;
 
 /// The fraction of a face.
 fn fraction(face: &FaceFlux, area: f64) -> f64 {
@@ -123,6 +134,13 @@ pub(super) fn layer<R: Real>(
     if lowest > zs[1] || highest < zs[0] {
         return 0.0;
     }
+    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, visit };
+    if let Some(pipe) = AlignedPipe::new(part) {
+        let cells = [reached(xs, part.extent(Axis::X)), reached(ys, part.extent(Axis::Y)), k..k + 1];
+        return pipe.tell([xs, ys, grid.edges(2)], &cells, &mut |[i, j, _], [last, last_row, _], shares| {
+            told.tell_cell(i, (j, last_row), last, shares);
+        });
+    }
     let all = [f64::NEG_INFINITY, f64::INFINITY];
     let within = part.extent_within([all, all, zs]);
     let (columns, rows) = (reached(xs, within[0]), reached(ys, within[1]));
@@ -133,24 +151,18 @@ pub(super) fn layer<R: Real>(
     let without = part.without_far_ends([around(xs, &columns), around(ys, &rows), zs]);
     let near = without.as_ref().unwrap_or(part);
     let z = zs.map(|z| near.plane(Axis::Z, z));
-    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, visit };
     let mut below: Option<(usize, Plane)> = None;
-    let mut repeated = Repeated::new();
+    let (mut even, mut odd) = (HighFaces::default(), HighFaces::default());
     for j in rows.clone() {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
         let last_row = j + 1 == rows.end;
-        let same = part.is_prism_between(Axis::Y, [y0.to_f64(), y1.to_f64()]);
-        if same && !repeated.is_empty() {
-            told.repeat(&repeated, j, last_row);
-            continue;
-        }
-        repeated.clear();
         let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
         let low =
             below.filter(|(row, _)| *row == j).map_or_else(|| near.plane(Axis::Y, y0.to_f64()), |(_, plane)| plane);
         let y = [low, near.plane(Axis::Y, y1.to_f64())];
         below = Some((j + 1, y[1]));
-        told.row(xs, &Row::new(near, &y, &z), (j, last_row), reached(xs, run), same.then_some(&mut repeated));
+        let faces = if j % 2 == 0 { (&odd, &mut even) } else { (&even, &mut odd) };
+        told.row(xs, &Row::new(near, &y, &z), (j, last_row), reached(xs, run), faces);
     }
     told.worst
 }
@@ -169,50 +181,42 @@ impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
         }
     }
 
+    /// Tells a row of cells; `faces` are those of the row below, and its own.
     fn row<R: Real>(
         &mut self,
         xs: &[R],
         row: &Row,
         (j, last_row): (usize, bool),
         cells: Range<usize>,
-        mut repeated: Option<&mut Repeated>,
+        (below, own): (&HighFaces, &mut HighFaces),
     ) {
         let inside = row.inside();
         let from_origin = |i: usize| xs.get(i).map_or(f64::NAN, |x| x.to_f64() - row.part.origin[0]);
         let mut before: Option<Column> = None;
-        let mut alike: Option<Shares> = None;
-        if cells.len() > MOST_REPEATED {
-            repeated = None;
-        }
+        own.begin(j, cells.start);
         for i in cells.clone() {
             let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
-            let same = row.part.is_prism_between(Axis::X, [x0.to_f64(), x1.to_f64()]);
-            let shares = if inside.covers(from_origin(i), from_origin(i + 1)) {
+            let (shares, face) = if inside.covers(from_origin(i), from_origin(i + 1)) {
                 before = None;
-                Shares::WHOLE
-            } else if let Some(shares) = alike.filter(|_| same) {
-                before = None;
-                shares
+                (Shares::WHOLE, None)
             } else {
-                let low = before.unwrap_or_else(|| row.column(x0.to_f64()));
+                let low = before.get_or_insert_with(|| row.column(x0.to_f64()));
                 let high = row.column(x1.to_f64());
+                let found = row.cell(low, &high, below.below(j, i));
+                let shares = self.shares(row, [low, &high], &found);
                 before = Some(high);
-                self.shares(row, &low, &high)
+                (shares, Some(found.faces[1][1]))
             };
-            alike = same.then_some(shares);
-            if let Some(list) = &mut repeated {
-                let _ = list.push((i, shares));
-            }
+            let _ = own.faces.push(face);
             self.tell_cell(i, (j, last_row), i + 1 == cells.end, &shares);
         }
     }
 
     /// The shares of the cell between two columns of a row.
     #[inline]
-    fn shares(&mut self, row: &Row, low: &Column, high: &Column) -> Shares {
+    fn shares(&mut self, row: &Row, [low, high]: [&Column; 2], found: &CellShares) -> Shares {
         let [dy, dz] = [row.y, row.z].map(|[lo, hi]| hi.h.value - lo.h.value);
         let dx = high.plane.h.value - low.plane.h.value;
-        let found = row.cell(low, high);
         let share = found.volume / (dx * dy * dz);
         self.worst = self.worst.max(share - 1.0).max(-share);
         if share.is_nan() {
@@ -241,13 +245,6 @@ impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
             self.tell(RangeKind::Faces(1), c + nx, shares.high[1]);
         }
     }
-
-    /// Tells the cells of a row once more, in row `j`.
-    fn repeat(&mut self, repeated: &Repeated, j: usize, last_row: bool) {
-        for (n, (i, shares)) in repeated.iter().enumerate() {
-            self.tell_cell(*i, (j, last_row), n + 1 == repeated.len(), shares);
-        }
-    }
 }
 
 /// Tells the shares of a part in the z faces of a plane.
@@ -270,8 +267,8 @@ pub(super) fn plane<R: Real>(part: &Part, grid: &Grid<R>, plane: usize, visit: &
             let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
             let x = [x0.to_f64(), x1.to_f64()].map(|x| part.plane(Axis::X, x));
             let y_lines = x.each_ref().map(|x| part.span(Axis::Y, [&level, x]));
-            let face =
-                part.face(&level, [&x[0], &x[1]], [&y[0], &y[1]], &[x_lines[0], y_lines[1], x_lines[1], y_lines[0]]);
+            let spans = [x_lines[0], y_lines[1], x_lines[1], y_lines[0]];
+            let face = part.face(&level, &rectangle([&x[0], &x[1]], [&y[0], &y[1]]), &spans);
             let [width, depth] = [&x, &y].map(|[lo, hi]| hi.h.value - lo.h.value);
             let share = fraction(&face, width * depth);
             if share > 0.0 {

@@ -27,6 +27,11 @@ impl Span {
         self.lo <= lo && self.hi >= hi
     }
 
+    /// The share of an interval that lies in it.
+    pub fn share_of(&self, [lo, hi]: P2) -> f64 {
+        if self.covers(lo, hi) { 1.0 } else { ((self.hi.min(hi) - self.lo.max(lo)) / (hi - lo)).clamp(0.0, 1.0) }
+    }
+
     /// What both hold.
     pub fn intersection(self, other: Self) -> Self {
         Span { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }

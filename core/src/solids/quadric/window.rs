@@ -4,6 +4,7 @@ use super::part::Part;
 use super::wall::Wall;
 use crate::number::axis::Axis;
 use crate::number::real::Real;
+use core::ops::Range;
 
 /// Lowest and highest coordinate.
 pub(super) type Extent = [f64; 2];
@@ -17,6 +18,12 @@ const NOWHERE: [Extent; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
 fn widened([lo, hi]: Extent) -> Extent {
     let margin = (lo.abs().max(hi.abs()) + (hi - lo)) * MARGIN;
     [lo - margin, hi + margin]
+}
+
+/// The cells along an axis that an extent reaches or touches.
+pub(super) fn reached<R: Real>(edges: &[R], [lo, hi]: Extent) -> Range<usize> {
+    let first = edges.partition_point(|e| e.to_f64() < lo).saturating_sub(1);
+    first..edges.partition_point(|e| e.to_f64() <= hi).min(edges.len().saturating_sub(1))
 }
 
 /// A part of the axis of a cylinder or cone, by shares of the way between its ends, and the largest radius.
