@@ -16,7 +16,7 @@ type Make = fn(usize) -> (Bodies, Edges);
 type Family = (&'static str, &'static [usize], Make);
 
 const FAMILIES: [Family; 11] = [
-    ("wedges", &[100, 200, 400, 800, 1600, 3200], wedges),
+    ("wedges", &[100, 200, 400, 800, 1600, 3200, 10_000], wedges),
     ("boxes-shifted", &[100, 200, 400, 800, 1600], boxes_shifted),
     ("boxes-turned", &[100, 200, 400, 800], boxes_turned),
     ("spheres", &[50, 100, 200, 400], spheres),

@@ -39,7 +39,7 @@ struct Given {
 }
 
 /// As much as the host gives.
-const PLENTY: Given = Given { tenths: 10, pieces: 1024 };
+const PLENTY: Given = Given { tenths: 10, pieces: usize::MAX };
 
 fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given) -> Found<V::Scalar> {
     let set = || {
@@ -58,11 +58,11 @@ fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given
     let share = |needed: usize, least: usize| least + (needed - least) * given.tenths / 10;
     let (mut reals, mut flags) = (room(share(reals, least.reals)), room(share(flags, least.flags)));
     let (mut numbers, mut groups) = (room(share(numbers, 0)), room::<Group<V>>(share(groups, 0)));
-    let mut pieces: Vec<Piece<V::Scalar>> = room(given.pieces);
-    let (mut split_pieces, mut order) = (room(4 * given.pieces), room(4 * given.pieces));
-    let (mut nodes, mut parts): (Vec<Node<V::Scalar>>, Vec<Part>) = (room(4 * given.pieces), room(given.pieces / 4));
-    let (mut fragments, mut pending): (Vec<Fragment<V::Scalar>>, Vec<PendingNode>) =
-        (room(given.pieces), room(given.pieces));
+    let most = given.pieces.min(layers.union_pieces());
+    let mut pieces: Vec<Piece<V::Scalar>> = room(most);
+    let (mut split_pieces, mut order) = (room(4 * most), room(4 * most));
+    let (mut nodes, mut parts): (Vec<Node<V::Scalar>>, Vec<Part>) = (room(4 * most), room(most / 4));
+    let (mut fragments, mut pending): (Vec<Fragment<V::Scalar>>, Vec<PendingNode>) = (room(most), room(most));
     let union = UnionMemory {
         pieces: &mut pieces,
         split_pieces: &mut split_pieces,

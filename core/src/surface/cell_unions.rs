@@ -352,8 +352,10 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     }
     let mut tried = 0_usize;
     let found = with_least_blur(shared.tol, |blur| {
-        let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
-        tried = tried.saturating_add(bodies.piece_count());
+        let room = shared.union.pieces.len();
+        let bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur);
+        tried = tried.saturating_add(bodies.as_ref().map_or(room, CellUnion::piece_count));
+        let mut bodies = bodies?;
         let mut surface = P::Found::default();
         let found = bodies.cell_and_surface(&mut |kept| {
             if P::WANTED {

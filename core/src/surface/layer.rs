@@ -118,10 +118,12 @@ impl<'a, V: Vector> Layers<'a, V> {
         self.bins.groups(k).len()
     }
 
-    /// The most bodies of triangles that reach one layer.
+    /// Pieces of surface for which [`UnionMemory`] should have room, with four times as many nodes: 16 for each body of triangles in the fullest layer, for they
+    /// may all be in one cell; 1024 to 32 768. With less, more cells are divided.
     #[must_use]
-    pub fn most_bodies(&self) -> usize {
-        (0..self.grid.cells()[2]).map(|k| self.bodies_in(k)).max().unwrap_or(0)
+    pub fn union_pieces(&self) -> usize {
+        let most = (0..self.grid.cells()[2]).map(|k| self.bodies_in(k)).max().unwrap_or(0);
+        most.saturating_mul(16).clamp(1 << 10, 1 << 15).next_power_of_two()
     }
 
     /// Open fractions of layer `k`: 1 open, 0 blocked, the value between its bounds as the options say. `bounds` are those of the same

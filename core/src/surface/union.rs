@@ -181,7 +181,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
     ) -> Result<(), NoProof> {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
         let first = self.piece_count;
-        let mut filling = R::ZERO;
+        let (mut filling, mut on_sides) = (R::ZERO, R::ZERO);
         let mut scratch = [Polygon::default(), Polygon::default()];
         for triangle in ids.filter_map(|id| triangles.get(id as usize)) {
             let triangle = triangle.map(Vector::to_array);
@@ -193,12 +193,15 @@ impl<'a, R: Real> CellUnion<'a, R> {
                 continue;
             }
             match self.frame.on_side(piece, lo, hi) {
-                Some(solid) => filling += if solid { piece.area } else { -piece.area },
+                Some(solid) => {
+                    filling += if solid { piece.area } else { -piece.area };
+                    on_sides += piece.area;
+                }
                 None => self.piece_count += 1,
             }
         }
-        // With no surface but on its sides the cell is all solid or all open.
-        let uniform = if filling > R::ZERO { Branch::Solid } else { Branch::Open };
+        // With no surface but on its sides the cell is all solid or all open. The two walls of what reaches into it by rounding cancel.
+        let uniform = if filling > on_sides * R::HALF { Branch::Solid } else { Branch::Open };
         if self.piece_count == first && uniform == Branch::Open {
             return Ok(());
         }

@@ -229,7 +229,7 @@ impl Worker {
         let needed = layers.memory_needed();
         let sums = SumVecs {
             needed,
-            most_pieces: if layers.most_bodies() > FEW_BODIES { MANY_PIECES } else { PIECES },
+            most_pieces: layers.union_pieces(),
             reals: vec![0.0; needed.reals],
             flags: vec![0; needed.flags],
             numbers: Vec::new(),
@@ -266,12 +266,6 @@ impl Worker {
     }
 }
 
-/// Pieces of surface that one cell may hold before it is divided, where no layer holds more than a few bodies, and where some layer does: more memory
-/// takes time to make, and the same for all threads, lest results depend on their number.
-const PIECES: usize = 1024;
-const MANY_PIECES: usize = 4 * PIECES;
-const FEW_BODIES: usize = PIECES / 4;
-
 /// Memory for unions.
 struct UnionVecs {
     pieces: Vec<Piece<f64>>,
@@ -284,15 +278,18 @@ struct UnionVecs {
 }
 
 impl UnionVecs {
+    /// For so many pieces of all bodies together.
     fn new(most_pieces: usize) -> Self {
+        // Of one body, or of the parts of one polygon under way.
+        let of_one = 4096;
         UnionVecs {
             pieces: vec![Piece::default(); most_pieces],
-            split_pieces: vec![Piece::default(); 4 * most_pieces],
-            order: vec![0; 4 * most_pieces],
+            split_pieces: vec![Piece::default(); of_one],
+            order: vec![0; of_one],
             nodes: vec![Node::default(); 4 * most_pieces],
-            parts: vec![Part::default(); most_pieces / 4],
-            fragments: vec![Fragment::default(); most_pieces],
-            pending: vec![PendingNode::default(); most_pieces],
+            parts: vec![Part::default(); most_pieces / 2],
+            fragments: vec![Fragment::default(); of_one.min(most_pieces)],
+            pending: vec![PendingNode::default(); of_one],
         }
     }
 
