@@ -26,6 +26,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 pub use crate::geometry::diagnosis::Diagnosis;
@@ -163,13 +164,17 @@ impl Bodies {
         let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
         let rounding = rounding(d.bounds, mesh.single_precision);
         let cleaned = clean(&scaled, solid_of, rounding, &mut d, &mut report);
-        let Some(Cleaned { mesh: indexed, shells, clusters, all_uses }) = cleaned else {
+        let Some(Cleaned { mesh: indexed, shells, clusters, with_backs }) = cleaned else {
             let reason = format!("all triangles ({}) are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
         let name_of =
             |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
-        let contested = |edge: &[u32; 2]| all_uses.as_ref().is_some_and(|uses| is_contested(&indexed, uses, *edge));
+        let uses = OnceCell::new();
+        let contested = |edge: &[u32; 2]| {
+            let uses = with_backs.as_ref().map(|all| uses.get_or_init(|| EdgeUses::new(&indexed, all)));
+            uses.is_some_and(|uses| is_contested(&indexed, uses, *edge))
+        };
         let closed = close(&indexed, &shells, name_of, contested, rounding, &mut d, &mut report);
         let known = clusters.into_iter().map(|c| c.into_part(&indexed, name_of)).collect();
         let closed = resolve(closed, known, &scaled, &mut d, &mut report);
@@ -314,8 +319,8 @@ struct Cleaned {
     mesh: Indexed,
     shells: Vec<Shell>,
     clusters: Vec<Cluster>,
-    /// Of the edges by all triangles, those that were dropped too, if some are the backs of others.
-    all_uses: Option<EdgeUses>,
+    /// Which triangles have three corners, those too that were dropped, if some are the backs of others.
+    with_backs: Option<Vec<bool>>,
 }
 
 /// Double-sided triangles that are no shells, for their edges do not tell what belongs together.
@@ -408,11 +413,11 @@ fn clean(
     d.boundary_edges = d.t_junction_edges;
     let mut clusters = Vec::new();
     let has_backs = copies::hold_backs(&mesh, (0..all.len() as u32).filter(|&n| all[n as usize]));
-    let all_uses = has_backs.then(|| EdgeUses::new(&mesh, &all));
+    let with_backs = has_backs.then(|| all.clone());
     let cut = d.t_junction_edges > 0;
-    if cut || has_backs {
-        // Where edges tell what belongs together, they tell more than regions: which parts touch, and what is open between them.
-        let unclear = if cut { Vec::new() } else { unclear(&mesh, &alive, &solid_of, rounding) };
+    // Where edges tell what belongs together, they tell more than regions: which parts touch, and what is open between them.
+    let unclear = if has_backs && !cut { unclear(&mesh, &alive, &solid_of, rounding) } else { Vec::new() };
+    if cut || unclear.contains(&true) {
         clusters = take_clusters(&mesh, &mut all, &solid_of, |n| cut || unclear[n as usize]);
         // Only now can it be seen which triangles repeat others, and what is open without them.
         alive = all;
@@ -440,7 +445,7 @@ fn clean(
             either(d.one_sided, "it", "them")
         ));
     }
-    Some(Cleaned { mesh, shells, clusters, all_uses })
+    Some(Cleaned { mesh, shells, clusters, with_backs })
 }
 
 /// Drop the shells that repeat others or are their backs.
