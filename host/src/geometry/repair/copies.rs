@@ -244,18 +244,13 @@ enum Kind {
 
 /// The shells to which triangles belong that are there more than once, whichever way round; by corners from the lowest on.
 fn twins(mesh: &Indexed, shells: &[Shell]) -> HashMap<[u32; 3], Vec<usize>> {
-    let sorted = |n: u32| {
-        let mut corners = mesh.triangles[n as usize];
-        corners.sort_unstable();
-        corners
-    };
     let members = || shells.iter().enumerate().flat_map(|(s, shell)| shell.triangles.iter().map(move |&n| (s, n)));
-    let mut all: Vec<[u32; 3]> = members().map(|(_, n)| sorted(n)).collect();
+    let mut all: Vec<[u32; 3]> = members().map(|(_, n)| mesh.sorted(n)).collect();
     all.sort_unstable();
     let twice: HashSet<[u32; 3]> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
     let mut owners: HashMap<[u32; 3], Vec<usize>> = HashMap::default();
     if !twice.is_empty() {
-        for (s, n) in members().filter(|&(_, n)| twice.contains(&sorted(n))) {
+        for (s, n) in members().filter(|&(_, n)| twice.contains(&mesh.sorted(n))) {
             owners.entry(from_lowest(mesh.triangles[n as usize])).or_default().push(s);
         }
     }

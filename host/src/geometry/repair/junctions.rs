@@ -66,11 +66,7 @@ fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
     if balance(uses) != 0 {
         return true;
     }
-    let corners = |u: &Use| {
-        let mut t = mesh.triangles[u.triangle as usize];
-        t.sort_unstable();
-        t
-    };
+    let corners = |u: &Use| mesh.sorted(u.triangle);
     if let [(_, a), (_, b)] = uses {
         return corners(a) == corners(b);
     }
@@ -82,11 +78,7 @@ fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
 
 /// Is one of the triangles at an edge the reverse of another?
 fn has_back(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
-    let corners = |u: &Use| {
-        let mut t = mesh.triangles[u.triangle as usize];
-        t.sort_unstable();
-        t
-    };
+    let corners = |u: &Use| mesh.sorted(u.triangle);
     (0..uses.len()).any(|i| (0..i).any(|j| uses[i].1.up != uses[j].1.up && corners(&uses[i].1) == corners(&uses[j].1)))
 }
 

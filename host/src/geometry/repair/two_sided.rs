@@ -53,12 +53,7 @@ struct AtEdge {
 
 impl AtEdge {
     fn new(mesh: &Indexed, uses: &[(usize, Use)]) -> Self {
-        let corners = |u: &Use| {
-            let mut corners = mesh.triangles[u.triangle as usize];
-            corners.sort_unstable();
-            corners
-        };
-        let mut ways: Vec<([u32; 3], bool)> = uses.iter().map(|(_, u)| (corners(u), u.up)).collect();
+        let mut ways: Vec<([u32; 3], bool)> = uses.iter().map(|(_, u)| (mesh.sorted(u.triangle), u.up)).collect();
         ways.sort_unstable();
         let back = |w: &[([u32; 3], bool)]| w[0].0 == w[1].0 && w[0].1 != w[1].1;
         let tells = matches!(ways[..], [a, b, c, d] if back(&[a, b]) && back(&[c, d]) && a.0 != c.0);

@@ -22,6 +22,20 @@ impl Indexed {
         let whole = self.triangles.len() - self.sources.len();
         (n as usize).checked_sub(whole).and_then(|part| self.sources.get(part)).map_or(n, |&source| source)
     }
+
+    /// The corners of a triangle in ascending order: equal for a triangle and its back.
+    #[must_use]
+    pub fn sorted(&self, n: u32) -> [u32; 3] {
+        let mut corners = self.triangles[n as usize];
+        corners.sort_unstable();
+        corners
+    }
+
+    /// Where the corners of some triangles are.
+    #[must_use]
+    pub fn corners(&self, triangles: &[u32]) -> Vec<[DVec3; 3]> {
+        triangles.iter().map(|&n| self.triangles[n as usize].map(|v| self.points[v as usize])).collect()
+    }
 }
 
 /// The directed edges of a triangle.

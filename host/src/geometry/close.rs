@@ -1,0 +1,202 @@
+//! Shells to closed parts: those that close each other are joined, holes are capped.
+
+use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
+use crate::geometry::repair::edges::{EdgeUses, key};
+use crate::geometry::repair::nesting::Closed;
+use crate::geometry::repair::rims::{Rim, rims};
+use crate::geometry::repair::sets::Sets;
+use crate::geometry::repair::shells::Shell;
+use crate::geometry::repair::weld::Indexed;
+use crate::geometry::resolve::Part;
+use crate::words::{counted, either};
+use glam::DVec3;
+use rustc_hash::FxHashMap as HashMap;
+use std::cell::OnceCell;
+
+/// Make every shell closed: join those that close each other, cap holes.
+///
+/// `with_backs`: which triangles have three corners, those too that were dropped, if some are the backs of others.
+pub(super) fn close(
+    mesh: &Indexed,
+    shells: &[Shell],
+    name_of: impl Fn(u32) -> String,
+    with_backs: Option<&[bool]>,
+    rounding: f64,
+    d: &mut Diagnosis,
+    report: &mut Reporter,
+) -> Vec<Part> {
+    let uses = OnceCell::new();
+    let contested = |edge: &[u32; 2]| {
+        let uses = with_backs.map(|all| uses.get_or_init(|| EdgeUses::new(mesh, all)));
+        uses.is_some_and(|uses| is_contested(mesh, uses, *edge))
+    };
+    let (mut closed, mut open) = (Vec::new(), Open::default());
+    d.area = 0.0;
+    for group in groups(mesh, shells, rounding) {
+        let members: Vec<u32> = group.iter().flat_map(|&s| shells[s].triangles.iter().copied()).collect();
+        let mut triangles = mesh.corners(&members);
+        let own = triangles.len();
+        d.area += triangles.iter().map(area).sum::<f64>();
+        let boundary = without_opposites(group.iter().flat_map(|&s| shells[s].boundary.iter().copied()));
+        let caps = Caps::new(mesh, &members, &boundary, rounding);
+        d.boundary_edges += boundary.len();
+        d.t_junction_edges += caps.t_junction_edges;
+        d.holes += caps.open.holes;
+        let is_capped = !caps.triangles.is_empty();
+        triangles.extend(caps.triangles);
+        let name = members.iter().min().map_or_else(String::new, |&n| name_of(n));
+        let cluster = group.iter().map(|&s| shells[s].cluster).min().unwrap_or(0);
+        let guessed = group.iter().any(|&s| shells[s].guessed);
+        let mut shell = Closed::new(triangles);
+        // That of a sheet is told as such.
+        if !shell.is_sheet() {
+            open.join(&caps.open);
+            open.uneven.extend(&caps.open.uneven);
+            shell.unknown = caps.open.uneven;
+        }
+        let contested = is_capped && boundary.iter().any(contested);
+        closed.push(Part { name, shell, cluster, guessed, contested, own });
+    }
+    if d.t_junction_edges > 0 {
+        report.warn(format!(
+            "{} no partner (T-junctions), but the surface closes",
+            counted(d.t_junction_edges, "edge has", "edges have")
+        ));
+    }
+    open.say(report);
+    closed
+}
+
+/// Do different triangles end at a loose edge, some of which others may have been joined to that belong to it?
+fn is_contested(mesh: &Indexed, uses: &EdgeUses, [a, b]: [u32; 2]) -> bool {
+    let mut of_edge = uses.of(key(a, b)).iter().map(|(_, u)| mesh.sorted(u.triangle));
+    of_edge.next().is_some_and(|first| of_edge.any(|other| other != first))
+}
+
+/// What closes the holes of a surface.
+#[derive(Default)]
+struct Caps {
+    triangles: Vec<[DVec3; 3]>,
+    open: Open,
+    /// Loose edges that close by themselves.
+    t_junction_edges: usize,
+}
+
+impl Caps {
+    /// For some triangles of a mesh and the loose edges around them.
+    fn new(mesh: &Indexed, members: &[u32], boundary: &[[u32; 2]], rounding: f64) -> Self {
+        let mut caps = Caps::default();
+        for rim in rims(boundary) {
+            if rim.cancels(&mesh.points, rounding) {
+                caps.t_junction_edges += rim.edges.len();
+                continue;
+            }
+            let surface = members.iter().map(|&n| mesh.triangles[n as usize]);
+            rim.apart(surface, &mesh.points).iter().for_each(|rim| caps.close(mesh, rim, rounding));
+        }
+        caps
+    }
+
+    fn close(&mut self, mesh: &Indexed, rim: &Rim, rounding: f64) {
+        if rim.cancels(&mesh.points, rounding) {
+            self.t_junction_edges += rim.edges.len();
+            return;
+        }
+        let cap = rim.cap(&mesh.points);
+        let even = rim.is_plane(&mesh.points, rounding);
+        self.open.join(&Open {
+            edges: rim.edges.len(),
+            holes: 1,
+            largest: Some((cap.iter().map(area).sum(), rim.middle(&mesh.points))),
+            uneven: Vec::new(),
+        });
+        self.open.uneven.extend((!even).then(|| rim.bounds(&mesh.points)));
+        self.triangles.extend(cap);
+    }
+}
+
+/// Where bodies are open.
+#[derive(Default)]
+struct Open {
+    edges: usize,
+    holes: usize,
+    /// Area and middle of the largest cap.
+    largest: Option<(f64, DVec3)>,
+    /// Boxes around rims that are not plane.
+    uneven: Vec<[DVec3; 2]>,
+}
+
+impl Open {
+    fn join(&mut self, other: &Open) {
+        self.edges += other.edges;
+        self.holes += other.holes;
+        let area = |largest: Option<(f64, DVec3)>| largest.map(|(area, _)| area);
+        if area(other.largest) > area(self.largest) {
+            self.largest = other.largest;
+        }
+    }
+
+    fn say(&self, report: &mut Reporter) {
+        if let Some((area, place)) = self.largest {
+            report.warn(format!(
+                "the surface is open: {} around {}, closed with {} (the largest, area {area:.6}, at {})",
+                counted(self.edges, "boundary edge", "boundary edges"),
+                counted(self.holes, "hole", "holes"),
+                either(self.holes, "a cap", "caps"),
+                show(place)
+            ));
+        }
+        if let Some(&[lo, _]) = self.uneven.first() {
+            let volume: f64 = self.uneven.iter().map(|[lo, hi]| (*hi - *lo).element_product()).sum();
+            report.warn(format!(
+                "{} not plane (the first near {}): what lies between its edge and the cap may be solid or open; the bounds of cells hold both in a box around it, {volume:.3e} m3 in all",
+                counted(self.uneven.len(), "hole is", "holes are"),
+                show(lo)
+            ));
+        }
+    }
+}
+
+/// Area of a triangle.
+fn area([a, b, c]: &[DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() * 0.5
+}
+
+/// Edges without those that run back along others: there two sides of a sheet meet.
+fn without_opposites(edges: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
+    let mut edges: Vec<([u32; 2], bool)> = edges.map(|[a, b]| ([a.min(b), a.max(b)], a < b)).collect();
+    edges.sort_unstable();
+    let mut left = Vec::new();
+    for uses in edges.chunk_by(|a, b| a.0 == b.0) {
+        let ([a, b], up) = (uses[0].0, uses.iter().filter(|(_, up)| *up).count());
+        let down = uses.len() - up;
+        let edge = if up > down { [a, b] } else { [b, a] };
+        left.extend(std::iter::repeat_n(edge, up.abs_diff(down)));
+    }
+    left
+}
+
+/// Shells that belong together: closed ones alone, also those that close but for T-junctions; open ones with those that share a corner of their
+/// boundary.
+fn groups(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Vec<Vec<usize>> {
+    let mut sets = Sets::new(shells.len());
+    let mut owner = HashMap::default();
+    for (s, shell) in shells.iter().enumerate() {
+        let rims = rims(&without_opposites(shell.boundary.iter().copied()));
+        let open = rims.iter().filter(|rim| !rim.cancels(&mesh.points, rounding));
+        for v in open.flat_map(|rim| rim.edges.iter().flatten()) {
+            let other = *owner.entry(*v).or_insert(s);
+            sets.join(s, other);
+        }
+    }
+    let mut at = HashMap::default();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for s in 0..shells.len() {
+        let group = *at.entry(sets.find(s)).or_insert_with(|| {
+            groups.push(Vec::new());
+            groups.len() - 1
+        });
+        groups[group].push(s);
+    }
+    groups
+}
