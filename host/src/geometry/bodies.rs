@@ -342,16 +342,15 @@ impl Cluster {
     }
 }
 
-/// The triangles of shells of which edges do not tell enough: that are open or hold their own backs, or of which it is a guess which triangles belong to
-/// them.
-fn unclear(mesh: &Indexed, alive: &[bool], solid_of: impl Fn(u32) -> usize, rounding: f64) -> Vec<bool> {
-    let (mut mesh, mut unclear) = (mesh.clone(), vec![false; alive.len()]);
-    let mut shells = shells::shells(&mut mesh, alive, solid_of);
-    drop_copies(&mesh, &mut shells, rounding, &mut Diagnosis::default());
+/// Of all `count` triangles, those of shells of which edges do not tell enough: that are open or hold their own backs, or of which it is a guess which
+/// triangles belong to them. Shells that say nothing that others do not are left out.
+fn unclear(mesh: &Indexed, shells: &[Shell], count: usize, rounding: f64) -> Vec<bool> {
+    let (mut unclear, mut kept) = (vec![false; count], shells.to_vec());
+    drop_copies(mesh, &mut kept, rounding, &mut Diagnosis::default());
     let is_unclear = |shell: &Shell| {
-        shell.guessed || !shell.boundary.is_empty() || copies::hold_backs(&mesh, shell.triangles.iter().copied())
+        shell.guessed || !shell.boundary.is_empty() || copies::hold_backs(mesh, shell.triangles.iter().copied())
     };
-    let of_shells = shells.iter().filter(|shell| is_unclear(shell)).flat_map(|shell| &shell.triangles);
+    let of_shells = kept.iter().filter(|shell| is_unclear(shell)).flat_map(|shell| &shell.triangles);
     of_shells.for_each(|&n| unclear[n as usize] = true);
     unclear
 }
@@ -400,23 +399,8 @@ fn clean(
     let uses = if alive == all { uses } else { EdgeUses::new(&mesh, &all) };
     d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
     d.boundary_edges = d.t_junction_edges;
-    let mut clusters = Vec::new();
-    let has_backs = copies::hold_backs(&mesh, (0..all.len() as u32).filter(|&n| all[n as usize]));
-    let with_backs = has_backs.then(|| all.clone());
-    let cut = d.t_junction_edges > 0;
-    // Where edges tell what belongs together, they tell more than regions: which parts touch, and what is open between them.
-    let unclear = if has_backs && !cut { unclear(&mesh, &alive, &solid_of, rounding) } else { Vec::new() };
-    if cut || unclear.contains(&true) {
-        clusters = take_clusters(&mesh, &mut all, &solid_of, |n| cut || unclear[n as usize]);
-        // Only now can it be seen which triangles repeat others, and what is open without them.
-        alive = all;
-        [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
-    }
-    let mut shells = shells::shells(&mut mesh, &alive, &solid_of);
-    if cut || has_backs {
-        copies::doubt_backs(&mesh, &mut shells, cut);
-    }
-    drop_copies(&mesh, &mut shells, rounding, d);
+    let with_backs = copies::hold_backs(&mesh, (0..all.len() as u32).filter(|&n| all[n as usize])).then(|| all.clone());
+    let (shells, clusters) = split(&mut mesh, [all, alive], with_backs.is_some(), &solid_of, rounding, d);
     d.shells = shells.len() + clusters.len();
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {
@@ -435,6 +419,44 @@ fn clean(
         ));
     }
     Some(Cleaned { mesh, shells, clusters, with_backs })
+}
+
+/// Split a mesh into shells, and clusters of which edges do not tell enough. Of its triangles, two lists: which have three corners, and which of these
+/// are left without repeats.
+fn split(
+    mesh: &mut Indexed,
+    [mut all, mut alive]: [Vec<bool>; 2],
+    has_backs: bool,
+    solid_of: impl Fn(u32) -> usize,
+    rounding: f64,
+    d: &mut Diagnosis,
+) -> (Vec<Shell>, Vec<Cluster>) {
+    let mut clusters = Vec::new();
+    let cut = d.t_junction_edges > 0;
+    let (mut shells, mut asked) = (Vec::new(), Vec::new());
+    if !cut {
+        let before = has_backs.then(|| mesh.clone());
+        shells = shells::shells(mesh, &alive, &solid_of);
+        if let Some(before) = before {
+            // Where edges tell what belongs together, they tell more than regions: which parts touch, and what is open between them.
+            asked = unclear(mesh, &shells, alive.len(), rounding);
+            if asked.contains(&true) {
+                *mesh = before;
+            }
+        }
+    }
+    if cut || asked.contains(&true) {
+        clusters = take_clusters(mesh, &mut all, &solid_of, |n| cut || asked[n as usize]);
+        // Only now can it be seen which triangles repeat others, and what is open without them.
+        alive = all;
+        [d.repeated, d.doubled] = copies::drop_repeats(mesh, &mut alive);
+        shells = shells::shells(mesh, &alive, &solid_of);
+    }
+    if cut || has_backs {
+        copies::doubt_backs(mesh, &mut shells, cut);
+    }
+    drop_copies(mesh, &mut shells, rounding, d);
+    (shells, clusters)
 }
 
 /// Drop the shells that repeat others or are their backs.
