@@ -20,21 +20,26 @@ pub(super) fn squares(p: f64, q: f64) -> f64 {
     }
 }
 
+/// The mean of the squares of the lower of two lines, and the greatest value of that one.
+fn under(l: P2, r: P2) -> P2 {
+    if let Some(at) = crossing(l, r) {
+        let (first, middle, last) = (l[0].min(r[0]), l[0] + (l[1] - l[0]) * at, l[1].min(r[1]));
+        return [squares(first, middle) * at + squares(middle, last) * (1.0 - at), first.max(middle).max(last)];
+    }
+    // Of one line only: where it is above the other it counts no more.
+    let lower = if l[0] + l[1] < r[0] + r[1] { l } else { r };
+    [squares(lower[0], lower[1]), lower[0].max(lower[1])]
+}
+
 /// The mean of the squares of the lowest of some lines, none higher than `most`.
 pub(super) fn lowest(lines: [Option<P2>; 2], most: f64) -> f64 {
     let flat = [most; 2];
-    // Of one line only: where it is above the other it counts no more.
-    let under = |l: P2, r: P2| match crossing(l, r) {
-        Some(at) => {
-            let middle = l[0] + (l[1] - l[0]) * at;
-            squares(l[0].min(r[0]), middle) * at + squares(middle, l[1].min(r[1])) * (1.0 - at)
-        }
-        None if l[0] + l[1] < r[0] + r[1] => squares(l[0], l[1]),
-        None => squares(r[0], r[1]),
-    };
     match lines {
         [None, None] => most * most,
-        [Some(l), None] | [None, Some(l)] => under(l, flat),
-        [Some(l), Some(r)] => under(l, r).min(under(l, flat)).min(under(r, flat)),
+        [Some(l), None] | [None, Some(l)] => under(l, flat)[0],
+        [Some(l), Some(r)] => match under(l, r) {
+            [mean, greatest] if greatest <= most => mean,
+            [mean, _] => mean.min(under(l, flat)[0]).min(under(r, flat)[0]),
+        },
     }
 }

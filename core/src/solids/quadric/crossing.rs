@@ -10,22 +10,18 @@
 //! with sides so moved, and its slope, are those of such a body.
 
 use super::concave::{lowest, squares};
+use super::moving::{Area, Known, Moving, Range};
 use super::part::Part;
+use super::polygon::{Corner, Corners, Cut, Line, MOST_LINES, Strips, cut};
 use super::wall::Wall;
 use crate::number::axis::Axis;
-use crate::number::plane::{P2, cross, dot, on_way, sub};
+use crate::number::plane::{P2, cross, dot, sub};
 use crate::number::real::Real;
 use crate::number::space::{self, P3};
 use heapless::Vec;
 
 /// Axes with a smaller sine between them are left to sections.
 const LEAST_SINE: f64 = 1e-5;
-
-/// Sides of the first strip between its ends, of the second one, its ends, and the sides of the box.
-const MOST_LINES: usize = 14;
-
-/// Each line cuts off a corner and adds two, at most.
-const MOST_CORNERS: usize = MOST_LINES;
 
 /// Most planes asked for where the common part lies.
 const MOST_TRIES: usize = 48;
@@ -36,6 +32,9 @@ const PLANES: f64 = 16.0;
 const MOST_WAITING: usize = 40;
 const MOST_TIMES: usize = 4;
 
+/// Most ranges of heights at once in which the sides of polygons are known.
+const MOST_KNOWN: usize = 6;
+
 /// Most steps of Newton's method at one of the ends, and how far from it they begin, as a share of the heights.
 const MOST_STEPS: usize = 8;
 const NEAR_END: f64 = 1.0 / 32.0;
@@ -45,33 +44,6 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Sides of polygons are off by so many times as much as the lines that they lie on.
 const ROUNDED_SIDES: f64 = 64.0;
-
-/// Inside is where `normal · x + offset + rise · height`, plus half the width of a strip, is not negative.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    normal: P2,
-    offset: f64,
-    rise: f64,
-    /// The length of the normal.
-    size: f64,
-    /// The strip that it is a side of, if of any.
-    strip: Option<usize>,
-}
-
-/// A corner of a polygon, and the line of the side after it.
-#[derive(Clone, Copy, Debug)]
-struct Corner {
-    at: P2,
-    line: u8,
-}
-
-type Corners = Vec<Corner, MOST_CORNERS>;
-
-/// Half the widths of both strips at a height, and by how much these grow with it.
-struct Strips {
-    half: P2,
-    growth: P2,
-}
 
 /// What a plane has of both pipes in the box.
 #[derive(Clone, Copy, Debug)]
@@ -102,6 +74,15 @@ struct Sample {
 }
 
 impl Sample {
+    fn new(at: f64, polygon: &Polygon, most: f64) -> Self {
+        let unknown = Sample { at, root: [0.0, Real::sqrt(most)], rise: [f64::NAN; 2], beyond: None };
+        match *polygon {
+            Polygon::Some { root, rise } => Sample { root, rise, ..unknown },
+            Polygon::Nothing(None) => unknown,
+            Polygon::Nothing(beyond) => Sample { root: [0.0; 2], beyond, ..unknown },
+        }
+    }
+
     /// Its tangent's values here and so far from here; none if it is not known.
     fn tangent(&self, far: f64) -> Option<P2> {
         let there = self.root[1] + self.rise[0] * far + self.rise[1] * far.abs();
@@ -257,11 +238,18 @@ impl Crossing {
         None
     }
 
+    /// What is certain between two heights of a polygon at a third one.
+    fn moving(&self, between: P2, height: f64, corners: &Corners, strips: &Strips) -> Option<Moving> {
+        let half = between.map(|at| self.strips(at).half);
+        Moving::new(&Known { lines: &self.lines, corners, height, strips }, &Range { between, half, noise: self.noise })
+    }
+
     /// The same by planes such that the bounds between two of them are apart by no more than the share of the heights and the `least` share of
     /// what is enough; and how many planes that took, `planes` at most.
     fn between_planes(&self, most: f64, enough: f64, least: f64, planes: usize) -> (P2, usize) {
         let [first, last] = self.heights;
         let mut waiting: Vec<Sample, MOST_WAITING> = Vec::new();
+        let mut known: Vec<Moving, MOST_KNOWN> = Vec::new();
         let _ = waiting.push(self.sample(last, most));
         let (mut below, mut a): (Option<Sample>, _) = (None, self.sample(first, most));
         let (mut steps, mut found) = (0, [0.0; 2]);
@@ -271,25 +259,56 @@ impl Crossing {
             let width = b.at - a.at;
             let far = high - low > enough * (0.5 * (width / (last - first)) + least);
             let middle = a.at + 0.5 * width;
-            if far && steps < planes && !waiting.is_full() && a.at < middle && middle < b.at {
-                steps += 1;
-                let _ = waiting.push(self.sample(middle, most));
-            } else {
+            let more = far && steps < planes && waiting.len() + 3 <= MOST_WAITING && a.at < middle && middle < b.at;
+            if !more {
                 found = [found[0] + low, found[1] + high];
                 (below, a) = (Some(a), *b);
                 let _ = waiting.pop();
+                continue;
             }
+            steps += 1;
+            while known.last().is_some_and(|k| !(a.at < k.between[1])) {
+                let _ = known.pop();
+            }
+            let between = [a.at, b.at];
+            if let Some(moving) = known.last().filter(|k| k.between[0] <= a.at && b.at <= k.between[1]) {
+                let _ = waiting.push(self.sample_of(moving, middle, most));
+                continue;
+            }
+            let (sample, moving) = self.sample_and_moving(middle, most, (!known.is_full()).then_some(between));
+            let Some(moving) = moving else {
+                let _ = waiting.push(sample);
+                continue;
+            };
+            // First what is above: the last one is the next to be reached.
+            let [from, to] = moving.between;
+            if middle < to && to < b.at {
+                let _ = waiting.push(self.sample_of(&moving, to, most));
+            }
+            let _ = waiting.push(sample);
+            if a.at < from && from < middle {
+                let _ = waiting.push(self.sample_of(&moving, from, most));
+            }
+            let _ = known.push(moving);
         }
         (found, steps)
     }
 
     fn sample(&self, at: f64, most: f64) -> Sample {
-        let unknown = Sample { at, root: [0.0, Real::sqrt(most)], rise: [f64::NAN; 2], beyond: None };
-        match self.polygon(at) {
-            Polygon::Some { root, rise } => Sample { root, rise, ..unknown },
-            Polygon::Nothing(None) => unknown,
-            Polygon::Nothing(beyond) => Sample { root: [0.0; 2], beyond, ..unknown },
-        }
+        self.sample_and_moving(at, most, None).0
+    }
+
+    /// A sample; and, if asked, what is certain of its polygon between two heights.
+    fn sample_and_moving(&self, at: f64, most: f64, between: Option<P2>) -> (Sample, Option<Moving>) {
+        let (polygon, moving) = self.polygon(at, between);
+        (Sample::new(at, &polygon, most), moving)
+    }
+
+    /// A sample at a height where the sides of the polygon are known.
+    fn sample_of(&self, moving: &Moving, at: f64, most: f64) -> Sample {
+        let area = moving.area(at, &self.strips(at));
+        let [_, outline] = self.most();
+        Sample::new(at, &self.rooted(&area, outline), most)
     }
 
     /// The sides of the first strip between its ends, in the order of [`Crossing::first`].
@@ -356,22 +375,23 @@ impl Crossing {
         corners
     }
 
-    /// What both have in common in the plane at a height.
-    fn polygon(&self, height: f64) -> Polygon {
+    /// What both have in common in the plane at a height; and, if asked, what is certain of that between two others.
+    fn polygon(&self, height: f64, between: Option<P2>) -> (Polygon, Option<Moving>) {
         let strips = self.strips(height);
         if !(strips.half[0] > 0.0 && strips.half[1] > 0.0 && self.along[0] < self.along[1]) {
-            return Polygon::Nothing(None);
+            return (Polygon::Nothing(None), None);
         }
-        let mut corners = self.first(strips.half[0]);
+        let (mut corners, mut kept) = (&mut self.first(strips.half[0]), &mut Corners::new());
         for (number, line) in self.lines.iter().enumerate().skip(4) {
             let offset = line.offset + line.rise * height + line.strip.map_or(0.0, |n| strips.half[n & 1]);
-            match cut(&corners, line.normal, offset, number as u8) {
+            match cut(corners, line.normal, offset, number as u8, kept) {
                 Cut::All => {}
-                Cut::Part(kept) => corners = kept,
-                Cut::None(nearest) => return Polygon::Nothing(self.beyond(height, &strips, number, nearest)),
+                Cut::Part => core::mem::swap(&mut corners, &mut kept),
+                Cut::None(nearest) => return (Polygon::Nothing(self.beyond(height, &strips, number, nearest)), None),
             }
         }
-        self.measured(&corners, &strips)
+        let moving = between.and_then(|between| self.moving(between, height, corners, &strips));
+        (self.measured(corners, &strips), moving)
     }
 
     /// Area, and by how much it grows: the length of each side, as often as that moves outward.
@@ -393,6 +413,11 @@ impl Crossing {
                 speed += growth.abs();
             }
         }
+        self.rooted(&Area { value: area, rise, speed }, outline)
+    }
+
+    /// The square root of an area of at most such an outline.
+    fn rooted(&self, &Area { value: area, rise, speed }: &Area, outline: f64) -> Polygon {
         if !(area > 0.0) {
             return Polygon::Nothing(None);
         }
@@ -438,7 +463,7 @@ impl Crossing {
                 return Some(false);
             }
             let middle = 0.5 * (low + high);
-            match self.polygon(middle) {
+            match self.polygon(middle, None).0 {
                 Polygon::Some { .. } => {
                     self.narrow_ends();
                     return Some(true);
@@ -458,7 +483,7 @@ impl Crossing {
             for _ in 0..MOST_STEPS {
                 let [low, high] = self.heights;
                 let near = self.heights[end] + (self.heights[1 - end] - self.heights[end]) * NEAR_END;
-                let at = match (end, self.polygon(near)) {
+                let at = match (end, self.polygon(near, None).0) {
                     (0, Polygon::Nothing(Some(Beyond::Below(at)))) => at.limited(near, high),
                     (1, Polygon::Nothing(Some(Beyond::Above(at)))) => at.limited(low, near),
                     _ => break,
@@ -467,48 +492,4 @@ impl Crossing {
             }
         }
     }
-}
-
-/// What a line leaves of a polygon.
-#[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
-enum Cut {
-    All,
-    Part(Corners),
-    /// Nothing: the lines before and after the corner that is nearest to it.
-    None([u8; 2]),
-}
-
-/// The part of a polygon where `normal · x + offset` is not negative; its side along that line gets a number.
-fn cut(corners: &Corners, normal: P2, offset: f64, number: u8) -> Cut {
-    let mut values: Vec<f64, MOST_CORNERS> = Vec::new();
-    let (mut inside, mut nearest) = (0, (f64::NEG_INFINITY, 0));
-    for (n, corner) in corners.iter().enumerate() {
-        let value = dot(normal, corner.at) + offset;
-        inside += usize::from(value >= 0.0);
-        if value > nearest.0 {
-            nearest = (value, n);
-        }
-        let _ = values.push(value);
-    }
-    if inside == corners.len() {
-        return Cut::All;
-    }
-    if inside == 0 {
-        let line = |n: usize| corners.get(n).map_or(0, |c| c.line);
-        let last = corners.len().saturating_sub(1);
-        return Cut::None([line(nearest.1.checked_sub(1).unwrap_or(last)), line(nearest.1)]);
-    }
-    let mut kept = Corners::new();
-    let next = |n: usize| if n + 1 < corners.len() { n + 1 } else { 0 };
-    for (n, (corner, &here)) in corners.iter().zip(&values).enumerate() {
-        let (Some(to), Some(&there)) = (corners.get(next(n)), values.get(next(n))) else { break };
-        if here >= 0.0 {
-            let _ = kept.push(*corner);
-        }
-        if (here >= 0.0) != (there >= 0.0) {
-            let line = if here >= 0.0 { number } else { corner.line };
-            let _ = kept.push(Corner { at: on_way(corner.at, to.at, here / (here - there)), line });
-        }
-    }
-    Cut::Part(kept)
 }

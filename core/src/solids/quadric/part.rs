@@ -48,18 +48,6 @@ pub(super) struct FaceFlux {
 /// The planes on both sides of a cell along each axis.
 pub(super) type Sides<'a> = [[&'a Plane; 2]; 3];
 
-impl Plane {
-    /// The conic of the curved surface.
-    pub fn section(&self) -> &Section {
-        &self.section
-    }
-
-    /// The lines of the flat ends.
-    pub fn lines(&self) -> &[Option<EndLine>; 2] {
-        &self.lines
-    }
-}
-
 impl Part {
     pub fn new(origin: [f64; 3], curved: Curved, ends: [Option<End>; 2]) -> Self {
         let [x, y, z] = curved.axis.map(f64::abs);

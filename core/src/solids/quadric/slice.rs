@@ -8,12 +8,11 @@
 //! trapezoid of the two lengths a lower one. Where one wall is proved to be the innermost on its side all the way (its tangents stay
 //! within the chords of the others), the integral over it is the area itself, in closed form: a trapezoid and the lens of an arc.
 
-use super::arc::{Lens, bend, lens_of};
+use super::arc::{Conic, Lens, bend, lens_of};
 use super::end_line::EndLine;
-use super::outline::Section;
-use super::part::{Part, Plane};
-use super::twofold::difference;
-use super::wall::Span;
+use super::part::Part;
+use super::twofold::{Twofold, difference};
+use super::wall::{Curved, Lines, Span, Wall};
 use crate::number::axis::Axis;
 use crate::number::plane::P2;
 use crate::number::real::Real;
@@ -78,8 +77,12 @@ enum Side {
 
 /// A curved surface in the plane.
 struct WallInPlane<'a> {
-    part: &'a Part,
-    plane: Plane,
+    curved: &'a Curved,
+    /// Of a cylinder that rows do not run along: how they lie to it, and its radius.
+    cylinder: Option<(Lines, f64)>,
+    /// The plane's coordinate, and the conic that it cuts out, from the part's origin.
+    h: Twofold,
+    conic: Conic,
     /// The part's origin in the plane.
     origin: P2,
 }
@@ -124,42 +127,52 @@ impl<const N: usize> Row<N> {
     }
 }
 
-impl WallInPlane<'_> {
-    fn section(&self) -> &Section {
-        self.plane.section()
+impl<'a> WallInPlane<'a> {
+    fn new(part: &'a Part, n: Axis, coordinate: f64) -> Self {
+        let ([u, v], curved) = (n.others(), &part.curved);
+        let cylinder = match curved.wall {
+            Wall::Cylinder { radius } => curved.lines(u).map(|lines| (lines, radius)),
+            _ => None,
+        };
+        let h = difference(coordinate, part.origin[n]);
+        WallInPlane { curved, cylinder, h, conic: curved.conic(n, h), origin: [part.origin[u], part.origin[v]] }
     }
 
-    #[inline]
+    #[inline(always)]
     fn span(&self, u_axis: Axis, v: f64) -> Span {
-        let span = self.part.curved.span(u_axis, [difference(v, self.origin[1]), self.plane.h]);
+        let place = [difference(v, self.origin[1]), self.h];
+        let span = match &self.cylinder {
+            Some((lines, radius)) => lines.span(*radius, place),
+            None => self.curved.span(u_axis, place),
+        };
         Span { lo: span.lo + self.origin[0], hi: span.hi + self.origin[0] }
     }
 
     /// Half the gradient of its conic in a point.
+    #[inline(always)]
     fn gradient(&self, u: f64, v: f64) -> P2 {
-        self.section().conic.gradient([u - self.origin[0], v - self.origin[1]])
+        self.conic.gradient([u - self.origin[0], v - self.origin[1]])
     }
 }
 
 impl<'a, const N: usize> Slice<'a, N> {
     /// Of a plane at a coordinate.
     pub fn new(parts: impl Iterator<Item = &'a Part>, window: Window, coordinate: f64) -> Self {
-        let [u, v] = window.n.others();
         let size = |x: P2| x[0].abs().max(x[1].abs());
         let far = size(window.u).max(size(window.v)).max(coordinate.abs());
         let mut slice =
             Slice { window, walls: Vec::new(), ends: Vec::new(), rows: window.v, noise: 0.0, tie: Cell::new(0.0) };
         let mut reach = far;
         for part in parts {
-            let plane = part.plane(window.n, coordinate);
-            let origin = [part.origin[u], part.origin[v]];
+            let wall = WallInPlane::new(part, window.n, coordinate);
+            let origin = wall.origin;
             reach = reach.max(size(origin)).max(part.origin[window.n].abs());
-            for line in plane.lines().iter().flatten() {
-                slice.add_end(line, origin);
+            for end in part.ends.iter().flatten() {
+                slice.add_end(&end.line(window.n, coordinate), origin);
             }
-            let [first, last] = part.curved.rows(window.n, plane.h);
+            let [first, last] = part.curved.rows(window.n, wall.h);
             slice.narrow(origin[1] + first, origin[1] + last);
-            let _ = slice.walls.push(WallInPlane { part, plane, origin });
+            let _ = slice.walls.push(wall);
         }
         slice.noise = 8.0 * f64::EPSILON * reach;
         slice.tie = Cell::new(slice.noise.max(window.enough / (16.0 * (window.v[1] - window.v[0]))));
@@ -534,10 +547,9 @@ impl<'a, const N: usize> Slice<'a, N> {
         let Boundary::Wall(n) = boundary else { return trapezoid };
         let Some(wall) = self.walls.get(usize::from(n)) else { return trapezoid };
         let (from, to) = ([p - wall.origin[0], a.v - wall.origin[1]], [q - wall.origin[0], b.v - wall.origin[1]]);
-        let conic = &wall.section().conic;
         let lens = match side {
-            Side::High => lens_of(from, to, conic, ANY_REACH),
-            Side::Low => lens_of(to, from, conic, ANY_REACH),
+            Side::High => lens_of(from, to, &wall.conic, ANY_REACH),
+            Side::Low => lens_of(to, from, &wall.conic, ANY_REACH),
         };
         let area = match lens {
             Lens::Nothing => 0.0,

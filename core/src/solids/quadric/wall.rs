@@ -114,20 +114,20 @@ impl Curved {
 
     #[inline]
     fn span_of_cylinder(&self, radius: f64, m: Axis, q: [Twofold; 2]) -> Span {
+        if let Some(lines) = self.lines(m) {
+            return lines.span(radius, q);
+        }
+        let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
+        let inside = difference_of_squares(radius, far) >= near.value * near.value;
+        if inside { Span::ALL } else { Span::EMPTY }
+    }
+
+    /// How lines along axis `m` lie to the axis; none if that runs along them.
+    #[inline(always)]
+    pub fn lines(&self, m: Axis) -> Option<Lines> {
         let [u, v] = m.others();
         let (au, av, across) = (self.axis[u], self.axis[v], self.across[m]);
-        if !(across > 0.0) {
-            let [near, far] = if q[0].value.abs() < q[1].value.abs() { [q[0], q[1]] } else { [q[1], q[0]] };
-            let inside = difference_of_squares(radius, far) >= near.value * near.value;
-            return if inside { Span::ALL } else { Span::EMPTY };
-        }
-        let beside = [av / across, -au / across];
-        let mut distance = Twofold { value: beside[0] * q[0].value + beside[1] * q[1].value, rest: 0.0 };
-        if (radius - distance.value.abs()).abs() < radius * NEAR {
-            distance = dot(sharpened(beside), q);
-        }
-        let foot = self.axis[m] * ((au / across) * q[0].value + (av / across) * q[1].value) / across;
-        symmetric(foot, difference_of_squares(radius, distance), across)
+        (across > 0.0).then(|| Lines { along: [au / across, av / across], lean: self.axis[m], across })
     }
 
     /// With f and d the line's distances from the origin along and beside the axis, as seen along the line, and σ² = 1 − (slope cot)², the
@@ -328,6 +328,30 @@ impl Curved {
                 positive(area).then_some(Ellipse { center, area })
             }
         }
+    }
+}
+
+/// How lines along one axis of the grid lie to the axis of a cylinder.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lines {
+    /// The unit vector along the axis as seen along the lines, in the order of [`Axis::others`].
+    along: P2,
+    /// What the axis has along the lines, and across.
+    lean: f64,
+    across: f64,
+}
+
+impl Lines {
+    /// What a line has inside a radius, by its other two coordinates.
+    #[inline(always)]
+    pub fn span(&self, radius: f64, q: [Twofold; 2]) -> Span {
+        let beside = [self.along[1], -self.along[0]];
+        let mut distance = Twofold { value: beside[0] * q[0].value + beside[1] * q[1].value, rest: 0.0 };
+        if (radius - distance.value.abs()).abs() < radius * NEAR {
+            distance = dot(sharpened(beside), q);
+        }
+        let foot = self.lean * (self.along[0] * q[0].value + self.along[1] * q[1].value) / self.across;
+        symmetric(foot, difference_of_squares(radius, distance), self.across)
     }
 }
 
