@@ -5,11 +5,12 @@
 //!
 //! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
 //! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `solid_layers`, `curved_cells`, `surface_layers`,
-//! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], what follows from it.
+//! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], [`divided`], what follows from it.
 
 pub mod congestion;
 pub mod convex;
 mod curved_cells;
+pub mod divided;
 mod doubt;
 pub mod drag;
 mod fields;

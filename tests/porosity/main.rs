@@ -6,6 +6,7 @@ mod common;
 mod core_alone;
 mod curved;
 mod dirty;
+mod divided;
 mod drag;
 mod holes;
 mod hulls;

@@ -4,6 +4,7 @@ use super::progress::Progress;
 use crate::geometry::bodies::{Bodies, Body};
 use crate::grid::AXES;
 use crate::picture::ticks::part;
+use crate::porosity::divided::{DividedCells, Division};
 use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use crate::porosity::resistance::{Resistance, resistance, shadows};
 use crate::porosity::shadows::{HIDDEN, Shadows};
@@ -34,6 +35,8 @@ pub struct Obstacles {
     pub drag: Option<ObstacleDrag>,
     /// Faces lowered to what passes.
     pub lowered_faces: usize,
+    /// Cells with gas on two sides of what stands in them, hidden passages not counted again.
+    pub divided: DividedCells,
 }
 
 /// Find what is wanted; with [`Faces::Throat`] the faces of `result` are lowered.
@@ -68,10 +71,19 @@ pub fn obstacles(
         found.drag = Some(drag);
         warn_of_gratings(bodies, progress);
     }
-    match wanted.faces {
-        Faces::Plane => warn_of_hidden_passages(bodies, &shadows, progress),
-        Faces::Throat => found.lowered_faces = throat::lower(grid, result, &shadows),
-    }
+    let division = progress.stage("divided", |_| Division::find(grid, bodies, &result.beta, &shadows));
+    let told_already = match wanted.faces {
+        Faces::Plane => {
+            warn_of_hidden_passages(bodies, &shadows, progress);
+            Some(&*shadows)
+        }
+        Faces::Throat => {
+            found.lowered_faces = throat::lower(grid, result, &shadows);
+            None
+        }
+    };
+    found.divided = division.told(grid, &result.beta, told_already);
+    warn_of_divided_cells(bodies, found.divided, progress);
     found
 }
 
@@ -102,6 +114,18 @@ fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Pr
             bodies.files(),
             counted(hidden.cells, "cell is", "cells are"),
             HIDDEN * 100.0
+        ));
+    }
+}
+
+/// A cell has one state: the gas on both sides of what divides it is one.
+fn warn_of_divided_cells(bodies: &Bodies, divided: DividedCells, progress: &mut Progress) {
+    if let Some([i, j, k]) = divided.first {
+        progress.warn(format!(
+            "{}: {} divided by a wall thinner than a cell that no face closes, the first at cell {i}, {j}, {k} (counted from 0): gas passes through; \
+             walls along the grid, or cells no wider than the wall is thick, are tight",
+            bodies.files(),
+            counted(divided.cells, "cell is", "cells are")
         ));
     }
 }

@@ -10,6 +10,7 @@ use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use crate::picture::ticks::{measure, part};
 use crate::porosity::congestion::Congestion;
+use crate::porosity::divided::DividedCells;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::resistance::{Resistance, Totals};
 use crate::porosity::shadows::{HiddenPassages, Shadows};
@@ -57,6 +58,8 @@ struct ObstacleReport {
     totals: Totals,
     /// Along x, y and z.
     hidden_passages: [HiddenPassages; 3],
+    /// Others with gas on two sides of a wall.
+    divided_cells: DividedCells,
     /// Cells that hold too much surface for a shadow.
     unproved_shadows: usize,
     /// Faces lowered to what passes, with `--faces throat`.
@@ -94,6 +97,7 @@ impl ObstacleReport {
         ObstacleReport {
             totals: found.totals,
             hidden_passages: *hidden,
+            divided_cells: obstacles.divided,
             unproved_shadows: *too_full,
             lowered_faces: obstacles.lowered_faces,
             drag,

@@ -1,0 +1,178 @@
+//! Cells divided by thin walls, against the gas itself: whether cells on both sides of a wall are joined by open faces is found by a search of the grid.
+
+use glam::{DMat3, DVec3};
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
+use voidage::grid::Edges;
+use voidage::porosity::divided::{DividedCells, Division};
+use voidage::porosity::resistance::resistance;
+use voidage::porosity::shadows::{cells, faces_of_cell};
+use voidage::porosity::{FieldSet, Options, porosity, throat};
+use voidage_core::convex::shape::Cylinder;
+use voidage_core::grid::Grid;
+use voidage_tests::random::Random;
+use voidage_tests::solids::{Triangle, cuboid, formulas, scene, turned_box};
+
+fn edges(count: [usize; 3]) -> Edges {
+    Edges(count.map(|n| (0..=n).map(|n| n as f64).collect()))
+}
+
+/// What is told of a scene: hidden passages and divided cells with faces in planes, divided cells with throats; and the faces of both.
+struct Told {
+    hidden: usize,
+    plane: DividedCells,
+    throat: DividedCells,
+    faces: [FieldSet; 2],
+}
+
+fn told(edges: &Edges, bodies: &Bodies) -> Told {
+    let (grid, options) = (edges.grid(None).expect("a grid"), Options { resistance: true, ..Options::default() });
+    let mut result = porosity(&grid, bodies, options);
+    let shadows = resistance(&grid, bodies, &result, options).shadows;
+    let division = Division::find(&grid, bodies, &result.beta, &shadows);
+    let (plane, in_planes) = (division.told(&grid, &result.beta, Some(&shadows)), result.beta.clone());
+    throat::lower(&grid, &mut result, &shadows);
+    let throat = division.told(&grid, &result.beta, None);
+    let hidden = shadows.hidden.iter().map(|hidden| hidden.cells).sum();
+    Told { hidden, plane, throat, faces: [in_planes, result.beta] }
+}
+
+/// The cells that gas reaches from one by faces that are open by more than `least`.
+fn reached(grid: &Grid<f64>, faces: &FieldSet, from: [usize; 3], least: f64) -> Vec<bool> {
+    let (mut found, mut stack) = (vec![false; grid.cell_count()], vec![from]);
+    while let Some(at) = stack.pop() {
+        if std::mem::replace(&mut found[grid.cell_index(at)], true) {
+            continue;
+        }
+        for axis in 0..3 {
+            let [low, high] = faces_of_cell(grid, axis, at).map(|face| faces.faces(axis)[face] > least);
+            if low && at[axis] > 0 {
+                let mut next = at;
+                next[axis] -= 1;
+                stack.push(next);
+            }
+            if high && at[axis] + 1 < grid.cells()[axis] {
+                let mut next = at;
+                next[axis] += 1;
+                stack.push(next);
+            }
+        }
+    }
+    found
+}
+
+/// Does gas come from one side of a wall through `middle`, normal to `normal`, to the other? None if faces hardly open decide it.
+fn leaks(grid: &Grid<f64>, faces: &FieldSet, middle: DVec3, normal: DVec3) -> Option<bool> {
+    let side = |at: [usize; 3]| (DVec3::from_array(at.map(|n| n as f64 + 0.5)) - middle).dot(normal);
+    let from = cells(grid).min_by(|a, b| side(*a).total_cmp(&side(*b))).expect("cells");
+    let other = cells(grid).max_by(|a, b| side(*a).total_cmp(&side(*b))).expect("cells");
+    let joined = |least: f64| reached(grid, faces, from, least)[grid.cell_index(other)];
+    match [joined(0.1), joined(1e-9)] {
+        [true, true] => Some(true),
+        [false, false] => Some(false),
+        _ => None,
+    }
+}
+
+/// Judges a wall that goes through the whole grid; whether it leaks with throats.
+fn judge(count: [usize; 3], bodies: &Bodies, middle: DVec3, normal: DVec3, name: &str) -> Option<bool> {
+    let edges = edges(count);
+    let (grid, found) = (edges.grid(None).expect("a grid"), told(&edges, bodies));
+    let [plane, throat] = [0, 1].map(|n| leaks(&grid, &found.faces[n], middle, normal));
+    if let Some(leaks) = plane {
+        assert_eq!(found.hidden + found.plane.cells > 0, leaks, "{name}: {:?}", found.plane);
+    }
+    if let Some(leaks) = throat {
+        assert_eq!(found.throat.cells > 0, leaks, "{name}: {:?}", found.throat);
+    }
+    throat
+}
+
+/// A wall turned about z in a layer of cells: it leaks wherever it leaves cells by the faces ahead, and that is told; where it does not leak it is not.
+#[test]
+fn walls_turned_in_a_plane() {
+    let (mut random, mut leaking, mut tight) = (Random::new(16), 0, 0);
+    for degrees in (0..=90).step_by(5) {
+        for thickness in [0.01, 0.05, 0.1, 0.2, 0.3] {
+            let turn = DMat3::from_rotation_z(f64::from(degrees).to_radians());
+            let middle = DVec3::new(6.0 + random.unit(), 6.0 + random.unit(), 0.5);
+            let wall = scene(&[turned_box(middle, DVec3::new(thickness / 2.0, 30.0, 30.0), turn)]);
+            let name = format!("{degrees} degrees, {thickness} thick, {middle}");
+            match judge([13, 13, 1], &wall, middle, turn.x_axis, &name) {
+                Some(true) => leaking += 1,
+                Some(false) => tight += 1,
+                None => {}
+            }
+        }
+    }
+    println!("{leaking} leak, {tight} are tight");
+    assert!(leaking > 60 && tight >= 8, "{leaking} {tight}");
+}
+
+/// Walls turned anyhow, as triangles and as discs by formula.
+#[test]
+fn walls_askew_in_space() {
+    let (mut random, mut leaking) = (Random::new(17), 0);
+    for n in 0..24 {
+        let (turn, thickness) = (random.turn(), random.between(0.01, 0.3));
+        let middle = random.point(DVec3::splat(3.5), DVec3::splat(4.5));
+        let normal = turn.x_axis;
+        let bodies = match n % 3 {
+            0 => {
+                let [a, b] = [-0.5, 0.5].map(|side| middle + normal * (side * thickness));
+                formulas(&[Form::Cylinder(Cylinder::new(a, b, 20.0))])
+            }
+            _ => scene(&[turned_box(middle, DVec3::new(thickness / 2.0, 20.0, 20.0), turn)]),
+        };
+        let leaks = judge([8, 8, 8], &bodies, middle, normal, &format!("{n}: {thickness} thick, {middle}, {normal}"));
+        leaking += usize::from(leaks == Some(true));
+    }
+    assert!(leaking > 12, "{leaking}");
+}
+
+/// What divides no gas: pipes thinner and thicker than a cell, corners of boxes, walls that close whole cells, walls that end.
+#[test]
+fn what_gas_goes_around_divides_nothing() {
+    let mut random = Random::new(18);
+    let none = |bodies: &Bodies, name: &str| {
+        let found = told(&edges([8; 3]), bodies);
+        assert_eq!((found.plane, found.throat), Default::default(), "{name}");
+    };
+    for n in 0..12 {
+        let (middle, radius) = (random.point(DVec3::splat(3.0), DVec3::splat(5.0)), random.between(0.1, 1.2));
+        let along = random.turn().x_axis * 20.0;
+        let pipe = formulas(&[Form::Cylinder(Cylinder::new(middle - along, middle + along, radius))]);
+        none(&pipe, &format!("pipe {n}: {middle}, {along}, {radius}"));
+        let half = random.point(DVec3::splat(0.2), DVec3::splat(2.0));
+        none(&scene(&[turned_box(middle, half, random.turn())]), &format!("box {n}: {middle} {half}"));
+        let thick = DVec3::new(random.between(1.0, 1.5), 20.0, 20.0);
+        none(&scene(&[turned_box(middle, thick, random.turn())]), &format!("thick wall {n}: {middle} {thick}"));
+    }
+    none(&scene(&[cuboid(DVec3::new(4.3, -1.0, -1.0), DVec3::new(4.35, 5.5, 9.0))]), "a wall along the grid that ends");
+}
+
+/// A wall across a cell, as four boxes around a window that are one body each: what is open is one part; without the window there are two.
+#[test]
+fn a_window_is_a_way() {
+    let slab = |low: [f64; 2], high: [f64; 2]| -> Vec<Triangle> {
+        let turn = DMat3::from_rotation_z(0.3);
+        let corners = cuboid(DVec3::new(-0.02, low[0], low[1]), DVec3::new(0.02, high[0], high[1]));
+        corners.into_iter().map(|t| t.map(|p| turn * p + 0.5)).collect()
+    };
+    let around = |half: f64| {
+        let (half, far) = (half, 2.0);
+        [
+            slab([-far, -far], [-half, far]),
+            slab([half, -far], [far, far]),
+            slab([-half, -far], [half, -half]),
+            slab([-half, half], [half, far]),
+        ]
+    };
+    let one = edges([1; 3]);
+    for half in [0.12, 0.2, 0.4] {
+        assert_eq!(told(&one, &scene(&around(half))).throat.cells, 0, "{half}");
+    }
+    let [a, b, ..] = around(0.0);
+    let closed = told(&one, &scene(&[a, b]));
+    assert_eq!(closed.hidden + closed.plane.cells, 1);
+}
