@@ -148,10 +148,17 @@ impl<'a> WallInPlane<'a> {
         Span { lo: span.lo + self.origin[0], hi: span.hi + self.origin[0] }
     }
 
-    /// Half the gradient of its conic in a point.
+    /// By how much its side moves as rows rise, in a point of it.
     #[inline(always)]
-    fn gradient(&self, u: f64, v: f64) -> P2 {
-        self.conic.gradient([u - self.origin[0], v - self.origin[1]])
+    fn slope(&self, side: Side, [u, v]: P2) -> f64 {
+        let [gu, gv] = self.conic.gradient([u - self.origin[0], v - self.origin[1]]);
+        // Outward on its side, whatever rounding makes of it.
+        -gv / match side {
+            Side::High if gu > 0.0 => gu,
+            Side::High => 0.0,
+            Side::Low if gu < 0.0 => gu,
+            Side::Low => -0.0,
+        }
     }
 }
 
@@ -265,16 +272,7 @@ impl<'a, const N: usize> Slice<'a, N> {
             Boundary::End(n) => self.ends.get(usize::from(n)).map_or(f64::NAN, |e| e.slope),
             Boundary::Wall(n) => {
                 let u = self.place(row, side, boundary);
-                self.walls.get(usize::from(n)).map_or(f64::NAN, |wall| {
-                    let [gu, gv] = wall.gradient(u, row.v);
-                    // Outward on its side, whatever rounding makes of it.
-                    -gv / match side {
-                        Side::High if gu > 0.0 => gu,
-                        Side::High => 0.0,
-                        Side::Low if gu < 0.0 => gu,
-                        Side::Low => -0.0,
-                    }
-                })
+                self.walls.get(usize::from(n)).map_or(f64::NAN, |wall| wall.slope(side, [u, row.v]))
             }
         }
     }
@@ -513,31 +511,40 @@ impl<'a, const N: usize> Slice<'a, N> {
 
     /// Where two boundaries of a side cross, of which each is innermost in one of two rows.
     fn crossing(&self, a: &Row<N>, b: &Row<N>, side: Side, [of_a, of_b]: [Boundary; 2]) -> f64 {
-        let difference = |row: &Row<N>| self.place(row, side, of_a) - self.place(row, side, of_b);
-        let (mut x, mut y) = ((a.v, difference(a)), (b.v, difference(b)));
-        let mut at = (a.v + b.v) * 0.5;
-        let mut last = 0;
-        for _ in 0..40 {
-            let next = x.0 + (y.0 - x.0) * (x.1 / (x.1 - y.1));
-            let (lo, hi) = (x.0.min(y.0), x.0.max(y.0));
-            at = if next > lo && next < hi { next } else { (lo + hi) * 0.5 };
-            let Some(row) = self.row(at) else { break };
-            let d = difference(&row);
+        let [first, last] = [a, b].map(|row| self.place(row, side, of_a) - self.place(row, side, of_b));
+        let (mut lo, mut hi) = (a.v, b.v);
+        let mut next = lo + (hi - lo) * (first / (first - last));
+        let mut at = next;
+        for step in 1..40 {
+            // Newton's method, within what is known to hold the crossing; that halves where it takes long.
+            at = if next > lo && next < hi && step % 6 != 0 { next } else { (lo + hi) * 0.5 };
+            let (Some([p, rise]), Some([q, other])) = (self.at(at, side, of_a), self.at(at, side, of_b)) else { break };
+            let d = p - q;
             if d.abs() <= 0.25 * self.tie.get() || !(hi - lo > self.noise) {
                 break;
             }
-            // Regula falsi that halves the weight of an end that stays (the Illinois method).
-            if d * x.1 > 0.0 {
-                x = (at, d);
-                y.1 *= if last == 1 { 0.5 } else { 1.0 };
-                last = 1;
+            if d * first > 0.0 {
+                lo = at
             } else {
-                y = (at, d);
-                x.1 *= if last == 2 { 0.5 } else { 1.0 };
-                last = 2;
+                hi = at
             }
+            next = at - d / (rise - other);
         }
         at
+    }
+
+    /// Where a boundary stands in a row, and by how much it moves as rows rise; none where rounding lets a span vanish.
+    fn at(&self, v: f64, side: Side, boundary: Boundary) -> Option<P2> {
+        match boundary {
+            Boundary::Window => Some([self.window.u[usize::from(side == Side::High)], 0.0]),
+            Boundary::End(n) => self.ends.get(usize::from(n)).map(|e| [e.at + e.slope * (v - e.from), e.slope]),
+            Boundary::Wall(n) => {
+                let (wall, [u_axis, _]) = (self.walls.get(usize::from(n))?, self.window.n.others());
+                let span = wall.span(u_axis, v);
+                let u = if side == Side::High { span.hi } else { span.lo };
+                (span.lo <= span.hi).then(|| [u, wall.slope(side, [u, v])])
+            }
+        }
     }
 
     /// The integral over a boundary between two rows.
