@@ -109,7 +109,14 @@ fn walls_turned_in_a_plane() {
     assert!(leaking > 60 && tight >= 8, "{leaking} {tight}");
 }
 
-/// Walls turned anyhow, as triangles and as discs by formula.
+/// A wall of no thickness: one side of it is read, the other is its cap.
+fn sheet(middle: DVec3, turn: DMat3) -> Bodies {
+    let corner = |y: f64, z: f64| middle + turn * DVec3::new(0.0, y, z);
+    let [a, b, c, d] = [corner(-20.0, -20.0), corner(20.0, -20.0), corner(20.0, 20.0), corner(-20.0, 20.0)];
+    scene(&[vec![[a, b, c], [a, c, d]]])
+}
+
+/// Walls turned anyhow, as triangles, as discs by formula and as sheets.
 #[test]
 fn walls_askew_in_space() {
     let (mut random, mut leaking) = (Random::new(17), 0);
@@ -122,7 +129,8 @@ fn walls_askew_in_space() {
                 let [a, b] = [-0.5, 0.5].map(|side| middle + normal * (side * thickness));
                 formulas(&[Form::Cylinder(Cylinder::new(a, b, 20.0))])
             }
-            _ => scene(&[turned_box(middle, DVec3::new(thickness / 2.0, 20.0, 20.0), turn)]),
+            1 => scene(&[turned_box(middle, DVec3::new(thickness / 2.0, 20.0, 20.0), turn)]),
+            _ => sheet(middle, turn),
         };
         let leaks = judge([8, 8, 8], &bodies, middle, normal, &format!("{n}: {thickness} thick, {middle}, {normal}"));
         leaking += usize::from(leaks == Some(true));

@@ -212,22 +212,33 @@ fn divided_among(grid: &Grid<f64>, surfaces: &[(u32, [DVec3; 3])], cells: &[usiz
     found.collect::<Vec<_>>().into_iter().collect()
 }
 
-/// The triangles that reach each of some cells.
+/// A triangle whose box reaches so many cells is not cut to tell which of them it reaches itself.
+const FEW_CELLS: usize = 27;
+
+/// The triangles that reach each of some cells, or nearly so.
 fn lists(grid: &Grid<f64>, surfaces: &[(u32, [DVec3; 3])], cells: &[usize]) -> Vec<Vec<u32>> {
     let mut slots = vec![u32::MAX; grid.cell_count()];
     cells.iter().zip(0..).for_each(|(&n, slot)| slots[n] = slot);
     let mut lists = vec![Vec::new(); cells.len()];
+    let mut list = |number: u32, at: [usize; 3]| {
+        if let Some(list) = lists.get_mut(slots[grid.cell_index(at)] as usize) {
+            list.push(number);
+        }
+    };
     for ((_, triangle), number) in surfaces.iter().zip(0..) {
         let whole = Polygon::new(&triangle.map(|p| p.to_array()));
-        for k in reached(grid, 2, &whole) {
+        let [x, y, z] = [0, 1, 2].map(|axis| reached(grid, axis, &whole));
+        if x.len() * y.len() * z.len() <= FEW_CELLS {
+            for (k, j) in z.flat_map(|k| y.clone().map(move |j| (k, j))) {
+                x.clone().for_each(|i| list(number, [i, j, k]));
+            }
+            continue;
+        }
+        for k in z {
             let slab = between(grid, 2, k, &whole);
             for j in reached(grid, 1, &slab) {
                 let row = between(grid, 1, j, &slab);
-                for i in reached(grid, 0, &row) {
-                    if let Some(list) = lists.get_mut(slots[grid.cell_index([i, j, k])] as usize) {
-                        list.push(number);
-                    }
-                }
+                reached(grid, 0, &row).for_each(|i| list(number, [i, j, k]));
             }
         }
     }
