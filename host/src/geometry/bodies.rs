@@ -4,7 +4,7 @@
 //! defined meaning; see [`Diagnosis`].
 
 use crate::error::{Error, Result};
-use crate::geometry::close::close;
+use crate::geometry::close::{Surface, close};
 use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::{LARGEST, Mesh};
@@ -169,7 +169,10 @@ impl Bodies {
         };
         let name_of =
             |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
-        let closed = close(&indexed, &shells, name_of, with_backs.as_deref(), rounding, &mut d, &mut report);
+        let walls = Cluster::walls(&clusters);
+        let surface =
+            Surface { mesh: &indexed, shells: &shells, with_backs: with_backs.as_deref(), walls: &walls, rounding };
+        let closed = close(&surface, name_of, &mut d, &mut report);
         let known = clusters.into_iter().map(|c| c.into_part(&indexed, name_of)).collect();
         let closed = resolve(closed, known, &scaled, &mut d, &mut report);
         say_copies(&d, &mut report);
@@ -332,6 +335,12 @@ impl Cluster {
             Err(Unknown::Open | Unknown::Mixed) => None,
             found => Some(Cluster { triangles, regions: found.ok() }),
         }
+    }
+
+    /// The triangles of those that hold nothing.
+    fn walls(clusters: &[Self]) -> Vec<u32> {
+        let holds_nothing = |c: &&Cluster| c.regions.as_ref().is_some_and(Regions::is_empty);
+        clusters.iter().filter(holds_nothing).flat_map(|c| c.triangles.iter().copied()).collect()
     }
 
     fn into_part(self, mesh: &Indexed, name_of: impl Fn(u32) -> String) -> (Part, Option<Regions>) {

@@ -1,7 +1,8 @@
 //! Shells to closed parts: those that close each other are joined, holes are capped.
 
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
-use crate::geometry::repair::edges::{EdgeUses, key};
+use crate::geometry::repair::apart::apart;
+use crate::geometry::repair::edges::{EdgeUses, key, without_opposites};
 use crate::geometry::repair::nesting::Closed;
 use crate::geometry::repair::rims::{Rim, rims};
 use crate::geometry::repair::sets::Sets;
@@ -10,27 +11,36 @@ use crate::geometry::repair::weld::Indexed;
 use crate::geometry::resolve::Part;
 use crate::words::{counted, either};
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::cell::OnceCell;
 
+/// What is to be closed.
+pub(super) struct Surface<'a> {
+    pub mesh: &'a Indexed,
+    pub shells: &'a [Shell],
+    /// Which triangles have three corners, those too that were dropped, if some are the backs of others.
+    pub with_backs: Option<&'a [bool]>,
+    /// Double-sided triangles that hold nothing: perhaps what two parts have between them.
+    pub walls: &'a [u32],
+    /// How far corners may be off.
+    pub rounding: f64,
+}
+
 /// Make every shell closed: join those that close each other, cap holes.
-///
-/// `with_backs`: which triangles have three corners, those too that were dropped, if some are the backs of others.
 pub(super) fn close(
-    mesh: &Indexed,
-    shells: &[Shell],
+    surface: &Surface<'_>,
     name_of: impl Fn(u32) -> String,
-    with_backs: Option<&[bool]>,
-    rounding: f64,
     d: &mut Diagnosis,
     report: &mut Reporter,
 ) -> Vec<Part> {
+    let &Surface { mesh, shells, with_backs, rounding, .. } = surface;
     let uses = OnceCell::new();
     let contested = |edge: &[u32; 2]| {
         let uses = with_backs.map(|all| uses.get_or_init(|| EdgeUses::new(mesh, all)));
         uses.is_some_and(|uses| is_contested(mesh, uses, *edge))
     };
     let (mut closed, mut open) = (Vec::new(), Open::default());
+    let mut without_caps = Vec::new();
     d.area = 0.0;
     for group in groups(mesh, shells, rounding) {
         let members: Vec<u32> = group.iter().flat_map(|&s| shells[s].triangles.iter().copied()).collect();
@@ -55,8 +65,12 @@ pub(super) fn close(
             shell.unknown = caps.open.uneven;
         }
         let contested = is_capped && boundary.iter().any(contested);
+        if !is_capped {
+            without_caps.push((closed.len(), members));
+        }
         closed.push(Part { name, shell, cluster, guessed, contested, own });
     }
+    separate(surface, &mut closed, without_caps, name_of);
     if d.t_junction_edges > 0 {
         report.warn(format!(
             "{} no partner (T-junctions), but the surface closes",
@@ -65,6 +79,47 @@ pub(super) fn close(
     }
     open.say(report);
     closed
+}
+
+/// Takes those parts apart that were joined although each closes by itself, and of which a part that looks the other way holds one and not the other: that one
+/// may be its cavity. Sheets and walls may be what both have between them. `joined`: which parts, and their triangles.
+fn separate(
+    surface: &Surface<'_>,
+    parts: &mut Vec<Part>,
+    mut joined: Vec<(usize, Vec<u32>)>,
+    name_of: impl Fn(u32) -> String,
+) {
+    let &Surface { mesh, walls, rounding, .. } = surface;
+    if parts.iter().all(|p| p.shell.volume >= 0.0) || parts.iter().all(|p| p.shell.volume <= 0.0) {
+        return;
+    }
+    let sheets: Vec<(usize, Vec<u32>)> = joined.extract_if(.., |(s, _)| parts[*s].shell.is_sheet()).collect();
+    let between: Vec<u32> = sheets.iter().flat_map(|(_, members)| members).chain(walls).copied().collect();
+    let mut used: HashSet<u32> = HashSet::default();
+    while let Some((s, members)) = joined.pop() {
+        let shell = &parts[s].shell;
+        let beside = parts.iter().map(|p| &p.shell).filter(|other| other.volume * shell.volume < 0.0);
+        let across = |other: &&Closed| !other.is_sheet() && other.overlaps(shell) && !other.is_around(shell);
+        let is_free = |n: &&u32| !used.contains(*n) && shell.is_around(&Closed::new(mesh.corners(&[**n])));
+        let free: Vec<u32> = between.iter().filter(is_free).copied().collect();
+        let of = |other: &Closed| {
+            let found = apart(mesh, &members, &[], other, rounding);
+            found.or_else(|| if free.is_empty() { None } else { apart(mesh, &members, &free, other, rounding) })
+        };
+        let Some(two) = beside.filter(across).find_map(of) else { continue };
+        let [first, second] = two.each_ref().map(|members| {
+            let name = members.iter().min().map_or_else(String::new, |&n| name_of(n));
+            let (shell, own) = (Closed::new(mesh.corners(members)), members.len());
+            Part { name, shell, own, cluster: parts[s].cluster, guessed: parts[s].guessed, contested: false }
+        });
+        used.extend(two.iter().flatten());
+        parts[s] = first;
+        parts.push(second);
+        joined.extend([s, parts.len() - 1].into_iter().zip(two));
+    }
+    for (s, _) in sheets.into_iter().rev().filter(|(_, members)| members.iter().all(|n| used.contains(n))) {
+        parts.remove(s);
+    }
 }
 
 /// Do different triangles end at a loose edge, some of which others may have been joined to that belong to it?
@@ -160,20 +215,6 @@ impl Open {
 /// Area of a triangle.
 fn area([a, b, c]: &[DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() * 0.5
-}
-
-/// Edges without those that run back along others: there two sides of a sheet meet.
-fn without_opposites(edges: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
-    let mut edges: Vec<([u32; 2], bool)> = edges.map(|[a, b]| ([a.min(b), a.max(b)], a < b)).collect();
-    edges.sort_unstable();
-    let mut left = Vec::new();
-    for uses in edges.chunk_by(|a, b| a.0 == b.0) {
-        let ([a, b], up) = (uses[0].0, uses.iter().filter(|(_, up)| *up).count());
-        let down = uses.len() - up;
-        let edge = if up > down { [a, b] } else { [b, a] };
-        left.extend(std::iter::repeat_n(edge, up.abs_diff(down)));
-    }
-    left
 }
 
 /// Shells that belong together: closed ones alone, also those that close but for T-junctions; open ones with those that share a corner of their

@@ -1,5 +1,6 @@
 //! From triangles as they come to closed shells: welded, cut at T-junctions, oriented, split, freed of copies, capped, resolved where they cross themselves, nested.
 
+pub mod apart;
 pub mod copies;
 pub mod crossing;
 pub mod edges;

@@ -78,3 +78,17 @@ impl EdgeUses {
 pub fn balance(uses: &[(u64, Use)]) -> i64 {
     uses.iter().map(|(_, u)| if u.up { 1 } else { -1 }).sum()
 }
+
+/// Edges without those that run back along others: there two sides of a sheet meet.
+pub fn without_opposites(edges: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
+    let mut edges: Vec<(u64, bool)> = edges.map(|[a, b]| (key(a, b), a < b)).collect();
+    edges.sort_unstable();
+    let mut left = Vec::new();
+    for uses in edges.chunk_by(|a, b| a.0 == b.0) {
+        let ([a, b], up) = (ends(uses[0].0), uses.iter().filter(|(_, up)| *up).count());
+        let down = uses.len() - up;
+        let edge = if up > down { [a, b] } else { [b, a] };
+        left.extend(std::iter::repeat_n(edge, up.abs_diff(down)));
+    }
+    left
+}

@@ -12,7 +12,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 const STRAIGHT: f64 = -1.0 + 1e-8;
 
 /// An edge with corners within: the lower end first.
-type Corners = HashMap<u64, Vec<u32>>;
+pub type Corners = HashMap<u64, Vec<u32>>;
 
 /// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
 pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
@@ -41,12 +41,8 @@ pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding:
             }
         }
     }
-    let parts = |(&edge, inner): (&u64, &Vec<u32>)| {
-        let [low, high] = ends(edge);
-        let all: Vec<u32> = std::iter::once(low).chain(inner.iter().copied()).chain([high]).collect();
-        all.windows(2).map(|w| key(w[0], w[1])).collect::<Vec<_>>()
-    };
-    let mut involved: Vec<u64> = corners.iter().flat_map(parts).filter(|e| odd.binary_search(e).is_ok()).collect();
+    let parts = corners.keys().flat_map(|&edge| parts_of(&corners, edge));
+    let mut involved: Vec<u64> = parts.filter(|e| odd.binary_search(e).is_ok()).collect();
     involved.extend(corners.keys());
     involved.sort_unstable();
     involved.dedup();
@@ -100,7 +96,7 @@ fn straight(mesh: &Indexed, edges: &[u64]) -> Vec<u32> {
 }
 
 /// Which of some corners lie within which edges, from their lower end to their higher one.
-fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> Corners {
+pub fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> Corners {
     let mut found = Corners::default();
     // In order along the axis on which they spread most, so that an edge looks only at those beside it.
     let places = || corners.iter().map(|&v| mesh.points[v as usize]);
@@ -133,6 +129,13 @@ fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> 
         }
     }
     found
+}
+
+/// The parts of an edge between the corners within it.
+pub fn parts_of(corners: &Corners, edge: u64) -> impl Iterator<Item = u64> {
+    let ([low, high], inner) = (ends(edge), corners.get(&edge).map_or(&[][..], |inner| inner));
+    let starts = std::iter::once(low).chain(inner.iter().copied());
+    starts.zip(inner.iter().copied().chain([high])).map(|(a, b)| key(a, b))
 }
 
 /// The corners within a directed edge, in its direction.

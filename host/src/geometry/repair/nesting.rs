@@ -89,6 +89,12 @@ impl Closed {
         self.bounds[0].cmple(other.bounds[0]).all() && self.bounds[1].cmpge(other.bounds[1]).all()
     }
 
+    /// Does it wind around a point?
+    #[must_use]
+    pub fn winds_around(&self, point: DVec3) -> bool {
+        self.triangles.iter().map(|t| solid_angle(t, point)).sum::<f64>().abs() > 0.5
+    }
+
     /// No volume to speak of: a sheet with two sides.
     #[must_use]
     pub fn is_sheet(&self) -> bool {
@@ -144,16 +150,14 @@ const SAME: f64 = 1e-6;
 fn contains(outer: &Closed, inner: &Closed) -> bool {
     let smaller = inner.volume.abs() < (1.0 - SAME) * outer.volume.abs();
     let step = (inner.triangles.len() / 16).max(1);
-    let within = |[a, b, c]: &[DVec3; 3]| {
-        let normal = (b - a).cross(c - a) * inner.volume.signum();
-        let twice_area = normal.length();
-        let pulled = (a + b + c) / 3.0 - normal * (OFF_THE_SURFACE / twice_area.sqrt());
-        twice_area == 0.0 || winding(outer, pulled).abs() > 0.5
-    };
+    let within = |t: &[DVec3; 3]| just_within(t, inner.volume).is_none_or(|p| outer.winds_around(p));
     outer.is_around(inner) && smaller && inner.triangles.iter().step_by(step).all(within)
 }
 
-/// Winding number of a closed shell around a point.
-fn winding(shell: &Closed, point: DVec3) -> f64 {
-    shell.triangles.iter().map(|t| solid_angle(t, point)).sum()
+/// A point beside a triangle of a shell, within it if the shell has that `volume`. None if the triangle has no area.
+#[must_use]
+pub fn just_within([a, b, c]: &[DVec3; 3], volume: f64) -> Option<DVec3> {
+    let normal = (b - a).cross(c - a) * volume.signum();
+    let twice_area = normal.length();
+    (twice_area != 0.0).then(|| (a + b + c) / 3.0 - normal * (OFF_THE_SURFACE / twice_area.sqrt()))
 }
