@@ -1,4 +1,4 @@
-//! Random scenes of boxes against their oracle: `boxes FIRST COUNT [random|parts|turned|room|stack]`, seeds from FIRST on. Prints those that fail, and totals.
+//! Random scenes of boxes against their oracle: `boxes FIRST COUNT [random|parts|mixed|turned|room|stack]`, seeds from FIRST on. Prints those that fail, and totals.
 
 use rayon::prelude::*;
 use voidage_tests::boxes::{self, Family, Visited};
@@ -9,13 +9,14 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (first, count, family) = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [first, count] => (first, count, "random"),
-        [first, count, family @ ("random" | "parts" | "turned" | "room" | "stack")] => (first, count, family),
-        _ => panic!("boxes FIRST COUNT [random|parts|turned|room|stack]"),
+        [first, count, family @ ("random" | "parts" | "mixed" | "turned" | "room" | "stack")] => (first, count, family),
+        _ => panic!("boxes FIRST COUNT [random|parts|mixed|turned|room|stack]"),
     };
     let [first, count]: [u64; 2] = [first, count].map(|n| n.parse().expect("a number"));
     match family {
         "random" => along_axes(Family::Random, first, count),
         "parts" => along_axes(Family::Parts, first, count),
+        "mixed" => along_axes(Family::Mixed, first, count),
         "turned" => turned(first, count, Turned::boxes),
         "room" => turned(first, count, Turned::room),
         _ => turned(first, count, Turned::stack),

@@ -185,18 +185,31 @@ impl Scene {
     /// or most, or few, or those of some boxes.
     #[must_use]
     pub fn in_parts(rng: &mut Random) -> Self {
+        let single_sides = [0, 1, 3, 5, SOME_BOXES][rng.below(5)];
+        Self::with_sides_in_parts(rng, single_sides, false)
+    }
+
+    /// A scene of up to seven boxes of both orientations, often one in another, whose sides come in parts and have no backs.
+    #[must_use]
+    pub fn mixed(rng: &mut Random) -> Self {
+        Self::with_sides_in_parts(rng, NO_BACKS, true)
+    }
+
+    /// So many sides in six have no backs, or with [`SOME_BOXES`] those of some boxes.
+    fn with_sides_in_parts(rng: &mut Random, single_sides: usize, mixed: bool) -> Self {
         let side = [2, 3, 4, 8][rng.below(4)];
-        let bricks = bricks(rng, side, false, false);
+        let hollow = mixed && rng.below(2) == 0;
+        let bricks = bricks(rng, side, mixed, hollow);
         let (unit, offset) = match rng.below(3) {
             0 => (1.0, 0),
             _ => (2f64.powi(rng.below(61) as i32 - 30), 1 << rng.below(24)),
         };
         let mut scene = Scene { bricks, edges: [0; 3].map(|_| planes(rng, side)), triangles: Vec::new(), offset, unit };
-        let (single_sides, whole_sides) = ([0, 1, 3, 5, 6][rng.below(5)], 1 + rng.below(6));
+        let whole_sides = 1 + rng.below(6);
         for brick in scene.bricks.clone() {
-            let single_box = single_sides == 6 && rng.below(2) == 0;
+            let single_box = single_sides == SOME_BOXES && rng.below(2) == 0;
             for quad in scene.surface(&brick).chunks_exact(4) {
-                let back = !single_box && (single_sides == 6 || rng.below(6) >= single_sides);
+                let back = !single_box && (single_sides == SOME_BOXES || rng.below(6) >= single_sides);
                 for half in scene.halves(rng, quad, whole_sides) {
                     for quarter in scene.halves(rng, &half, whole_sides + 2) {
                         scene.push(rng, quarter, brick.inverted, back);
@@ -444,6 +457,12 @@ pub struct Visited {
 /// By how much a value may leave its bounds.
 pub const SLACK: f64 = 1e-12;
 
+/// Of six sides none has a back.
+const NO_BACKS: usize = 6;
+
+/// Of some boxes no side has a back, of others every one.
+const SOME_BOXES: usize = 7;
+
 /// How scenes are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
@@ -451,6 +470,8 @@ pub enum Family {
     Random,
     /// [`Scene::in_parts`].
     Parts,
+    /// [`Scene::mixed`].
+    Mixed,
 }
 
 impl Family {
@@ -460,6 +481,7 @@ impl Family {
         match self {
             Family::Random => Scene::random(rng),
             Family::Parts => Scene::in_parts(rng),
+            Family::Mixed => Scene::mixed(rng),
         }
     }
 }
@@ -478,7 +500,7 @@ pub fn bounds_hold(family: Family, seed: u64) -> Result<Visited, String> {
 /// If a value leaves its bounds.
 pub fn bytes_hold(bytes: &[u8]) {
     let Some((first, rest)) = bytes.split_first() else { return };
-    let family = if first % 2 == 0 { Family::Random } else { Family::Parts };
+    let family = [Family::Random, Family::Parts, Family::Mixed][usize::from(first % 3)];
     scene_holds(&family.scene(&mut Random::from_bytes(rest))).unwrap_or_else(|text| panic!("{text}"));
 }
 
