@@ -4,7 +4,7 @@
 //! defined meaning; see [`Diagnosis`].
 
 use crate::error::{Error, Result};
-use crate::geometry::close::{Surface, close};
+use crate::geometry::close::{Unclosed, close};
 use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::{LARGEST, Mesh};
@@ -171,7 +171,7 @@ impl Bodies {
             |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
         let walls = Cluster::walls(&clusters);
         let surface =
-            Surface { mesh: &indexed, shells: &shells, with_backs: with_backs.as_deref(), walls: &walls, rounding };
+            Unclosed { mesh: &indexed, shells: &shells, with_backs: with_backs.as_deref(), walls: &walls, rounding };
         let closed = close(&surface, name_of, &mut d, &mut report);
         let known = clusters.into_iter().map(|c| c.into_part(&indexed, name_of)).collect();
         let closed = resolve(closed, known, &scaled, &mut d, &mut report);

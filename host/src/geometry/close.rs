@@ -15,7 +15,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::cell::OnceCell;
 
 /// What is to be closed.
-pub(super) struct Surface<'a> {
+pub(super) struct Unclosed<'a> {
     pub mesh: &'a Indexed,
     pub shells: &'a [Shell],
     /// Which triangles have three corners, those too that were dropped, if some are the backs of others.
@@ -28,12 +28,12 @@ pub(super) struct Surface<'a> {
 
 /// Make every shell closed: join those that close each other, cap holes.
 pub(super) fn close(
-    surface: &Surface<'_>,
+    surface: &Unclosed<'_>,
     name_of: impl Fn(u32) -> String,
     d: &mut Diagnosis,
     report: &mut Reporter,
 ) -> Vec<Part> {
-    let &Surface { mesh, shells, with_backs, rounding, .. } = surface;
+    let &Unclosed { mesh, shells, with_backs, rounding, .. } = surface;
     let uses = OnceCell::new();
     let contested = |edge: &[u32; 2]| {
         let uses = with_backs.map(|all| uses.get_or_init(|| EdgeUses::new(mesh, all)));
@@ -84,12 +84,12 @@ pub(super) fn close(
 /// Takes those parts apart that were joined although each closes by itself, and of which a part that looks the other way holds one and not the other: that one
 /// may be its cavity. Sheets and walls may be what both have between them. `joined`: which parts, and their triangles.
 fn separate(
-    surface: &Surface<'_>,
+    surface: &Unclosed<'_>,
     parts: &mut Vec<Part>,
     mut joined: Vec<(usize, Vec<u32>)>,
     name_of: impl Fn(u32) -> String,
 ) {
-    let &Surface { mesh, walls, rounding, .. } = surface;
+    let &Unclosed { mesh, walls, rounding, .. } = surface;
     if parts.iter().all(|p| p.shell.volume >= 0.0) || parts.iter().all(|p| p.shell.volume <= 0.0) {
         return;
     }

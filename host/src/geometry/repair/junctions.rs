@@ -12,7 +12,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 const STRAIGHT: f64 = -1.0 + 1e-8;
 
 /// An edge with corners within: the lower end first.
-pub type Corners = HashMap<u64, Vec<u32>>;
+pub type EdgeCorners = HashMap<u64, Vec<u32>>;
 
 /// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
 pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
@@ -78,7 +78,7 @@ fn has_back(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
     (0..uses.len()).any(|i| (0..i).any(|j| uses[i].1.up != uses[j].1.up && corners(&uses[i].1) == corners(&uses[j].1)))
 }
 
-/// Corners at which two of these edges run straight on.
+/// EdgeCorners at which two of these edges run straight on.
 fn straight(mesh: &Indexed, edges: &[u64]) -> Vec<u32> {
     let both_ways = |&edge: &u64| {
         let [a, b] = ends(edge);
@@ -96,8 +96,8 @@ fn straight(mesh: &Indexed, edges: &[u64]) -> Vec<u32> {
 }
 
 /// Which of some corners lie within which edges, from their lower end to their higher one.
-pub fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> Corners {
-    let mut found = Corners::default();
+pub fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64) -> EdgeCorners {
+    let mut found = EdgeCorners::default();
     // In order along the axis on which they spread most, so that an edge looks only at those beside it.
     let places = || corners.iter().map(|&v| mesh.points[v as usize]);
     let spread = places().fold(DVec3::NEG_INFINITY, DVec3::max) - places().fold(DVec3::INFINITY, DVec3::min);
@@ -132,14 +132,14 @@ pub fn corners_on(mesh: &Indexed, edges: &[u64], corners: &[u32], rounding: f64)
 }
 
 /// The parts of an edge between the corners within it.
-pub fn parts_of(corners: &Corners, edge: u64) -> impl Iterator<Item = u64> {
+pub fn parts_of(corners: &EdgeCorners, edge: u64) -> impl Iterator<Item = u64> {
     let ([low, high], inner) = (ends(edge), corners.get(&edge).map_or(&[][..], |inner| inner));
     let starts = std::iter::once(low).chain(inner.iter().copied());
     starts.zip(inner.iter().copied().chain([high])).map(|(a, b)| key(a, b))
 }
 
 /// The corners within a directed edge, in its direction.
-fn within(corners: &Corners, [a, b]: [u32; 2]) -> Vec<u32> {
+fn within(corners: &EdgeCorners, [a, b]: [u32; 2]) -> Vec<u32> {
     let mut inner = corners.get(&key(a, b)).cloned().unwrap_or_default();
     if a > b {
         inner.reverse();
