@@ -1,7 +1,7 @@
 //! Shells to closed parts: those that close each other are joined, holes are capped.
 
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
-use crate::geometry::repair::apart::apart;
+use crate::geometry::repair::apart::Pieces;
 use crate::geometry::repair::edges::{EdgeUses, key, without_opposites};
 use crate::geometry::repair::nesting::Closed;
 use crate::geometry::repair::rims::{Rim, rims};
@@ -81,45 +81,65 @@ pub(super) fn close(
     closed
 }
 
-/// Takes those parts apart that were joined although each closes by itself, and of which a part that looks the other way holds one and not the other: that one
-/// may be its cavity. Sheets and walls may be what both have between them. `joined`: which parts, and their triangles.
+/// Takes those parts apart that were joined although each closes by itself, if some of them look the other way, or a part that looks the other way holds one
+/// and not the other: that one may be its cavity. Sheets and walls may be what they have between them. `joined`: which parts, and their triangles.
 fn separate(
     surface: &Unclosed<'_>,
     parts: &mut Vec<Part>,
     mut joined: Vec<(usize, Vec<u32>)>,
     name_of: impl Fn(u32) -> String,
 ) {
-    let &Unclosed { mesh, walls, rounding, .. } = surface;
-    if parts.iter().all(|p| p.shell.volume >= 0.0) || parts.iter().all(|p| p.shell.volume <= 0.0) {
+    let &Unclosed { mesh, walls, .. } = surface;
+    let alike = |sign: f64| parts.iter().all(|p| p.shell.volume * sign > 0.0 && !p.shell.is_sheet());
+    if alike(1.0) || alike(-1.0) {
         return;
     }
-    let sheets: Vec<(usize, Vec<u32>)> = joined.extract_if(.., |(s, _)| parts[*s].shell.is_sheet()).collect();
-    let between: Vec<u32> = sheets.iter().flat_map(|(_, members)| members).chain(walls).copied().collect();
-    let mut used: HashSet<u32> = HashSet::default();
+    let sheets = joined.iter().filter(|(s, _)| parts[*s].shell.is_sheet());
+    let between: Vec<u32> = sheets.flat_map(|(_, members)| members).chain(walls).copied().collect();
+    let (mut used, mut sheets) = (HashSet::default(), Vec::new());
     while let Some((s, members)) = joined.pop() {
-        let shell = &parts[s].shell;
-        let beside = parts.iter().map(|p| &p.shell).filter(|other| other.volume * shell.volume < 0.0);
-        let across = |other: &&Closed| !other.is_sheet() && other.overlaps(shell) && !other.is_around(shell);
+        let (shell, is_sheet) = (&parts[s].shell, parts[s].shell.is_sheet());
         let is_free = |n: &&u32| !used.contains(*n) && shell.is_around(&Closed::new(mesh.corners(&[**n])));
-        let free: Vec<u32> = between.iter().filter(is_free).copied().collect();
-        let of = |other: &Closed| {
-            let found = apart(mesh, &members, &[], other, rounding);
-            found.or_else(|| if free.is_empty() { None } else { apart(mesh, &members, &free, other, rounding) })
+        let free: Vec<u32> = between.iter().filter(|_| !is_sheet).filter(is_free).copied().collect();
+        let Some(apart) = apart(surface, parts, s, &members, &free) else {
+            if is_sheet {
+                sheets.push((s, members));
+            }
+            continue;
         };
-        let Some(two) = beside.filter(across).find_map(of) else { continue };
-        let [first, second] = two.each_ref().map(|members| {
+        used.extend(apart.iter().flatten().copied());
+        for (n, members) in apart.into_iter().enumerate() {
             let name = members.iter().min().map_or_else(String::new, |&n| name_of(n));
-            let (shell, own) = (Closed::new(mesh.corners(members)), members.len());
-            Part { name, shell, own, cluster: parts[s].cluster, guessed: parts[s].guessed, contested: false }
-        });
-        used.extend(two.iter().flatten());
-        parts[s] = first;
-        parts.push(second);
-        joined.extend([s, parts.len() - 1].into_iter().zip(two));
+            let (cluster, guessed) = (parts[s].cluster, parts[s].guessed);
+            let (shell, own) = (Closed::new(mesh.corners(&members)), members.len());
+            let part = Part { name, shell, own, cluster, guessed, contested: false };
+            if n == 0 {
+                parts[s] = part;
+                joined.push((s, members));
+            } else {
+                parts.push(part);
+                joined.push((parts.len() - 1, members));
+            }
+        }
     }
-    for (s, _) in sheets.into_iter().rev().filter(|(_, members)| members.iter().all(|n| used.contains(n))) {
-        parts.remove(s);
-    }
+    sheets.retain(|(_, members)| members.iter().all(|n| used.contains(n)));
+    sheets.sort_unstable();
+    sheets.iter().rev().for_each(|&(s, _)| drop(parts.remove(s)));
+}
+
+/// The triangles of the parts that one falls into, with those of the walls `free` that are theirs; none if it stays whole.
+fn apart(surface: &Unclosed<'_>, parts: &[Part], s: usize, members: &[u32], free: &[u32]) -> Option<Vec<Vec<u32>>> {
+    let shell = &parts[s].shell;
+    let across = |other: &&Closed| {
+        let looks_the_other_way = other.volume * shell.volume < 0.0 && !other.is_sheet() && !shell.is_sheet();
+        looks_the_other_way && other.overlaps(shell) && !other.is_around(shell)
+    };
+    let with = |walls: &[u32]| {
+        let pieces = Pieces::new(surface.mesh, members, walls, surface.rounding)?;
+        let by_others = || parts.iter().map(|p| &p.shell).filter(across).find_map(|other| pieces.held_by(other));
+        pieces.opposite().or_else(by_others)
+    };
+    with(&[]).or_else(|| if free.is_empty() { None } else { with(free) })
 }
 
 /// Do different triangles end at a loose edge, some of which others may have been joined to that belong to it?

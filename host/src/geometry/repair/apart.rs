@@ -6,55 +6,106 @@ use crate::geometry::repair::nesting::{Closed, just_within, signed_volume};
 use crate::geometry::repair::rims::rims;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::{Indexed, edges_of};
+use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 
 /// So many times at most a triangle is looked at from a point: beyond, a surface stays as it was joined.
 const LOOKS: usize = 20_000_000;
 
-/// The triangles `own` of a closed surface in two, with those of the `walls` in it: what `other` holds, and what it does not. None unless there are some of
-/// its own on both sides, and each closes by itself.
-#[must_use]
-pub fn apart(mesh: &Indexed, own: &[u32], walls: &[u32], other: &Closed, rounding: f64) -> Option<[Vec<u32>; 2]> {
-    let members = [own, walls].concat();
-    let corners = mesh.corners(&members);
-    let volume = signed_volume(&corners[..own.len()], corners.first()?[0]);
-    let pieces = pieces(mesh, &members, rounding);
-    if pieces.len() < 2 || pieces.len().saturating_mul(other.triangles.len()) > LOOKS {
-        return None;
-    }
-    let (mut two, mut has_own) = ([Vec::new(), Vec::new()], [false; 2]);
-    for piece in pieces {
-        let is_held =
-            piece.iter().find_map(|&m| just_within(&corners[m], volume)).is_some_and(|p| other.winds_around(p));
-        let side = usize::from(!is_held);
-        has_own[side] |= piece.iter().any(|&m| m < own.len());
-        two[side].extend(piece.into_iter().map(|m| members[m]));
-    }
-    two.iter_mut().for_each(|members| members.sort_unstable());
-    (has_own == [true; 2] && two.iter().all(|members| closes(mesh, members, rounding))).then_some(two)
+/// Up to so many triangles of a surface each corner is asked for the edges that it lies on.
+const SMALL: usize = 4000;
+
+/// A closed surface in pieces: what is connected by edges that leave no choice.
+pub struct Pieces<'a> {
+    mesh: &'a Indexed,
+    /// Its own triangles, then those of walls.
+    members: Vec<u32>,
+    /// So many are its own.
+    own: usize,
+    /// Positions in `members`.
+    pieces: Vec<Vec<usize>>,
+    volume: f64,
+    rounding: f64,
 }
 
-/// Does a surface close, be it with T-junctions?
-fn closes(mesh: &Indexed, members: &[u32], rounding: f64) -> bool {
-    let edges = members.iter().flat_map(|&n| edges_of(mesh.triangles[n as usize]));
-    rims(&without_opposites(edges)).iter().all(|rim| rim.cancels(&mesh.points, rounding))
+impl<'a> Pieces<'a> {
+    /// Of the triangles `own` of a surface and the `walls` in it. None if it is one piece.
+    #[must_use]
+    pub fn new(mesh: &'a Indexed, own: &[u32], walls: &[u32], rounding: f64) -> Option<Self> {
+        let members = [own, walls].concat();
+        let pieces = pieces(mesh, &members, rounding);
+        let corners = mesh.corners(own);
+        let volume = signed_volume(&corners, corners.first()?[0]);
+        (pieces.len() > 1).then_some(Pieces { mesh, members, own: own.len(), pieces, volume, rounding })
+    }
+
+    /// What another part holds of it, and what it does not. None unless there are some of its own triangles on both sides, and each closes by itself and
+    /// looks the same way as the whole.
+    #[must_use]
+    pub fn held_by(&self, other: &Closed) -> Option<Vec<Vec<u32>>> {
+        if self.pieces.len().saturating_mul(other.triangles.len()) > LOOKS {
+            return None;
+        }
+        let (mut two, mut has_own) = ([Vec::new(), Vec::new()], [false; 2]);
+        for piece in &self.pieces {
+            let inner = self.triangles(piece).iter().find_map(|t| just_within(t, self.volume));
+            let side = usize::from(!inner.is_some_and(|p| other.winds_around(p)));
+            has_own[side] |= piece.iter().any(|&m| m < self.own);
+            two[side].extend(piece.iter().map(|&m| self.members[m]));
+        }
+        two.iter_mut().for_each(|members| members.sort_unstable());
+        let looks_alike = |members: &Vec<u32>| {
+            let shell = Closed::new(self.mesh.corners(members));
+            !shell.is_sheet() && shell.volume * self.volume > 0.0
+        };
+        let apart = has_own == [true; 2] && two.iter().all(|m| looks_alike(m) && self.closes(m));
+        apart.then(|| two.to_vec())
+    }
+
+    /// Its pieces, if each closes by itself and some look inward, others outward, beside each other: then they are no one surface. None otherwise; pieces in
+    /// the same place may be the two sides of one body.
+    #[must_use]
+    pub fn opposite(&self) -> Option<Vec<Vec<u32>>> {
+        let all: Vec<Vec<u32>> = self.pieces.iter().map(|p| p.iter().map(|&m| self.members[m]).collect()).collect();
+        let shells = self.pieces.iter().map(|piece| Closed::new(self.triangles(piece)));
+        let (outward, inward): (Vec<Closed>, Vec<Closed>) =
+            shells.filter(|shell| !shell.is_sheet()).partition(|shell| shell.volume > 0.0);
+        let beside = || outward.iter().all(|a| inward.iter().all(|b| !a.overlaps(b)));
+        let is_few = outward.len().saturating_mul(inward.len()) <= LOOKS;
+        let apart = !outward.is_empty() && !inward.is_empty() && is_few && beside();
+        (apart && all.iter().all(|members| self.closes(members))).then_some(all)
+    }
+
+    fn triangles(&self, piece: &[usize]) -> Vec<[DVec3; 3]> {
+        self.mesh.corners(&piece.iter().map(|&m| self.members[m]).collect::<Vec<_>>())
+    }
+
+    /// Does a surface close, be it with T-junctions?
+    fn closes(&self, members: &[u32]) -> bool {
+        let edges = members.iter().flat_map(|&n| edges_of(self.mesh.triangles[n as usize]));
+        rims(&without_opposites(edges)).iter().all(|rim| rim.cancels(&self.mesh.points, self.rounding))
+    }
 }
 
-/// What of a surface is connected by edges that leave no choice, cut at the corners that lie on them: those of two triangles. Positions in `members`.
+/// What of a surface is connected by edges of two triangles, cut at the corners on them; of large surfaces at those that edges of more or fewer triangles
+/// have. Positions in `members`; none if there are no such corners.
 fn pieces(mesh: &Indexed, members: &[u32], rounding: f64) -> Vec<Vec<usize>> {
-    let mut edges: Vec<u64> =
-        members.iter().flat_map(|&n| edges_of(mesh.triangles[n as usize])).map(|[a, b]| key(a, b)).collect();
+    let keys = |n: u32| edges_of(mesh.triangles[n as usize]).map(|[a, b]| key(a, b));
+    let mut edges: Vec<u64> = members.iter().flat_map(|&n| keys(n)).collect();
     edges.sort_unstable();
-    edges.dedup();
-    let mut corners: Vec<u32> = edges.iter().flat_map(|&edge| ends(edge)).collect();
+    let is_small = members.len() <= SMALL;
+    let asked = edges.chunk_by(|a, b| a == b).filter(|uses| is_small || uses.len() != 2);
+    let mut corners: Vec<u32> = asked.flat_map(|uses| ends(uses[0])).collect();
+    if corners.is_empty() {
+        return Vec::new();
+    }
     corners.sort_unstable();
     corners.dedup();
+    edges.dedup();
     let on_edges = corners_on(mesh, &edges, &corners, rounding);
     let mut uses: Vec<(u64, usize)> = Vec::new();
     for (m, &n) in members.iter().enumerate() {
-        for edge in edges_of(mesh.triangles[n as usize]).map(|[a, b]| key(a, b)) {
-            uses.extend(parts_of(&on_edges, edge).map(|part| (part, m)));
-        }
+        uses.extend(keys(n).into_iter().flat_map(|edge| parts_of(&on_edges, edge)).map(|part| (part, m)));
     }
     uses.sort_unstable();
     let mut sets = Sets::new(members.len());
