@@ -283,10 +283,6 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
     for (n, a) in cavities.iter().enumerate() {
         (0..n).filter(|&m| a.overlaps(cavities[m])).for_each(|m| sets.join(m, n));
     }
-    let mut groups: HashMap<usize, Vec<usize>> = HashMap::default();
-    (0..cavities.len()).for_each(|n| groups.entry(sets.find(n)).or_default().push(n));
-    let mut groups: Vec<_> = groups.into_values().collect();
-    groups.sort();
     let mut clear = true;
     let mut one = |group: Vec<usize>| {
         let whole = Closed::together(group.iter().map(|&n| cavities[n]));
@@ -302,7 +298,7 @@ fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
             },
         }
     };
-    let joined = groups.into_iter().map(&mut one).collect();
+    let joined = sets.groups().into_iter().map(&mut one).collect();
     (joined, clear)
 }
 
@@ -339,7 +335,8 @@ impl Cluster {
 
     /// The triangles of those that hold nothing.
     fn walls(clusters: &[Self]) -> Vec<u32> {
-        let holds_nothing = |c: &&Cluster| c.regions.as_ref().is_some_and(Regions::is_empty);
+        let holds_nothing =
+            |c: &&Cluster| c.regions.as_ref().is_some_and(|r| r.solid.is_empty() && r.perhaps.is_empty());
         clusters.iter().filter(holds_nothing).flat_map(|c| c.triangles.iter().copied()).collect()
     }
 

@@ -95,13 +95,14 @@ fn separate(
         return;
     }
     let sheets = joined.iter().filter(|(s, _)| parts[*s].shell.is_sheet());
-    let between: Vec<u32> = sheets.flat_map(|(_, members)| members).chain(walls).copied().collect();
+    let between: Vec<(u32, Closed)> =
+        sheets.flat_map(|(_, members)| members).chain(walls).map(|&n| (n, Closed::new(mesh.corners(&[n])))).collect();
     let (mut used, mut sheets) = (HashSet::default(), Vec::new());
     while let Some((s, members)) = joined.pop() {
         let (shell, is_sheet) = (&parts[s].shell, parts[s].shell.is_sheet());
-        let is_free = |n: &&u32| !used.contains(*n) && shell.is_around(&Closed::new(mesh.corners(&[**n])));
-        let free: Vec<u32> = between.iter().filter(|_| !is_sheet).filter(is_free).copied().collect();
-        let Some(apart) = apart(surface, parts, s, &members, &free) else {
+        let is_free = |(n, wall): &&(u32, Closed)| !is_sheet && !used.contains(n) && shell.is_around(wall);
+        let free = || between.iter().filter(is_free).map(|&(n, _)| n).collect();
+        let Some(apart) = apart(surface, parts, s, &members, free) else {
             if is_sheet {
                 sheets.push((s, members));
             }
@@ -128,18 +129,24 @@ fn separate(
 }
 
 /// The triangles of the parts that one falls into, with those of the walls `free` that are theirs; none if it stays whole.
-fn apart(surface: &Unclosed<'_>, parts: &[Part], s: usize, members: &[u32], free: &[u32]) -> Option<Vec<Vec<u32>>> {
+fn apart(
+    surface: &Unclosed<'_>,
+    parts: &[Part],
+    s: usize,
+    members: &[u32],
+    free: impl Fn() -> Vec<u32>,
+) -> Option<Vec<Vec<u32>>> {
     let shell = &parts[s].shell;
     let across = |other: &&Closed| {
         let looks_the_other_way = other.volume * shell.volume < 0.0 && !other.is_sheet() && !shell.is_sheet();
         looks_the_other_way && other.overlaps(shell) && !other.is_around(shell)
     };
     let with = |walls: &[u32]| {
-        let pieces = Pieces::new(surface.mesh, members, walls, surface.rounding)?;
+        let pieces = Pieces::new(surface.mesh, [members, walls], shell.volume, surface.rounding)?;
         let by_others = || parts.iter().map(|p| &p.shell).filter(across).find_map(|other| pieces.held_by(other));
         pieces.opposite().or_else(by_others)
     };
-    with(&[]).or_else(|| if free.is_empty() { None } else { with(free) })
+    with(&[]).or_else(|| Some(free()).filter(|free| !free.is_empty()).and_then(|free| with(&free)))
 }
 
 /// Do different triangles end at a loose edge, some of which others may have been joined to that belong to it?
@@ -250,14 +257,5 @@ fn groups(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Vec<Vec<usize>> {
             sets.join(s, other);
         }
     }
-    let mut at = HashMap::default();
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    for s in 0..shells.len() {
-        let group = *at.entry(sets.find(s)).or_insert_with(|| {
-            groups.push(Vec::new());
-            groups.len() - 1
-        });
-        groups[group].push(s);
-    }
-    groups
+    sets.groups()
 }

@@ -4,6 +4,7 @@
 //! has what lies in it, and of its length the share that it has of its volume.
 
 use super::rod::Rod;
+use super::shadows::place_of_cell;
 use super::{Options, Porosity, porosity};
 use crate::geometry::areas;
 use crate::geometry::bodies::{Bodies, Body, Doubt};
@@ -125,9 +126,7 @@ fn of_zone(
 
 /// Solid volume on a grid.
 fn solid(grid: &Grid<f64>, result: &Porosity) -> f64 {
-    let [nx, ny, _] = grid.cells();
-    let cell =
-        |n: usize| grid.cell_box([n % nx, n / nx % ny, n / (nx * ny)]).map_or(0.0, |c| c.size().element_product());
+    let cell = |n: usize| grid.cell_box(place_of_cell(grid, n)).map_or(0.0, |c| c.size().element_product());
     result.beta.v.iter().enumerate().filter(|(_, open)| **open < 1.0).map(|(n, open)| (1.0 - open) * cell(n)).sum()
 }
 

@@ -8,14 +8,15 @@
 
 mod parts;
 
+use super::doubt;
 use super::fields::FieldSet;
-use super::shadows::{HIDDEN, Shadows, cells, faces_of_cell};
+use super::shadows::{HIDDEN, Shadows, cells, faces_of_cell, hidden_share, place_of_cell};
 use super::snap;
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
 use crate::geometry::repair::sets::Sets;
 use glam::DVec3;
-use parts::{Parts, SEVERAL};
+use parts::Parts;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 use voidage_core::grid::Grid;
@@ -82,11 +83,11 @@ impl Division {
     #[must_use]
     pub fn told(&self, grid: &Grid<f64>, beta: &FieldSet, shadows: Option<&Shadows>) -> DividedCells {
         let is_told = |n: &&usize| {
-            let known = shadows.is_some_and(|shadows| hidden(grid, beta, shadows, place(grid, **n)) > HIDDEN);
+            let known = shadows.is_some_and(|shadows| hidden(grid, beta, shadows, place_of_cell(grid, **n)) > HIDDEN);
             !known && self.lets_pass(grid, beta, **n)
         };
         let found: Vec<usize> = self.candidates.par_iter().filter(is_told).copied().collect();
-        DividedCells { cells: found.len(), first: found.first().map(|&n| place(grid, n)) }
+        DividedCells { cells: found.len(), first: found.first().map(|&n| place_of_cell(grid, n)) }
     }
 
     /// Do two parts of a cell reach beyond it that have no way to each other around it?
@@ -152,20 +153,15 @@ impl Division {
 /// The sides of a cell: axis, and 0 for the low side or 1 for the high one.
 const SIDES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1)];
 
-fn place(grid: &Grid<f64>, n: usize) -> [usize; 3] {
-    let [nx, ny, _] = grid.cells();
-    [n % nx, n / nx % ny, n / (nx * ny)]
-}
-
 fn neighbour(grid: &Grid<f64>, n: usize, axis: usize, side: usize) -> Option<usize> {
-    let mut at = place(grid, n);
+    let mut at = place_of_cell(grid, n);
     at[axis] = if side == 0 { at[axis].checked_sub(1)? } else { at[axis] + 1 };
     (at[axis] < grid.cells()[axis]).then(|| grid.cell_index(at))
 }
 
 /// A cell and those around it.
 fn around(grid: &Grid<f64>, n: usize) -> impl Iterator<Item = [usize; 3]> {
-    let (at, cells) = (place(grid, n), grid.cells());
+    let (at, cells) = (place_of_cell(grid, n), grid.cells());
     let [x, y, z] = [0, 1, 2].map(|a| at[a].saturating_sub(1)..(at[a] + 2).min(cells[a]));
     z.flat_map(move |k| {
         y.clone().flat_map({
@@ -176,16 +172,13 @@ fn around(grid: &Grid<f64>, n: usize) -> impl Iterator<Item = [usize; 3]> {
 }
 
 fn open_side(grid: &Grid<f64>, beta: &FieldSet, n: usize, (axis, side): (usize, usize)) -> bool {
-    beta.faces(axis)[faces_of_cell(grid, axis, place(grid, n))[side]] >= OPEN
+    beta.faces(axis)[faces_of_cell(grid, axis, place_of_cell(grid, n))[side]] >= OPEN
 }
 
 /// The largest share of its section that a cell blocks along an axis beyond what its faces show.
 fn hidden(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows, at: [usize; 3]) -> f64 {
     let n = grid.cell_index(at);
-    let along = |axis: usize| {
-        let [low, high] = faces_of_cell(grid, axis, at).map(|face| beta.faces(axis)[face]);
-        shadows.tau[axis][n] - (1.0 - low.min(high))
-    };
+    let along = |axis: usize| hidden_share(grid, axis, shadows.tau[axis][n], beta, at);
     along(0).max(along(1)).max(along(2))
 }
 
@@ -205,9 +198,9 @@ fn surfaces(grid: &Grid<f64>, bodies: &Bodies) -> Vec<(u32, [DVec3; 3])> {
 fn divided_among(grid: &Grid<f64>, surfaces: &[(u32, [DVec3; 3])], cells: &[usize]) -> HashMap<usize, Parts> {
     let lists = lists(grid, surfaces, cells);
     let found = cells.par_iter().zip(&lists).filter_map(|(&n, list)| {
-        let cell = grid.cell_box(place(grid, n))?;
+        let cell = grid.cell_box(place_of_cell(grid, n))?;
         let triangles = list.iter().map(|&t| surfaces[t as usize]);
-        Parts::of_cell(cell, triangles).filter(|parts| parts.count() >= SEVERAL).map(|parts| (n, parts))
+        Parts::of_cell(cell, triangles).filter(|parts| parts.count() > 1).map(|parts| (n, parts))
     });
     found.collect::<Vec<_>>().into_iter().collect()
 }
@@ -250,9 +243,8 @@ fn reached(grid: &Grid<f64>, axis: usize, polygon: &Polygon<f64>) -> std::ops::R
     if polygon.is_empty() {
         return 0..0;
     }
-    let ((lo, hi), edges) = (polygon.extent(axis), grid.edges(axis));
-    let first = edges.partition_point(|&edge| edge < lo).saturating_sub(1);
-    first..edges.partition_point(|&edge| edge <= hi).min(grid.cells()[axis])
+    let (lo, hi) = polygon.extent(axis);
+    doubt::reached(grid.edges(axis), lo, hi)
 }
 
 /// What of a polygon lies between the planes of a layer.

@@ -89,7 +89,7 @@ pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, f
 }
 
 /// The cells along an axis that a run of coordinates reaches or touches.
-fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
+pub(super) fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
     edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
 }
 

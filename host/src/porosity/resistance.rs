@@ -1,6 +1,6 @@
 //! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
 
-use super::shadows::Shadows;
+use super::shadows::{Shadows, place_of_cell};
 use super::solid::{up_to, with_solid_surface};
 use super::surface_fields::SurfaceFields;
 use super::{Options, Porosity, levels};
@@ -117,9 +117,8 @@ fn densities(grid: &Grid<f64>, open: &[f64], union: &[SurfaceArea<f64>]) -> Resi
     let zeros = || vec![0.0; union.len()];
     let mut found = Resistance { a: [zeros(), zeros(), zeros()], s: zeros(), d_h: zeros(), ..Resistance::default() };
     found.l_obs = zeros();
-    let [nx, ny, _] = grid.cells();
     for (n, area) in union.iter().enumerate().filter(|(_, area)| area.wetted > 0.0) {
-        let Some(cell) = grid.cell_box([n % nx, n / nx % ny, n / (nx * ny)]) else { continue };
+        let Some(cell) = grid.cell_box(place_of_cell(grid, n)) else { continue };
         let area = area.times(cell.size().element_product().recip());
         found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a[n] = f);
         found.s[n] = area.wetted;

@@ -114,13 +114,26 @@ pub fn cells(grid: &Grid<f64>) -> impl Iterator<Item = [usize; 3]> {
     (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
 }
 
+/// Where the n-th of them is.
+#[must_use]
+pub fn place_of_cell(grid: &Grid<f64>, n: usize) -> [usize; 3] {
+    let [nx, ny, _] = grid.cells();
+    [n % nx, n / nx % ny, n / (nx * ny)]
+}
+
+/// The share of its section that a cell of shadow `tau` blocks along an axis beyond what either of its two faces shows.
+#[must_use]
+pub fn hidden_share(grid: &Grid<f64>, axis: usize, tau: f64, beta: &FieldSet, at: [usize; 3]) -> f64 {
+    let [low, high] = faces_of_cell(grid, axis, at).map(|face| beta.faces(axis)[face]);
+    tau - (1.0 - low.min(high))
+}
+
 fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> HiddenPassages {
-    let (open, [nx, ny, _]) = (beta.faces(axis), grid.cells());
     let mut found = HiddenPassages::default();
-    for (n, tau) in tau.iter().enumerate().filter(|(_, tau)| **tau > HIDDEN) {
-        let at = [n % nx, n / nx % ny, n / (nx * ny)];
-        let [low, high] = faces_of_cell(grid, axis, at).map(|face| open[face]);
-        if low.min(high) > 0.0 && tau - (1.0 - low.min(high)) > HIDDEN {
+    for (n, &tau) in tau.iter().enumerate().filter(|(_, tau)| **tau > HIDDEN) {
+        let at = place_of_cell(grid, n);
+        // A closed face shows all there can be.
+        if hidden_share(grid, axis, tau, beta, at) > HIDDEN {
             found.cells += 1;
             found.first = found.first.or(Some(at));
         }

@@ -2,12 +2,11 @@
 
 use crate::geometry::repair::edges::{ends, key, without_opposites};
 use crate::geometry::repair::junctions::{corners_on, parts_of};
-use crate::geometry::repair::nesting::{Closed, just_within, signed_volume};
+use crate::geometry::repair::nesting::{Closed, just_within};
 use crate::geometry::repair::rims::rims;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::{Indexed, edges_of};
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
 
 /// So many times at most a triangle is looked at from a point: beyond, a surface stays as it was joined.
 const LOOKS: usize = 20_000_000;
@@ -29,13 +28,11 @@ pub struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    /// Of the triangles `own` of a surface and the `walls` in it. None if it is one piece.
+    /// Of the triangles `own` of a surface of a `volume`, and the `walls` in it. None if it is one piece.
     #[must_use]
-    pub fn new(mesh: &'a Indexed, own: &[u32], walls: &[u32], rounding: f64) -> Option<Self> {
+    pub fn new(mesh: &'a Indexed, [own, walls]: [&[u32]; 2], volume: f64, rounding: f64) -> Option<Self> {
         let members = [own, walls].concat();
         let pieces = pieces(mesh, &members, rounding);
-        let corners = mesh.corners(own);
-        let volume = signed_volume(&corners, corners.first()?[0]);
         (pieces.len() > 1).then_some(Pieces { mesh, members, own: own.len(), pieces, volume, rounding })
     }
 
@@ -114,14 +111,5 @@ fn pieces(mesh: &Indexed, members: &[u32], rounding: f64) -> Vec<Vec<usize>> {
             sets.join(*m, *n);
         }
     }
-    let mut at: HashMap<usize, usize> = HashMap::default();
-    let mut pieces: Vec<Vec<usize>> = Vec::new();
-    for m in 0..members.len() {
-        let piece = *at.entry(sets.find(m)).or_insert_with(|| {
-            pieces.push(Vec::new());
-            pieces.len() - 1
-        });
-        pieces[piece].push(m);
-    }
-    pieces
+    sets.groups()
 }

@@ -64,13 +64,7 @@ fn clusters(mesh: &Indexed, members: &[u32]) -> Vec<Vec<u32>> {
             sets.join(m, other);
         }
     }
-    let mut groups: HashMap<usize, Vec<u32>> = HashMap::default();
-    for (m, &n) in members.iter().enumerate() {
-        groups.entry(sets.find(m)).or_default().push(n);
-    }
-    let mut groups: Vec<_> = groups.into_values().collect();
-    groups.sort();
-    groups
+    sets.groups().into_iter().map(|group| group.into_iter().map(|m| members[m]).collect()).collect()
 }
 
 /// The triangle seen from behind, corners from the lowest on.
@@ -206,9 +200,8 @@ pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
     }
     let owners = twins(mesh, shells);
     let backs_of = |n: u32| owners.get(&back(from_lowest(mesh.triangles[n as usize]))).map_or(&[][..], |o| o);
-    let mut members: HashMap<usize, Vec<usize>> = HashMap::default();
-    (0..shells.len()).for_each(|s| members.entry(sets.find(s)).or_default().push(s));
-    for (cluster, members) in members {
+    for members in sets.groups() {
+        let cluster = members[0];
         let all = || members.iter().flat_map(|&s| shells[s].triangles.iter().map(move |&n| (s, n)));
         let outward = |s: usize| Seen::new(mesh, &shells[s], 0.0).volume > 0.0;
         let has_backs = all().any(|(_, n)| !backs_of(n).is_empty()) && !members.iter().all(|&s| outward(s));

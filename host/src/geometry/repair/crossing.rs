@@ -190,16 +190,10 @@ impl<'a> Meetings<'a> {
     fn patches(&self) -> Vec<Vec<u32>> {
         let mut sets = Sets::new(self.triangles.len());
         self.neighbours(&edges(self.triangles)).into_iter().for_each(|[a, b]| sets.join(a as usize, b as usize));
-        let mut at: HashMap<usize, usize> = HashMap::default();
-        let mut patches: Vec<Vec<u32>> = Vec::new();
-        for n in (0..self.triangles.len()).filter(|&n| !self.met.contains_key(&(n as u32))) {
-            let patch = *at.entry(sets.find(n)).or_insert_with(|| {
-                patches.push(Vec::new());
-                patches.len() - 1
-            });
-            patches[patch].push(n as u32);
-        }
-        patches
+        let free = |patch: Vec<usize>| -> Vec<u32> {
+            patch.into_iter().map(|n| n as u32).filter(|&n| !self.meets(n)).collect()
+        };
+        sets.groups().into_iter().map(free).filter(|patch| !patch.is_empty()).collect()
     }
 
     /// Do other triangles cut or cover this one?

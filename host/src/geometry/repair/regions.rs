@@ -39,14 +39,6 @@ pub struct Regions {
     pub cut: bool,
 }
 
-impl Regions {
-    /// Is nothing solid, not even perhaps?
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.solid.is_empty() && self.perhaps.is_empty()
-    }
-}
-
 /// Why the regions of a surface are not told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {

@@ -37,16 +37,8 @@ pub fn rims(boundary: &[[u32; 2]]) -> Vec<Rim> {
             sets.join(n, other);
         }
     }
-    let mut at = HashMap::default();
-    let mut rims: Vec<Rim> = Vec::new();
-    for (n, edge) in boundary.iter().enumerate() {
-        let rim = *at.entry(sets.find(n)).or_insert_with(|| {
-            rims.push(Rim { edges: Vec::new() });
-            rims.len() - 1
-        });
-        rims[rim].edges.push(*edge);
-    }
-    rims
+    let rim = |group: Vec<usize>| Rim { edges: group.into_iter().map(|n| boundary[n]).collect() };
+    sets.groups().into_iter().map(rim).collect()
 }
 
 /// The triangles around some corners in fans that share edges there, by a corner and another end of an edge at it.

@@ -26,4 +26,20 @@ impl Sets {
         let (low, high) = (a.min(b), a.max(b));
         self.0[high] = low;
     }
+
+    /// The sets, each in ascending order, by their lowest elements.
+    #[must_use]
+    pub fn groups(mut self) -> Vec<Vec<usize>> {
+        let mut at = vec![0; self.0.len()];
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for n in 0..self.0.len() {
+            let lowest = self.find(n);
+            if lowest == n {
+                at[n] = groups.len();
+                groups.push(Vec::new());
+            }
+            groups[at[lowest]].push(n);
+        }
+        groups
+    }
 }

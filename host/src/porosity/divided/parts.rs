@@ -19,9 +19,6 @@ const NEAR: f64 = 1e-9;
 /// Points of the 36 that a part needs in a side to be open there: 5 % of it.
 const LEAST_POINTS: u32 = 2;
 
-/// Parts of a cell that is divided, at least.
-pub const SEVERAL: usize = 2;
-
 /// Points of a cell as bits: eight layers along z, in each x fastest.
 type Points = [u64; ALONG];
 
