@@ -121,19 +121,23 @@ fn cross(places: &[[f64; ALONG]; 3], axis: usize, (body, corners): (u32, &[DVec3
         let (lo, hi) = (a[w].min(b[w]).min(c[w]) - NEAR, a[w].max(b[w]).max(c[w]) + NEAR);
         places[w].partition_point(|&p| p < lo)..places[w].partition_point(|&p| p <= hi)
     };
-    for (m, n) in within(u).flat_map(|m| within(v).map(move |n| (m, n))) {
+    let (along_u, along_v) = (within(u), within(v));
+    if along_u.is_empty() || along_v.is_empty() {
+        return;
+    }
+    // Of each edge its beginning, its way, and how far beside it, times its length, a line still crosses.
+    let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| {
+        let way = [to[u] - from[u], to[v] - from[v]];
+        ([from[u], from[v]], way, NEAR * way[0].hypot(way[1]))
+    });
+    for (m, n) in along_u.flat_map(|m| along_v.clone().map(move |n| (m, n))) {
         let [p, q] = [places[u][m], places[v][n]];
-        // Of each edge, the distance of the line times the edge's length.
-        let beside = |from: &DVec3, to: &DVec3| {
-            let along = [to[u] - from[u], to[v] - from[v]];
-            let area = along[0] * (q - from[v]) - along[1] * (p - from[u]);
-            (area * doubled.signum(), NEAR * along[0].hypot(along[1]))
-        };
-        let edges = [beside(b, c), beside(c, a), beside(a, b)];
-        if edges.iter().any(|(area, slack)| *area < -slack) {
+        // The distance of the line times the edge's length.
+        let beside = edges.map(|(from, way, _)| (way[0] * (q - from[1]) - way[1] * (p - from[0])) * doubled.signum());
+        if beside.iter().zip(&edges).any(|(area, (.., slack))| *area < -slack) {
             continue;
         }
-        let [of_a, of_b, of_c] = edges.map(|(area, _)| area / doubled.abs());
+        let [of_a, of_b, of_c] = beside.map(|area| area / doubled.abs());
         let at = a[axis] * of_a + b[axis] * of_b + c[axis] * of_c;
         let before = places[axis].partition_point(|&place| place <= at);
         if before > 0 && before < ALONG {
