@@ -189,8 +189,7 @@ impl Scene {
         Self::with_sides_in_parts(rng, single_sides, false)
     }
 
-    /// A scene of up to seven boxes of both orientations, often one in another, whose sides come in parts and have no backs. Of ten thousand some two are still
-    /// wrong: seeds 4482, 5421.
+    /// A scene of up to seven boxes of both orientations, often one in another, whose sides come in parts and have no backs.
     #[must_use]
     pub fn mixed(rng: &mut Random) -> Self {
         Self::with_sides_in_parts(rng, NO_BACKS, true)

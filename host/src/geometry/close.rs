@@ -70,7 +70,10 @@ pub(super) fn close(
         }
         closed.push(Part { name, shell, cluster, guessed, contested, own });
     }
-    separate(surface, &mut closed, without_caps, name_of);
+    // Parts joined at T-junctions may look opposite ways, whatever the volumes of the whole say.
+    if d.t_junction_edges > 0 || !look_alike(&closed) {
+        separate(surface, &mut closed, without_caps, name_of);
+    }
     if d.t_junction_edges > 0 {
         report.warn(format!(
             "{} no partner (T-junctions), but the surface closes",
@@ -90,10 +93,6 @@ fn separate(
     name_of: impl Fn(u32) -> String,
 ) {
     let &Unclosed { mesh, walls, .. } = surface;
-    let alike = |sign: f64| parts.iter().all(|p| p.shell.volume * sign > 0.0 && !p.shell.is_sheet());
-    if alike(1.0) || alike(-1.0) {
-        return;
-    }
     let sheets = joined.iter().filter(|(s, _)| parts[*s].shell.is_sheet());
     let between: Vec<(u32, Closed)> =
         sheets.flat_map(|(_, members)| members).chain(walls).map(|&n| (n, Closed::new(mesh.corners(&[n])))).collect();
@@ -126,6 +125,12 @@ fn separate(
     sheets.retain(|(_, members)| members.iter().all(|n| used.contains(n)));
     sheets.sort_unstable();
     sheets.iter().rev().for_each(|&(s, _)| drop(parts.remove(s)));
+}
+
+/// Do all parts look outward, or all inward, as wholes?
+fn look_alike(parts: &[Part]) -> bool {
+    let all = |sign: f64| parts.iter().all(|p| p.shell.volume * sign > 0.0 && !p.shell.is_sheet());
+    all(1.0) || all(-1.0)
 }
 
 /// The triangles of the parts that one falls into, with those of the walls `free` that are theirs; none if it stays whole.

@@ -2,7 +2,7 @@
 
 use crate::geometry::repair::edges::{ends, key, without_opposites};
 use crate::geometry::repair::junctions::{corners_on, parts_of};
-use crate::geometry::repair::nesting::{Closed, just_within};
+use crate::geometry::repair::nesting::{Closed, contains, just_within};
 use crate::geometry::repair::rims::rims;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::{Indexed, edges_of};
@@ -10,6 +10,9 @@ use glam::DVec3;
 
 /// So many times at most a triangle is looked at from a point: beyond, a surface stays as it was joined.
 const LOOKS: usize = 20_000_000;
+
+/// Triangles lie in one plane if the sine of the angle between them is no larger: single precision turns them by less.
+const FLAT: f64 = 1e-5;
 
 /// Up to so many triangles of a surface each corner is asked for the edges that it lies on.
 const SMALL: usize = 4000;
@@ -59,17 +62,18 @@ impl<'a> Pieces<'a> {
         apart.then(|| two.to_vec())
     }
 
-    /// Its pieces, if each closes by itself and some look inward, others outward, beside each other: then they are no one surface. None otherwise; pieces in
-    /// the same place may be the two sides of one body.
+    /// Its pieces, if each closes by itself and some look inward, others outward, beside each other or one within the other: then they are no one surface.
+    /// None otherwise; pieces in the same place may be the two sides of one body.
     #[must_use]
     pub fn opposite(&self) -> Option<Vec<Vec<u32>>> {
         let all: Vec<Vec<u32>> = self.pieces.iter().map(|p| p.iter().map(|&m| self.members[m]).collect()).collect();
         let shells = self.pieces.iter().map(|piece| Closed::new(self.triangles(piece)));
         let (outward, inward): (Vec<Closed>, Vec<Closed>) =
             shells.filter(|shell| !shell.is_sheet()).partition(|shell| shell.volume > 0.0);
-        let beside = || outward.iter().all(|a| inward.iter().all(|b| !a.overlaps(b)));
-        let is_few = outward.len().saturating_mul(inward.len()) <= LOOKS;
-        let apart = !outward.is_empty() && !inward.is_empty() && is_few && beside();
+        let is_clear = |a: &Closed, b: &Closed| !a.overlaps(b) || contains(a, b) || contains(b, a);
+        let all_clear = || outward.iter().all(|a| inward.iter().all(|b| is_clear(a, b)));
+        let is_few = outward.len().saturating_mul(inward.len()).saturating_mul(self.members.len()) <= LOOKS;
+        let apart = !outward.is_empty() && !inward.is_empty() && is_few && all_clear();
         (apart && all.iter().all(|members| self.closes(members))).then_some(all)
     }
 
@@ -84,8 +88,8 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// What of a surface is connected by edges of two triangles, cut at the corners on them; of large surfaces at those that edges of more or fewer triangles
-/// have. Positions in `members`; none if there are no such corners.
+/// What of a surface is connected by edges of two triangles, or of four in one plane, two of them the backs of the others, cut at the corners on them; of
+/// large surfaces at those that edges of more or fewer triangles have. Positions in `members`; none if there are no such corners.
 fn pieces(mesh: &Indexed, members: &[u32], rounding: f64) -> Vec<Vec<usize>> {
     let keys = |n: u32| edges_of(mesh.triangles[n as usize]).map(|[a, b]| key(a, b));
     let mut edges: Vec<u64> = members.iter().flat_map(|&n| keys(n)).collect();
@@ -109,7 +113,44 @@ fn pieces(mesh: &Indexed, members: &[u32], rounding: f64) -> Vec<Vec<usize>> {
     for uses in uses.chunk_by(|a, b| a.0 == b.0) {
         if let [(_, m), (_, n)] = uses {
             sets.join(*m, *n);
+        } else if let &[(edge, a), (_, b), (_, c), (_, d)] = uses {
+            let four = [a, b, c, d];
+            let beside = four.map(|m| Beside::new(mesh, mesh.triangles[members[m] as usize], edge));
+            for [i, j] in flat_pairs(&beside).into_iter().flatten() {
+                sets.join(four[i], four[j]);
+            }
         }
     }
     sets.groups()
+}
+
+/// A triangle at an edge.
+struct Beside {
+    /// Of length 1, or 0 if it has no area.
+    normal: DVec3,
+    /// From the edge to the corner farthest from it.
+    off: DVec3,
+}
+
+impl Beside {
+    fn new(mesh: &Indexed, triangle: [u32; 3], edge: u64) -> Self {
+        let [start, end] = ends(edge).map(|v| mesh.points[v as usize]);
+        let [a, b, c] = triangle.map(|v| mesh.points[v as usize]);
+        let along = (end - start).normalize_or_zero();
+        let offs = [a, b, c].map(|p| (p - start).reject_from_normalized(along));
+        let off = offs.into_iter().max_by(|p, q| p.length_squared().total_cmp(&q.length_squared()));
+        Beside { normal: (b - a).cross(c - a).normalize_or_zero(), off: off.unwrap_or(DVec3::ZERO) }
+    }
+}
+
+/// Which of four triangles at an edge go on in each other; none unless all lie in one plane and two face one way, two the other.
+fn flat_pairs(beside: &[Beside; 4]) -> Option<[[usize; 2]; 2]> {
+    let first = &beside[0];
+    let is_flat = |b: &Beside| b.normal != DVec3::ZERO && b.normal.cross(first.normal).length() <= FLAT;
+    let goes_on =
+        |i: usize, j: usize| beside[i].normal.dot(beside[j].normal) > 0.0 && beside[i].off.dot(beside[j].off) < 0.0;
+    let opposite = |i: usize, j: usize| beside[i].normal.dot(beside[j].normal) < 0.0;
+    let pairs = [[[0, 1], [2, 3]], [[0, 2], [1, 3]], [[0, 3], [1, 2]]];
+    let found = || pairs.into_iter().find(|[[a, b], [c, d]]| goes_on(*a, *b) && goes_on(*c, *d) && opposite(*a, *c));
+    beside.iter().all(is_flat).then(found).flatten()
 }

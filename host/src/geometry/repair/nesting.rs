@@ -146,11 +146,14 @@ const OFF_THE_SURFACE: f64 = 1e-4;
 /// Two closed shells whose volumes differ by less than this share are one surface twice.
 const SAME: f64 = 1e-6;
 
-/// Is `inner` inside `outer`, perhaps touching it? Told by its box and a spread of points just within its own surface.
-fn contains(outer: &Closed, inner: &Closed) -> bool {
+/// Is `inner` inside `outer`, perhaps touching it? Told by its box and a spread of points just within its own surface. Where two sides of that surface lie in
+/// one place and cancel, a point beside one is not within.
+#[must_use]
+pub fn contains(outer: &Closed, inner: &Closed) -> bool {
     let smaller = inner.volume.abs() < (1.0 - SAME) * outer.volume.abs();
     let step = (inner.triangles.len() / 16).max(1);
-    let within = |t: &[DVec3; 3]| just_within(t, inner.volume).is_none_or(|p| outer.winds_around(p));
+    let is_in = |p| outer.winds_around(p) || !inner.winds_around(p);
+    let within = |t: &[DVec3; 3]| just_within(t, inner.volume).is_none_or(is_in);
     outer.is_around(inner) && smaller && inner.triangles.iter().step_by(step).all(within)
 }
 
