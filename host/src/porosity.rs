@@ -4,7 +4,7 @@
 //! any number of threads.
 //!
 //! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
-//! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `doubt`, porous and doubtful bodies; `solid_layers`, `curved_cells`, `surface_layers`,
+//! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `windows`, `doubt`, porous and doubtful bodies; `solid_layers`, `curved_cells`, `surface_layers`,
 //! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], [`divided`], what follows from it.
 
 pub mod congestion;
@@ -30,12 +30,14 @@ pub mod surface_fields;
 mod surface_layers;
 mod targets;
 pub mod throat;
+mod windows;
 mod worker;
 
 use crate::geometry::bodies::{self, Bodies, Doubt};
 pub use crate::huge::HugeVec;
 pub use fields::FieldSet;
 use glam::DVec3;
+use levels::RunningSum;
 pub use levels::levels;
 pub use options::{Leaf, Method, Options};
 use rayon::prelude::*;
@@ -47,14 +49,16 @@ use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::Layers;
+use windows::{batches, windows};
 use worker::{Summary, Target, Workers};
 
 /// Bytes that the fields of a grid take, with the lists of triangles by layer and what one thread needs beside them.
 #[must_use]
 pub fn memory(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> usize {
     let faces = if options.areas { [0, 1, 2].map(|a| grid.face_shape(a).iter().product()).iter().sum() } else { 0 };
-    // Of several levels, one joins the others, and one is remembered for the next.
-    let sets = if options.bounds { 3 } else { 1 } * levels(bodies).len().min(3);
+    // Of several levels, there are the sum, the union that stands and that of all; and each place has a number of half the size.
+    let several = levels(bodies) != [0.0];
+    let sets = if options.bounds { 3 } else { 1 } * if several { 3 } else { 1 } + usize::from(several);
     // Tall triangles are listed in every layer that they reach.
     let (surfaces, _) = surfaces(bodies, |_, body| &bodies.triangles[body.triangles.clone()]);
     let lists = Layers::needed(grid, &surfaces);
@@ -107,16 +111,8 @@ fn in_frame(
     options: Options,
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
-    let levels = levels(bodies);
     let roads = Roads::choose(bodies, triangles, options);
-    let mut last: Option<Union> = None;
-    let scene = Scene { grid, bodies, triangles, roads, options };
-    let unions = levels.iter().map(|&level| {
-        let found = union(&scene, level, last.as_ref(), layer_done);
-        last = (levels.last() != Some(&level)).then(|| found.clone());
-        found.porosity
-    });
-    let mut joined = levels::join(&levels, unions);
+    let mut joined = joined(&Scene { grid, bodies, triangles, roads, options }, &levels(bodies), layer_done);
     doubt::allow_for_rounding(grid, bodies, options, &mut joined);
     doubt::widen_unknown(grid, bodies, options, &mut joined);
     doubt::widen(grid, bodies, options, &mut joined);
@@ -132,8 +128,57 @@ struct Scene<'a> {
     options: Options,
 }
 
+/// Porosities of solids of some levels: the unions up to the first and up to the last on the whole grid, those between where they change anything.
+fn joined(scene: &Scene, levels: &[f64], layer_done: &(dyn Fn() + Sync)) -> Porosity {
+    let grid = scene.grid;
+    let whole = |level| Extent { grid: *grid, level, near: None };
+    let mut union = union(scene, &whole(levels[0]), None, layer_done);
+    if levels == [0.0] {
+        return union.porosity;
+    }
+    let mut sum = RunningSum::new(grid, levels, &union.porosity);
+    let between = 1..levels.len().max(2) - 1;
+    let tasks: Vec<_> =
+        between.clone().flat_map(|k| windows(grid, scene.bodies, levels[k]).into_iter().map(move |w| (k, w))).collect();
+    for batch in batches(grid, &tasks) {
+        let found = batch.par_iter().map(|(k, window)| {
+            let larger = window.with_margin(grid);
+            let (inner, outer) = (window.bounds(grid), larger.bounds(grid));
+            let near = [0, 1].map(|n| inner[n].lerp(outer[n], BESIDE));
+            let extent = Extent { grid: larger.grid(grid), level: levels[*k], near: Some(near) };
+            (*k, [window.clone(), larger], self::union(scene, &extent, None, &|| ()).porosity)
+        });
+        for (k, [window, larger], found) in found.collect::<Vec<_>>() {
+            sum.replace(&mut union.porosity, k, [&window, &larger], &found);
+            union.porosity.add_work(&found);
+        }
+    }
+    between.flat_map(|_| 0..grid.cells()[2]).for_each(|_| layer_done());
+    let last = levels[1..].last().map(|&last| self::union(scene, &whole(last), Some(&union), layer_done).porosity);
+    let mut total = sum.finish(&union.porosity, last.as_ref().unwrap_or(&union.porosity));
+    [Some(&union.porosity), last.as_ref()].into_iter().flatten().for_each(|union| total.add_work(union));
+    total
+}
+
+/// What ends so near a window, in cells, may lie in the planes that bound it.
+const BESIDE: f64 = 1.0 / 64.0;
+
+/// A part of the grid, or all of it, and up to which porosity solids count there.
+struct Extent<'a> {
+    grid: Grid<'a, f64>,
+    level: f64,
+    /// Bodies that do not touch this box do not count; none for the whole grid.
+    near: Option<[DVec3; 2]>,
+}
+
+impl Extent<'_> {
+    fn counts(&self, body: &bodies::Body) -> bool {
+        let touches = |[lo, hi]: [DVec3; 2]| body.bounds[0].cmple(hi).all() && body.bounds[1].cmpge(lo).all();
+        body.porosity <= self.level && self.near.is_none_or(touches)
+    }
+}
+
 /// Porosities of the union up to a level, and the totals of its layers.
-#[derive(Clone)]
 struct Union {
     level: f64,
     porosity: Porosity,
@@ -158,10 +203,11 @@ impl Union {
     }
 }
 
-/// Porosities of the union of all bodies up to a level, as if they were solid; `last` is that up to the level before.
-fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn() + Sync)) -> Union {
-    let Scene { grid, bodies, triangles, roads, options } = scene;
-    let counts = |body: usize| bodies.bodies[body].porosity <= level;
+/// Porosities of the union of all bodies up to a level, as if they were solid; `last` is that of fewer bodies.
+fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn Fn() + Sync)) -> Union {
+    let Scene { bodies, triangles, roads, options, .. } = scene;
+    let Extent { grid, level, .. } = extent;
+    let counts = |body: usize| extent.counts(&bodies.bodies[body]);
     let convex = roads.road(triangles, *options, counts);
     let (surfaces, broken) = surfaces(bodies, |number, body| {
         let by_surface = counts(number) && roads.by_surface(number);
@@ -178,7 +224,7 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
         .into_par_iter()
         .enumerate()
         .map(|(k, mut target)| {
-            let same = last.filter(|last| !last.may_change(grid, bodies, level, k));
+            let same = last.filter(|last| !last.may_change(grid, bodies, *level, k));
             let summary = match same {
                 Some(last) => last.copy_layer(k, &mut target),
                 None => workers.layer(grid, &layers, &convex, k, target),
@@ -207,7 +253,7 @@ fn union(scene: &Scene, level: f64, last: Option<&Union>, layer_done: &(dyn Fn()
         leaks: worst_leaks(bodies.bodies.len(), &summaries),
         surface,
     };
-    Union { level, porosity, layers: summaries }
+    Union { level: *level, porosity, layers: summaries }
 }
 
 /// Are areas and shadows of surface asked for, and those of the bodies whose porosity is found? Bodies by formula have them as facets, and those

@@ -172,14 +172,22 @@ fn counted(bricks: &[Brick], cells: usize, coarse: usize) -> FieldSet {
     set
 }
 
-/// Porous and solid bricks that overlap at random, in cells that cut them or not: every value is the mean of the least porosities.
+/// Porous and solid bricks that overlap at random, in cells that cut them or not: every value is the mean of the least porosities. Of many porosities,
+/// most change a small part of the grid.
 #[test]
 fn porous_solids_are_counted_by_their_least_porosity() {
     let mut rng = Random::new(5);
-    let mut shared = 0;
+    let (mut shared, mut several) = (0, 0);
+    let many: Vec<f64> = (1..40).map(|n| f64::from(n) / 41.0).collect();
     for round in 0..120 {
-        let porosities: &[f64] = [&[0.0, 0.6][..], &[0.0, 0.25, 0.6, 1.0], &[0.3, 0.7], &[0.5]][round % 4];
-        let bricks: Vec<Brick> = (0..1 + rng.below(6)).map(|_| Brick::random(&mut rng, 6, porosities)).collect();
+        let porosities: &[f64] = [&[0.0, 0.6][..], &[0.0, 0.25, 0.6, 1.0], &[0.3, 0.7], &[0.5], &many][round % 5];
+        let is_small = porosities == many && rng.below(3) > 0;
+        let count = if is_small { 3 + rng.below(12) } else { 1 + rng.below(6) };
+        let mut bricks: Vec<Brick> = (0..count).map(|_| Brick::random(&mut rng, 6, porosities)).collect();
+        if is_small {
+            bricks.iter_mut().for_each(|b| (0..3).for_each(|a| b.max[a] = b.max[a].min(b.min[a] + 2)));
+            several += 1;
+        }
         let text = bricks.iter().fold(String::new(), |mut text, b| {
             let keys = format!("min = {:?}\nmax = {:?}\nporosity = {:?}", b.min, b.max, b.porosity);
             let _ = write!(text, "{}", solid("box", &keys));
@@ -202,7 +210,59 @@ fn porous_solids_are_counted_by_their_least_porosity() {
             shared += found.cells.ambiguous;
         }
     }
-    assert!(shared > 400, "{shared}");
+    assert!(shared > 400 && several > 10, "{shared}, {several}");
+}
+
+/// Balls, pipes and turned boxes of up to ten porosities: the sum over the levels of the unions of all solids up to each, which are computed as solid.
+#[test]
+fn many_porosities_are_the_sum_of_their_unions() {
+    let mut rng = Random::new(8);
+    for round in 0..8 {
+        let grid = edges([9, 8, 10], 4.0);
+        let mut solids: Vec<(f64, String)> = Vec::new();
+        for _ in 0..6 + rng.below(20) {
+            let porosity = (rng.below(10) as f64 + if round % 2 == 0 { 0.0 } else { 0.5 }) / 10.0;
+            let at = |rng: &mut Random| DVec3::from_array([0.0; 3].map(|_: f64| 4.0 * rng.unit()));
+            let (a, r) = (at(&mut rng), 0.1 + 0.4 * rng.unit());
+            let text = match rng.below(3) {
+                0 => solid("sphere", &format!("center = {}\nradius = {r}", list(a))),
+                1 => {
+                    let to = a + (at(&mut rng) - 2.0) * 0.4;
+                    solid("cylinder", &format!("from = {}\nto = {}\nradius = {}", list(a), list(to), 0.5 * r))
+                }
+                _ => {
+                    let turn = "rotate = { axis = [1, 2, 3], angle = 30 }";
+                    solid("box", &format!("min = {}\nmax = {}\n{turn}", list(a), list(a + 0.5 * r)))
+                }
+            };
+            solids.push((porosity, text));
+        }
+        let porous = |(p, text): &(f64, String)| format!("{text}\nporosity = {p:?}\n");
+        let all = bodies(&solids.iter().map(porous).collect::<String>());
+        let found = run(&grid, &all);
+        let levels = voidage::porosity::levels(&all);
+        let mut sum = vec![levels[0]; found.beta.v.len()];
+        let mut x = vec![levels[0]; found.beta.x.len()];
+        for (n, &level) in levels.iter().enumerate() {
+            let weight = levels.get(n + 1).copied().unwrap_or(1.0) - level;
+            let text: String = solids.iter().filter(|(p, _)| *p <= level).map(|(_, text)| text.as_str()).collect();
+            let union = run(&grid, &bodies(&text)).beta;
+            sum.iter_mut().zip(&*union.v).for_each(|(sum, open)| *sum += weight * open);
+            x.iter_mut().zip(&*union.x).for_each(|(sum, open)| *sum += weight * open);
+        }
+        let [lower, upper] = found.bounds.as_ref().expect("bounds");
+        for (field, expected) in [(0, &sum), (1, &x)] {
+            for (n, expected) in expected.iter().enumerate() {
+                let [low, value, high] = [lower, &found.beta, upper].map(|set| set.field(field)[n]);
+                let near = 1e-4 * levels.len() as f64;
+                assert!(low - near <= *expected && *expected <= high + near, "round {round}: {low} {expected} {high}");
+                assert!(
+                    (value - expected).abs() <= near.min(found.max_gap + 1e-12),
+                    "round {round}: {value} {expected}"
+                );
+            }
+        }
+    }
 }
 
 /// Two boxes that overlap, in coordinates of UTM (446 and 5412 km): along the axes they are to the bit what they are at the origin; turned, as near as

@@ -55,6 +55,17 @@ impl FieldSet {
         }
     }
 
+    /// The cells (0), or the x, y, z faces (1, 2, 3).
+    #[must_use]
+    pub fn field(&self, number: usize) -> &[f64] {
+        if number == 0 { &self.v } else { self.faces(number - 1) }
+    }
+
+    /// The same, to be changed.
+    pub fn field_mut(&mut self, number: usize) -> &mut [f64] {
+        if number == 0 { &mut self.v } else { self.faces_mut(number - 1) }
+    }
+
     /// The open fractions of layer `k`.
     #[must_use]
     pub fn open_layer(&self, grid: &Grid<f64>, k: usize) -> OpenLayer<'_, f64> {

@@ -7,10 +7,17 @@
 //!
 //! A point of a face is as open as the less open of its two sides; it is blocked by U_k where either side is. That is how unions
 //! count walls, so the same sum holds for faces.
+//!
+//! From U_{k−1} to U_k only the cells change that bodies of the porosity p_k reach. So each place keeps the level since which its union stands, and
+//! the terms of the levels from then on are added at once when that union changes.
 
 use super::fields::FieldSet;
+use super::windows::Window;
 use super::{CellCounts, Porosity};
 use crate::geometry::bodies::Bodies;
+use rayon::prelude::*;
+use std::ops::Range;
+use voidage_core::grid::Grid;
 
 /// The porosities that occur among the bodies, in ascending order; without those of bodies that are open altogether. Never empty.
 #[must_use]
@@ -21,49 +28,145 @@ pub fn levels(bodies: &Bodies) -> Vec<f64> {
     if levels.is_empty() { vec![0.0] } else { levels }
 }
 
-/// The porosity of solids of several levels from those of the unions up to each level, in ascending order.
-#[must_use]
-pub fn join(levels: &[f64], mut unions: impl Iterator<Item = Porosity>) -> Porosity {
-    let mut total = unions.next().unwrap_or_default();
-    if levels == [0.0] {
-        return total;
-    }
-    let next = |k: usize| levels.get(k + 1).copied().unwrap_or(1.0);
-    let innermost = CellCounts { closed: if levels[0] == 0.0 { total.cells.closed } else { 0 }, ..total.cells };
-    let weight = next(0) - levels[0];
-    for field in fields(&mut total) {
-        field.iter_mut().for_each(|open| *open = raise(levels[0], weight, *open, next(0)));
-    }
-    total.solid_volume *= weight;
-    total.max_gap *= weight;
-    total.cells = innermost;
-    for (k, mut union) in (1..).zip(unions) {
-        let weight = next(k) - levels[k];
-        for (into, from) in fields(&mut total).into_iter().zip(fields(&mut union)) {
-            into.iter_mut().zip(&*from).for_each(|(open, &other)| *open = raise(*open, weight, other, next(k)));
-        }
-        total.solid_volume += weight * union.solid_volume;
-        total.max_gap += weight * union.max_gap;
-        total.cells.open = union.cells.open;
-        total.cells.ambiguous = total.cells.ambiguous.max(union.cells.ambiguous);
-        total.divided += union.divided;
-        total.gjk.queries += union.gjk.queries;
-        total.gjk.undecided += union.gjk.undecided;
-        total.winding = total.winding.max(union.winding);
-        // A body leaks alike at every level; the last holds them all.
-        total.leaks = union.leaks;
-    }
-    total.cells.cut = total.beta.v.len() - total.cells.open - total.cells.closed;
-    total
+/// The sum over the levels, for each place up to the level since which its union stands.
+pub struct RunningSum<'a> {
+    grid: Grid<'a, f64>,
+    levels: &'a [f64],
+    /// Values, and with them lower and upper bounds if there are any.
+    sets: Vec<FieldSet>,
+    /// Since which level the union of a place stands: cells, then x, y, z faces.
+    since: [Vec<u32>; 4],
+    /// The sum of the largest gaps, up to the level since which the one at hand is the largest.
+    gap: f64,
+    gap_since: usize,
 }
 
-/// One term of the sum; where nothing is in the union the result is the next level to the bit.
+impl<'a> RunningSum<'a> {
+    /// Begins with the union up to the first level.
+    #[must_use]
+    pub fn new(grid: &Grid<'a, f64>, levels: &'a [f64], first: &Porosity) -> Self {
+        let filled = |set: &FieldSet| {
+            let mut sum = set.clone();
+            (0..4).for_each(|field| sum.field_mut(field).fill(levels[0]));
+            sum
+        };
+        RunningSum {
+            grid: *grid,
+            levels,
+            sets: sets(first).map(filled).collect(),
+            since: [0, 1, 2, 3].map(|field| vec![0; first.beta.field(field).len()]),
+            gap: 0.0,
+            gap_since: 0,
+        }
+    }
+
+    /// The union `now` becomes, within the first of two windows, that up to level `k`, which was `found` in the second, larger one.
+    pub fn replace(&mut self, now: &mut Porosity, k: usize, windows: [&Window; 2], found: &Porosity) {
+        self.add_gap(now, k);
+        now.max_gap = now.max_gap.max(found.max_gap);
+        let (grid, part) = (self.grid, windows[1].grid(&self.grid));
+        for (set, (now, found)) in self.sets.iter_mut().zip(sets_mut(now).zip(sets(found))) {
+            for (field, since) in self.since.iter().enumerate() {
+                let (sum, now, found) = (set.field_mut(field), now.field_mut(field), found.field(field));
+                if now.is_empty() {
+                    continue;
+                }
+                for [row, its] in rows([&grid, &part], field, windows) {
+                    let standing = sum[row.clone()].iter_mut().zip(&mut now[row.clone()]).zip(&since[row]);
+                    for (((sum, now), &since), &found) in standing.zip(&found[its]) {
+                        *sum = raise(*sum, self.levels[k] - self.levels[since as usize], *now, self.levels[k]);
+                        *now = found;
+                    }
+                }
+            }
+        }
+        for (field, since) in self.since.iter_mut().enumerate().filter(|(_, since)| !since.is_empty()) {
+            rows([&grid, &part], field, windows).for_each(|[row, _]| since[row].fill(k as u32));
+        }
+    }
+
+    /// The sum of all levels, from the union that stands `now` and that of `all` bodies, which stands from the last level on. What either cost is not told.
+    #[must_use]
+    pub fn finish(mut self, now: &Porosity, all: &Porosity) -> Porosity {
+        let (levels, last) = (self.levels, self.levels.len() - 1);
+        self.add_gap(now, last);
+        for (set, (now, all)) in self.sets.iter_mut().zip(sets(now).zip(sets(all))) {
+            for (field, since) in self.since.iter().enumerate() {
+                let unions = now.field(field).par_iter().zip(all.field(field));
+                set.field_mut(field).par_iter_mut().zip(since).zip(unions).for_each(|((sum, &since), (&now, &all))| {
+                    let before = raise(*sum, levels[last] - levels[since as usize], now, levels[last]);
+                    *sum = raise(before, 1.0 - levels[last], all, 1.0);
+                });
+            }
+        }
+        let mut sets = self.sets.into_iter();
+        let beta = sets.next().unwrap_or_default();
+        let closed = if levels[0] == 0.0 { now.cells.closed } else { 0 };
+        let cells = CellCounts {
+            open: all.cells.open,
+            cut: beta.v.len() - all.cells.open - closed,
+            closed,
+            ambiguous: now.cells.ambiguous.max(all.cells.ambiguous),
+        };
+        Porosity {
+            solid_volume: blocked_volume(&self.grid, &beta.v),
+            beta,
+            bounds: sets.next().zip(sets.next()).map(<[FieldSet; 2]>::from),
+            cells,
+            max_gap: self.gap + (1.0 - levels[last]) * all.max_gap,
+            ..Porosity::default()
+        }
+    }
+
+    fn add_gap(&mut self, now: &Porosity, k: usize) {
+        self.gap += (self.levels[k] - self.levels[self.gap_since]) * now.max_gap;
+        self.gap_since = k;
+    }
+}
+
+/// Terms of the sum, of weights that add up to one; where nothing is in the union the result is the next level to the bit.
 fn raise(so_far: f64, weight: f64, open: f64, next: f64) -> f64 {
     if open == 1.0 { next } else { (so_far + weight * open).min(next) }
 }
 
-/// All fields, the bounds included.
-fn fields(porosity: &mut Porosity) -> Vec<&mut [f64]> {
-    let sets = std::iter::once(&mut porosity.beta).chain(porosity.bounds.iter_mut().flatten());
-    sets.flat_map(|FieldSet { v, x, y, z }| [v, x, y, z].map(|field| &mut field[..])).collect()
+/// The values, and the bounds if there are any.
+fn sets(porosity: &Porosity) -> impl Iterator<Item = &FieldSet> {
+    std::iter::once(&porosity.beta).chain(porosity.bounds.iter().flatten())
+}
+
+fn sets_mut(porosity: &mut Porosity) -> impl Iterator<Item = &mut FieldSet> {
+    std::iter::once(&mut porosity.beta).chain(porosity.bounds.iter_mut().flatten())
+}
+
+/// The rows of a window: where each lies in a field of the whole grid, and where in that of a larger window, which is the grid `part`.
+fn rows(
+    [whole, part]: [&Grid<f64>; 2],
+    field: usize,
+    [window, larger]: [&Window; 2],
+) -> impl Iterator<Item = [Range<usize>; 2]> {
+    let shape = |grid: &Grid<f64>| if field == 0 { grid.cells() } else { grid.face_shape(field - 1) };
+    let (whole, part) = (shape(whole), shape(part));
+    let mut runs = window.cells.clone();
+    if field > 0 {
+        runs[field - 1].end += 1;
+    }
+    let first = larger.cells.each_ref().map(|run| run.start);
+    let [x, y, z] = runs;
+    let row = move |[nx, ny, _]: [usize; 3], from: [usize; 3], j: usize, k: usize| {
+        let start = ((k - from[2]) * ny + j - from[1]) * nx + x.start - from[0];
+        start..start + x.len()
+    };
+    z.flat_map(move |k| y.clone().map(move |j| [j, k]))
+        .map(move |[j, k]| [row(whole, [0; 3], j, k), row(part, first, j, k)])
+}
+
+/// The volume of solid in all cells of a grid.
+fn blocked_volume(grid: &Grid<f64>, open: &[f64]) -> f64 {
+    let [nx, ny, _] = grid.cells();
+    let width = |axis: usize| grid.edges(axis).windows(2).map(|e| e[1] - e[0]);
+    let row = |row: &[f64]| row.iter().zip(width(0)).map(|(open, width)| (1.0 - open) * width).sum::<f64>();
+    let layer =
+        |layer: &[f64]| layer.chunks_exact(nx).zip(width(1)).map(|(cells, width)| row(cells) * width).sum::<f64>();
+    let layers: Vec<f64> = open.par_chunks_exact(nx * ny).map(layer).collect();
+    layers.iter().zip(width(2)).map(|(area, height)| area * height).sum()
 }

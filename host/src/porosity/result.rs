@@ -71,3 +71,15 @@ pub struct Porosity {
     /// Areas and shadows of the surface, if they were asked for and come with the porosity: of solid bodies that go by their surface.
     pub surface: Option<Arc<SurfaceFields>>,
 }
+
+impl Porosity {
+    /// Adds what another union of the same bodies has cost, and takes over where its bodies fail to close.
+    pub(super) fn add_work(&mut self, other: &Porosity) {
+        self.divided += other.divided;
+        self.gjk.queries += other.gjk.queries;
+        self.gjk.undecided += other.gjk.undecided;
+        self.winding = self.winding.max(other.winding);
+        (self.subdivided, self.by_formula) = (other.subdivided, other.by_formula);
+        self.leaks.clone_from(&other.leaks);
+    }
+}
