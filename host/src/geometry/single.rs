@@ -10,6 +10,8 @@ use glam::{DAffine3, DMat3, DVec3};
 pub struct SingleSource {
     to_body: DAffine3,
     to_file: DAffine3,
+    /// By how much the ways there and back stretch a coordinate at most.
+    stretch: [f64; 2],
 }
 
 impl SingleSource {
@@ -26,7 +28,8 @@ impl SingleSource {
     }
 
     fn of(to_body: DAffine3) -> Self {
-        SingleSource { to_body, to_file: to_body.inverse() }
+        let (to_file, rows) = (to_body.inverse(), |m: DMat3| (abs(m) * DVec3::ONE).max_element());
+        SingleSource { to_body, to_file, stretch: [rows(to_body.matrix3), rows(to_file.matrix3)] }
     }
 
     /// How far along each axis the point meant may be from `p`, for which the file has the nearest `f32`: half a unit in the last place.
@@ -42,9 +45,9 @@ impl SingleSource {
     /// At least as large as any component of [`Self::error`], and cheaper.
     #[must_use]
     pub fn reach(&self, p: DVec3) -> f64 {
-        let rows = |m: DMat3| (abs(m) * DVec3::ONE).max_element();
-        let farthest = rows(self.to_file.matrix3) * (p - self.to_body.translation).abs().max_element();
-        rows(self.to_body.matrix3) * (farthest * f64::from(f32::EPSILON)).max(f64::from(f32::MIN_POSITIVE))
+        let [to_body, to_file] = self.stretch;
+        let farthest = to_file * (p - self.to_body.translation).abs().max_element();
+        to_body * (farthest * f64::from(f32::EPSILON)).max(f64::from(f32::MIN_POSITIVE))
     }
 }
 
