@@ -6,21 +6,17 @@
 //! - two of its parts reach beyond it, each by a face that is open to that part alone, or that a divided neighbour goes on from by such a face, and
 //! - there is no way from one part to the other through the 26 cells around it: gas that goes around a pipe or the end of a wall does no harm.
 
+mod near;
 mod parts;
 
-use super::doubt;
 use super::fields::FieldSet;
-use super::shadows::{HIDDEN, Shadows, cells, faces_of_cell, hidden_share, place_of_cell};
-use super::snap;
-use crate::geometry::bodies::{Bodies, Body, Doubt};
-use crate::geometry::facets;
+use super::shadows::{HIDDEN, Shadows, faces_of_cell, hidden_share, place_of_cell};
+use crate::geometry::bodies::Bodies;
 use crate::geometry::repair::sets::Sets;
-use glam::DVec3;
-use parts::Parts;
+use near::Near;
+use parts::{Hits, Parts};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap as HashMap;
 use voidage_core::grid::Grid;
-use voidage_core::surface::clip::{Polygon, keep};
 
 /// Cells that are divided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -44,7 +40,10 @@ const OPEN: f64 = 0.05;
 /// The cells of a grid that surface divides, and their parts.
 #[derive(Debug, Clone, Default)]
 pub struct Division {
-    parts: HashMap<usize, Parts>,
+    /// Of divided cells.
+    parts: Vec<Parts>,
+    /// Where each cell's parts stand; beyond the end of them for those that are not known to be divided.
+    slots: Vec<u32>,
     /// Cells that may be told: neighbours are known by their parts only.
     candidates: Vec<usize>,
 }
@@ -54,28 +53,42 @@ impl Division {
     /// rayon pool.
     #[must_use]
     pub fn find(grid: &Grid<f64>, bodies: &Bodies, beta: &FieldSet, shadows: &Shadows) -> Self {
-        let hidden = |at: [usize; 3]| hidden(grid, beta, shadows, at);
-        let all: Vec<(usize, f64)> = cells(grid)
-            .enumerate()
-            .filter(|(n, _)| beta.v[*n] > 0.0)
-            .map(|(n, at)| (n, hidden(at)))
-            .filter(|(_, hidden)| *hidden >= LEAST_BESIDE)
-            .collect();
-        let first: Vec<usize> = all.iter().filter(|(_, h)| *h >= LEAST_HIDDEN).map(|(n, _)| *n).collect();
+        let all = hiding(grid, beta, shadows);
+        let first: Vec<_> =
+            numbered(&all).filter(|(_, hidden)| *hidden >= LEAST_HIDDEN).map(|(cell, _)| cell).collect();
         if first.is_empty() {
             return Division::default();
         }
-        let surfaces = surfaces(grid, bodies);
-        let mut parts = divided_among(grid, &surfaces, &first);
-        let mut candidates: Vec<usize> = parts.keys().copied().collect();
-        candidates.sort_unstable();
+        let near = Near::new(grid, bodies, &all.iter().map(|(n, _)| *n).collect::<Vec<_>>());
+        let mut found = Division { slots: vec![u32::MAX; grid.cell_count()], ..Division::default() };
+        found.candidates = found.add_divided(grid, &near, &first);
         let mut beside = vec![false; grid.cell_count()];
-        for &n in &candidates {
+        for &n in &found.candidates {
             around(grid, n).for_each(|at| beside[grid.cell_index(at)] = true);
         }
-        let more: Vec<usize> = all.iter().filter(|(n, h)| *h < LEAST_HIDDEN && beside[*n]).map(|(n, _)| *n).collect();
-        parts.extend(divided_among(grid, &surfaces, &more));
-        Division { parts, candidates }
+        let more = numbered(&all).filter(|((_, n), hidden)| *hidden < LEAST_HIDDEN && beside[*n]);
+        found.add_divided(grid, &near, &more.map(|(cell, _)| cell).collect::<Vec<_>>());
+        found
+    }
+
+    /// Adds those of some cells that have several parts, and tells them. The cells are given with their numbers among those that triangles are known near.
+    fn add_divided(&mut self, grid: &Grid<f64>, near: &Near, cells: &[(usize, usize)]) -> Vec<usize> {
+        let parts = |hits: &mut Hits, &(number, n): &(usize, usize)| {
+            let cell = grid.cell_box(place_of_cell(grid, n))?;
+            Some((n, Parts::of_cell(cell, near.of(number), hits)?))
+        };
+        let found: Vec<_> = cells.par_iter().map_init(Hits::default, parts).collect();
+        let add = |(n, parts): (usize, Parts)| {
+            self.slots[n] = self.parts.len() as u32;
+            self.parts.push(parts);
+            n
+        };
+        found.into_iter().flatten().map(add).collect()
+    }
+
+    /// The parts of a cell that is divided.
+    fn of(&self, n: usize) -> Option<&Parts> {
+        self.parts.get(*self.slots.get(n)? as usize)
     }
 
     /// The cells that let gas pass with the open fractions `beta` of faces, which may have been lowered since; without those that are hidden passages
@@ -92,7 +105,7 @@ impl Division {
 
     /// Do two parts of a cell reach beyond it that have no way to each other around it?
     fn lets_pass(&self, grid: &Grid<f64>, beta: &FieldSet, n: usize) -> bool {
-        let Some(parts) = self.parts.get(&n) else { return false };
+        let Some(parts) = self.of(n) else { return false };
         let reaching: Vec<usize> = (0..parts.count()).filter(|&part| self.reaches(grid, beta, n, part)).collect();
         if reaching.len() < 2 {
             return false;
@@ -104,49 +117,53 @@ impl Division {
     /// Does a part of a cell reach beyond it, by a face of its own or through a divided neighbour?
     fn reaches(&self, grid: &Grid<f64>, beta: &FieldSet, n: usize, part: usize) -> bool {
         let own = |n: usize, part: usize| {
-            let is_own = |&(axis, side): &(usize, usize)| self.parts[&n].owns(part, axis, side);
-            SIDES.iter().filter(|side| open_side(grid, beta, n, **side)).any(is_own)
+            let owns = |&&(axis, side): &&(usize, usize)| self.of(n).is_some_and(|parts| parts.owns(part, axis, side));
+            SIDES.iter().filter(owns).any(|side| open_side(grid, beta, n, *side))
         };
         let through = |&(axis, side): &(usize, usize)| {
-            let Some(next) = neighbour(grid, n, axis, side) else { return false };
-            let shared = self.shared(n, next, (axis, side));
-            self.parts.contains_key(&next)
-                && open_side(grid, beta, n, (axis, side))
-                && shared.into_iter().any(|(own_part, beyond)| own_part == part && own(next, beyond))
+            let next = neighbour(grid, n, axis, side).filter(|&next| self.of(next).is_some());
+            let Some(next) = next.filter(|_| open_side(grid, beta, n, (axis, side))) else { return false };
+            self.shared(n, next, (axis, side)).any(|(own_part, beyond)| own_part == part && own(next, beyond))
         };
         own(n, part) || SIDES.iter().any(through)
     }
 
     /// The pairs of parts of two neighbours that meet in their common side. A cell that is not divided has one part.
-    fn shared(&self, n: usize, next: usize, (axis, side): (usize, usize)) -> Vec<(usize, usize)> {
-        match (self.parts.get(&n), self.parts.get(&next)) {
-            (Some(a), Some(b)) => a.meeting(b, axis, side),
-            (Some(a), None) => (0..a.count()).filter(|&p| a.touches(p, axis, side)).map(|p| (p, 0)).collect(),
-            (None, Some(b)) => (0..b.count()).filter(|&p| b.touches(p, axis, 1 - side)).map(|p| (0, p)).collect(),
-            (None, None) => vec![(0, 0)],
-        }
+    fn shared(&self, n: usize, next: usize, (axis, side): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
+        let [here, there] = [self.of(n), self.of(next)];
+        let counts = [here, there].map(|parts| parts.map_or(1, Parts::count));
+        let pairs = (0..counts[0]).flat_map(move |a| (0..counts[1]).map(move |b| (a, b)));
+        pairs.filter(move |&(a, b)| match (here, there) {
+            (Some(here), Some(there)) => here.meet(a, (there, b), axis, side),
+            (Some(here), None) => here.touches(a, axis, side),
+            (None, Some(there)) => there.touches(b, axis, 1 - side),
+            (None, None) => true,
+        })
     }
 
     /// For each part of a cell a number, the same for parts that are one in the block of cells around it.
     fn ways_around(&self, grid: &Grid<f64>, n: usize) -> Vec<usize> {
-        let (mut numbers, mut count) = (HashMap::default(), 0);
+        let middle = place_of_cell(grid, n);
+        let in_block = |at: [usize; 3]| (0..3).fold(0, |place, axis| 3 * place + at[axis] + 1 - middle[axis]);
+        let (mut numbers, mut count) = ([None; 27], 0);
         for at in around(grid, n) {
-            let cell = grid.cell_index(at);
-            numbers.insert(cell, count);
-            count += self.parts.get(&cell).map_or(1, Parts::count);
+            numbers[in_block(at)] = Some(count);
+            count += self.of(grid.cell_index(at)).map_or(1, Parts::count);
         }
         let mut sets = Sets::new(count);
         for at in around(grid, n) {
             let cell = grid.cell_index(at);
-            for axis in 0..3 {
-                let Some(next) = neighbour(grid, cell, axis, 1) else { continue };
-                let Some(second) = numbers.get(&next) else { continue };
-                for (a, b) in self.shared(cell, next, (axis, 1)) {
-                    sets.join(numbers[&cell] + a, second + b);
+            for axis in (0..3).filter(|&axis| at[axis] <= middle[axis]) {
+                let mut beyond = at;
+                beyond[axis] += 1;
+                let (Some(first), Some(second)) = (numbers[in_block(at)], numbers[in_block(beyond)]) else { continue };
+                for (a, b) in self.shared(cell, grid.cell_index(beyond), (axis, 1)) {
+                    sets.join(first + a, second + b);
                 }
             }
         }
-        (0..self.parts[&n].count()).map(|part| sets.find(numbers[&n] + part)).collect()
+        let own = numbers[in_block(middle)].unwrap_or_default();
+        (0..self.of(n).map_or(1, Parts::count)).map(|part| sets.find(own + part)).collect()
     }
 }
 
@@ -175,82 +192,26 @@ fn open_side(grid: &Grid<f64>, beta: &FieldSet, n: usize, (axis, side): (usize, 
     beta.faces(axis)[faces_of_cell(grid, axis, place_of_cell(grid, n))[side]] >= OPEN
 }
 
+/// The cells that are not closed and block a share of their section beyond what their faces show, with that share.
+fn hiding(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows) -> Vec<(usize, f64)> {
+    let [x, y, z] = &shadows.tau;
+    // No more can be hidden than is blocked.
+    let may_hide = |n: &usize| beta.v[*n] > 0.0 && x[*n].max(y[*n]).max(z[*n]) >= LEAST_BESIDE;
+    let cells = (0..grid.cell_count()).filter(may_hide);
+    cells
+        .map(|n| (n, hidden(grid, beta, shadows, place_of_cell(grid, n))))
+        .filter(|(_, h)| *h >= LEAST_BESIDE)
+        .collect()
+}
+
+/// Cells with their numbers in a list.
+fn numbered(cells: &[(usize, f64)]) -> impl Iterator<Item = ((usize, usize), f64)> {
+    cells.iter().enumerate().map(|(number, &(n, hidden))| ((number, n), hidden))
+}
+
 /// The largest share of its section that a cell blocks along an axis beyond what its faces show.
 fn hidden(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows, at: [usize; 3]) -> f64 {
     let n = grid.cell_index(at);
     let along = |axis: usize| hidden_share(grid, axis, shadows.tau[axis][n], beta, at);
     along(0).max(along(1)).max(along(2))
-}
-
-/// The triangles of the bodies that are solid, with the body's number; curved ones as facets.
-fn surfaces(grid: &Grid<f64>, bodies: &Bodies) -> Vec<(u32, [DVec3; 3])> {
-    let moved = snap::into_planes(grid, bodies);
-    let triangles = moved.as_deref().unwrap_or(&bodies.triangles);
-    let solid = |(_, body): &(usize, &Body)| body.porosity == 0.0 && body.doubt != Doubt::Unknown;
-    let of_body = |(n, body): (usize, &Body)| {
-        let own = facets::of_body(body).unwrap_or_else(|| triangles[body.triangles.clone()].to_vec());
-        own.into_iter().map(move |triangle| (n as u32, triangle))
-    };
-    bodies.bodies.iter().enumerate().filter(solid).flat_map(of_body).collect()
-}
-
-/// Those of some cells, in ascending order, that have several parts.
-fn divided_among(grid: &Grid<f64>, surfaces: &[(u32, [DVec3; 3])], cells: &[usize]) -> HashMap<usize, Parts> {
-    let lists = lists(grid, surfaces, cells);
-    let found = cells.par_iter().zip(&lists).filter_map(|(&n, list)| {
-        let cell = grid.cell_box(place_of_cell(grid, n))?;
-        let triangles = list.iter().map(|&t| surfaces[t as usize]);
-        Parts::of_cell(cell, triangles).filter(|parts| parts.count() > 1).map(|parts| (n, parts))
-    });
-    found.collect::<Vec<_>>().into_iter().collect()
-}
-
-/// A triangle whose box reaches so many cells is not cut to tell which of them it reaches itself.
-const FEW_CELLS: usize = 27;
-
-/// The triangles that reach each of some cells, or nearly so.
-fn lists(grid: &Grid<f64>, surfaces: &[(u32, [DVec3; 3])], cells: &[usize]) -> Vec<Vec<u32>> {
-    let mut slots = vec![u32::MAX; grid.cell_count()];
-    cells.iter().zip(0..).for_each(|(&n, slot)| slots[n] = slot);
-    let mut lists = vec![Vec::new(); cells.len()];
-    let mut list = |number: u32, at: [usize; 3]| {
-        if let Some(list) = lists.get_mut(slots[grid.cell_index(at)] as usize) {
-            list.push(number);
-        }
-    };
-    for ((_, triangle), number) in surfaces.iter().zip(0..) {
-        let whole = Polygon::new(&triangle.map(|p| p.to_array()));
-        let [x, y, z] = [0, 1, 2].map(|axis| reached(grid, axis, &whole));
-        if x.len() * y.len() * z.len() <= FEW_CELLS {
-            for (k, j) in z.flat_map(|k| y.clone().map(move |j| (k, j))) {
-                x.clone().for_each(|i| list(number, [i, j, k]));
-            }
-            continue;
-        }
-        for k in z {
-            let slab = between(grid, 2, k, &whole);
-            for j in reached(grid, 1, &slab) {
-                let row = between(grid, 1, j, &slab);
-                reached(grid, 0, &row).for_each(|i| list(number, [i, j, k]));
-            }
-        }
-    }
-    lists
-}
-
-/// The cells along an axis that a polygon reaches or touches.
-fn reached(grid: &Grid<f64>, axis: usize, polygon: &Polygon<f64>) -> std::ops::Range<usize> {
-    if polygon.is_empty() {
-        return 0..0;
-    }
-    let (lo, hi) = polygon.extent(axis);
-    doubt::reached(grid.edges(axis), lo, hi)
-}
-
-/// What of a polygon lies between the planes of a layer.
-fn between(grid: &Grid<f64>, axis: usize, layer: usize, polygon: &Polygon<f64>) -> Polygon<f64> {
-    let (mut above, mut both) = (Polygon::new(&[]), Polygon::new(&[]));
-    keep(polygon, axis, grid.edges(axis)[layer], true, &mut above);
-    keep(&above, axis, grid.edges(axis)[layer + 1], false, &mut both);
-    both
 }

@@ -4,6 +4,7 @@
 //! little would block the face or not by chance; in the plane it blocks it. No corner moves farther than its source was rounded.
 
 use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::single::SingleSource;
 use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::grid::{Grid, Located};
@@ -17,14 +18,47 @@ const NEAR_ULPS: f64 = 2.0;
 /// A copy of the bodies' triangles with such corners moved; none if there are no such corners.
 #[must_use]
 pub fn into_planes(grid: &Grid<f64>, bodies: &Bodies) -> Option<Vec<[DVec3; 3]>> {
-    let near = near(grid);
+    let to_planes = ToPlanes::new(grid);
     let moved = |t: usize| {
         let body = body_of(bodies, t);
-        bodies.triangles[t].map(|p| in_plane(grid, p, near, body))
+        bodies.triangles[t].map(|p| to_planes.corner(p, body))
     };
     let all = 0..bodies.triangles.len();
     let any = all.clone().into_par_iter().any(|t| moved(t) != bodies.triangles[t]);
     any.then(|| all.into_par_iter().map(moved).collect())
+}
+
+/// How single triangles come into the planes of a grid.
+#[derive(Debug)]
+pub struct ToPlanes<'a> {
+    grid: &'a Grid<'a, f64>,
+    near: DVec3,
+}
+
+impl<'a> ToPlanes<'a> {
+    /// Of a grid.
+    #[must_use]
+    pub fn new(grid: &'a Grid<'a, f64>) -> Self {
+        ToPlanes { grid, near: near(grid) }
+    }
+
+    /// A triangle of a body, as [`into_planes`] moves it.
+    #[must_use]
+    pub fn moved(&self, triangle: [DVec3; 3], body: &Body) -> [DVec3; 3] {
+        triangle.map(|p| self.corner(p, Some(body)))
+    }
+
+    /// A corner, its coordinates replaced by those of the planes that it misses by rounding.
+    fn corner(&self, p: DVec3, body: Option<&Body>) -> DVec3 {
+        let plane = DVec3::new(nearest(self.grid, 0, p.x), nearest(self.grid, 1, p.y), nearest(self.grid, 2, p.z));
+        let off = (plane - p).abs();
+        let mut room = self.near;
+        let reach = |source: &SingleSource| off.min_element() <= self.near.max_element() + source.reach(p);
+        if let Some(source) = body.and_then(|b| b.single).filter(reach) {
+            room += source.error(p);
+        }
+        DVec3::select(off.cmple(room), plane, p)
+    }
 }
 
 /// Distance along each axis within which any corner is in a plane, in metres.
@@ -40,17 +74,6 @@ pub fn near(grid: &Grid<f64>) -> DVec3 {
 /// The body that a triangle belongs to; bodies have their triangles one after the other.
 fn body_of(bodies: &Bodies, triangle: usize) -> Option<&Body> {
     bodies.bodies.get(bodies.bodies.partition_point(|b| b.triangles.end <= triangle))
-}
-
-/// A corner, its coordinates replaced by those of the planes that it misses by rounding.
-fn in_plane(grid: &Grid<f64>, p: DVec3, near: DVec3, body: Option<&Body>) -> DVec3 {
-    let plane = DVec3::from_array([0, 1, 2].map(|axis| nearest(grid, axis, p[axis])));
-    let off = (plane - p).abs();
-    let mut room = near;
-    if let Some(source) = body.and_then(|b| b.single).filter(|s| off.min_element() <= near.max_element() + s.reach(p)) {
-        room += source.error(p);
-    }
-    DVec3::select(off.cmple(room), plane, p)
 }
 
 /// The plane nearest to a coordinate.

@@ -1,6 +1,8 @@
 //! The open parts of a cell, by points between which no surface passes.
 
+use super::near::OfBody;
 use glam::DVec3;
+use std::ops::Range;
 use voidage_core::number::aabb::Aabb;
 
 /// Points along an axis: six within the cell, and one just within each face.
@@ -22,6 +24,17 @@ const LEAST_POINTS: u32 = 2;
 /// Points of a cell as bits: eight layers along z, in each x fastest.
 type Points = [u64; ALONG];
 
+/// How far a step along x, y and z leads in the numbers of points.
+const STEP: [usize; 3] = [1, ALONG, ALONG * ALONG];
+
+/// The points of a layer that lie on none of its edges, and those that lie on one edge only.
+const WITHIN_EDGES: u64 = 0x007e_7e7e_7e7e_7e00;
+const ON_ONE_EDGE: u64 = 0x7e81_8181_8181_817e;
+
+/// The points in the sides of the cell, without those on their edges.
+const IN_SIDES: Points =
+    [WITHIN_EDGES, ON_ONE_EDGE, ON_ONE_EDGE, ON_ONE_EDGE, ON_ONE_EDGE, ON_ONE_EDGE, ON_ONE_EDGE, WITHIN_EDGES];
+
 /// For x, y and z, the points from which the next along that axis cannot be reached.
 type Blocked = [Points; 3];
 
@@ -32,47 +45,54 @@ pub struct Parts {
     sides: Vec<[[u64; 2]; 3]>,
 }
 
-/// Where a line through points along `axis` crosses surface.
+/// Where a line between two neighbouring points crosses surface.
 #[derive(Clone, Copy)]
 struct Hit {
     body: u32,
-    axis: usize,
-    /// The point before.
-    point: [usize; 3],
-    /// Along the axis, in cells.
-    at: f64,
+    /// What the line is along.
+    axis: u8,
+    /// The number of the point before.
+    point: u16,
     /// Whether the line enters the solid there.
     enters: bool,
+    /// Along the axis, in cells.
+    at: f64,
+}
+
+/// Memory for one cell at a time.
+#[derive(Default)]
+pub struct Hits {
+    hits: Vec<Hit>,
+    /// Where the line from each point along x, y, z crosses a body first and last.
+    ends: Vec<[f64; 2]>,
 }
 
 impl Parts {
-    /// Of a cell with these triangles of bodies; none if nothing crosses a line between points.
-    pub fn of_cell(cell: Aabb<DVec3>, triangles: impl Iterator<Item = (u32, [DVec3; 3])>) -> Option<Self> {
-        let places = [0, 1, 2].map(places);
-        let mut hits = Vec::new();
+    /// Of a cell that these triangles reach, those of a body one after the other; none if there are fewer than two.
+    pub fn of_cell(cell: Aabb<DVec3>, triangles: impl Iterator<Item = OfBody>, memory: &mut Hits) -> Option<Self> {
+        let (places, size) = ([0, 1, 2].map(places), cell.size());
+        let Hits { hits, ends } = memory;
+        ends.resize(3 * ALONG * STEP[2], [0.0; 2]);
+        hits.clear();
         for (body, triangle) in triangles {
-            let corners = triangle.map(|p| (p - cell.min) / cell.size());
-            (0..3).for_each(|axis| cross(&places, axis, (body, &corners), &mut hits));
+            cross(&places, &triangle.map(|p| (p - cell.min) / size), body, hits);
         }
-        if hits.is_empty() {
-            return None;
-        }
-        hits.sort_unstable_by(|a, b| {
-            let key = |hit: &Hit| (hit.body, hit.axis, hit.point);
-            key(a).cmp(&key(b)).then(a.at.total_cmp(&b.at))
-        });
-        let mut open = [u64::MAX; ALONG];
+        let (mut blocked, mut open) = (Blocked::default(), [u64::MAX; ALONG]);
         for of_body in hits.chunk_by(|a, b| a.body == b.body) {
-            open = each(open, solid_points(of_body), |open, solid| open & !solid);
+            let (of_body, solid) = solid_points(of_body, ends);
+            for (all, own) in blocked.iter_mut().zip(of_body) {
+                *all = each(*all, own, |all, own| all | own);
+            }
+            open = each(open, solid, |open, solid| open & !solid);
         }
-        let (blocked, mut sides) = (blocked(&hits), Vec::new());
-        while let Some(part) = take_region(&mut open, &blocked) {
+        let mut sides = Vec::new();
+        while let Some(part) = take_region(&mut open, &IN_SIDES, &blocked) {
             let part = sides_of(&part);
             if part.iter().flatten().any(|side| side.count_ones() >= LEAST_POINTS) {
                 sides.push(part);
             }
         }
-        Some(Parts { sides })
+        (sides.len() > 1).then_some(Parts { sides })
     }
 
     /// How many there are.
@@ -90,13 +110,9 @@ impl Parts {
         self.touches(part, axis, side) && (0..self.count()).all(|p| p == part || !self.touches(p, axis, side))
     }
 
-    /// The parts of this cell and of its neighbour beyond a side that meet there.
-    pub fn meeting(&self, next: &Self, axis: usize, side: usize) -> Vec<(usize, usize)> {
-        let pairs = (0..self.count()).flat_map(|a| (0..next.count()).map(move |b| (a, b)));
-        let common = |&(a, b): &(usize, usize)| {
-            (self.sides[a][axis][side] & next.sides[b][axis][1 - side]).count_ones() >= LEAST_POINTS
-        };
-        pairs.filter(common).collect()
+    /// Does a part meet one of the neighbour beyond a side there?
+    pub fn meet(&self, part: usize, (next, other): (&Self, usize), axis: usize, side: usize) -> bool {
+        (self.sides[part][axis][side] & next.sides[other][axis][1 - side]).count_ones() >= LEAST_POINTS
     }
 }
 
@@ -109,47 +125,124 @@ fn places(axis: usize) -> [f64; ALONG] {
     })
 }
 
-/// Where the lines along an axis cross a triangle.
-fn cross(places: &[[f64; ALONG]; 3], axis: usize, (body, corners): (u32, &[DVec3; 3]), hits: &mut Vec<Hit>) {
-    let [a, b, c] = corners;
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let doubled = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
-    if !(doubled.abs() > 1e-14) {
-        return;
+/// Which places lie from `lo` to `hi`.
+#[inline(always)]
+fn within(places: &[f64; ALONG], lo: f64, hi: f64) -> Range<usize> {
+    let (mut first, mut end) = (0, 0);
+    for &place in places {
+        first += usize::from(place < lo);
+        end += usize::from(place <= hi);
     }
-    let within = |w: usize| {
-        let (lo, hi) = (a[w].min(b[w]).min(c[w]) - NEAR, a[w].max(b[w]).max(c[w]) + NEAR);
-        places[w].partition_point(|&p| p < lo)..places[w].partition_point(|&p| p <= hi)
-    };
-    let (along_u, along_v) = (within(u), within(v));
-    if along_u.is_empty() || along_v.is_empty() {
-        return;
-    }
-    // Of each edge its beginning, its way, and how far beside it, times its length, a line still crosses.
-    let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| {
-        let way = [to[u] - from[u], to[v] - from[v]];
-        ([from[u], from[v]], way, NEAR * way[0].hypot(way[1]))
-    });
-    for (m, n) in along_u.flat_map(|m| along_v.clone().map(move |n| (m, n))) {
-        let [p, q] = [places[u][m], places[v][n]];
-        // The distance of the line times the edge's length.
-        let beside = edges.map(|(from, way, _)| (way[0] * (q - from[1]) - way[1] * (p - from[0])) * doubled.signum());
-        if beside.iter().zip(&edges).any(|(area, (.., slack))| *area < -slack) {
+    first..end
+}
+
+/// Where the lines between points cross a triangle.
+fn cross(places: &[[f64; ALONG]; 3], triangle: &[DVec3; 3], body: u32, hits: &mut Vec<Hit>) {
+    let [a, b, c] = triangle;
+    let (lo, hi) = (a.min(*b).min(*c) - NEAR, a.max(*b).max(*c) + NEAR);
+    let x = within(&places[0], lo.x, hi.x);
+    let y = within(&places[1], lo.y, hi.y);
+    let z = within(&places[2], lo.z, hi.z);
+    for (axis, [along_u, along_v]) in [[&y, &z], [&z, &x], [&x, &y]].into_iter().enumerate() {
+        if along_u.is_empty() || along_v.is_empty() {
             continue;
         }
-        let [of_a, of_b, of_c] = beside.map(|area| area / doubled.abs());
-        let at = a[axis] * of_a + b[axis] * of_b + c[axis] * of_c;
-        let before = places[axis].partition_point(|&place| place <= at);
-        if before > 0 && before < ALONG {
-            let mut point = [0; 3];
-            (point[axis], point[u], point[v]) = (before - 1, m, n);
-            hits.push(Hit { body, axis, point, at, enters: doubled < 0.0 });
+        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+        let projected = ProjectedTriangle::new(axis, triangle);
+        if !(projected.doubled.abs() > LEAST_DOUBLED) {
+            continue;
+        }
+        for m in along_u.clone() {
+            let p = places[u][m];
+            for n in projected.reached(p, &places[v], along_v.clone()) {
+                let Some(at) = projected.at(p, places[v][n]) else { continue };
+                let before = within(&places[axis], at, at).end;
+                if before > 0 && before < ALONG {
+                    let point = ((before - 1) * STEP[axis] + m * STEP[u] + n * STEP[v]) as u16;
+                    hits.push(Hit { body, axis: axis as u8, point, enters: projected.doubled < 0.0, at });
+                }
+            }
         }
     }
 }
 
-fn set(points: &mut Points, [i, j, k]: [usize; 3]) {
-    points[k] |= 1 << (ALONG * j + i);
+/// Triangles that are seen smaller along an axis, as twice their area in sides of the cell, are not crossed along it.
+const LEAST_DOUBLED: f64 = 1e-14;
+
+/// A triangle as it is seen along an axis.
+struct ProjectedTriangle {
+    /// Its corners along the axis.
+    height: [f64; 3],
+    /// Twice its area, negative if it is seen clockwise.
+    doubled: f64,
+    /// The edge opposite each corner.
+    edges: [ProjectedEdge; 3],
+}
+
+/// An edge of a triangle that is seen along an axis, from its beginning.
+struct ProjectedEdge {
+    from: [f64; 2],
+    way: [f64; 2],
+}
+
+impl ProjectedTriangle {
+    #[inline(always)]
+    fn new(axis: usize, [a, b, c]: &[DVec3; 3]) -> Self {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let edge = |from: &DVec3, to: &DVec3| ProjectedEdge {
+            from: [from[u], from[v]],
+            way: [to[u] - from[u], to[v] - from[v]],
+        };
+        let doubled = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
+        ProjectedTriangle { height: [a[axis], b[axis], c[axis]], doubled, edges: [edge(b, c), edge(c, a), edge(a, b)] }
+    }
+
+    /// Those of some lines, all at `p` in the first direction, that may cross the triangle: the others surely pass beside it.
+    #[inline(always)]
+    fn reached(&self, p: f64, places: &[f64; ALONG], lines: Range<usize>) -> Range<usize> {
+        let (Range { start: mut first, mut end }, turn) = (lines, self.doubled.signum());
+        for edge in &self.edges {
+            // An edge is no longer than the sum of its ways. From line to line the area beside it grows all the way or falls all the way, rounding included.
+            let far = -2.0 * NEAR * (edge.way[0].abs() + edge.way[1].abs());
+            let [factor, part] = [edge.way[0] * turn, edge.way[1] * (p - edge.from[0]) * turn];
+            let is_beside = |n: usize| factor * (places[n] - edge.from[1]) - part < far;
+            if factor >= 0.0 {
+                while first < end && is_beside(first) {
+                    first += 1;
+                }
+            } else {
+                while first < end && is_beside(end - 1) {
+                    end -= 1;
+                }
+            }
+        }
+        first..end
+    }
+
+    /// Where along the axis a line crosses the triangle, if it does.
+    #[inline(always)]
+    fn at(&self, p: f64, q: f64) -> Option<f64> {
+        let turn = self.doubled.signum();
+        let mut shares = [0.0; 3];
+        for (share, ProjectedEdge { from, way }) in shares.iter_mut().zip(&self.edges) {
+            // The distance of the line times the edge's length.
+            let area = (way[0] * (q - from[1]) - way[1] * (p - from[0])) * turn;
+            if area < 0.0 && area < -NEAR * way[0].hypot(way[1]) {
+                return None;
+            }
+            *share = area / self.doubled.abs();
+        }
+        let [a, b, c] = self.height;
+        Some(a * shares[0] + b * shares[1] + c * shares[2])
+    }
+}
+
+/// Adds a point; was it there?
+fn add(points: &mut Points, point: usize) -> bool {
+    let (layer, bit) = (&mut points[point / STEP[2]], 1 << (point % STEP[2]));
+    let was_there = *layer & bit != 0;
+    *layer |= bit;
+    was_there
 }
 
 fn each(mut a: Points, b: Points, join: impl Fn(u64, u64) -> u64) -> Points {
@@ -157,59 +250,80 @@ fn each(mut a: Points, b: Points, join: impl Fn(u64, u64) -> u64) -> Points {
     a
 }
 
-fn blocked(hits: &[Hit]) -> Blocked {
-    let mut blocked = Blocked::default();
-    hits.iter().for_each(|hit| set(&mut blocked[hit.axis], hit.point));
-    blocked
+/// The points behind these along an axis, none of which is the last along it.
+fn behind(axis: usize, mut points: Points) -> Points {
+    if axis == 2 {
+        points.rotate_right(1);
+        return points;
+    }
+    points.map(|layer| layer << STEP[axis])
 }
 
-/// The points that lie in a body, whose hits stand in the order of lines and along them. Beside each hit it is seen from where the line enters or leaves:
+/// The points from which a body bars the way to the next, and those that lie in it. Beside each hit the point is seen from where the line enters or leaves:
 /// what most of the points of a region say holds for all of it.
-fn solid_points(hits: &[Hit]) -> Points {
-    let [mut outside, mut inside] = [Points::default(); 2];
-    for hits in hits.chunk_by(|a, b| (a.axis, a.point) == (b.axis, b.point)) {
-        let (first, last) = (hits[0], hits[hits.len() - 1]);
-        // A sheet has two surfaces at one place, and is seen from outside on both sides.
-        let enters = hits.iter().any(|hit| hit.at - first.at <= NEAR && hit.enters);
-        let leaves = hits.iter().any(|hit| last.at - hit.at <= NEAR && !hit.enters);
-        let mut behind = first.point;
-        behind[first.axis] += 1;
-        set(if enters { &mut outside } else { &mut inside }, first.point);
-        set(if leaves { &mut outside } else { &mut inside }, behind);
+fn solid_points(hits: &[Hit], ends: &mut [[f64; 2]]) -> (Blocked, Points) {
+    let [mut blocked, mut enters, mut leaves] = [Blocked::default(); 3];
+    let line = |hit: &Hit| usize::from(hit.axis) * ALONG * STEP[2] + usize::from(hit.point);
+    for hit in hits {
+        let [first, last] = &mut ends[line(hit)];
+        let known = add(&mut blocked[usize::from(hit.axis)], hit.point.into());
+        (*first, *last) = if known { (first.min(hit.at), last.max(hit.at)) } else { (hit.at, hit.at) };
     }
-    let (blocked, mut rest, mut solid) = (blocked(hits), [u64::MAX; ALONG], Points::default());
+    for hit in hits {
+        // A sheet has two surfaces at one place, and is seen from outside on both sides.
+        let ([first, last], axis) = (ends[line(hit)], usize::from(hit.axis));
+        if hit.enters && hit.at - first <= NEAR {
+            add(&mut enters[axis], hit.point.into());
+        }
+        if !hit.enters && last - hit.at <= NEAR {
+            add(&mut leaves[axis], hit.point.into());
+        }
+    }
+    let [mut outside, mut inside] = [Points::default(); 2];
+    for axis in 0..3 {
+        let others = |some: Points| each(blocked[axis], some, |all, some| all & !some);
+        let [enters, leaves] = [enters[axis], leaves[axis]];
+        outside = each(outside, each(enters, behind(axis, leaves), |a, b| a | b), |a, b| a | b);
+        inside = each(inside, each(others(enters), behind(axis, others(leaves)), |a, b| a | b), |a, b| a | b);
+    }
+    let (mut rest, mut solid) = ([u64::MAX; ALONG], Points::default());
     let count = |points: Points| points.iter().map(|layer| layer.count_ones()).sum::<u32>();
-    while let Some(region) = take_region(&mut rest, &blocked) {
+    // A region that is nowhere seen from inside is not solid.
+    while let Some(region) = take_region(&mut rest, &inside, &blocked) {
         let [out, within] = [outside, inside].map(|seen| count(each(region, seen, |a, b| a & b)));
         if within > out {
             solid = each(solid, region, |a, b| a | b);
         }
     }
-    solid
+    (blocked, solid)
 }
 
-/// Takes from `points` the region of the first of them; none if there are none.
-fn take_region(points: &mut Points, blocked: &Blocked) -> Option<Points> {
+/// Takes from `points` the region of the first of them that is among `seeds`; none if there are none.
+fn take_region(points: &mut Points, seeds: &Points, blocked: &Blocked) -> Option<Points> {
     /// Points with another one behind them along x.
     const BEFORE_LAST: u64 = 0x7f7f_7f7f_7f7f_7f7f;
-    let layer = points.iter().position(|&layer| layer != 0)?;
+    let seed = points.iter().zip(seeds).position(|(points, seeds)| points & seeds != 0)?;
     let mut region = Points::default();
-    region[layer] = points[layer] & points[layer].wrapping_neg();
+    let seeds = points[seed] & seeds[seed];
+    region[seed] = seeds & seeds.wrapping_neg();
+    // All of a layer that can be reached within it.
+    let spread = |k: usize, mut layer: u64| loop {
+        let before = layer;
+        for (free, step) in [(!blocked[0][k] & BEFORE_LAST, STEP[0]), (!blocked[1][k], STEP[1])] {
+            layer |= (((layer & free) << step) | ((layer >> step) & free)) & points[k];
+        }
+        if layer == before {
+            return layer;
+        }
+    };
     loop {
         let before = region;
-        for k in 0..ALONG {
-            let free = [!blocked[0][k] & BEFORE_LAST, !blocked[1][k]];
-            let mut layer = region[k];
-            for (free, step) in free.into_iter().zip([1, ALONG]) {
-                layer |= ((layer & free) << step) | ((layer >> step) & free);
-            }
-            if k > 0 {
-                layer |= region[k - 1] & !blocked[2][k - 1];
-            }
-            region[k] = layer & points[k];
+        for k in seed..ALONG {
+            let below = if k > 0 { region[k - 1] & !blocked[2][k - 1] } else { 0 };
+            region[k] = spread(k, region[k] | (below & points[k]));
         }
-        for k in (1..ALONG).rev() {
-            region[k - 1] |= region[k] & !blocked[2][k - 1] & points[k - 1];
+        for k in (0..ALONG - 1).rev() {
+            region[k] = spread(k, region[k] | (region[k + 1] & !blocked[2][k] & points[k]));
         }
         if region == before {
             break;
@@ -219,16 +333,17 @@ fn take_region(points: &mut Points, blocked: &Blocked) -> Option<Points> {
     Some(region)
 }
 
-/// The points of a part in the sides of the cell, without those on their edges.
+/// The points of a part in the sides of the cell, without those on their edges; in the sides normal to x as y fastest, else x fastest.
 fn sides_of(part: &Points) -> [[u64; 2]; 3] {
-    let mut sides = [[0; 2]; 3];
-    for (n, m) in (1..ALONG - 1).flat_map(|n| (1..ALONG - 1).map(move |m| (n, m))) {
-        for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
-            let mut point = [0; 3];
-            (point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]) = (side * (ALONG - 1), n, m);
-            let bit = part[point[2]] >> (ALONG * point[1] + point[0]) & 1;
-            sides[axis][side] |= bit << (ALONG * m + n);
-        }
-    }
-    sides
+    /// One point of each row of a layer, and what brings these together in the highest row.
+    const ROWS: u64 = 0x0101_0101_0101_0101;
+    const TOGETHER: u64 = 0x0102_0408_1020_4080;
+    let last = ALONG - 1;
+    let side = |row: &dyn Fn(u64) -> u64| {
+        let rows = part.iter().enumerate().map(|(k, &layer)| (row(layer) & 0xff) << (ALONG * k));
+        rows.sum::<u64>() & WITHIN_EDGES
+    };
+    let x = [0, last].map(|i| side(&|layer| ((layer >> i) & ROWS).wrapping_mul(TOGETHER) >> (ALONG * last)));
+    let y = [0, last].map(|j| side(&|layer| layer >> (ALONG * j)));
+    [x, y, [0, last].map(|k| part[k] & WITHIN_EDGES)]
 }
