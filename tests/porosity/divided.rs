@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
+use voidage::geometry::mesh::Mesh;
 use voidage::grid::Edges;
 use voidage::porosity::divided::{DividedCells, Division};
 use voidage::porosity::resistance::resistance;
@@ -15,6 +16,18 @@ use voidage_tests::solids::{Triangle, cuboid, formulas, scene, turned_box};
 
 fn edges(count: [usize; 3]) -> Edges {
     Edges(count.map(|n| (0..=n).map(|n| n as f64).collect()))
+}
+
+/// Edges of cells that are not alike, none of them more than twice as wide as its neighbour.
+fn uneven(count: usize, random: &mut Random) -> Edges {
+    Edges([(); 3].map(|()| {
+        let widths = (0..count).map(|_| random.between(0.7, 1.4));
+        let inner = widths.scan(0.0, |edge, width| {
+            *edge += width;
+            Some(*edge)
+        });
+        std::iter::once(0.0).chain(inner).collect()
+    }))
 }
 
 /// What is told of a scene: hidden passages and divided cells with faces in planes, divided cells with throats; and the faces of both.
@@ -63,7 +76,8 @@ fn reached(grid: &Grid<f64>, faces: &FieldSet, from: [usize; 3], least: f64) -> 
 
 /// Does gas come from one side of a wall through `middle`, normal to `normal`, to the other? None if faces hardly open decide it.
 fn leaks(grid: &Grid<f64>, faces: &FieldSet, middle: DVec3, normal: DVec3) -> Option<bool> {
-    let side = |at: [usize; 3]| (DVec3::from_array(at.map(|n| n as f64 + 0.5)) - middle).dot(normal);
+    let center = |at: [usize; 3]| grid.cell_box(at).map(|cell| (cell.min + cell.max) / 2.0).expect("a cell");
+    let side = |at: [usize; 3]| (center(at) - middle).dot(normal);
     let from = cells(grid).min_by(|a, b| side(*a).total_cmp(&side(*b))).expect("cells");
     let other = cells(grid).max_by(|a, b| side(*a).total_cmp(&side(*b))).expect("cells");
     let joined = |least: f64| reached(grid, faces, from, least)[grid.cell_index(other)];
@@ -75,9 +89,8 @@ fn leaks(grid: &Grid<f64>, faces: &FieldSet, middle: DVec3, normal: DVec3) -> Op
 }
 
 /// Judges a wall that goes through the whole grid; whether it leaks with throats.
-fn judge(count: [usize; 3], bodies: &Bodies, middle: DVec3, normal: DVec3, name: &str) -> Option<bool> {
-    let edges = edges(count);
-    let (grid, found) = (edges.grid(None).expect("a grid"), told(&edges, bodies));
+fn judge(edges: &Edges, bodies: &Bodies, middle: DVec3, normal: DVec3, name: &str) -> Option<bool> {
+    let (grid, found) = (edges.grid(None).expect("a grid"), told(edges, bodies));
     let [plane, throat] = [0, 1].map(|n| leaks(&grid, &found.faces[n], middle, normal));
     if let Some(leaks) = plane {
         assert_eq!(found.hidden + found.plane.cells > 0, leaks, "{name}: {:?}", found.plane);
@@ -98,7 +111,7 @@ fn walls_turned_in_a_plane() {
             let middle = DVec3::new(6.0 + random.unit(), 6.0 + random.unit(), 0.5);
             let wall = scene(&[turned_box(middle, DVec3::new(thickness / 2.0, 30.0, 30.0), turn)]);
             let name = format!("{degrees} degrees, {thickness} thick, {middle}");
-            match judge([13, 13, 1], &wall, middle, turn.x_axis, &name) {
+            match judge(&edges([13, 13, 1]), &wall, middle, turn.x_axis, &name) {
                 Some(true) => leaking += 1,
                 Some(false) => tight += 1,
                 None => {}
@@ -132,10 +145,54 @@ fn walls_askew_in_space() {
             1 => scene(&[turned_box(middle, DVec3::new(thickness / 2.0, 20.0, 20.0), turn)]),
             _ => sheet(middle, turn),
         };
-        let leaks = judge([8, 8, 8], &bodies, middle, normal, &format!("{n}: {thickness} thick, {middle}, {normal}"));
+        let leaks =
+            judge(&edges([8, 8, 8]), &bodies, middle, normal, &format!("{n}: {thickness} thick, {middle}, {normal}"));
         leaking += usize::from(leaks == Some(true));
     }
     assert!(leaking > 12, "{leaking}");
+}
+
+/// As the coordinates of a file of single-precision numbers.
+fn single(triangles: &[Triangle]) -> Bodies {
+    let rounded = |t: &Triangle| t.map(|p| p.as_vec3().as_dvec3());
+    let mesh = Mesh {
+        name: "wall.stl".into(),
+        single_precision: true,
+        ..Mesh::from(triangles.iter().map(rounded).collect::<Vec<_>>())
+    };
+    let mut bodies = Bodies::default();
+    bodies.add(&mesh, 1.0).expect("a closed surface");
+    bodies
+}
+
+/// Walls on cells that are not alike, of single-precision numbers, and far from the origin: each is told where it leaks, and by any number of threads alike.
+#[test]
+fn walls_on_other_grids_and_of_other_numbers() {
+    let (mut random, mut leaking) = (Random::new(19), [0; 3]);
+    let pools = [1, 2].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("threads"));
+    for n in 0..36 {
+        let (turn, thickness) = (random.turn(), random.between(0.02, 0.3));
+        let normal = turn.x_axis;
+        let cells = if n % 3 == 0 { uneven(8, &mut random) } else { edges([8; 3]) };
+        let end = DVec3::from_array([0, 1, 2].map(|axis| cells.0[axis][8]));
+        let middle = end * 0.5 + random.point(DVec3::splat(-0.5), DVec3::splat(0.5));
+        let wall = turned_box(middle, DVec3::new(thickness / 2.0, 20.0, 20.0), turn);
+        let far = if n % 3 == 2 { DVec3::new(448_262.0, 5_411_932.0, 113.0) } else { DVec3::ZERO };
+        let moved: Vec<Triangle> = wall.iter().map(|t| t.map(|p| p + far)).collect();
+        let bodies = if n % 3 == 1 { single(&moved) } else { scene(&[moved]) };
+        let grid = Edges([0, 1, 2].map(|axis| cells.0[axis].iter().map(|edge| edge + far[axis]).collect()));
+        let name = format!("{n}: {thickness} thick, {middle}, {normal}");
+        let leaks = judge(&grid, &bodies, middle + far, normal, &name);
+        leaking[n % 3] += usize::from(leaks == Some(true));
+        let [one, two] = pools.each_ref().map(|pool| pool.install(|| told(&grid, &bodies)));
+        assert_eq!((one.plane, one.throat, one.faces), (two.plane, two.throat, two.faces), "{name}");
+        if n % 3 == 2 {
+            let near = told(&cells, &scene(&[wall]));
+            assert_eq!((one.plane.cells, one.throat.cells), (near.plane.cells, near.throat.cells), "{name}");
+        }
+    }
+    println!("{leaking:?} leak");
+    assert!(leaking.iter().all(|&n| n >= 5), "{leaking:?}");
 }
 
 /// What divides no gas: pipes thinner and thicker than a cell, corners of boxes, walls that close whole cells, walls that end.
