@@ -26,8 +26,10 @@ pub struct Part {
 #[derive(Clone, Debug, Default)]
 pub struct Fragment<R: Real> {
     polygon: Polygon<R>,
-    /// Around the polygon that it is a part of.
+    /// Around the polygon, or one that it is a part of.
     ball: Ball<R>,
+    /// It has been cut since the ball was put around it.
+    is_cut: bool,
     part: usize,
     branch: Branch,
     /// Coincident planes are taken towards the inner side of the polygon, not the outer one.
@@ -69,13 +71,17 @@ impl<R: Real> Descent<'_, R> {
     ) -> Result<(), NoProof> {
         let parts = self.parts;
         let enter = |f: &mut Fragment<R>, part: usize| {
+            // Where many trees follow, a ball around what is left tells it from most planes.
+            if f.is_cut && parts.len() > FEW {
+                (f.ball, f.is_cut) = (Ball::around(&f.polygon), false);
+            }
             f.part = if Some(part) == rule.own { part + 1 } else { part };
             f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
             (f.inward, f.twin, f.meets) = (false, false, false);
         };
         let first = self.fragments.first_mut().ok_or(Full)?;
         first.polygon.assign(polygon);
-        first.ball = ball;
+        (first.ball, first.is_cut) = (ball, false);
         enter(first, 0);
         let mut waiting: usize = 1;
         while let Some(top) = waiting.checked_sub(1) {
@@ -164,8 +170,9 @@ impl<R: Real> Descent<'_, R> {
     /// Replace the fragment at `top` by its two parts, what lies behind the plane of a node on top; a full one by its halves.
     fn cut(&mut self, top: usize, node: &Node<R>) -> Result<(), NoProof> {
         let [f, next] = self.fragments.get_mut(top..).and_then(|f| f.first_chunk_mut()).ok_or(Full)?;
-        let Fragment { polygon: _, ball, part, branch, inward, twin, meets } = *f;
-        (next.ball, next.part, next.branch) = (ball, part, branch);
+        f.is_cut = true;
+        let Fragment { polygon: _, ball, is_cut, part, branch, inward, twin, meets } = *f;
+        (next.ball, next.is_cut, next.part, next.branch) = (ball, is_cut, part, branch);
         (next.inward, next.twin, next.meets) = (inward, twin, meets);
         if f.polygon.is_full() {
             [next.polygon, f.polygon] = f.polygon.halves();
