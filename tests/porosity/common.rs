@@ -103,6 +103,107 @@ fn closed_volumes() {
     }
 }
 
+/// Pipes of one radius whose axes meet at an angle have 16/3 r³ / sin of it in common, whichever way they point and however the box is cut.
+#[test]
+fn crossing_pipes_to_nine_digits() {
+    let random = &mut Random::new(9);
+    for (turn, angle) in [(0.0, 90.0_f64), (0.7, 90.0), (0.3, 67.0), (1.9, 50.0), (0.0, 75.0), (1.1, 83.0)] {
+        let turn = glam::DMat3::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), turn);
+        let (radius, (sin, cos)) = (random.between(0.2, 0.5), angle.to_radians().sin_cos());
+        let [one, other] = [DVec3::X, DVec3::new(cos, sin, 0.0)].map(|axis| turn * axis * 1.5);
+        let pipes = [one, other].map(|axis| quadric(&Exact::Cylinder(-axis, axis, radius)));
+        let truth = 16.0 / 3.0 * radius.powi(3) / sin;
+        let cuts = [0, 1, 2].map(|_| [-2.0, random.between(-0.3, 0.3), 2.0]);
+        let mut found = [0.0; 2];
+        for n in 0..8 {
+            let part = [0, 1, 2].map(|a| [cuts[a][n >> a & 1], cuts[a][(n >> a & 1) + 1]]);
+            let [low, high] = excess(&pipes, part, 1e-9).expect("two solids");
+            assert!(high - low <= 1e-9, "{low} to {high} of {pipes:?} in {part:?}");
+            found = [found[0] + low, found[1] + high];
+        }
+        let [low, high] = excess(&pipes, [[-2.0, 2.0]; 3], 1e-9).expect("two solids");
+        assert!(high - low <= 1e-9, "{low} to {high} of {pipes:?}");
+        for [low, high] in [found, [low, high]] {
+            assert!(low <= truth && truth <= high, "{low} to {high} instead of {truth} for {pipes:?}");
+        }
+    }
+}
+
+/// Any two pipes that are not all but parallel: bounds are as close as asked for, and those of the parts of a cell hold what those of the whole do.
+#[test]
+fn pairs_of_pipes_to_nine_digits() {
+    let random = &mut Random::new(10);
+    let mut met = 0;
+    for case in 0..300 {
+        let pipe = |random: &mut Random| {
+            let along =
+                if random.below(4) == 0 { DVec3::AXES[random.below(3)] } else { random.vector(1.0) }.normalize();
+            let (middle, half) = (random.point(DVec3::ZERO, DVec3::ONE), random.between(0.1, 2.0));
+            Exact::Cylinder(middle - along * half, middle + along * half, random.between(0.05, 0.8))
+        };
+        let exact = [pipe(random), pipe(random)];
+        let [Exact::Cylinder(a, b, _), Exact::Cylinder(c, d, _)] = exact else { unreachable!("pipes") };
+        if (b - a).normalize().cross((d - c).normalize()).length() < 0.2 {
+            continue;
+        }
+        let pipes = exact.map(|solid| quadric(&solid));
+        let within = |cell: [[f64; 2]; 3], enough: f64| excess(&pipes, cell, enough).expect("two solids");
+        let [low, high] = within([[0.0, 1.0]; 3], 1e-9);
+        assert!(high - low <= 1e-9, "case {case}: {low} to {high} of {exact:?}");
+        met += usize::from(low > 0.0);
+        let cut = [0, 1, 2].map(|_| random.between(0.1, 0.9));
+        let mut parts = [0.0; 2];
+        for n in 0..8 {
+            let side = |a: usize| if n >> a & 1 == 0 { [0.0, cut[a]] } else { [cut[a], 1.0] };
+            let found = within([0, 1, 2].map(side), 1e-9);
+            parts = [parts[0] + found[0], parts[1] + found[1]];
+        }
+        let same = low <= parts[1] && parts[0] <= high;
+        assert!(same, "case {case}: {low} to {high}, in parts {parts:?} of {exact:?}");
+        if case % 16 == 0 {
+            let truth = common_volume(&exact, [DVec3::ZERO, DVec3::ONE], 1e-7);
+            assert!((truth - low).abs() <= 1e-6, "case {case}: {low} to {high} instead of {truth} of {exact:?}");
+        }
+    }
+    assert!(met > 100, "{met} pairs met");
+}
+
+/// Pipes of thousands of cells in a cell, where rounding of their coordinates leaves little: bounds are within the default tolerance.
+#[test]
+fn huge_pipes_within_the_default_tolerance() {
+    let pipe = |a: [f64; 3], b: [f64; 3], radius: f64| quadric(&Exact::Cylinder(a.into(), b.into(), radius));
+    let pairs = [
+        [
+            pipe(
+                [-9280.459049475327, 7060.546762946606, -790.0485212855701],
+                [-2298.596518037364, -1754.6047545191345, 11324.825343620138],
+                8264.736375807024,
+            ),
+            pipe(
+                [-14.963913835604142, -8.449635554448935, 8.394953578800584],
+                [16.89802072845225, 9.524742977002198, -7.783391256399912],
+                0.004309893404114064,
+            ),
+        ],
+        [
+            pipe(
+                [1014.6472961582322, -12356.964459217907, -5334.066799543084],
+                [12693.718527855475, -900.8965022735892, 4502.273564092921],
+                9544.576858332686,
+            ),
+            pipe(
+                [1.0889289441489456, 0.06593720847793227, 1.50771291949069],
+                [0.4602150072729842, 1.4286808972328102, -1.4051946033426028],
+                0.0015039809397130717,
+            ),
+        ],
+    ];
+    for pipes in pairs {
+        let [low, high] = excess(&pipes, [[0.0, 1.0]; 3], 1e-4).expect("two solids");
+        assert!(high - low <= 1e-4, "{low} to {high} of {pipes:?}");
+    }
+}
+
 /// The half ball at the end of a capsule that is all but upright reaches over the cell's bottom by a sliver, long and 1e-14 thick: little in every
 /// slice, and little between them.
 #[test]

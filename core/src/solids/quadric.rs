@@ -32,7 +32,8 @@
 //! 6. `solid`: what callers use; `shapes`: the shapes that GJK knows, as such solids
 //! 7. `tangent`: planes between which a part lies in a box
 //! 8. `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
-//!    `crossing`: what two pipes have in common of a box, by planes along both axes; `shared`: what several solids share of a cell or face
+//!    `polygon`, `moving`, `panels`: polygons in planes that rise, and the volumes that they pass through; `crossing`: what two pipes have in common of a box, by
+//!    planes along both axes; `shared`: what several solids share of a cell or face
 
 mod aligned;
 mod arc;
@@ -43,6 +44,7 @@ mod end_line;
 mod ends;
 mod moving;
 mod outline;
+mod panels;
 mod part;
 mod polygon;
 mod shapes;

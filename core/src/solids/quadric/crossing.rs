@@ -4,13 +4,15 @@
 //! and its sides move with the plane at speeds that are known. The square root of its area is a concave function of the plane's height (Brunn and
 //! Minkowski), of which a polygon tells the value and the slope.
 //!
-//! So between two planes chords bound it from below and tangents from above, and planes are added where these are apart.
+//! Between two heights at which the same lines bound it, the volume is an integral with a proved error ([`super::panels`]). Elsewhere chords bound that root
+//! from below and tangents from above, and planes are added where these are apart.
 //!
 //! Rounding moves each side by no more than [`Crossing::noise`], as if the body were that much larger or smaller, which is added to the bounds: a polygon
 //! with sides so moved, and its slope, are those of such a body.
 
 use super::concave::{lowest, squares};
 use super::moving::{Area, Known, Moving, Range};
+use super::panels;
 use super::part::Part;
 use super::polygon::{Corner, Corners, Cut, Line, MOST_LINES, Strips, cut};
 use super::wall::Wall;
@@ -18,6 +20,7 @@ use crate::number::axis::Axis;
 use crate::number::plane::{P2, cross, dot, sub};
 use crate::number::real::Real;
 use crate::number::space::{self, P3};
+use core::f64::consts::PI;
 use heapless::Vec;
 
 /// Axes with a smaller sine between them are left to sections.
@@ -32,8 +35,11 @@ const PLANES: f64 = 16.0;
 const MOST_WAITING: usize = 40;
 const MOST_TIMES: usize = 4;
 
-/// Most ranges of heights at once in which the sides of polygons are known.
-const MOST_KNOWN: usize = 6;
+/// Bounds between planes may be so far apart, as a share of what is enough, at first.
+const LEAST: f64 = 1.0 / 64.0;
+
+/// Integrals may be off by this share of what is enough.
+const INTEGRALS: f64 = 1.0 / 32.0;
 
 /// Most steps of Newton's method at one of the ends, and how far from it they begin, as a share of the heights.
 const MOST_STEPS: usize = 8;
@@ -44,6 +50,9 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Sides of polygons are off by so many times as much as the lines that they lie on.
 const ROUNDED_SIDES: f64 = 64.0;
+
+/// Areas of polygons whose sides are upright to each other are off as if their lines were off by so many times as much as they are.
+const ROUNDED_AREA: f64 = 8.0;
 
 /// What a plane has of both pipes in the box.
 #[derive(Clone, Copy, Debug)]
@@ -112,6 +121,12 @@ impl Sample {
     }
 }
 
+/// A sample that waits to be reached; and whether the volume between it and the one before is counted.
+struct Reached {
+    sample: Sample,
+    counted: bool,
+}
+
 /// Two pipes that cross in a box.
 #[derive(Debug)]
 pub(super) struct Crossing {
@@ -125,6 +140,8 @@ pub(super) struct Crossing {
     heights: P2,
     /// By how much rounding may move a side.
     noise: f64,
+    /// From the middle of the box to its corners.
+    far: f64,
 }
 
 /// Radius, axis, and centre and inward sense of both ends, of a cylinder.
@@ -174,7 +191,7 @@ impl Crossing {
         let apart = space::sub(other.foot, one.foot);
         let (axes, radii) = ([0.0, space::dot(apart, up)], [one.radius, other.radius]);
         let half = Axis::ALL.map(|n| 0.5 * (extent[n][1] - extent[n][0]));
-        let size = half[0] + half[1] + half[2];
+        let (size, far) = (half[0] + half[1] + half[2], space::length(half));
         let noise = ROUNDING * (one.reach + other.reach + size);
         let middle = -space::dot(one.foot, up);
         // Nothing is to be seen of a box that rounding may close.
@@ -186,7 +203,7 @@ impl Crossing {
             (-one.radius).max(axes[1] - other.radius).max(middle - tall),
             one.radius.min(axes[1] + other.radius).min(middle + tall),
         ];
-        let mut found = Crossing { radii, axes, lines: Vec::new(), along: [0.0; 2], heights, noise };
+        let mut found = Crossing { radii, axes, lines: Vec::new(), along: [0.0; 2], heights, noise, far };
         // The second strip, which limits the first one along its axis; so do its ends, and the box.
         let normal = in_plane(across);
         let place = dot(normal, in_plane(apart));
@@ -210,8 +227,8 @@ impl Crossing {
         finite.then_some(found)
     }
 
-    /// Bounds of the volume that two parts have in common in a box, about `enough` apart; none if they are no pipes, or nearly parallel, or it takes too many
-    /// planes. Not inlined: what it needs of the stack others need not carry.
+    /// Bounds of the volume that two parts have in common in a box, about `enough` apart, or more where that takes too many planes or rounding does not
+    /// allow it; none if they are no pipes, or nearly parallel. Not inlined: what it needs of the stack others need not carry.
     #[inline(never)]
     pub fn volume<'a>(mut parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3], enough: f64) -> Option<P2> {
         let mut crossing = Self::new([parts.next()?, parts.next()?], extent)?;
@@ -220,22 +237,18 @@ impl Crossing {
         }
         let (long, [most, outline]) = (crossing.heights[1] - crossing.heights[0], crossing.most());
         let rounded = 4.0 * crossing.noise * (outline * long + 2.0 * most);
-        let enough = (enough - 2.0 * rounded).max(0.5 * enough);
-        // About as many planes as it takes.
-        let planes = Real::sqrt(most * long / enough);
-        let mut least = 1.0 / (32.0 + 2.0 * planes);
-        let planes = (PLANES * planes).clamp(512.0, MOST_PLANES) as usize;
+        let close = (enough - 2.0 * rounded).max(0.5 * enough);
+        let planes = (PLANES * Real::sqrt(most * long / close)).clamp(512.0, MOST_PLANES) as usize;
+        let (mut least, mut found) = (LEAST, None);
         for _ in 0..MOST_TIMES {
-            let ([low, high], steps) = crossing.between_planes(most, enough, least, planes);
-            if high - low <= enough {
-                return Some([(low - rounded).max(0.0), high + rounded]);
-            }
-            if steps >= planes {
+            let ([low, high], steps) = crossing.between_planes(most, close, least, planes);
+            found = Some([(low - rounded).max(0.0), high + rounded]);
+            if high - low <= close || steps >= planes {
                 break;
             }
             least *= 0.125;
         }
-        None
+        found
     }
 
     /// What is certain between two heights of a polygon at a third one.
@@ -245,62 +258,69 @@ impl Crossing {
     }
 
     /// The same by planes such that the bounds between two of them are apart by no more than the share of the heights and the `least` share of
-    /// what is enough; and how many planes that took, `planes` at most.
+    /// what is enough, where the integral between two heights is not known; and how many planes that took, `planes` at most.
     fn between_planes(&self, most: f64, enough: f64, least: f64, planes: usize) -> (P2, usize) {
         let [first, last] = self.heights;
-        let mut waiting: Vec<Sample, MOST_WAITING> = Vec::new();
-        let mut known: Vec<Moving, MOST_KNOWN> = Vec::new();
-        let _ = waiting.push(self.sample(last, most));
+        let mut waiting: Vec<Reached, MOST_WAITING> = Vec::new();
+        let _ = waiting.push(Reached { sample: self.sample(last, most), counted: false });
         let (mut below, mut a): (Option<Sample>, _) = (None, self.sample(first, most));
         let (mut steps, mut found) = (0, [0.0; 2]);
-        while let Some(b) = waiting.last() {
-            let above = waiting.len().checked_sub(2).and_then(|n| waiting.get(n));
-            let [low, high] = a.between(b, [below.as_ref(), above], most);
+        while let Some(&Reached { sample: b, counted }) = waiting.last() {
+            let above = waiting.len().checked_sub(2).and_then(|n| waiting.get(n)).map(|next| &next.sample);
+            let [low, high] = if counted { [0.0; 2] } else { a.between(&b, [below.as_ref(), above], most) };
             let width = b.at - a.at;
             let far = high - low > enough * (0.5 * (width / (last - first)) + least);
             let middle = a.at + 0.5 * width;
             let more = far && steps < planes && waiting.len() + 3 <= MOST_WAITING && a.at < middle && middle < b.at;
             if !more {
                 found = [found[0] + low, found[1] + high];
-                (below, a) = (Some(a), *b);
+                (below, a) = (Some(a), b);
                 let _ = waiting.pop();
                 continue;
             }
             steps += 1;
-            while known.last().is_some_and(|k| !(a.at < k.between[1])) {
-                let _ = known.pop();
-            }
-            let between = [a.at, b.at];
-            if let Some(moving) = known.last().filter(|k| k.between[0] <= a.at && b.at <= k.between[1]) {
-                let _ = waiting.push(self.sample_of(moving, middle, most));
-                continue;
-            }
-            let (sample, moving) = self.sample_and_moving(middle, most, (!known.is_full()).then_some(between));
-            let Some(moving) = moving else {
-                let _ = waiting.push(sample);
+            let (sample, moving) = self.sample_and_moving(middle, most, [a.at, b.at]);
+            let integral = moving.as_ref().and_then(|moving| self.integral(moving, enough));
+            let (Some(moving), Some([low, high])) = (moving, integral) else {
+                let _ = waiting.push(Reached { sample, counted: false });
                 continue;
             };
+            found = [found[0] + low, found[1] + high];
             // First what is above: the last one is the next to be reached.
             let [from, to] = moving.between;
-            if middle < to && to < b.at {
-                let _ = waiting.push(self.sample_of(&moving, to, most));
+            let reached = |at: f64, counted: bool| Reached { sample: self.sample_of(&moving, at, most), counted };
+            if to < b.at {
+                let _ = waiting.push(reached(to, true));
+            } else if let Some(next) = waiting.last_mut() {
+                next.counted = true;
             }
-            let _ = waiting.push(sample);
-            if a.at < from && from < middle {
-                let _ = waiting.push(self.sample_of(&moving, from, most));
+            if a.at < from {
+                let _ = waiting.push(reached(from, false));
             }
-            let _ = known.push(moving);
         }
         (found, steps)
     }
 
-    fn sample(&self, at: f64, most: f64) -> Sample {
-        self.sample_and_moving(at, most, None).0
+    /// Bounds of the volume of a polygon between the heights at which it has the same sides, about `enough` apart if these were all; none where
+    /// that takes long.
+    fn integral(&self, moving: &Moving, enough: f64) -> Option<P2> {
+        let ([first, last], [from, to]) = (self.heights, moving.between);
+        let strips = [0, 1].map(|n| [self.axes[n] - self.radii[n], self.axes[n] + self.radii[n]]);
+        let [_, outline] = self.most();
+        let share = INTEGRALS * enough * ((to - from) / (last - first));
+        let [volume, error] =
+            if from < to { panels::volume(moving, [from, to], &strips, share)? } else { return None };
+        let off = error + ROUNDED_AREA * self.noise / moving.sine * outline * (to - from);
+        Some([(volume - off).max(0.0), volume + off])
     }
 
-    /// A sample; and, if asked, what is certain of its polygon between two heights.
-    fn sample_and_moving(&self, at: f64, most: f64, between: Option<P2>) -> (Sample, Option<Moving>) {
-        let (polygon, moving) = self.polygon(at, between);
+    fn sample(&self, at: f64, most: f64) -> Sample {
+        Sample::new(at, &self.polygon(at, None).0, most)
+    }
+
+    /// A sample, and what is certain of its polygon between two heights.
+    fn sample_and_moving(&self, at: f64, most: f64, between: P2) -> (Sample, Option<Moving>) {
+        let (polygon, moving) = self.polygon(at, Some(between));
         (Sample::new(at, &polygon, most), moving)
     }
 
@@ -344,10 +364,11 @@ impl Crossing {
         let _ = self.lines.push(Line { normal, offset, rise, size: Real::sqrt(dot(normal, normal)), strip });
     }
 
-    /// Of all heights, the largest area that there can be, and the longest outline.
+    /// Of all heights, the largest area that there can be, and the longest outline: of a rectangle, and of a disc as wide as the box.
     fn most(&self) -> P2 {
         let [long, wide] = [(self.along[1] - self.along[0]).max(0.0), 2.0 * self.radii[0]];
-        [long * wide, 2.0 * (long + wide)]
+        let (disc, outline) = (PI * self.far * self.far, 2.0 * PI * self.far);
+        [disc.min(long * wide), outline.min(2.0 * (long + wide))]
     }
 
     fn strips(&self, height: f64) -> Strips {

@@ -2,8 +2,8 @@
 //!
 //! Its lines keep their directions. So its corners, the lengths of its sides, and how far other lines are from its corners, are sums of multiples of the
 //! height and of half the widths of both strips; the area is a quadratic function of these three. What is such a sum is positive
-//! between two heights if it is so at both with chords in place of half widths that it grows with, and tangents in place of others: half widths
-//! are concave.
+//! between the known height and another if it is so at both with chords between them in place of half widths that it grows with, and tangents in place of others:
+//! half widths are concave.
 
 use super::polygon::{Corner, Corners, Line, MOST_CORNERS, Strips};
 use crate::number::plane::{P2, cross};
@@ -26,6 +26,8 @@ pub(super) struct Moving {
     /// The height at which it was known, and half the widths of both strips there.
     height: f64,
     half: P2,
+    /// The smallest sine between two sides that meet.
+    pub sine: f64,
     /// The area as a quadratic form of 1 and what those three exceed their values by; what is below the diagonal is added to what is above.
     area: [Sum; 4],
     /// Sums of how fast all its sides move outward: of those that do so with the height alone, and for each strip as often as it grows.
@@ -57,10 +59,11 @@ fn offset(line: &Line, height: f64, half: P2) -> Sum {
     [line.offset + line.rise * height + moved, line.rise, strip(0), strip(1)]
 }
 
-/// Where two lines meet; none if they do so at a small sine.
-fn meet([p, q]: [&Line; 2], [o, r]: [Sum; 2]) -> Option<MovingCorner> {
+/// Where two lines meet, and the sine between them; none if that is small.
+fn meet([p, q]: [&Line; 2], [o, r]: [Sum; 2]) -> Option<(MovingCorner, f64)> {
     let turned = cross(p.normal, q.normal);
-    if !(turned > LEAST_SINE * p.size * q.size) {
+    let sine = turned / (p.size * q.size);
+    if !(sine > LEAST_SINE) {
         return None;
     }
     let scale = 1.0 / turned;
@@ -68,7 +71,7 @@ fn meet([p, q]: [&Line; 2], [o, r]: [Sum; 2]) -> Option<MovingCorner> {
         let (a, b) = (a * scale, b * scale);
         [a * o[0] + b * r[0], a * o[1] + b * r[1], a * o[2] + b * r[2], a * o[3] + b * r[3]]
     };
-    Some([of(-q.normal[1], p.normal[1]), of(q.normal[0], -p.normal[0])])
+    Some(([of(-q.normal[1], p.normal[1]), of(q.normal[0], -p.normal[0])], sine))
 }
 
 /// A plane at which a polygon is known: its height, and what the strips have there.
@@ -140,8 +143,8 @@ impl Proof {
         if low >= 0.0 && high >= 0.0 {
             return true;
         }
-        let [from, to] = self.ends;
-        let middle = low - (high - low) * (from / (to - from));
+        // From the plane's own value a line to each end.
+        let ([from, to], middle) = (self.ends, sum[0] + self.noise);
         if low < 0.0 {
             self.left[0] = self.left[0].max(from * (middle / (middle - low)));
         }
@@ -160,16 +163,24 @@ impl Moving {
         let place = |line: &Line| offset(line, known.height, half);
         let mut corners: Vec<MovingCorner, MOST_CORNERS> = Vec::new();
         let mut before = known.line(known.corners.last()?)?;
-        let mut used = 0_u32;
+        let (mut used, mut least) = (0_u32, 1.0);
         for corner in known.corners {
             let after = known.line(corner)?;
             used |= 1 << u32::from(corner.line);
-            corners.push(meet([before, after], [place(before), place(after)])?).ok()?;
+            let (met, sine) = meet([before, after], [place(before), place(after)])?;
+            corners.push(met).ok()?;
+            least = if sine < least { sine } else { least };
             before = after;
         }
         let mut proof = Proof::new(known, range);
-        let mut moving =
-            Moving { between: range.between, height: known.height, half, area: [[0.0; 4]; 4], speed: [0.0; 3] };
+        let mut moving = Moving {
+            between: range.between,
+            height: known.height,
+            half,
+            sine: least,
+            area: [[0.0; 4]; 4],
+            speed: [0.0; 3],
+        };
         let followers = corners.iter().skip(1).chain(corners.first());
         for ((corner, to), side) in corners.iter().zip(followers).zip(known.corners) {
             let line = known.line(side)?;
@@ -224,6 +235,22 @@ impl Moving {
             }
             before = Some([x, y]);
         }
+    }
+
+    /// Its area at a height in between, from half the widths of the strips there.
+    #[inline(always)]
+    pub fn area_of(&self, height: f64, half: P2) -> f64 {
+        let at = [1.0, height - self.height, half[0] - self.half[0], half[1] - self.half[1]];
+        let sum = |m: usize| (m..4).fold(0.0, |sum, n| sum + self.area[m & 3][n & 3] * at[n & 3]);
+        (sum(0) + at[1] * sum(1)) + (at[2] * sum(2) + at[3] * sum(3))
+    }
+
+    /// No less than its area, as a function of complex heights, where these are within `reach` of a height and half the widths of the strips
+    /// within given values.
+    pub fn most_area(&self, height: f64, reach: f64, half: P2) -> f64 {
+        let at = [1.0, (height - self.height).abs() + reach, half[0] + self.half[0], half[1] + self.half[1]];
+        let sum = |m: usize| (m..4).fold(0.0, |sum, n| sum + self.area[m & 3][n & 3].abs() * at[n & 3]);
+        (sum(0) + at[1] * sum(1)) + (at[2] * sum(2) + at[3] * sum(3))
     }
 
     /// Its area at a height in between.

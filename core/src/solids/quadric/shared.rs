@@ -186,10 +186,24 @@ fn common<'a, const N: usize>(
         }
         let of_two = || if N == 2 { Crossing::volume(parts.clone(), extent, enough) } else { None };
         let found = prism::<N>(parts.clone(), extent, enough).or_else(of_two);
-        return found.unwrap_or_else(|| volume::<N>(parts, extent, enough));
+        return match found {
+            Some([low, high]) if high - low <= enough => [low, high],
+            Some(found) => narrower(found, volume::<N>(parts, extent, enough)),
+            None => volume::<N>(parts, extent, enough),
+        };
     };
     let window = window(extent, n, enough);
     Slice::<N>::new(parts, window, coordinate).common().area
+}
+
+/// What two bounds of a number leave of it; the closer ones where they contradict each other by rounding.
+fn narrower(a: P2, b: P2) -> P2 {
+    let both = [a[0].max(b[0]), a[1].min(b[1])];
+    match both {
+        [low, high] if low <= high => both,
+        _ if a[1] - a[0] <= b[1] - b[0] => a,
+        _ => b,
+    }
 }
 
 fn window(extent: &[P2; 3], n: Axis, enough: f64) -> Window {
