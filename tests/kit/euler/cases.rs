@@ -169,6 +169,9 @@ impl Case {
 }
 
 /// Runs all cases of a directory in the order of their names, one line each; returns how many passed and failed.
+///
+/// # Errors
+/// The directory cannot be read, or holds no case that is asked for.
 pub fn run_directory(directory: &Path, only: Option<&str>) -> std::io::Result<(usize, usize)> {
     let mut files: Vec<_> = std::fs::read_dir(directory)?.filter_map(|e| Some(e.ok()?.path())).collect();
     files.retain(|p| p.extension().is_some_and(|e| e == "json"));
@@ -198,6 +201,10 @@ pub fn run_directory(directory: &Path, only: Option<&str>) -> std::io::Result<(u
         let word = if ok { "pass" } else { "FAIL" };
         writeln!(out, "{word} {id}: {text}  [{:.1} s]", start.elapsed().as_secs_f64())?;
         *if ok { &mut passed } else { &mut failed } += 1;
+    }
+    if passed + failed == 0 {
+        let found = if only.is_some() { "no reference case of this id" } else { "no reference cases" };
+        return Err(std::io::Error::other(format!("{}: {found}", directory.display())));
     }
     writeln!(out, "{passed} passed, {failed} failed")?;
     Ok((passed, failed))
