@@ -146,10 +146,10 @@ fn joined(scene: &Scene, levels: &[f64], layer_done: &(dyn Fn() + Sync)) -> Poro
             let (inner, outer) = (window.bounds(grid), larger.bounds(grid));
             let near = [0, 1].map(|n| inner[n].lerp(outer[n], BESIDE));
             let extent = Extent { grid: larger.grid(grid), level: levels[*k], near: Some(near) };
-            (*k, [window.clone(), larger], self::union(scene, &extent, None, &|| ()).porosity)
+            (*k, window, larger, self::union(scene, &extent, None, &|| ()).porosity)
         });
-        for (k, [window, larger], found) in found.collect::<Vec<_>>() {
-            sum.replace(&mut union.porosity, k, [&window, &larger], &found);
+        for (k, window, larger, found) in found.collect::<Vec<_>>() {
+            sum.replace(&mut union.porosity, k, [window, &larger], &found);
             union.porosity.add_work(&found);
         }
     }

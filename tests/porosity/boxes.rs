@@ -5,12 +5,17 @@ use voidage_tests::boxes::{Family, Visited, bounds_hold};
 use voidage_tests::random::Random;
 use voidage_tests::turned::{self, Seen, Turned};
 
+/// Visits the first scenes of a family, all of whose values lie within their bounds.
+fn visited(family: Family, seeds: u64) -> Vec<Visited> {
+    let run = |seed: u64| bounds_hold(family, seed).unwrap_or_else(|text| panic!("{text}"));
+    (0..seeds).into_par_iter().map(run).collect()
+}
+
 /// Every value of random scenes lies within its bounds; where all boxes look the same way and have one side, the bounds are one value
 /// nearly everywhere.
 #[test]
 fn random_boxes() {
-    let run = |seed: u64| bounds_hold(Family::Random, seed).unwrap_or_else(|text| panic!("{text}"));
-    let visited: Vec<Visited> = (0..3000).into_par_iter().map(run).collect();
+    let visited = visited(Family::Random, 3000);
     let count = |what: fn(&Visited) -> bool| visited.iter().filter(|v| what(v)).count();
     let one_way = count(|v| v.defined && !v.two_sided && !v.flipped);
     let exact = count(|v| v.defined && !v.two_sided && !v.flipped && v.exact);
@@ -27,8 +32,7 @@ fn random_boxes() {
 /// have, and more of those are in doubt.
 #[test]
 fn boxes_in_parts() {
-    let run = |seed: u64| bounds_hold(Family::Parts, seed).unwrap_or_else(|text| panic!("{text}"));
-    let visited: Vec<Visited> = (0..150).into_par_iter().map(run).collect();
+    let visited = visited(Family::Parts, 150);
     let count = |what: fn(&Visited) -> bool| visited.iter().filter(|v| what(v)).count();
     assert!(count(|v| v.two_sided && v.t_junctions) > 130, "double-sided scenes in parts");
     let [exact, doubt] = [count(|v| v.exact), count(|v| v.doubtful)];
@@ -38,8 +42,7 @@ fn boxes_in_parts() {
 /// Every value of scenes of boxes of both orientations, often one in another, whose sides come in parts, lies within its bounds.
 #[test]
 fn boxes_of_both_orientations() {
-    let run = |seed: u64| bounds_hold(Family::Mixed, seed).unwrap_or_else(|text| panic!("{text}"));
-    let visited: Vec<Visited> = (0..1000).into_par_iter().map(run).collect();
+    let visited = visited(Family::Mixed, 1000);
     let count = |what: fn(&Visited) -> bool| visited.iter().filter(|v| what(v)).count();
     assert!(count(|v| v.flipped && v.t_junctions) > 100, "scenes of both orientations in parts");
     assert!(count(|v| v.exact) * 10 > count(|v| v.defined) * 8, "exact scenes");

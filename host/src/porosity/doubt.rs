@@ -6,6 +6,7 @@
 //!   a part twice, so the bounds of all cells and faces in its box are 0 and 1.
 //! - Holes whose rims are not plane: all that lies in a box around the rim is solid or open.
 
+use super::windows::Window;
 use super::{FieldSet, Options, Porosity};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use glam::DVec3;
@@ -37,11 +38,7 @@ pub fn open_upwards(found: &mut Porosity, less: Porosity) {
 /// Widens the bounds of all cells and faces within the boxes of doubtful bodies to 0…1.
 pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
     for body in bodies.bodies.iter().filter(|b| b.doubt == Doubt::Unknown) {
-        let [lo, hi] = body.bounds;
-        let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
-        if cells.iter().any(Range::is_empty) {
-            continue;
-        }
+        let Some(Window { cells }) = Window::around(grid, body.bounds) else { continue };
         found.max_gap = 1.0;
         for (set, value) in found.bounds.iter_mut().flatten().zip([0.0, 1.0]) {
             change(grid, &cells, set, options.areas, |_, _| value);
@@ -52,10 +49,7 @@ pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Po
 /// Widens the bounds of all cells and faces that boxes in which it is not known what is solid reach, by what they have in common.
 pub fn widen_unknown(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
     for [lo, hi] in bodies.bodies.iter().flat_map(|b| b.unknown.iter().copied()) {
-        let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
-        if cells.iter().any(Range::is_empty) {
-            continue;
-        }
+        let Some(Window { cells }) = Window::around(grid, [lo, hi]) else { continue };
         let share = |place: Place| place.share_within(grid, [lo, hi]);
         let mut gap = 0.0_f64;
         if let Some([lower, upper]) = &mut found.bounds {
@@ -70,11 +64,7 @@ pub fn widen_unknown(grid: &Grid<f64>, bodies: &Bodies, options: Options, found:
 /// Widens the bounds of all cells and faces within the boxes of bodies that were cut, by what the rounding of their new corners may change.
 pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
     for body in bodies.bodies.iter().filter(|b| b.rounding > 0.0) {
-        let [lo, hi] = body.bounds;
-        let cells = [0, 1, 2].map(|a| reached(grid.edges(a), lo[a], hi[a]));
-        if cells.iter().any(Range::is_empty) {
-            continue;
-        }
+        let Some(Window { cells }) = Window::around(grid, body.bounds) else { continue };
         // If all surface moved by the rounding on both sides, a cell would change by this share of its width.
         let share = |axis: usize| {
             let widths = grid.edges(axis)[cells[axis].start..=cells[axis].end].windows(2).map(|w| w[1] - w[0]);
@@ -86,11 +76,6 @@ pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, f
             change(grid, &cells, set, options.areas, |beta, _| (beta + sign * by).clamp(0.0, 1.0));
         }
     }
-}
-
-/// The cells along an axis that a run of coordinates reaches or touches.
-pub(super) fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
-    edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
 }
 
 /// A cell of a grid, or the face normal to an axis that begins there.

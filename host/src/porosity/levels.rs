@@ -144,20 +144,18 @@ fn rows(
     field: usize,
     [window, larger]: [&Window; 2],
 ) -> impl Iterator<Item = [Range<usize>; 2]> {
-    let shape = |grid: &Grid<f64>| if field == 0 { grid.cells() } else { grid.face_shape(field - 1) };
-    let (whole, part) = (shape(whole), shape(part));
     let mut runs = window.cells.clone();
     if field > 0 {
         runs[field - 1].end += 1;
     }
     let first = larger.cells.each_ref().map(|run| run.start);
     let [x, y, z] = runs;
-    let row = move |[nx, ny, _]: [usize; 3], from: [usize; 3], j: usize, k: usize| {
-        let start = ((k - from[2]) * ny + j - from[1]) * nx + x.start - from[0];
+    let row = move |grid: &Grid<f64>, at: [usize; 3]| {
+        let start = if field == 0 { grid.cell_index(at) } else { grid.face_index(field - 1, at) };
         start..start + x.len()
     };
-    z.flat_map(move |k| y.clone().map(move |j| [j, k]))
-        .map(move |[j, k]| [row(whole, [0; 3], j, k), row(part, first, j, k)])
+    z.flat_map(move |k| y.clone().map(move |j| [window.cells[0].start, j, k]))
+        .map(move |at| [row(whole, at), row(part, [0, 1, 2].map(|a| at[a] - first[a]))])
 }
 
 /// The volume of solid in all cells of a grid.

@@ -1,6 +1,5 @@
 //! Boxes of cells around bodies: where a union with them differs from one without them.
 
-use super::doubt::reached;
 use crate::geometry::bodies::Bodies;
 use glam::DVec3;
 use std::ops::Range;
@@ -54,6 +53,12 @@ impl Window {
     fn cell_count(&self) -> usize {
         self.cells.iter().map(Range::len).product()
     }
+}
+
+/// The cells along an axis that a run of coordinates reaches or touches.
+#[must_use]
+pub fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
+    edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi).min(edges.len() - 1)
 }
 
 /// Where the bodies of one porosity change the union of those of lower ones: around each, or everywhere where that costs less.

@@ -2,7 +2,7 @@
 
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
-use crate::porosity::{doubt, snap};
+use crate::porosity::{snap, windows};
 use glam::DVec3;
 use std::ops::Range;
 use voidage_core::grid::Grid;
@@ -66,9 +66,9 @@ impl Near {
         };
         let [a, b, c] = *triangle;
         let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-        let x = doubt::reached(grid.edges(0), lo.x, hi.x);
-        let y = doubt::reached(grid.edges(1), lo.y, hi.y);
-        let z = doubt::reached(grid.edges(2), lo.z, hi.z);
+        let x = windows::reached(grid.edges(0), lo.x, hi.x);
+        let y = windows::reached(grid.edges(1), lo.y, hi.y);
+        let z = windows::reached(grid.edges(2), lo.z, hi.z);
         let cut = (x.len() * y.len() * z.len() > FEW_CELLS).then(|| moved(*triangle));
         if let Some(triangle) = cut {
             let whole = Polygon::new(&triangle.map(|p| p.to_array()));
@@ -96,7 +96,7 @@ fn reached(grid: &Grid<f64>, axis: usize, polygon: &Polygon<f64>) -> Range<usize
         return 0..0;
     }
     let (lo, hi) = polygon.extent(axis);
-    doubt::reached(grid.edges(axis), lo, hi)
+    windows::reached(grid.edges(axis), lo, hi)
 }
 
 /// What of a polygon lies between the planes of a layer.
