@@ -77,5 +77,13 @@ fn patches_that_cannot_be_are_told() {
     );
     assert_eq!(says("side = \"x_min\"\ntype = \"periodic\"", "a part of a side cannot be periodic"), Some(1));
     let nothing = "side = \"x_min\"\ntype = \"zero-gradient\"\nmin = [0, 3, 0]";
-    assert_eq!(says(nothing, "key boundary.patch[0]: covers the middle of no face"), Some(0));
+    assert_eq!(
+        says(nothing, "key boundary.patch[0]: covers the middle of no face of its side: it has no effect"),
+        Some(0)
+    );
+    let twice = "side = \"x_min\"\ntype = \"zero-gradient\"\n[[boundary.patch]]\nside = \"x_min\"\ntype = \"wall\"";
+    assert_eq!(
+        says(twice, "key boundary.patch[0]: covers the middle of no face of its side, or later patches"),
+        Some(0)
+    );
 }

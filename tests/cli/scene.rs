@@ -237,7 +237,11 @@ const SLIPS: [(&str, &str, &str); 16] = [
         "^^^^^",
     ),
     ("[solid]\nname = \"a\"\n[[solid]]@", "solid stands here as [[solid]] and before in line 1 as [solid]", "^^^^^"),
-    ("[grid]\nx = [0, 1]\n[grid]@", "the table [grid] is given twice", "^^^^"),
+    (
+        "[grid]\nx = [0, 1]\n[grid]@",
+        "the table [grid] is given twice; where several may stand each is a table [[grid]]",
+        "^^^^",
+    ),
     ("[[solid]]\nname = \"a\"\nname = \"b\"@", "key name is given twice in this table", "^^^^"),
     ("[[solid]]\nradius 1@", "`=` and a value are missing behind this key", "^"),
     ("[[solid]]\nname = tank@", "this is no value: numbers are written as 2.5 or 1e-3, texts stand in quotes", "^^^^"),
@@ -303,6 +307,25 @@ fn what_is_wrong_is_said_with_its_place() {
         );
         words.iter().for_each(|w| assert!(said.contains(w), "{w}: {text}\n{said}"));
     }
+}
+
+/// Copies that a step of 0 leaves in one place count once, and are told.
+#[test]
+fn copies_in_one_place_are_told() {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    let told = |array: &str| {
+        let ball = "[[solid]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n";
+        fs::write(&scene, format!("{ball}array = {array}\n")).expect("written");
+        let output = voidage(&[&"porosity", &scene, &"--cells", &"2x2x2"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let text = told("{ count = [2, 3, 1], step = [4, 0, 0] }");
+    let words = "scene.toml: solid \"ball\": array: its copies along y lie upon each other: step is 0 along y";
+    assert!(text.contains(words), "{text}");
+    let text = told("{ count = [2, 1, 1], step = [4, 0, 0] }");
+    assert!(!text.contains("lie upon each other"), "{text}");
 }
 
 /// A fault in a file that a scene names is shown there, with the place in both.

@@ -34,6 +34,17 @@ fn kilopascals_in_a_case_with_temperatures_are_doubted() {
     assert!(!text.contains("ambient"), "{text}");
 }
 
+/// Colours are given in kPa, pressures of states in Pa.
+#[test]
+fn colours_in_pascals_are_doubted() {
+    let air =
+        |range: &str| said(AIR, "T = 288, p = 101325", "\"wall\"", &format!("range = {{ overpressure = {range} }}"));
+    let text = air("[0, 3e5]");
+    let words = "key output.range.overpressure: 300000 kPa is a hundred times the highest pressure of the case, 101325 Pa, or more; these ends are in kPa";
+    assert!(text.contains(words), "{text}");
+    assert!(!air("[-0.5, 2]").contains("overpressure") && !air("[-100, 9000]").contains("overpressure"));
+}
+
 #[test]
 fn temperatures_in_celsius_are_doubted() {
     let text = said(AIR, "T = 15, p = 101325", "\"wall\"", "");

@@ -252,3 +252,20 @@ fn two_outputs_to_the_standard_output_are_refused() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("two outputs to -"), "{}", stderr(&output));
 }
+
+/// Forces have four digits, and no exponent where none is needed.
+#[test]
+fn forces_are_written_as_numbers_are() {
+    let at = Scratch::new();
+    fs::write(
+        at.file("box.toml"),
+        "[[solid]]\nname = \"tank\"\nshape = \"box\"\nmin = [0.5, 0, 0]\nmax = [0.75, 1, 1]\n",
+    )
+    .expect("a scene");
+    let case = "[grid]\nx = { points = [0, 1], cells = [8] }\n[porosity]\nscene = \"box.toml\"\n[drag]\nlaw = \"none\"\n\
+                [gas]\nmodel = \"ideal\"\ngamma = 1.4\n\
+                [initial]\nuniform = { rho = 1.2, p = 1e5 }\nregions = [{ max = [0.5], p = 112345.6 }]\n\
+                [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n[time]\nmax_steps = 0\n[output]\nforces = [\"tank\"]\n";
+    let said = stdout(&solved(&at, case, "out", &[]));
+    assert!(said.contains("\nforce         (12350, 0, 0) N on tank; largest 12350 N at t = 0 s\n"), "{said}");
+}

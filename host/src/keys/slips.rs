@@ -156,7 +156,10 @@ fn twice(text: &str, span: &Range<usize>) -> String {
             n + 1,
             brackets(name, other)
         ),
-        Some(_) => format!("the table {} is given twice", brackets(name, one)),
+        Some(_) => format!(
+            "the table {} is given twice; where several may stand each is a table [[{name}]]",
+            brackets(name, one)
+        ),
     }
 }
 

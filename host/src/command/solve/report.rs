@@ -11,7 +11,7 @@ use super::refine::{Compared, RefineCheck};
 use super::regions::RegionReport;
 use super::setup::{Setup, SpaceReport};
 use super::sides::PatchReport;
-use super::solids::SolidForce;
+use super::solids::{OTHERS, SolidForce};
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
@@ -286,9 +286,12 @@ impl Report {
             let momentum = format!("({x:.1e}, {y:.1e}, {z:.1e})");
             progress.say(format!("floors        changed the mass by {mass:.1e}, the momentum by {momentum}{energy}"));
         }
-        for ForceReport { force: [x, y, z], largest: ForcePeak { name, largest, largest_time, .. } } in &self.forces {
-            let largest = format!("largest {largest:.4e} N at t = {largest_time:.4e} s");
-            progress.say(format!("force         ({x:.4e}, {y:.4e}, {z:.4e}) N on {name}; {largest}"));
+        // Where all solids are asked for nothing acts on the others.
+        let acts = |f: &&ForceReport| f.largest.name != OTHERS || f.largest.largest > 0.0;
+        for ForceReport { force: [x, y, z], largest } in self.forces.iter().filter(acts) {
+            let ForcePeak { name, largest, largest_time, .. } = largest;
+            let [x, y, z, largest, at] = [*x, *y, *z, *largest, *largest_time].map(to_four_digits);
+            progress.say(format!("force         ({x}, {y}, {z}) N on {name}; largest {largest} N at t = {at} s"));
         }
         if let Some(colours) = &self.colours {
             progress.say(format!("colours       {colours}"));
@@ -340,4 +343,8 @@ fn say_refine_check(RefineCheck { cells: [nx, ny, nz], peaks, .. }: &RefineCheck
 
 fn to_six_digits(x: f64) -> String {
     written(format!("{x:.5e}").parse().unwrap_or(x))
+}
+
+fn to_four_digits(x: f64) -> String {
+    written(format!("{x:.3e}").parse().unwrap_or(x) + 0.0) // no −0
 }

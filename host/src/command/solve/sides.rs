@@ -216,7 +216,8 @@ pub fn report<const D: usize>(
         let faces = flow.side(patch.axis, usize::from(patch.high), Some(n));
         let area = across * faces.iter().map(|(_, area)| area).sum::<f64>();
         let trouble = match (faces.is_empty(), area > 0.0) {
-            (true, _) => "covers the middle of no face of its side that is not another patch's: it has no effect",
+            (true, _) if n + 1 == flow.patches.len() => "covers the middle of no face of its side: it has no effect",
+            (true, _) => "covers the middle of no face of its side, or later patches cover the same: it has no effect",
             (false, false) => "covers faces that solids close: it has no effect",
             (false, true) => "",
         };

@@ -39,6 +39,9 @@ const ATMOSPHERES: [f64; 2] = [1e4, 1e6];
 /// An ambient pressure below the lowest pressure of the beginning by this factor is doubted.
 const FAR_BELOW: f64 = 100.0;
 
+/// An end of the colours above the highest pressure of the case by this factor is doubted.
+const FAR_ABOVE: f64 = 100.0;
+
 /// An ambient pressure above the highest pressure of the beginning by this factor is doubted.
 const ABOVE: f64 = 1.2;
 
@@ -80,6 +83,15 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
             "{p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"
         );
         said.push(file.remark("output.ambient", reason));
+    }
+    let most = states.iter().filter_map(|(_, keys)| keys.p).fold(highest, f64::max);
+    let ends = file.case.output.range.overpressure.unwrap_or_default();
+    if let Some(end) = ends.into_iter().find(|end| KILO * end.abs() > FAR_ABOVE * most) {
+        let (end, most) = (written(end), written(most));
+        let reason = format!(
+            "{end} kPa is a hundred times the highest pressure of the case, {most} Pa, or more; these ends are in kPa"
+        );
+        said.push(file.remark("output.range.overpressure", reason));
     }
     if let Some(p) = file.case.output.ambient.filter(|p| *p > ABOVE * highest) {
         let reason = format!("{p} is more than the highest pressure at the beginning, {highest}: all gas is below it");

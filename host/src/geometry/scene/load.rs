@@ -6,6 +6,7 @@ use super::{Scene, SceneSolid};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, Doubt, SolidSummary};
 use crate::geometry::read;
+use crate::grid::AXES;
 use crate::words::counted;
 use glam::DVec3;
 use std::path::Path;
@@ -25,6 +26,12 @@ pub fn add(scene: &Scene, bodies: &mut Bodies) -> Result<()> {
             let excerpt = solid.place.excerpt.clone().filter(|_| e.excerpt.is_none());
             Error { reason, excerpt, ..solid.place.clone() }
         };
+        if let Some(axis) = solid.placement.stands_still() {
+            let (scene, name, axis) = (scene.path.display(), &solid.name, AXES[axis]);
+            bodies.warnings.push(format!(
+                "{scene}: solid \"{name}\": array: its copies along {axis} lie upon each other: step is 0 along {axis}"
+            ));
+        }
         let first = bodies.bodies.len();
         add_solid(scene, solid, bodies).map_err(|e| place(&e))?;
         let added = &bodies.bodies[first..];

@@ -77,6 +77,12 @@ impl Placement {
         self.count.iter().product()
     }
 
+    /// The first axis along which copies lie upon each other.
+    #[must_use]
+    pub fn stands_still(&self) -> Option<usize> {
+        (0..3).find(|&axis| self.count[axis] > 1 && self.step[axis] == 0.0)
+    }
+
     /// The motion of every copy, x fastest, and its place in the array. A copy is where the solid would be if its `translate` were
     /// `translate + index · step`.
     pub fn motions(&self, centre: DVec3) -> impl Iterator<Item = ([usize; 3], Motion)> {
