@@ -27,8 +27,23 @@ fn fields(value: &Value, path: &str, found: &mut BTreeSet<String>) {
     }
 }
 
+/// Each stage that a report has a time of stands in the row of the table.
+fn assert_stages(table: &str, reports: &[Value]) {
+    let rows = &rows(&page("outputs.md"), "fields")[table];
+    for (field, stages) in STAGES.iter().flat_map(|field| reports.iter().map(move |report| (field, &report[*field]))) {
+        for stage in stages.as_object().into_iter().flatten().map(|(stage, _)| stage) {
+            assert!(
+                rows[*field].contains(&format!("`{stage}`")),
+                "{table}: {field} has a stage {stage}: {}",
+                rows[*field]
+            );
+        }
+    }
+}
+
 /// All that reports say is in the table, and what is in the table some report says.
 fn assert_told(table: &str, reports: &[Value]) {
+    assert_stages(table, reports);
     let mut found = BTreeSet::new();
     reports.iter().for_each(|report| fields(report, "", &mut found));
     let page = documented(table);

@@ -100,6 +100,52 @@ fn slips_in_studies_have_lines() {
     }
 }
 
+/// What a long measurement of the scene would only delay is told before the scene is read.
+#[test]
+fn slips_of_outputs_are_told_first() {
+    let at = Scratch::new();
+    let case = [GRID, GAS, INITIAL, WALLS, TIME, "[porosity]\nscene = \"not there.toml\"\n[output]\n"].concat();
+    for (more, words) in [
+        (
+            "probes = [{ name = \"a\", at = [0, 0, 0] }, { name = \"a\", at = [0, 0, 0] }]",
+            "probes[1].name: \"a\" is the name of another",
+        ),
+        ("probes = [{ at = [0, 0, 50] }]", "probes[0].at: of \"probe 1\" is outside the grid"),
+        ("monitors = [{ x = 50 }]", "monitors[0].x: the grid reaches from 0 to 1 along x"),
+        ("monitors = [{ x = 0, min = [1], max = [0] }]", "monitors[0].max: must not lie below min"),
+        ("range = { speed = [3, 1] }", "range.speed: needs two numbers, the lower one first"),
+        ("formats = [\"png\", \"png\"]", "formats[1]: stands in this list before"),
+        ("", "key porosity.scene: "),
+    ] {
+        let key = if more.is_empty() { String::new() } else { "key output.".to_owned() };
+        fails(
+            &solve(&at, &format!("{case}{more}"), "out", &[]),
+            1,
+            &["case.toml: line ", &format!("{key}{words}"), "^"],
+        );
+    }
+}
+
+/// One value in place of a list, lists that are too short, a directory without what it should hold.
+#[test]
+fn lists_are_asked_for_in_brackets() {
+    let at = Scratch::new();
+    let others = [GAS, INITIAL, WALLS, TIME].concat();
+    let uniform =
+        |spacing: &str, cells: &str| format!("[grid]\norigin = [0, 0, 0]\nspacing = {spacing}\ncells = {cells}\n");
+    for (grid, words) in [
+        (uniform("0.5", "[2, 2, 2]"), "key grid.spacing: takes a list, in brackets, not a number"),
+        (uniform("[0.5, 0.5, 0.5]", "8"), "key grid.cells: takes a list, in brackets, not a whole number"),
+        (uniform("[0.5, 0.5, 0.5]", "[2, 2, 2, 2]"), "key grid.cells: takes 1 to 3 numbers, one for each axis, not 4"),
+        (format!("{GRID}[output]\nformats = \"vtr\"\n"), "key output.formats: takes a list, in brackets, not a text"),
+        (format!("{GRID}[drag]\nfrom = \".\"\n"), "key drag.from: "),
+    ] {
+        fails(&solve(&at, &format!("{grid}{others}"), "out", &[]), 1, &["case.toml: line ", words, "^"]);
+    }
+    fs::write(at.file("box.toml"), format!("{BOX}{}", uniform("[0.5, 0.5, 0.5]", "[2, 2]"))).expect("a scene");
+    fails(&run(&at, &["porosity", "box.toml"]), 1, &["key grid.cells: takes 3 numbers, one for each axis, not 2", "^"]);
+}
+
 /// Words in capitals, one value in place of a list of one, a probe far off, a law without a scene, a bend along its own axis.
 #[test]
 fn slips_that_one_can_mend_from_the_message() {
@@ -360,7 +406,7 @@ fn one_table_in_place_of_a_list() {
     assert!(told.contains("[[boundary.patch]]"), "{told}");
     let probe = "[output]\nprobes = { at = [0, 0, 0] }\n";
     let told = stderr(&solve(&Scratch::new(), &[GRID, GAS, INITIAL, WALLS, TIME, probe].concat(), "out", &[]));
-    assert!(told.contains("key output.probes: takes a list, not a table"), "{told}");
+    assert!(told.contains("key output.probes: takes a list, in brackets, not a table"), "{told}");
 }
 
 /// Numbers of the command line are told their range in words.

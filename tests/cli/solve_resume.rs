@@ -264,7 +264,13 @@ fn checkpoints_that_do_not_fit_are_refused() {
         refused(&case, words);
     }
     fs::write(&path, &whole).expect("a checkpoint");
-    refused(&case.replace("name = \"P\"", "name = \"Q\""), "probes.csv: has other columns");
+    let columns =
+        |table: &str, key: &str| format!("{table}: has other columns than output.{key} asks for now: leave that");
+    refused(&case.replace("name = \"P\"", "name = \"Q\""), &columns("probes.csv", "probes"));
+    refused(&case.replace("[output]", "[output]\nforces = [\"*\"]"), &columns("log.csv", "forces"));
+    // What decides neither the flow nor the columns may change.
+    let other = "every = 1\nformats = [\"npy\"]\nlog_every = 3\ncheckpoint_every = 5\nslice = [1, 1, 1]\nrange = { speed = [0, 9] }";
+    solved(&at, &format!("title = \"T\"\n{}", case.replace("every = 0.004", other)), "out", &["--resume", "-q"]);
     solved(&at, &case, "out", &["--resume", "-q"]);
 }
 

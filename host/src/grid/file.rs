@@ -148,7 +148,8 @@ impl GridTable {
         let (axes, least) = (cells.len(), if fewer_axes { 1 } else { 3 });
         for (key, n) in [("cells", axes), ("origin", origin.len()), ("spacing", spacing.len())] {
             if !(least..=3).contains(&n) {
-                return Err(wrong(key, format!("needs one number for each axis, not {n}")));
+                let all = if fewer_axes { "1 to 3 numbers" } else { "3 numbers" };
+                return Err(wrong(key, format!("takes {all}, one for each axis, not {n}")));
             }
             if n != axes {
                 return Err(wrong(key, format!("has {n} numbers, but cells has {axes}: one for each axis")));

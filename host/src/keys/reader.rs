@@ -320,7 +320,7 @@ impl<'de> Deserializer<'de> for &Reader<'_> {
                     format!("takes a list: each of its tables has a head with two pairs of brackets, [[{}]]", self.key);
                 Err(self.place(de::Error::custom(reason)))
             }
-            _ => Err(self.takes("a list")),
+            _ => Err(self.takes("a list, in brackets")),
         }
     }
 

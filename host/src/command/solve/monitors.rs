@@ -70,25 +70,52 @@ pub fn head<const D: usize>(monitors: &[Monitor<D>]) -> String {
 /// # Errors
 /// A plane that is none, lies outside the grid or across an axis of one cell, or has the name of another.
 pub fn monitors<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<Monitor<D>>> {
-    let mut all: Vec<Monitor<D>> = Vec::new();
-    for (n, keys) in file.case.output.monitors.iter().enumerate() {
-        let key = format!("output.monitors[{n}]");
-        let name = keys.name.clone().unwrap_or_else(|| format!("monitor {}", n + 1));
-        file.column_name(&format!("{key}.name"), &name, all.iter().map(|m| &m.report.name[..]))?;
-        let monitor = Monitor::new(file, &key, name, keys, setup)?;
-        if monitor.faces.is_empty() {
-            let why = if monitor.is_wall { ", it lies on a wall of the domain" } else { "" };
-            let reason = format!("\"{}\" has no open face{why}: nothing passes it", monitor.report.name);
-            progress.warn(file.remark(&key, reason));
-        }
-        all.push(monitor);
+    let all = planes(file, &setup.edges, &setup.live)?.into_iter().map(|plane| Monitor::new(plane, setup));
+    let all: Vec<Monitor<D>> = all.collect();
+    for (n, monitor) in all.iter().enumerate().filter(|(_, monitor)| monitor.faces.is_empty()) {
+        let why = if monitor.is_wall { ", it lies on a wall of the domain" } else { "" };
+        let reason = format!("\"{}\" has no open face{why}: nothing passes it", monitor.report.name);
+        progress.warn(file.remark(&format!("output.monitors[{n}]"), reason));
     }
     Ok(all)
 }
 
-impl<const D: usize> Monitor<D> {
-    fn new(file: &CaseFile, key: &str, name: String, keys: &MonitorKeys, setup: &Setup<D>) -> Result<Self> {
-        let Setup { flow, edges, live, .. } = setup;
+/// Where a plane of a case lies.
+#[derive(Debug)]
+pub struct Plane {
+    name: String,
+    axis: usize,
+    /// Axis among those that flow.
+    d: usize,
+    /// The plane of the grid that is next to it.
+    index: usize,
+    /// Faces count whose middles it holds.
+    window: Region,
+}
+
+/// The planes of a case on a grid of which the axes `live` flow.
+///
+/// # Errors
+/// As [`monitors`].
+pub fn planes(file: &CaseFile, edges: &Edges, live: &[usize]) -> Result<Vec<Plane>> {
+    let mut all: Vec<Plane> = Vec::new();
+    for (n, keys) in file.case.output.monitors.iter().enumerate() {
+        let key = format!("output.monitors[{n}]");
+        let name = keys.name.clone().unwrap_or_else(|| format!("monitor {}", n + 1));
+        file.column_name(&format!("{key}.name"), &name, all.iter().map(|plane| &plane.name[..]))?;
+        all.push(Plane::new(file, &key, name, keys, (edges, live))?);
+    }
+    Ok(all)
+}
+
+impl Plane {
+    fn new(
+        file: &CaseFile,
+        key: &str,
+        name: String,
+        keys: &MonitorKeys,
+        (edges, live): (&Edges, &[usize]),
+    ) -> Result<Self> {
         let given: Vec<(usize, f64)> =
             [keys.x, keys.y, keys.z].into_iter().enumerate().filter_map(|(a, at)| Some((a, at?))).collect();
         let [(axis, at)] = given[..] else {
@@ -101,14 +128,20 @@ impl<const D: usize> Monitor<D> {
         if let Some(reason) = edges.misses(axis, at) {
             return wrong(reason);
         }
-        let plane = nearest(&edges.0[axis], at);
         let window = Region::of_box(file, key, &keys.min, &keys.max)?;
+        Ok(Plane { name, axis, d, index: nearest(&edges.0[axis], at), window })
+    }
+}
+
+impl<const D: usize> Monitor<D> {
+    fn new(Plane { name, axis, d, index: plane, window }: Plane, setup: &Setup<D>) -> Self {
+        let Setup { flow, edges, live, .. } = setup;
         let faces = faces(flow, edges, (axis, d, plane), *live, &window);
         let area = faces.iter().map(|face| face.area).sum::<f64>() + 0.0; // of none not −0
         let side = [0, edges.cells()[axis]].iter().position(|end| *end == plane);
         let is_wall = side.is_some_and(|side| flow.boundaries[d][side].is_wall());
         let report = MonitorReport { name, axis: AXES[axis], at: edges.0[axis][plane], faces: faces.len(), area };
-        Ok(Monitor { report, d, is_wall, faces })
+        Monitor { report, d, is_wall, faces }
     }
 
     /// What it came to.

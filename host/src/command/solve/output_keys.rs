@@ -34,6 +34,14 @@ pub struct OutputKeys {
     pub checkpoint_every: Option<f64>,
 }
 
+impl OutputKeys {
+    /// Files of a frame.
+    #[must_use]
+    pub fn formats(&self) -> &[Format] {
+        self.formats.as_deref().unwrap_or(&[Format::Vtr])
+    }
+}
+
 /// `range` of `[output]`; what is left out is the range of the whole run.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -21,12 +21,19 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use voidage_core::flow::Gas;
 
-/// The point through which pictures are cut lies within the grid.
+/// The keys of pictures make sense: formats, ends of colours, a point within the grid.
 ///
 /// # Errors
-/// It does not: with the range of the grid along the axis.
-pub fn check_slice(file: &CaseFile, edges: &Edges) -> Result<()> {
-    let Some(point) = file.case.output.slice else { return Ok(()) };
+/// One does not; of the point with the range of the grid along the axis.
+pub fn check(file: &CaseFile, edges: &Edges) -> Result<()> {
+    let keys = &file.case.output;
+    file.distinct("output.formats", keys.formats())?;
+    for (name, ends) in [("speed", keys.range.speed), ("overpressure", keys.range.overpressure)] {
+        if ends.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
+            return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
+        }
+    }
+    let Some(point) = keys.slice else { return Ok(()) };
     match (0..3).find_map(|axis| Some((axis, edges.misses(axis, point[axis])?))) {
         None => Ok(()),
         Some((axis, why)) => {

@@ -9,10 +9,10 @@ use super::limits::Limits;
 use super::lock::Lock;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
 use super::output_keys::{Format, OutputKeys};
-use super::pictures::{Pictures, check_slice};
+use super::pictures::{self, Pictures};
 use super::refine::{self, Fine};
 use super::report::{Done, Report};
-use super::series::{Series, Watched};
+use super::series::{Series, Watched, check_watched};
 use super::setup::{Setup, live_axes, setup};
 use super::solids::SolidForce;
 use super::stepping::{Trouble, step, unphysical};
@@ -54,9 +54,10 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
         return Err(Error::file(path, "results would go into a directory of the name of the case itself: give -o DIR"));
     }
     check_directory("-o", &dir)?;
-    check_slice(&file, &edges)?;
+    pictures::check(&file, &edges)?;
     keep_inputs(&file, &dir)?;
     let live = live_axes(&edges);
+    check_watched(&file, &edges, &live)?;
     if args.refine_check {
         refine::check(&file, &edges, &live)?;
     }
@@ -189,7 +190,7 @@ impl<'a, const D: usize> Run<'a, D> {
         };
         create(&dir)?;
         let lock = lock.map_or_else(|| Lock::take(&dir), |lock| Ok(Some(lock)))?;
-        if !formats(output).is_empty() {
+        if !output.formats().is_empty() {
             create(&dir.join("frames"))?;
         }
         let series = Series::begin(&dir, file, &setup, watched, &journal, (limits.log_every, ambient))?;
@@ -320,11 +321,11 @@ impl<'a, const D: usize> Run<'a, D> {
     fn frame(&mut self) -> Result<()> {
         let (n, time, dir) = (self.journal.frames.len(), self.setup.flow.time, self.dir.join("frames"));
         self.journal.frames.push(time);
-        if formats(self.output).is_empty() {
+        if self.output.formats().is_empty() {
             return Ok(());
         }
         let shot = self.snapshot();
-        for format in formats(self.output) {
+        for format in self.output.formats() {
             match format {
                 Format::Vtr => {
                     let path = dir.join(frames::frame_name(n, "vtr"));
@@ -377,11 +378,6 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Files of a frame.
-fn formats(output: &OutputKeys) -> &[Format] {
-    output.formats.as_deref().unwrap_or(&[Format::Vtr])
-}
-
 /// The pressure that overpressures are counted from.
 fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> f64 {
     file.case.output.ambient.unwrap_or_else(|| lowest_pressure(&setup.flow))
@@ -417,14 +413,7 @@ fn pictures<const D: usize>(
 ) -> Result<Option<Pictures>> {
     let of_file = || file.path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let title = file.case.title.clone().unwrap_or_else(of_file);
-    file.distinct("output.formats", formats(&file.case.output))?;
-    let range = &file.case.output.range;
-    for (name, ends) in [("speed", range.speed), ("overpressure", range.overpressure)] {
-        if ends.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
-            return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
-        }
-    }
-    if !formats(&file.case.output).contains(&Format::Png) {
+    if !file.case.output.formats().contains(&Format::Png) {
         return Ok(None);
     }
     progress.warn_of_title(&title);

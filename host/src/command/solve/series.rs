@@ -5,13 +5,14 @@ use super::case_file::CaseFile;
 use super::checkpoint::Journal;
 use super::force::force_on_all;
 use super::frames::cell_at;
-use super::monitors::{Monitor, MonitorReport, head, monitors};
+use super::monitors::{Monitor, MonitorReport, head, monitors, planes};
 use super::output_keys::OutputKeys;
 use super::setup::Setup;
 use super::solids::{SolidForce, SolidShares};
 use super::table::Table;
 use crate::command::progress::Progress;
 use crate::error::Result;
+use crate::grid::Edges;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -68,23 +69,23 @@ impl<const D: usize> Series<D> {
         journal: &Journal,
         (log_every, ambient): (usize, f64),
     ) -> Result<Self> {
-        let table = |name: &str, head: &str, bytes: u64| match bytes {
+        let table = |name: &str, head: &str, of: &str, bytes: u64| match bytes {
             0 => Table::new(&dir.join(name), head),
-            bytes => Table::resume(&dir.join(name), head, bytes),
+            bytes => Table::resume(&dir.join(name), head, of, bytes),
         };
         let of_solids = setup.solids.as_ref().map_or_else(String::new, SolidShares::head);
-        let log = table("log.csv", &format!("{LOG_HEAD}{of_solids}"), journal.log)?;
+        let log = table("log.csv", &format!("{LOG_HEAD}{of_solids}"), "output.forces", journal.log)?;
         let Watched { probes, planes } = watched;
         let probes = match probes.is_empty() {
             true => None,
-            false => Some((
-                table("probes.csv", &probe_head(&file.case.output, setup.flow.gas().is_mixed()), journal.probes)?,
-                probes,
-            )),
+            false => {
+                let head = probe_head(&file.case.output, setup.flow.gas().is_mixed());
+                Some((table("probes.csv", &head, "output.probes", journal.probes)?, probes))
+            }
         };
         let monitors = match planes.is_empty() {
             true => None,
-            false => Some((table("monitors.csv", &head(&planes), journal.monitors)?, planes)),
+            false => Some((table("monitors.csv", &head(&planes), "output.monitors", journal.monitors)?, planes)),
         };
         Ok(Series { log, probes, monitors, log_every, ambient })
     }
@@ -180,8 +181,30 @@ fn probe_columns<const D: usize>(setup: &Setup<D>, cell: usize, line: &mut Strin
     }
 }
 
-/// The cells of the probes.
+/// Probes and planes have names, and places in the grid: told before a scene is measured, which may take long.
+///
+/// # Errors
+/// One that has none.
+pub fn check_watched(file: &CaseFile, edges: &Edges, live: &[usize]) -> Result<()> {
+    probe_places(file, edges)?;
+    planes(file, edges, live).map(drop)
+}
+
+/// The cells of the probes; those that are solid are told.
 fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<usize>> {
+    let cells = probe_places(file, &setup.edges)?;
+    for (n, (probe, cell)) in file.case.output.probes.iter().zip(&cells).enumerate() {
+        if setup.flow.beta_v().is_some_and(|b| b[*cell] == 0.0) {
+            let (at, name) = (probe.at, probe.name(n));
+            let reason = format!("the cell of the point {at:?} of \"{name}\" is solid: it has no values");
+            progress.warn(file.remark(&format!("output.probes[{n}].at"), reason));
+        }
+    }
+    Ok(cells)
+}
+
+/// The cells of the probes, solid or not.
+fn probe_places(file: &CaseFile, edges: &Edges) -> Result<Vec<usize>> {
     let probes = &file.case.output.probes;
     let mut cells = Vec::with_capacity(probes.len());
     for (n, probe) in probes.iter().enumerate() {
@@ -189,16 +212,11 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
         let name = probe.name(n);
         let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
         file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
-        let at = cell_at(&setup.edges, probe.at).ok_or_else(|| {
-            let reaches = (0..3).find_map(|axis| setup.edges.misses(axis, probe.at[axis])).unwrap_or_default();
+        let at = cell_at(edges, probe.at).ok_or_else(|| {
+            let reaches = (0..3).find_map(|axis| edges.misses(axis, probe.at[axis])).unwrap_or_default();
             file.wrong(&format!("{key}.at"), format!("of \"{name}\" is outside the grid: {reaches}"))
         })?;
-        let cell = position(at, setup.edges.cells());
-        if setup.flow.beta_v().is_some_and(|b| b[cell] == 0.0) {
-            let reason = format!("the cell of the point {:?} of \"{name}\" is solid: it has no values", probe.at);
-            progress.warn(file.remark(&format!("{key}.at"), reason));
-        }
-        cells.push(cell);
+        cells.push(position(at, edges.cells()));
     }
     Ok(cells)
 }

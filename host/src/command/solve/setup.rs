@@ -18,7 +18,6 @@ use crate::error::{Error, Result};
 use crate::flow::{Flow, Tidied, Treatment};
 use crate::grid::{AXES, Edges};
 use serde::Serialize;
-use std::path::Path;
 use voidage_core::flow::{Gas, Limiter, PressureForm, Primitive, Scheme};
 
 /// A flow with what the run needs to know about it.
@@ -288,12 +287,12 @@ fn drag<const D: usize>(
         all[0] = by_law;
     }
     if let Some(dir) = keys.from.as_deref().filter(|_| all.iter().flatten().all(Vec::is_empty)) {
-        return Err(nothing_in(&file.existing("drag.from", dir)?));
+        let dir = file.existing("drag.from", dir)?;
+        return Err(file.wrong("drag.from", format!("{}: {NOTHING}", dir.display())));
     }
     all.iter_mut().flatten().filter(|c| c.iter().all(|&x| x == 0.0)).for_each(Vec::clear);
     Ok(if all.iter().flatten().all(Vec::is_empty) { None } else { Some(all) })
 }
 
-fn nothing_in(dir: &Path) -> Error {
-    Error::file(dir, "there is none of cr_x.npy, cr_y.npy, cr_z.npy, linear_x.npy, linear_y.npy, linear_z.npy")
-}
+/// Of a directory without coefficients.
+const NOTHING: &str = "there is none of cr_x.npy, cr_y.npy, cr_z.npy, linear_x.npy, linear_y.npy, linear_z.npy";

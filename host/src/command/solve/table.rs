@@ -29,16 +29,18 @@ impl Table {
         Ok(table)
     }
 
-    /// The first `bytes` of a table, to be continued.
+    /// The first `bytes` of a table, to be continued; `of` is the key of the case that makes its columns.
     ///
     /// # Errors
     /// The file cannot be opened, is shorter, or has other columns.
-    pub fn resume(path: &Path, head: &str, bytes: u64) -> Result<Self> {
+    pub fn resume(path: &Path, head: &str, of: &str, bytes: u64) -> Result<Self> {
         let failed = |e: std::io::Error| Error::io(path, "go on with", &e);
         let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
         let mut start = vec![0; head.len() + 1];
         if file.read_exact(&mut start).is_err() || start != [head.as_bytes(), b"\n"].concat() {
-            return Err(Error::file(path, "has other columns than the case asks for now"));
+            let reason =
+                format!("has other columns than {of} asks for now: leave that as it was, or run without --resume");
+            return Err(Error::file(path, reason));
         }
         let length = file.metadata().map_err(failed)?.len();
         if length < bytes {
