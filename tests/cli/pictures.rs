@@ -1,6 +1,6 @@
 //! Pictures of `solve`: their colours and where they are cut, unless the case says so.
 
-use crate::kit::{Scratch, array, json, solved, stdout};
+use crate::kit::{Scratch, array, json, solved, stderr, stdout};
 use std::fs;
 
 /// A blast beside the middle of a box, away from the middle of the grid.
@@ -136,4 +136,38 @@ fn gamma_of_two_gases_is_drawn() {
     assert_ne!(drawn, fs::read(at.file("out/frames/pressure_0000.png")).expect("a picture"));
     solved(&at, &case, "out", &["-q", "--force"]);
     assert!(names(&at).is_empty());
+}
+
+/// A run that goes on with pictures cut elsewhere: those of before stay what they are, and are not drawn again as if they were cut there.
+#[test]
+fn pictures_of_before_keep_their_planes() {
+    let at = Scratch::new();
+    let case = BLAST.replace("end = 6e-4", "max_steps = 2");
+    let picture = |frame: &str| fs::read(at.file(&format!("out/frames/pressure_{frame}.png"))).expect("a picture");
+    solved(&at, &case, "out", &["-q"]);
+    let before = picture("0000");
+    let moved = BLAST.replace("every", "slice = [0.85, 0.15, 0.85]\nevery");
+    let told = stderr(&solved(&at, &moved, "out", &["--resume"]));
+    assert!(told.contains("pictures are cut elsewhere than before --resume: those up to t = "), "{told}");
+    assert_eq!(before, picture("0000"));
+    let frames = json(&at.file("out/report.json"))["frames"].as_array().expect("frames").len();
+    assert!(planes(&at, frames - 1, [8, 1, 8]).iter().map(|(_, p)| *p).eq(kept(&at, frames - 1)));
+    assert!(!at.file("out/frames/slices/0000.npy").exists());
+    // Cut where they were, all are drawn with one range.
+    solved(&at, &case, "out", &["-q", "--force"]);
+    let told = stderr(&solved(&at, BLAST, "out", &["--resume"]));
+    assert!(!told.contains("cut elsewhere") && before != picture("0000"), "{told}");
+}
+
+/// Colours that the case gives since it went on are those of all frames.
+#[test]
+fn ranges_given_later_hold_for_all_frames() {
+    let at = Scratch::new();
+    let given = BLAST.replace("every", "range = { speed = [0, 300], overpressure = [-10, 90] }\nevery");
+    let first = |dir: &str| fs::read(at.file(dir).join("frames/pressure_0000.png")).expect("a picture");
+    solved(&at, &given, "given", &["-q"]);
+    solved(&at, &BLAST.replace("end = 6e-4", "max_steps = 2"), "later", &["-q"]);
+    assert_ne!(first("given"), first("later"));
+    solved(&at, &given, "later", &["-q", "--resume"]);
+    assert_eq!(first("given"), first("later"));
 }

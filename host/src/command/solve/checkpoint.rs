@@ -81,6 +81,9 @@ pub struct Journal {
     pub seconds: f64,
     /// Largest forces on solids so far.
     pub peaks: Vec<ForcePeak>,
+    /// The cell through which pictures are cut, if there are any.
+    #[serde(default)]
+    pub cut: Option<[usize; 3]>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]

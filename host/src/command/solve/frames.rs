@@ -121,6 +121,18 @@ pub fn create(dir: &Path) -> Result<()> {
 /// Name of the directory in `frames` that holds the planes of pictures.
 pub const SLICES: &str = "slices";
 
+/// Removes the planes of pictures that are kept in `dir`.
+///
+/// # Errors
+/// They cannot be removed.
+pub fn forget_planes(dir: &Path) -> Result<()> {
+    let path = dir.join("frames").join(SLICES);
+    match std::fs::remove_dir_all(&path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(Error::io(&path, "remove", &e)),
+        _ => Ok(()),
+    }
+}
+
 /// Removes the frames that an earlier run has left in `dir`, and nothing else.
 ///
 /// # Errors

@@ -6,7 +6,7 @@
 
 use super::case_file::CaseFile;
 use super::charges::Charges;
-use super::frames::{SLICES, Snapshot, cell_at};
+use super::frames::{self, SLICES, Snapshot, cell_at};
 use super::output_keys::OutputKeys;
 use super::setup::Setup;
 use crate::error::{Error, Result};
@@ -125,6 +125,12 @@ impl Pictures {
         pictures
     }
 
+    /// The cell through which they are cut.
+    #[must_use]
+    pub fn at(&self) -> [usize; 3] {
+        self.at
+    }
+
     /// Ends of the colours, as far as the run has come.
     #[must_use]
     pub fn colours(&self) -> Colours {
@@ -155,6 +161,8 @@ impl Pictures {
         if self.given.contains(&None) {
             let both = planes.concat();
             npy::write_all(&dir.join(SLICES), &[(format!("{n:04}"), [both.len() / 2, 2, 1], &both)])?;
+        } else {
+            frames::forget(&kept(dir, n))?;
         }
         self.draw_both(setup, fields.each_ref().map(|f| &f[..]), time, file_names(dir, n))?;
         // No mixture of gases has a γ beyond those of the case: one range from the beginning.
@@ -166,21 +174,17 @@ impl Pictures {
         Ok(())
     }
 
-    /// Draws all frames again with the range of the whole run, if it is not given.
+    /// Draws all frames again whose planes are kept: with the range of the whole run, or with that which the case gives since it went on.
     ///
     /// # Errors
     /// A file cannot be read or written.
     pub fn again<const D: usize>(&mut self, setup: &Setup<D>, times: &[f64], dir: &Path) -> Result<()> {
-        let kept = |n: usize| dir.join(SLICES).join(format!("{n:04}.npy"));
-        if !self.given.contains(&None) {
-            return Ok(());
-        }
         for pass in 0..2 {
-            for (n, &time) in times.iter().enumerate().filter(|(n, _)| kept(*n).exists()) {
-                let (_, both) = npy::read(&kept(n))?;
+            for (n, &time) in times.iter().enumerate().filter(|(n, _)| kept(dir, *n).exists()) {
+                let (_, both) = npy::read(&kept(dir, n))?;
                 let planes: [Vec<f64>; 2] = [both[..both.len() / 2].to_vec(), both[both.len() / 2..].to_vec()];
                 if self.cells(setup).count() != planes[0].len() {
-                    return Err(Error::file(&kept(n), "is of another case: remove it"));
+                    return Err(Error::file(&kept(dir, n), "is of another case: remove it"));
                 }
                 match pass {
                     0 => self.see(&planes),
@@ -284,6 +288,11 @@ fn without_solids<const D: usize>(setup: &Setup<D>, mut values: Vec<f64>) -> Vec
 
 /// A range that holds 0 and nothing else yet.
 const NOTHING: [f64; 2] = [0.0, 0.0];
+
+/// Where the planes of the `n`-th frame are kept.
+fn kept(dir: &Path, n: usize) -> PathBuf {
+    dir.join(SLICES).join(format!("{n:04}.npy"))
+}
 
 fn file_names(dir: &Path, n: usize) -> [PathBuf; 2] {
     FIELDS.map(|(_, name, _)| dir.join(format!("{name}_{n:04}.png")))

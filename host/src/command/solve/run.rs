@@ -209,6 +209,7 @@ impl<'a, const D: usize> Run<'a, D> {
             untouched,
             _lock: lock,
         };
+        run.own_planes(progress)?;
         if resume {
             run.warn_of_an_end_before(file, progress);
             if run.goes_on() {
@@ -223,6 +224,22 @@ impl<'a, const D: usize> Run<'a, D> {
             run.checkpoint()?;
         }
         Ok(run)
+    }
+
+    /// Planes that are kept of frames before are drawn again: they are this run's, cut where it cuts, or they go.
+    fn own_planes(&mut self, progress: &mut Progress) -> Result<()> {
+        let Some(at) = self.pictures.as_ref().map(Pictures::at) else { return Ok(()) };
+        let before = self.journal.cut.replace(at);
+        if before == Some(at) {
+            return Ok(());
+        }
+        if let (Some(_), Some(last)) = (before, self.journal.frames.last()) {
+            let last = written(*last);
+            progress.warn(format!(
+                "pictures are cut elsewhere than before --resume: those up to t = {last} keep their planes and colours"
+            ));
+        }
+        frames::forget_planes(&self.dir)
     }
 
     /// A run that is resumed may have gone beyond the end that its case has now.
