@@ -44,6 +44,30 @@ proptest! {
     }
 }
 
+/// A corner of the cell is outside the capsule by 8e-4, which is 7e-9 of the cell: in single precision the mean of its columns rounded to their
+/// full height, and the cell was called closed.
+#[test]
+fn a_missing_corner_smaller_than_an_ulp_of_single_precision() {
+    precisions_agree(14_676_119_446_957_003_780);
+}
+
+/// A ball that holds all of a box but one corner, or nothing but one corner, in single precision. What is cut off there may be less than an ulp of
+/// the share, but its corner is some thousand roundings from the ball: the box is neither closed nor open.
+#[test]
+fn a_corner_beyond_a_ball_keeps_a_box_from_being_closed_and_one_inside_from_being_open() {
+    let mut random = Random::new(11);
+    let cell = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+    for n in 0..400 {
+        let out = DVec3::from_array(random.on_sphere().map(|x| x.abs() + 0.4)).normalize();
+        let (radius, depth) = (random.between(3.0, 6.0), 10_f64.powf(random.between(-3.3, -2.0)));
+        let ball = |center: DVec3| Sphere { center: center.as_vec3(), radius: radius as f32 };
+        let beyond = measured(ball(DVec3::ONE - out * (radius + depth)), &cell, 3)[0];
+        let inside = measured(ball(-out * (radius - depth)), &cell, 3)[0];
+        assert!(beyond.lower < 1.0, "{n}: radius {radius}, depth {depth}: {beyond:?}");
+        assert!(inside.upper > 0.0, "{n}: radius {radius}, depth {depth}: {inside:?}");
+    }
+}
+
 /// A box with a side in a plane of the grid.
 #[test]
 fn a_box_that_touches_a_plane() {

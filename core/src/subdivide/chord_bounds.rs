@@ -167,11 +167,11 @@ impl<'a, B: Chords> BoxInBody<'a, B> {
             for square in squares {
                 let ((&[a, b], &[c, d]), &[u_low, u_high]) = square else { continue };
                 let middle = || self.heights::<AXIS>([(u_low + u_high) * half, v_middle], self.grow);
-                let [low, high] = mean_fill([a, b, c, d], middle, full);
-                row_lower += low;
-                row_upper += high;
-                sum.all = sum.all && low == full;
-                sum.none = sum.none && high == zero;
+                let column = mean_fill([a, b, c, d], middle, full);
+                row_lower += column.lower;
+                row_upper += column.upper;
+                sum.all = sum.all && column.full;
+                sum.none = sum.none && column.empty;
             }
             sum.lower += row_lower;
             sum.upper += row_upper;
@@ -217,24 +217,45 @@ struct ColumnSum<R> {
     none: bool,
 }
 
-/// Bounds of the mean height to which the body fills the columns on a rectangle, from the lines at its corners and, if need be, in its middle.
-/// `full` is the height of the box.
+/// Bounds of the mean height to which a body fills the columns on a rectangle. A mean that rounding brings to the height of the box or to
+/// zero proves neither that they are full nor that they are empty: what is missing may be less than half an ulp of it.
+struct ColumnFill<R> {
+    lower: R,
+    upper: R,
+    /// The lines at all corners are inside the body at full height, and so are all between them.
+    full: bool,
+    /// No line reaches the part of the box that the body fills.
+    empty: bool,
+}
+
+impl<R: Real> ColumnFill<R> {
+    /// Not known to be full or empty.
+    #[inline(always)]
+    fn between(lower: R, upper: R) -> Self {
+        ColumnFill { lower, upper, full: false, empty: false }
+    }
+}
+
+/// The fill of the columns on a rectangle, from the lines at its corners and, if need be, in its middle. `full` is the height of the box.
 #[inline(always)]
 fn mean_fill<R: Real>(
     corners: [Option<ChordHeights<R>>; 4],
     middle: impl FnOnce() -> Option<ChordHeights<R>>,
     full: R,
-) -> [R; 2] {
-    let [Some(a), Some(b), Some(c), Some(d)] = corners else { return partial_fill(corners, full) };
+) -> ColumnFill<R> {
+    let [Some(a), Some(b), Some(c), Some(d)] = corners else {
+        return ColumnFill::between(partial_fill(corners, full), full);
+    };
     let (up, down) = ([a.up, b.up, c.up, d.up], [a.down, b.down, c.down, d.down]);
     let (up_full, down_full) = (all_above(up, full), all_above(down, full));
     if up_full && down_full {
-        return [full, full];
+        return ColumnFill { lower: full, upper: full, full: true, empty: false };
     }
-    let Some(m) = middle() else { return [R::ZERO, full] };
+    let Some(m) = middle() else { return ColumnFill::between(R::ZERO, full) };
     let up = if up_full { [full, full] } else { clamped_mean(up, m.up, full) };
     let down = if down_full { [full, full] } else { clamped_mean(down, m.down, full) };
-    [(up[0] + (down[0] - full)).max(R::ZERO), (up[1] + (down[1] - full)).max(R::ZERO)]
+    let [lower, upper] = [0, 1].map(|n: usize| (up[n] + (down[n] - full)).max(R::ZERO));
+    ColumnFill { lower, upper, full: false, empty: up[1] == R::ZERO || down[1] == R::ZERO }
 }
 
 #[inline(always)]
@@ -282,15 +303,15 @@ fn mean_positive_part<R: Real>(x: R, y: R, z: R) -> R {
 }
 
 /// [`mean_fill`] where the line at a corner may miss the body. If the lines at three corners meet it, so do all lines over their triangle,
-/// since the body is convex: half the rectangle gives the lower bound. The upper bound is `full`.
+/// since the body is convex: half the rectangle gives a lower bound. Nothing is known from above.
 #[cold]
-fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> [R; 2] {
+fn partial_fill<R: Real>(corners: [Option<ChordHeights<R>>; 4], full: R) -> R {
     // Within the box and the body both are concave; below zero there is nothing inside.
     let depth = |h: ChordHeights<R>| h.up.min(full) + h.down.min(full) - full;
     let [a, b, c, d] = corners.map(|h| h.map(depth).filter(|&h| h >= R::ZERO));
     let third = |x: Option<R>, y: Option<R>, z: Option<R>| Some((x? + y? + z?) * R::from_f64(1.0 / 6.0));
     let half = third(a, b, c).or(third(b, d, a)).or(third(c, a, d)).or(third(d, b, c));
-    [half.unwrap_or(R::ZERO), full]
+    half.unwrap_or(R::ZERO)
 }
 
 /// A side of the base, as far as the body reaches along it, divided into parts.
