@@ -40,6 +40,27 @@ fn a_hole_far_from_the_origin_does_not_swallow_its_body() {
     }
 }
 
+/// Every triangle written by itself, its corners a few hundredths of a millimetre off to a metre: they were sheets, and what they hold was open.
+#[test]
+fn cracks_wider_than_rounding_close_if_all_close() {
+    let mut off = 0.0;
+    let mut noise = |p: DVec3| {
+        off = (off + 0.37) % 1.0;
+        p + dvec3(off, (off * 7.0) % 1.0, (off * 13.0) % 1.0) * 8e-6
+    };
+    let cracked: Vec<Triangle> =
+        cuboid(DVec3::ZERO, DVec3::ONE, false).into_iter().map(|t| t.map(&mut noise)).collect();
+    let found = bodies(&[&cracked]);
+    let d = &found.diagnoses[0];
+    assert_eq!((d.bodies, d.sheets, d.boundary_edges), (1, 0, 0), "{:?}", found.warnings);
+    assert!(d.welded_by > 1e-6 && (d.body_volume - 1.0).abs() < 1e-4, "{} {}", d.welded_by, d.body_volume);
+    // A side is missing: what is open stays as it is, for nothing tells a crack from a slot.
+    assert_eq!(bodies(&[&cracked[1..]]).diagnoses[0].welded_by, 0.0);
+    // Two leaves of an open plate as near to each other keep their distance within.
+    let leaf = |z: f64| cuboid(dvec3(0.0, 0.0, z), dvec3(1.0, 1.0, z + 1.0), false)[2..4].to_vec();
+    assert!(bodies(&[&leaf(0.0), &leaf(1e-3)]).diagnoses[0].welded_by == 0.0);
+}
+
 #[test]
 fn cracks_close_and_nothing_else_moves() {
     // Every corner written anew, a little off; beside it a closed body far smaller than the crack is allowed to be wide.

@@ -497,7 +497,11 @@ fn distinct(mesh: &Indexed) -> Vec<bool> {
     mesh.triangles.iter().map(|[a, b, c]| a != b && b != c && c != a).collect()
 }
 
-/// If edges lack partners, try whether points that differ by rounding are meant to be one. Returns the uses of the edges then.
+/// Cracks wider than rounding, in units of it: 0.03 mm to a metre. They count as cracks only if every edge finds its partner across them.
+const WIDE_CRACKS: [f64; 2] = [8.0, 64.0];
+
+/// If edges lack partners, try whether points that differ by rounding are meant to be one, or by a little more if that closes everything. Returns
+/// the uses of the edges then.
 fn close_cracks(
     mesh: &mut Indexed,
     alive: &[bool],
@@ -510,12 +514,18 @@ fn close_cracks(
     if before == 0 {
         return uses;
     }
-    let mut merged = mesh.clone();
-    let moved = weld::merge_close(&mut merged, alive, &uses.unmatched_points(mesh.points.len()), rounding);
-    let after = EdgeUses::new(&merged, alive);
-    if 2 * after.unmatched() > before {
-        return uses;
-    }
+    let loose = uses.unmatched_points(mesh.points.len());
+    let merged_within = |distance: f64| {
+        let mut merged = mesh.clone();
+        let moved = weld::merge_close(&mut merged, alive, &loose, distance);
+        let uses = EdgeUses::new(&merged, alive);
+        (merged, uses, moved)
+    };
+    let closed_by = |factor: f64| Some(merged_within(rounding * factor)).filter(|(_, uses, _)| uses.unmatched() == 0);
+    let narrow = merged_within(rounding);
+    let left = narrow.1.unmatched();
+    let wide = if left == 0 { None } else { WIDE_CRACKS.into_iter().find_map(closed_by) };
+    let Some((merged, after, moved)) = wide.or_else(|| (2 * left <= before).then_some(narrow)) else { return uses };
     report.warn(format!("points up to {moved:.1e} apart were merged to close cracks"));
     d.welded_by = moved;
     *mesh = merged;
