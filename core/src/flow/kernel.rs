@@ -6,6 +6,7 @@
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
+//! - `shocks`: fluxes through faces that lie along a strong shock
 //! - `wall_pushes`: what the walls of watched cells feel of the fluxes
 //! - `solver_calls`: what differs from one Riemann solver to another
 //! - `sweep`: the rows of a slab in order, in tiles that stay in a core's cache
@@ -20,6 +21,7 @@ pub(crate) mod positive_fluxes;
 pub(crate) mod reconstruct;
 pub(crate) mod rows;
 pub(crate) mod scratch;
+pub(crate) mod shocks;
 pub(crate) mod slab;
 pub(crate) mod solver_calls;
 pub(crate) mod sweep;

@@ -44,9 +44,10 @@ pub struct Flux<R, const D: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Riemann {
-    /// Three waves: keeps contacts and shear.
+    /// Three waves: keeps contacts and shear. In two and three dimensions faces along a strong shock have the flux of [`Riemann::Hlle`], without
+    /// which it would wander.
     Hllc,
-    /// The same, softened where the gas is slow and no sound passes; along one axis the same.
+    /// The same, shocks included, softened where the gas is slow and no sound passes; along one axis the same.
     HllcLowMach,
     /// Two waves: robust, smears contacts.
     Hlle,
@@ -73,6 +74,8 @@ pub trait Solver: sealed::Sealed {
     const KIND: Riemann;
     /// It looks at the [`Slowness`] of a face.
     const LOW_MACH: bool = false;
+    /// It keeps shear and contacts, and so lets strong shocks wander where nothing else damps them.
+    const KEEPS_SHEAR: bool = false;
 
     /// The flux between two states; `ENERGY` asks for the energy flux.
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
@@ -110,6 +113,7 @@ impl sealed::Sealed for Hllc {}
 
 impl Solver for Hllc {
     const KIND: Riemann = Riemann::Hllc;
+    const KEEPS_SHEAR: bool = true;
 
     #[inline(always)]
     fn flux<R: Real, const D: usize, const ENERGY: bool>(
@@ -126,6 +130,7 @@ impl sealed::Sealed for HllcLowMach {}
 impl Solver for HllcLowMach {
     const KIND: Riemann = Riemann::HllcLowMach;
     const LOW_MACH: bool = true;
+    const KEEPS_SHEAR: bool = true;
 
     #[inline(always)]
     fn flux<R: Real, const D: usize, const ENERGY: bool>(

@@ -9,7 +9,8 @@ use core::marker::PhantomData;
 
 /// The solvers and gases that [`Problem::step_by`] is compiled for: [`AnyFlux`] or one [`OneFlux`].
 ///
-/// The sweep over the cells is compiled for each kind of gas and calls a solver by pointers. A program that names one of them links no other.
+/// The sweep over the cells is compiled for each kind of gas and calls a solver by pointers. A program that names one of them links no other, but with HLLC the
+/// fluxes of HLLE in two and three dimensions, which faces along strong shocks have.
 pub trait FluxChoice: Choice {}
 
 /// All solvers and gases but mixed ones; the problem says which.

@@ -5,6 +5,7 @@ use crate::flow::kernel::mixed::{self, Carried};
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
 use crate::flow::kernel::scratch::Work;
+use crate::flow::kernel::shocks::{Pressures, fluxes_along_shocks};
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
 use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
@@ -67,6 +68,9 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, const ENERGY: bool, con
         paces(slab, 0, row.at, openings.face(), pace);
     }
     (slab.solver.row)([work.left, work.right], openings, &slab.face_gas, pace, work.flux);
+    let seen = Pressures { window: work.window, ranges: work.ranges };
+    let between = ([&*work.left, &*work.right], openings);
+    fluxes_along_shocks(slab, (0, row.at), seen, between, work.strength, work.flux);
     if let Some(medium) = &slab.medium {
         let marks = &medium.porosity.marks[row.start..][..n];
         let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
@@ -267,8 +271,8 @@ fn fluxes_of_faces<R: Real, const D: usize, const ENERGY: bool, const MIXED: boo
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
-    [left, right]: [&[R]; 2],
-    (flux, pace): (&mut [R], &mut [R]),
+    ([left, right], seen): ([&[R]; 2], Pressures<'_, R>),
+    (flux, pace, strength): (&mut [R], &mut [R], &mut [R]),
 ) {
     let n = slab.size.n;
     let (k, cells) = (at[d], slab.problem.mesh.cells()[d]);
@@ -299,6 +303,7 @@ fn fluxes_of_faces<R: Real, const D: usize, const ENERGY: bool, const MIXED: boo
         paces(slab, d, at, openings.face(), pace);
     }
     (slab.solver.row)([left, right], openings, &slab.face_gas, pace, flux);
+    fluxes_along_shocks(slab, (d, at), seen, ([left, right], openings), &mut strength[..n], flux);
     if let Some(medium) = &slab.medium {
         let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
@@ -407,8 +412,9 @@ fn fluxes_under<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     } else {
         ghosts::<R, D, MIXED>(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
-    let to = (&mut work.flux[..f], &mut *work.coefficients.pace);
-    fluxes_of_faces::<R, D, ENERGY, MIXED>(slab, d, at, [below_state, &work.right[..f]], to);
+    let seen = Pressures { window: work.window, ranges: work.ranges };
+    let to = (&mut work.flux[..f], &mut *work.coefficients.pace, &mut *work.strength);
+    fluxes_of_faces::<R, D, ENERGY, MIXED>(slab, d, at, ([below_state, &work.right[..f]], seen), to);
     let last = mesh.cells()[d];
     for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
         if at[d] == edge {

@@ -383,6 +383,16 @@ pub(crate) enum Openings<'a, R> {
 }
 
 impl<'a, R> Openings<'a, R> {
+    /// Of one face alone.
+    pub(crate) fn one(self, i: usize) -> Self {
+        let of = |values: &'a [R]| &values[i..][..1];
+        match self {
+            Openings::None => Openings::None,
+            Openings::Geometric(face) => Openings::Geometric(of(face)),
+            Openings::Paper(face, low, high) => Openings::Paper(of(face), of(low), of(high)),
+        }
+    }
+
     /// Open fractions of the faces; none without porosity.
     pub(crate) fn face(&self) -> Option<&'a [R]> {
         match self {
@@ -602,6 +612,21 @@ pub(crate) fn largest<R: Real>(row: &[R]) -> R {
     }
     let tail = chunks.remainder().iter().fold(R::ZERO, |m, &x| R::larger(x, m));
     lanes.iter().fold(tail, |m, &x| R::larger(x, m))
+}
+
+/// The least and the largest value of a row of positive ones; NaN is passed over.
+pub(crate) fn range<R: Real>(row: &[R]) -> [R; 2] {
+    const LANES: usize = 16;
+    let (mut least, mut most) = ([R::MAX; LANES], [R::ZERO; LANES]);
+    let mut chunks = row.chunks_exact(LANES);
+    for chunk in &mut chunks {
+        for i in 0..LANES {
+            least[i] = R::smaller(chunk[i], least[i]);
+            most[i] = R::larger(chunk[i], most[i]);
+        }
+    }
+    let all = least.iter().zip(&most).fold([R::MAX, R::ZERO], |m, (a, b)| [R::smaller(*a, m[0]), R::larger(*b, m[1])]);
+    chunks.remainder().iter().fold(all, |m, &x| [R::smaller(x, m[0]), R::larger(x, m[1])])
 }
 
 /// The face state at index `i` of a block `m` long, in the frame of its axis.

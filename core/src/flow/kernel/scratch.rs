@@ -109,8 +109,14 @@ impl Sizes {
             changes = changes.saturating_add(product([self.change_rows::<D>(d), v, self.n]));
             d += 1;
         }
-        let metric = product([4 * D + 5, self.n]).saturating_add(product([3, self.m]));
+        let metric = product([4 * D + 5, self.n]).saturating_add(product([4, self.m]));
+        let window = window.saturating_add(self.ranges::<D>());
         window.saturating_add(row).saturating_add(lagged).saturating_add(changes).saturating_add(metric)
+    }
+
+    /// Ranges of pressure in the window, two scalars a row.
+    const fn ranges<const D: usize>(&self) -> usize {
+        if D == 1 { 0 } else { product([2, self.layers, self.rows_padded]) }
     }
 
     /// Rows whose changes along axis `d` are kept: those of a layer, until the layer above has come. Along the last axis they are
@@ -132,11 +138,15 @@ impl Sizes {
 /// Buffers of a sweep.
 pub(in crate::flow) struct Work<'s, R, const D: usize> {
     pub window: &'s mut [R],
+    /// The least and the largest pressure of each row of the window; of none in one dimension.
+    pub ranges: &'s mut [R],
     pub slope: [&'s mut [R]; D],
     pub half: &'s mut [R],
     pub left: &'s mut [R],
     pub right: &'s mut [R],
     pub flux: &'s mut [R],
+    /// How strong a shock lies along each face of a row.
+    pub strength: &'s mut [R],
     /// What the row below left for the faces along axis 1 of a 3D mesh.
     pub below_row: FacesBelow<'s, R>,
     /// What the rows of the layer below left for the faces along the last axis.
@@ -183,11 +193,13 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
             below_row,
             below_layer,
             window: arena.take(s.layers * s.rows_padded * v * s.padded),
+            ranges: arena.take(s.ranges::<D>()),
             slope: arena.axes(v * s.n),
             half: arena.take(v * s.n),
             left: arena.take(f * s.m),
             right: arena.take(f * s.m),
             flux: arena.take(f * s.m),
+            strength: arena.take(s.m),
             change: core::array::from_fn(|d| arena.take(s.change_rows::<D>(d) * v * s.n)),
             coefficients: RowCoefficients {
                 inv_width: arena.take(s.n),

@@ -199,13 +199,17 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         first - beside(first == 0)..last + beside(last == self.all_rows())
     }
 
+    /// Which row of the window row `j` of layer `l` is.
+    pub fn slot(&self, l: isize, j: isize) -> usize {
+        let layer = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
+        let row = if D == 3 { (j - self.rows.start as isize + ROWS_BESIDE as isize) as usize } else { 0 };
+        layer * self.size.rows_padded + row
+    }
+
     /// Where row `j` of layer `l` stands in the window.
     pub fn block(&self, l: isize, j: isize) -> Range<usize> {
-        let s = self.size;
-        let slot = if D == 1 { 0 } else { l.rem_euclid(3) as usize };
-        let row = if D == 3 { (j - self.rows.start as isize + ROWS_BESIDE as isize) as usize } else { 0 };
-        let len = s.state * s.padded;
-        let start = (slot * s.rows_padded + row) * len;
+        let len = self.size.state * self.size.padded;
+        let start = self.slot(l, j) * len;
         start..start + len
     }
 

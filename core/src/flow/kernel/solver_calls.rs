@@ -3,12 +3,12 @@
 use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::rows::{self, Openings};
 use crate::flow::porosity::jump::ThroatCall;
-use crate::flow::riemann::{Flux, Slowness, Solver};
+use crate::flow::riemann::{Flux, Hlle, Slowness, Solver};
 use crate::flow::state::Primitive;
 use crate::number::real::Real;
 
 /// Fluxes of a row of faces: [`rows::fluxes`].
-type RowCall<R> = fn([&[R]; 2], Openings<'_, R>, &FaceGas<R>, &[R], &mut [R]);
+pub(in crate::flow) type RowCall<R> = fn([&[R]; 2], Openings<'_, R>, &FaceGas<R>, &[R], &mut [R]);
 /// The normal momentum that passes a wall, between the gas and its image.
 type WallCall<R, const D: usize> = fn([&Primitive<R, D>; 2], &FaceGas<R>, Slowness<R>) -> R;
 
@@ -19,6 +19,8 @@ pub(in crate::flow) struct SolverCalls<R, const D: usize> {
     pub low_mach: bool,
     /// Of the faces of a row.
     pub row: RowCall<R>,
+    /// Of faces along a strong shock, if another solver has a share there.
+    pub along_shocks: Option<RowCall<R>>,
     /// In the throat of a face where the porosity jumps.
     pub throat: ThroatCall<R, D>,
     /// At a closed face.
@@ -31,6 +33,7 @@ impl<R: Real, const D: usize> SolverCalls<R, D> {
         SolverCalls {
             low_mach: S::LOW_MACH,
             row: rows::fluxes::<R, S, D, ENERGY, MIXED>,
+            along_shocks: if S::KEEPS_SHEAR && D > 1 { Some(rows::fluxes::<R, Hlle, D, ENERGY, MIXED>) } else { None },
             throat: throat::<R, S, D, MIXED>,
             wall: wall::<R, S, D>,
         }

@@ -225,6 +225,10 @@ fn load_row<R: Real, const D: usize, const MIXED: bool>(
             mirror::<R, D, MIXED>(slab, block, d, k < 0, at);
         }
     }
+    if D > 1 {
+        let range = rows::range(rows::var(block, D + 1, s.padded));
+        work.ranges[2 * slab.slot(l, j)..][..2].copy_from_slice(&range);
+    }
 }
 
 /// The cells beyond both ends of a periodic row: those of the other end.
