@@ -86,7 +86,7 @@ fn one_body<V: Vector>(random: &mut Random, grid: &Grid<V::Scalar>, solid: &[[V;
 
 /// Memory for unions, some of it short.
 fn short_of<'a, R: Real>(random: &mut Random, memory: UnionMemory<'a, R>) -> UnionMemory<'a, R> {
-    let UnionMemory { pieces, split_pieces, order, nodes, parts, fragments, pending } = memory;
+    let UnionMemory { pieces, split_pieces, order, nodes, parts, fragments, pending, octants, near } = memory;
     let mut cut = |length: usize| cut(random, length);
     UnionMemory {
         pieces: {
@@ -117,6 +117,8 @@ fn short_of<'a, R: Real>(random: &mut Random, memory: UnionMemory<'a, R>) -> Uni
             let n = cut(pending.len());
             &mut pending[..n]
         },
+        octants,
+        near,
     }
 }
 

@@ -36,10 +36,12 @@ struct Found<R> {
 struct Given {
     tenths: usize,
     pieces: usize,
+    /// Numbers of bodies near octants.
+    near: usize,
 }
 
 /// As much as the host gives.
-const PLENTY: Given = Given { tenths: 10, pieces: usize::MAX };
+const PLENTY: Given = Given { tenths: 10, pieces: usize::MAX, near: usize::MAX };
 
 fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given) -> Found<V::Scalar> {
     let set = || {
@@ -63,6 +65,7 @@ fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given
     let (mut split_pieces, mut order) = (room(4 * most), room(4 * most));
     let (mut nodes, mut parts): (Vec<Node<V::Scalar>>, Vec<Part>) = (room(4 * most), room(most / 4));
     let (mut fragments, mut pending): (Vec<Fragment<V::Scalar>>, Vec<PendingNode>) = (room(most), room(most));
+    let (mut octants, mut near) = (room(given.near.min(most)), room(given.near.min(64 * most)));
     let union = UnionMemory {
         pieces: &mut pieces,
         split_pieces: &mut split_pieces,
@@ -71,6 +74,8 @@ fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given
         parts: &mut parts,
         fragments: &mut fragments,
         pending: &mut pending,
+        octants: &mut octants,
+        near: &mut near,
     };
     let mut memory = LayerMemory::new(grid, &mut reals, &mut flags, &mut numbers, &mut groups, union).expect("room");
     for k in 0..grid.cells()[2] {
@@ -192,7 +197,7 @@ fn too_little_memory_gives_bounds() {
     let best = fields(&grid, &surfaces, PLENTY);
     let mut gaps = Vec::new();
     for given in [(0, 0), (0, 1024), (1, 4), (2, 40), (5, 16), (10, 8), (10, 64)] {
-        let found = fields(&grid, &surfaces, Given { tenths: given.0, pieces: given.1 });
+        let found = fields(&grid, &surfaces, Given { tenths: given.0, pieces: given.1, near: 0 });
         for field in 0..4 {
             for at in 0..best.value[field].len() {
                 let [low, high] = [0, 1].map(|n| found.bounds[n][field][at]);
@@ -203,6 +208,29 @@ fn too_little_memory_gives_bounds() {
         gaps.push(found.reports.iter().fold(0.0, |m: f64, r| m.max(r.max_gap)));
     }
     assert!(gaps[0] > 0.1 && gaps[6] < 0.02, "{gaps:?}");
+}
+
+/// Where hundreds of bodies meet, pieces ask only those near them, as far as memory goes: none is missed.
+#[test]
+fn a_crowd_has_the_same_bits_whichever_bodies_are_asked() {
+    let mut random = Random::new(13);
+    let mut crowd = |count: usize, spread: f64, half: DVec3| -> Vec<_> {
+        let center =
+            |random: &mut Random| DVec3::from_array([0; 3].map(|_| random.between(0.5 - spread, 0.5 + spread)));
+        (0..count).map(|_| turned_box(center(&mut random), half, random.turn())).collect()
+    };
+    let mut solids = crowd(40, 0.01, DVec3::new(0.35, 0.3, 0.25));
+    solids.extend(crowd(260, 0.45, DVec3::new(0.08, 0.06, 0.02)));
+    let bodies = scene(&solids);
+    let surfaces = surfaces(&bodies, &bodies.triangles);
+    let all = Edges([edges(1), edges(2), edges(1)]);
+    let grid = all.grid(None).expect("a grid");
+    let expected = fields(&grid, &surfaces, Given { near: 0, ..PLENTY });
+    assert!(expected.reports.iter().all(|r| r.divided == 0 && r.max_gap < 1e-12));
+    for near in [300, 2000, usize::MAX] {
+        let found = fields(&grid, &surfaces, Given { near, ..PLENTY });
+        assert!(found.value == expected.value && found.bounds == expected.bounds, "with {near} numbers");
+    }
 }
 
 #[test]
@@ -234,7 +262,7 @@ fn no_input_panics() {
 fn solid_volume<V: Vector>(triangles: &[[V; 3]], n: usize) -> (V::Scalar, V::Scalar) {
     let edges: Vec<V::Scalar> = (0..=n).map(|i| V::Scalar::from_usize(i) / V::Scalar::from_usize(n)).collect();
     let grid = Grid::new(&edges, &edges, &edges).expect("a grid");
-    let found = fields(&grid, &[Surface::new(triangles)], Given { tenths: 0, pieces: 0 });
+    let found = fields(&grid, &[Surface::new(triangles)], Given { tenths: 0, pieces: 0, near: 0 });
     found.reports.iter().fold((V::Scalar::ZERO, V::Scalar::ZERO), |(volume, leak), r| {
         (volume + r.solid_volume, leak.max(r.defects.leak))
     })

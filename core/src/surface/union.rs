@@ -14,6 +14,7 @@
 
 mod bsp;
 mod descent;
+mod octree;
 mod piece;
 
 use crate::number::aabb::Aabb;
@@ -22,11 +23,13 @@ use crate::number::space::{cross, dot, sub, unit};
 use crate::surface::clip::{Polygon, keep};
 use bsp::{Branch, BspMemory, build_bsp};
 use descent::{Descent, DescentRule};
+use octree::{Octree, OctreeSize};
 use piece::NoProof::{Ambiguous, Full};
 use piece::{Ball, Plane};
 
 pub use bsp::{Node, PendingNode};
 pub use descent::{Fragment, Part};
+pub use octree::Octant;
 pub use piece::{NoProof, Piece};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
@@ -70,6 +73,11 @@ pub struct UnionMemory<'a, R: Real> {
     pub fragments: &'a mut [Fragment<R>],
     /// Branches of a tree still to grow.
     pub pending: &'a mut [PendingNode],
+    /// Octants of a cell where more than 64 bodies meet. May be empty: then every piece asks every body, which takes the square of their number. As many as
+    /// pieces serve well.
+    pub octants: &'a mut [Octant<R>],
+    /// Numbers of bodies near octants; 64 for each piece serve well.
+    pub near: &'a mut [u32],
 }
 
 impl<R: Real> UnionMemory<'_, R> {
@@ -83,6 +91,8 @@ impl<R: Real> UnionMemory<'_, R> {
             parts: self.parts,
             fragments: self.fragments,
             pending: self.pending,
+            octants: self.octants,
+            near: self.near,
         }
     }
 }
@@ -124,6 +134,8 @@ impl<R: Real, const N: usize> UnionBuffers<R, N> {
             parts: &mut self.parts,
             fragments: &mut self.fragments,
             pending: &mut self.pending,
+            octants: &mut [],
+            near: &mut [],
         }
     }
 }
@@ -149,6 +161,7 @@ pub struct CellUnion<'a, R: Real> {
     built: usize,
     piece_count: usize,
     node_count: usize,
+    octree: OctreeSize,
 }
 
 impl<'a, R: Real> CellUnion<'a, R> {
@@ -164,6 +177,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
             built: 0,
             piece_count: 0,
             node_count: 0,
+            octree: OctreeSize::default(),
         }
     }
 
@@ -227,7 +241,9 @@ impl<'a, R: Real> CellUnion<'a, R> {
                 part.root = build_bsp(pieces, memory, self.frame.thickness)?;
             }
         }
-        self.built = self.part_count;
+        if self.built < self.part_count {
+            (self.built, self.octree) = (self.part_count, OctreeSize::default());
+        }
         Ok(())
     }
 
@@ -311,9 +327,10 @@ impl<'a, R: Real> CellUnion<'a, R> {
 
     /// What goes down the trees, and all pieces.
     fn descent(&mut self) -> (Descent<'_, R>, &[Piece<R>]) {
-        let UnionMemory { pieces, nodes, parts, fragments, .. } = &mut self.space;
-        let parts = parts.get(..self.part_count).unwrap_or_default();
-        (Descent { nodes, parts, fragments, spare: Polygon::default(), thickness: self.frame.thickness }, pieces)
+        let UnionMemory { pieces, nodes, parts, fragments, octants, near, .. } = &mut self.space;
+        let (parts, thickness) = (parts.get(..self.part_count).unwrap_or_default(), self.frame.thickness);
+        let octree = Octree { octants, near, size: &mut self.octree, nodes, parts, thickness };
+        (Descent { nodes, parts, fragments, octree, spare: Polygon::default(), thickness }, pieces)
     }
 }
 

@@ -14,7 +14,7 @@ use voidage_core::surface::layer::{
 use voidage_core::surface::surface_area::{
     CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, PiecesUsed, SurfaceArea,
 };
-use voidage_core::surface::union::{Fragment, Node, Part, PendingNode, Piece, UnionMemory};
+use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory};
 
 /// Rows that miss zero by more than this fraction of a face leak.
 const LEAK: f64 = 1e-9;
@@ -275,6 +275,8 @@ struct UnionVecs {
     parts: Vec<Part>,
     fragments: Vec<Fragment<f64>>,
     pending: Vec<PendingNode>,
+    octants: Vec<Octant<f64>>,
+    near: Vec<u32>,
 }
 
 impl UnionVecs {
@@ -282,6 +284,8 @@ impl UnionVecs {
     fn new(most_pieces: usize) -> Self {
         // Of one body, or of the parts of one polygon under way.
         let of_one = 4096;
+        // Fewer bodies are no crowd.
+        let crowd = if most_pieces > 1024 { most_pieces } else { 0 };
         UnionVecs {
             pieces: vec![Piece::default(); most_pieces],
             split_pieces: vec![Piece::default(); of_one],
@@ -290,6 +294,8 @@ impl UnionVecs {
             parts: vec![Part::default(); most_pieces / 2],
             fragments: vec![Fragment::default(); of_one.min(most_pieces)],
             pending: vec![PendingNode::default(); of_one],
+            octants: vec![Octant::default(); crowd],
+            near: vec![0; 64 * crowd],
         }
     }
 
@@ -302,6 +308,8 @@ impl UnionVecs {
             parts: &mut self.parts,
             fragments: &mut self.fragments,
             pending: &mut self.pending,
+            octants: &mut self.octants,
+            near: &mut self.near,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Polygons on their way down the trees of a cell.
 
 use super::bsp::{Branch, Node};
+use super::octree::{Octree, ToAsk};
 use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{AMBIGUITY_BAND, Ball, Place, cut, place, span};
 use crate::number::real::Real;
@@ -28,6 +29,7 @@ pub struct Fragment<R: Real> {
     polygon: Polygon<R>,
     /// Around the polygon, or one that it is a part of.
     ball: Ball<R>,
+    to_ask: ToAsk,
     /// It has been cut since the ball was put around it.
     is_cut: bool,
     part: usize,
@@ -56,6 +58,7 @@ pub(super) struct Descent<'a, R: Real> {
     pub nodes: &'a [Node<R>],
     pub parts: &'a [Part],
     pub fragments: &'a mut [Fragment<R>],
+    pub octree: Octree<'a, R>,
     pub spare: Polygon<R>,
     pub thickness: R,
 }
@@ -70,19 +73,12 @@ impl<R: Real> Descent<'_, R> {
         mut keep: impl FnMut(&Polygon<R>),
     ) -> Result<(), NoProof> {
         let parts = self.parts;
-        let enter = |f: &mut Fragment<R>, part: usize| {
-            // Where many trees follow, a ball around what is left tells it from most planes.
-            if f.is_cut && parts.len() > FEW {
-                (f.ball, f.is_cut) = (Ball::around(&f.polygon), false);
-            }
-            f.part = if Some(part) == rule.own { part + 1 } else { part };
-            f.branch = parts.get(f.part).map_or(Branch::Open, |p| p.root);
-            (f.inward, f.twin, f.meets) = (false, false, false);
-        };
+        self.octree.begin();
         let first = self.fragments.first_mut().ok_or(Full)?;
         first.polygon.assign(polygon);
-        (first.ball, first.is_cut) = (ball, false);
-        enter(first, 0);
+        (first.ball, first.is_cut, first.to_ask) = (ball, false, ToAsk::default());
+        self.octree.locate(&mut first.to_ask, &ball, 0);
+        first.enter(parts, &mut self.octree, 0, rule.own);
         let mut waiting: usize = 1;
         while let Some(top) = waiting.checked_sub(1) {
             let f = self.fragments.get_mut(top).ok_or(Full)?;
@@ -101,7 +97,7 @@ impl<R: Real> Descent<'_, R> {
                     continue;
                 }
                 Branch::Open => {
-                    enter(f, f.part + 1);
+                    f.enter(parts, &mut self.octree, f.part + 1, rule.own);
                     continue;
                 }
                 Branch::Node(n) => self.nodes.get(n as usize).ok_or(Full)?,
@@ -171,8 +167,8 @@ impl<R: Real> Descent<'_, R> {
     fn cut(&mut self, top: usize, node: &Node<R>) -> Result<(), NoProof> {
         let [f, next] = self.fragments.get_mut(top..).and_then(|f| f.first_chunk_mut()).ok_or(Full)?;
         f.is_cut = true;
-        let Fragment { polygon: _, ball, is_cut, part, branch, inward, twin, meets } = *f;
-        (next.ball, next.is_cut, next.part, next.branch) = (ball, is_cut, part, branch);
+        let Fragment { polygon: _, ball, to_ask, is_cut, part, branch, inward, twin, meets } = *f;
+        (next.ball, next.to_ask, next.is_cut, next.part, next.branch) = (ball, to_ask, is_cut, part, branch);
         (next.inward, next.twin, next.meets) = (inward, twin, meets);
         if f.polygon.is_full() {
             [next.polygon, f.polygon] = f.polygon.halves();
@@ -186,6 +182,27 @@ impl<R: Real> Descent<'_, R> {
 }
 
 impl<R: Real> Fragment<R> {
+    /// Go to the root of the tree of a body, or of the next one after it that the polygon may meet and that is not its own.
+    #[inline(always)]
+    fn enter(&mut self, parts: &[Part], octree: &mut Octree<R>, part: usize, own: Option<usize>) {
+        if self.is_cut && parts.len() > FEW {
+            self.draw_ball(octree, part);
+        }
+        self.part = if Some(part) == own { part + 1 } else { part };
+        if self.to_ask.is_listed {
+            self.part = octree.next_body(&mut self.to_ask, part, own);
+        }
+        self.branch = parts.get(self.part).map_or(Branch::Open, |p| p.root);
+        (self.inward, self.twin, self.meets) = (false, false, false);
+    }
+
+    /// Where many trees follow, a ball around what is left tells it from most planes, and from most bodies.
+    #[inline(never)]
+    fn draw_ball(&mut self, octree: &mut Octree<R>, part: usize) {
+        (self.ball, self.is_cut) = (Ball::around(&self.polygon), false);
+        octree.locate(&mut self.to_ask, &self.ball, part);
+    }
+
     #[inline(always)]
     fn place(&self, node: &Node<R>, thickness: R) -> Result<Place, NoProof> {
         let ambiguous = thickness * R::from_f64(AMBIGUITY_BAND);

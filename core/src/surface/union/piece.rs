@@ -40,7 +40,7 @@ pub(super) struct Plane<R> {
 
 impl<R: Real> Plane<R> {
     #[inline(always)]
-    fn distance(&self, p: [R; 3]) -> R {
+    pub fn distance(&self, p: [R; 3]) -> R {
         dot(self.normal, p) - self.offset
     }
 }
@@ -48,8 +48,8 @@ impl<R: Real> Plane<R> {
 /// A ball around a polygon: one product tells most polygons from a plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ball<R> {
-    center: [R; 3],
-    radius: R,
+    pub center: [R; 3],
+    pub radius: R,
 }
 
 impl<R: Real> Ball<R> {

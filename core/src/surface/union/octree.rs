@@ -1,0 +1,192 @@
+//! Where many bodies meet in one cell: which of them have solid near a polygon.
+//!
+//! An octree of the cell, grown where it is asked. Each octant lists the bodies that have solid in a box of [`REACH`] times its width about its centre, so
+//! that a polygon whose ball stays within the box need not go down the trees of the others. Of bodies about one centre few reach any small octant on the
+//! surface of their union.
+
+use super::bsp::{Branch, Node};
+use super::descent::Part;
+use super::piece::{AMBIGUITY_BAND, Ball};
+use crate::number::real::Real;
+use heapless::Vec;
+
+/// Where no more bodies than this meet, lists cost more than they save.
+const MANY: usize = 64;
+
+/// Lists as short as this are not shortened further.
+const SHORT: usize = 64;
+
+/// Width of the box that the list of an octant holds for, in widths of the octant.
+const REACH: f64 = 2.0;
+
+/// A child that is not made yet, and one that memory does not allow.
+const UNKNOWN: u32 = 0;
+const NONE: u32 = u32::MAX;
+
+/// Branches of a tree that a box may reach at the same time; beyond, it is taken to meet solid.
+const BRANCHES: usize = 32;
+
+/// A cube of the octree, in the frame of the cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Octant<R: Real> {
+    center: [R; 3],
+    /// Half of its width.
+    half: R,
+    /// Its list: numbers of bodies, rising.
+    first: u32,
+    end: u32,
+    children: [u32; 8],
+}
+
+/// A polygon that is cut before it has passed so many bodies is not looked up again.
+const FIRST: u32 = 32;
+
+/// Which bodies a polygon still has to ask.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ToAsk {
+    /// What is left of its list.
+    next: u32,
+    end: u32,
+    /// From which body on it is looked up again.
+    again: u32,
+    /// It has a list shorter than that of all bodies.
+    pub is_listed: bool,
+}
+
+/// How much of the memory is in use; nothing while there is no octree.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct OctreeSize {
+    octants: usize,
+    near: usize,
+}
+
+/// The octree of a cell.
+pub(super) struct Octree<'a, R: Real> {
+    pub octants: &'a mut [Octant<R>],
+    /// All lists.
+    pub near: &'a mut [u32],
+    pub size: &'a mut OctreeSize,
+    pub nodes: &'a [Node<R>],
+    pub parts: &'a [Part],
+    pub thickness: R,
+}
+
+impl<R: Real> Octree<'_, R> {
+    /// Begin with the whole cell if many bodies meet and memory allows.
+    pub fn begin(&mut self) {
+        let count = self.parts.len();
+        if self.size.octants == 0 && count > MANY {
+            let (Some(root), Some(all)) = (self.octants.first_mut(), self.near.get_mut(..count)) else { return };
+            for (number, place) in all.iter_mut().enumerate() {
+                *place = number as u32;
+            }
+            *root = Octant { center: [R::HALF; 3], half: R::HALF, first: 0, end: count as u32, children: [UNKNOWN; 8] };
+            *self.size = OctreeSize { octants: 1, near: count };
+        }
+    }
+
+    /// The first body from `from` on, but `own`, that may meet a polygon that has been located; one beyond the last if there is none.
+    #[inline(never)]
+    pub fn next_body(&self, at: &mut ToAsk, from: usize, own: Option<usize>) -> usize {
+        while at.next < at.end
+            && let Some(&body) = self.near.get(at.next as usize)
+        {
+            if body as usize >= from && Some(body as usize) != own {
+                return body as usize;
+            }
+            at.next += 1;
+        }
+        self.parts.len()
+    }
+
+    /// Find the smallest octant whose list holds for a ball, for a polygon that has been cut by bodies before `from`. Polygons shrink as they pass bodies, so it
+    /// is done as often as the number of passed bodies has doubled.
+    #[inline(never)]
+    pub fn locate(&mut self, at: &mut ToAsk, ball: &Ball<R>, from: usize) {
+        if self.size.octants == 0 || from < at.again as usize {
+            return;
+        }
+        let (mut octant, from) = (0, from as u32);
+        while let Some(child) = self.child(octant, ball) {
+            octant = child;
+        }
+        let Some(Octant { first, end, .. }) = self.octants.get(octant as usize).copied() else { return };
+        let list = self.near.get(first as usize..end as usize).unwrap_or_default();
+        let passed = list.partition_point(|&body| body < from) as u32;
+        *at = ToAsk { next: first + passed, end, again: from.saturating_mul(2).max(FIRST), is_listed: octant > 0 };
+    }
+
+    /// The child of an octant that a ball is in, if its list may be shorter and holds for all of the ball.
+    fn child(&mut self, octant: u32, ball: &Ball<R>) -> Option<u32> {
+        let parent = *self.octants.get(octant as usize)?;
+        let half = parent.half * R::HALF;
+        let high = [0, 1, 2].map(|axis| ball.center[axis] > parent.center[axis]);
+        let center = [0, 1, 2].map(|axis| parent.center[axis] + if high[axis] { half } else { -half });
+        let room = half * R::from_f64(REACH) - ball.radius;
+        let within = (0..3).all(|axis| (ball.center[axis] - center[axis]).abs() <= room);
+        if parent.end - parent.first <= SHORT as u32 || !within {
+            return None;
+        }
+        let which = usize::from(high[0]) + 2 * usize::from(high[1]) + 4 * usize::from(high[2]);
+        match *parent.children.get(which)? {
+            NONE => None,
+            UNKNOWN => {
+                let made = self.make(&parent, center, half);
+                *self.octants.get_mut(octant as usize)?.children.get_mut(which)? = made.unwrap_or(NONE);
+                made
+            }
+            child => Some(child),
+        }
+    }
+
+    /// Make a child, if memory allows.
+    fn make(&mut self, parent: &Octant<R>, center: [R; 3], half: R) -> Option<u32> {
+        let (first, number) = (self.size.near, self.size.octants);
+        let mut end = first;
+        for place in parent.first as usize..parent.end as usize {
+            let body = *self.near.get(place)?;
+            if self.has_solid(self.parts.get(body as usize)?.root, center, half * R::from_f64(REACH)) {
+                *self.near.get_mut(end)? = body;
+                end += 1;
+            }
+        }
+        let whole = (parent.end - parent.first) as usize;
+        // A list that saves little is not kept.
+        let kept = (end - first) * 4 <= whole * 3;
+        let (first, end) = if kept { (first as u32, end as u32) } else { (parent.first, parent.end) };
+        *self.octants.get_mut(number)? = Octant { center, half, first, end, children: [UNKNOWN; 8] };
+        self.size.octants += 1;
+        if kept {
+            self.size.near = end as usize;
+        }
+        Some(number as u32)
+    }
+
+    /// Whether a body may have solid in the cube of a centre and half a width; if unsure, yes.
+    fn has_solid(&self, root: Branch, center: [R; 3], half: R) -> bool {
+        let clear = self.thickness * R::from_f64(AMBIGUITY_BAND);
+        let mut waiting: Vec<Branch, BRANCHES> = Vec::new();
+        let mut next = Some(root);
+        while let Some(branch) = next {
+            next = match branch {
+                Branch::Solid => return true,
+                Branch::Open => waiting.pop(),
+                Branch::Node(n) => {
+                    let Some(node) = self.nodes.get(n as usize) else { return true };
+                    let [x, y, z] = node.plane.normal.map(R::abs);
+                    let (distance, reach) = (node.plane.distance(center), half * (x + y + z) + clear);
+                    if distance > reach {
+                        Some(node.positive)
+                    } else if distance < -reach {
+                        Some(node.negative)
+                    } else if waiting.push(node.positive).is_ok() {
+                        Some(node.negative)
+                    } else {
+                        return true;
+                    }
+                }
+            };
+        }
+        false
+    }
+}
