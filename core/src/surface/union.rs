@@ -27,8 +27,8 @@ use octree::{Octree, OctreeSize};
 use piece::NoProof::{Ambiguous, Full};
 use piece::{Ball, Plane};
 
-pub use bsp::{Node, PendingNode};
-pub use descent::{Fragment, Part};
+pub use bsp::{Node, Part, PendingNode};
+pub use descent::Fragment;
 pub use octree::Octant;
 pub use piece::{NoProof, Piece};
 

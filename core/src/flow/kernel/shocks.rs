@@ -1,10 +1,10 @@
 //! Fluxes through the faces that lie along a strong shock.
 //!
 //! A solver that keeps shear and contacts lets a strong shock wander where it lies along the grid: what differs from cell to cell along the shock is
-//! not damped there, and grows (the carbuncle: J. J. Quirk, Int. J. Numer. Methods Fluids 18 (1994) 555). So through a face beside which the pressure
-//! jumps along another axis passes the flux of HLLE, which damps it, by a share that grows with the jump, less what jumps at the face itself. Across the shock, and where no strong shock
-//! is, the solver asked for stands as it is. Which faces are looked at is that of the H-correction (R. Sanders, E. Morano, M.-C. Druguet, J. Comput.
-//! Phys. 145 (1998) 511): those of the cells on both sides of a face.
+//! not damped there, and grows (the carbuncle: J. J. Quirk, Int. J. Numer. Methods Fluids 18 (1994) 555). So a face beside which the pressure jumps along
+//! another axis has a share of the flux of HLLE, which damps it. The share grows with that jump, less what jumps at the face itself. Across the shock, and
+//! where there is none, the solver asked for stands as it is. The jumps looked at are those of the H-correction (R. Sanders, E. Morano, M.-C. Druguet,
+//! J. Comput. Phys. 145 (1998) 511): of the cells on both sides of a face.
 
 use crate::flow::kernel::rows::{Openings, var};
 use crate::flow::kernel::slab::Slab;
@@ -40,8 +40,8 @@ fn beside<const D: usize>((l, j): Place, e: usize, step: isize) -> Place {
 }
 
 /// Gives the faces of a row along or across axis `d` that lie along a strong shock their share of the flux of HLLE; those on sides of the domain, as
-/// closed ones, keep theirs. `at` names the cell above the first
-/// face, `states` are those on the left and on the right; `strength` is as long as the row of faces.
+/// closed ones, keep theirs. `at` names the cell above the first face, `states` are those on the left and on the right; `strength` is as long as the row of
+/// faces.
 pub(in crate::flow) fn fluxes_along_shocks<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, at): (usize, [usize; D]),

@@ -22,6 +22,15 @@ pub struct Node<R: Real> {
     pub(super) negative: Branch,
 }
 
+/// A body in the cell: its pieces, its tree, and the side from which walls of a face see it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Part {
+    pub(super) first: usize,
+    pub(super) end: usize,
+    pub(super) root: Branch,
+    pub(super) below: bool,
+}
+
 /// A list of pieces still to be made a subtree.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PendingNode {

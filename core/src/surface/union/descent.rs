@@ -1,6 +1,6 @@
 //! Polygons on their way down the trees of a cell.
 
-use super::bsp::{Branch, Node};
+use super::bsp::{Branch, Node, Part};
 use super::octree::{Octree, ToAsk};
 use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{AMBIGUITY_BAND, Ball, Place, cut, place, span};
@@ -13,15 +13,6 @@ const SLIVER: f64 = 1e-9;
 
 /// Where no more bodies than this meet in a cell, to ask whether a polygon meets a body before it is cut costs more than the cuts.
 const FEW: usize = 8;
-
-/// A body in the cell: its pieces, its tree, and the side from which walls of a face see it.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Part {
-    pub(super) first: usize,
-    pub(super) end: usize,
-    pub(super) root: Branch,
-    pub(super) below: bool,
-}
 
 /// A polygon on its way down the trees.
 #[derive(Clone, Debug, Default)]

@@ -4,8 +4,7 @@
 //! that a polygon whose ball stays within the box need not go down the trees of the others. Of bodies about one centre few reach any small octant on the
 //! surface of their union.
 
-use super::bsp::{Branch, Node};
-use super::descent::Part;
+use super::bsp::{Branch, Node, Part};
 use super::piece::{AMBIGUITY_BAND, Ball};
 use crate::number::real::Real;
 use heapless::Vec;
@@ -99,8 +98,8 @@ impl<R: Real> Octree<'_, R> {
         self.parts.len()
     }
 
-    /// Find the smallest octant whose list holds for a ball, for a polygon that has been cut by bodies before `from`. Polygons shrink as they pass bodies, so it
-    /// is done as often as the number of passed bodies has doubled.
+    /// Find the smallest octant whose list holds for a ball around a polygon that has passed the bodies before `from`. Polygons shrink as they pass bodies, so
+    /// it is done as often as the number of passed bodies has doubled.
     #[inline(never)]
     pub fn locate(&mut self, at: &mut ToAsk, ball: &Ball<R>, from: usize) {
         if self.size.octants == 0 || from < at.again as usize {
