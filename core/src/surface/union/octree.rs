@@ -176,12 +176,11 @@ impl<R: Real> Octree<'_, R> {
                     let (distance, reach) = (node.plane.distance(center), half * (x + y + z) + clear);
                     if distance > reach {
                         Some(node.positive)
-                    } else if distance < -reach {
-                        Some(node.negative)
-                    } else if waiting.push(node.positive).is_ok() {
-                        Some(node.negative)
                     } else {
-                        return true;
+                        if !(distance < -reach) && waiting.push(node.positive).is_err() {
+                            return true;
+                        }
+                        Some(node.negative)
                     }
                 }
             };
