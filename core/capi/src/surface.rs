@@ -10,7 +10,7 @@ use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::OtherBodies;
 use voidage_core::surface::bins::{BinsNeeded, Group, Surface};
 use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerReport, LayerSlices, Layers, MemoryNeeded};
-use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory};
+use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, octree_room};
 
 /// The arguments of a call: bodies in a grid, and options.
 #[derive(Clone, Copy)]
@@ -161,8 +161,7 @@ impl<'a, V: Vector> Checked<'a, V> {
         let MemoryNeeded { reals, flags, numbers: layer_numbers, groups: layer_groups } = layer;
         let group = |_| Group::default();
         let fourfold = pieces.saturating_mul(4);
-        // With fewer pieces a cell holds no crowd of bodies.
-        let crowd = if pieces > USUAL_PIECES { pieces } else { 0 };
+        let [octants, near] = octree_room(pieces);
         SurfaceWork {
             bodies: memory.take(bodies.len(), |body| bodies.get(body)),
             numbers: memory.take(numbers, |_| 0),
@@ -179,8 +178,8 @@ impl<'a, V: Vector> Checked<'a, V> {
                 parts: memory.take(pieces / 4 + usize::from(pieces > 0), |_| Part::default()),
                 fragments: memory.take(pieces, |_| Fragment::default()),
                 pending: memory.take(pieces, |_| PendingNode::default()),
-                octants: memory.take(crowd, |_| Octant::default()),
-                near: memory.take(crowd.saturating_mul(64), |_| 0),
+                octants: memory.take(octants, |_| Octant::default()),
+                near: memory.take(near, |_| 0),
             },
         }
     }

@@ -29,7 +29,7 @@ use piece::{Ball, Plane};
 
 pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
-pub use octree::Octant;
+pub use octree::{Octant, octree_room};
 pub use piece::{NoProof, Piece};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
@@ -73,10 +73,10 @@ pub struct UnionMemory<'a, R: Real> {
     pub fragments: &'a mut [Fragment<R>],
     /// Branches of a tree still to grow.
     pub pending: &'a mut [PendingNode],
-    /// Octants of a cell where more than 64 bodies meet. May be empty: then every piece asks every body, which takes the square of their number. As many as
-    /// pieces serve well.
+    /// Octants of a cell where more than 64 bodies meet. May be empty: then every piece asks every body, which takes the square of their number.
+    /// [`octree_room`] tells how many serve well.
     pub octants: &'a mut [Octant<R>],
-    /// Numbers of bodies near octants; 64 for each piece serve well.
+    /// Numbers of bodies near octants.
     pub near: &'a mut [u32],
 }
 
@@ -329,7 +329,8 @@ impl<'a, R: Real> CellUnion<'a, R> {
     fn descent(&mut self) -> (Descent<'_, R>, &[Piece<R>]) {
         let UnionMemory { pieces, nodes, parts, fragments, octants, near, .. } = &mut self.space;
         let (parts, thickness) = (parts.get(..self.part_count).unwrap_or_default(), self.frame.thickness);
-        let octree = Octree { octants, near, size: &mut self.octree, nodes, parts, thickness };
+        let mut octree = Octree { octants, near, size: &mut self.octree, nodes, parts, thickness };
+        octree.begin();
         (Descent { nodes, parts, fragments, octree, spare: Polygon::default(), thickness }, pieces)
     }
 }

@@ -14,7 +14,7 @@ use voidage_core::surface::layer::{
 use voidage_core::surface::surface_area::{
     CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, PiecesUsed, SurfaceArea,
 };
-use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory};
+use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, octree_room};
 
 /// Rows that miss zero by more than this fraction of a face leak.
 const LEAK: f64 = 1e-9;
@@ -284,8 +284,7 @@ impl UnionVecs {
     fn new(most_pieces: usize) -> Self {
         // Of one body, or of the parts of one polygon under way.
         let of_one = 4096;
-        // Fewer bodies are no crowd.
-        let crowd = if most_pieces > 1024 { most_pieces } else { 0 };
+        let [octants, near] = octree_room(most_pieces);
         UnionVecs {
             pieces: vec![Piece::default(); most_pieces],
             split_pieces: vec![Piece::default(); of_one],
@@ -294,8 +293,8 @@ impl UnionVecs {
             parts: vec![Part::default(); most_pieces / 2],
             fragments: vec![Fragment::default(); of_one.min(most_pieces)],
             pending: vec![PendingNode::default(); of_one],
-            octants: vec![Octant::default(); crowd],
-            near: vec![0; 64 * crowd],
+            octants: vec![Octant::default(); octants],
+            near: vec![0; near],
         }
     }
 

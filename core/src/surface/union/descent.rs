@@ -64,7 +64,6 @@ impl<R: Real> Descent<'_, R> {
         mut keep: impl FnMut(&Polygon<R>),
     ) -> Result<(), NoProof> {
         let parts = self.parts;
-        self.octree.begin();
         let first = self.fragments.first_mut().ok_or(Full)?;
         first.polygon.assign(polygon);
         (first.ball, first.is_cut, first.to_ask) = (ball, false, ToAsk::default());

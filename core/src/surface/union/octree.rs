@@ -37,6 +37,16 @@ pub struct Octant<R: Real> {
     children: [u32; 8],
 }
 
+/// Pieces of a body in a cell, as [`Layers::union_pieces`](crate::surface::layer::Layers::union_pieces) counts them.
+const PIECES_EACH: usize = 16;
+
+/// Octants and numbers of bodies near them, for [`UnionMemory::octants`](super::UnionMemory::octants) and [`near`](super::UnionMemory::near), that serve a
+/// cell of up to so many pieces well; none where too few bodies meet to need them.
+#[must_use]
+pub const fn octree_room(pieces: usize) -> [usize; 2] {
+    if pieces > MANY * PIECES_EACH { [pieces, pieces.saturating_mul(64)] } else { [0, 0] }
+}
+
 /// A polygon that is cut before it has passed so many bodies is not looked up again.
 const FIRST: u32 = 32;
 
@@ -152,7 +162,10 @@ impl<R: Real> Octree<'_, R> {
         let whole = (parent.end - parent.first) as usize;
         // A list that saves little is not kept.
         let kept = (end - first) * 4 <= whole * 3;
-        let (first, end) = if kept { (first as u32, end as u32) } else { (parent.first, parent.end) };
+        let (first, end) = match kept {
+            true => (u32::try_from(first).ok()?, u32::try_from(end).ok()?),
+            false => (parent.first, parent.end),
+        };
         *self.octants.get_mut(number)? = Octant { center, half, first, end, children: [UNKNOWN; 8] };
         self.size.octants += 1;
         if kept {
