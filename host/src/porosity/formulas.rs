@@ -30,11 +30,49 @@ type Entry = (u8, u32, u32, [f64; 2]);
 /// A thread's memory.
 #[derive(Debug, Default)]
 pub struct FormulaMemory {
-    /// Sums of the shares of cells and x, y, z faces.
-    sums: [Vec<f64>; 4],
+    /// Sums of the shares of cells and x, y, z faces that only solids have which meet no other there.
+    sums: [Sums; 4],
     entries: Vec<Entry>,
     /// Cells so far in which solids meet.
     pub shared: usize,
+}
+
+/// Sums for the places of one kind: zeros, but in blocks that are marked.
+#[derive(Debug, Default)]
+struct Sums {
+    values: Vec<f64>,
+    marked: Vec<bool>,
+}
+
+/// Places of a block.
+const BLOCK: usize = 8;
+
+impl Sums {
+    fn make_room(&mut self, places: usize) {
+        if self.values.len() < places {
+            self.values.resize(places, 0.0);
+            self.marked.resize(places.div_ceil(BLOCK), false);
+        }
+    }
+
+    fn add(&mut self, at: usize, share: f64) {
+        self.values[at] += share;
+        self.marked[at / BLOCK] = true;
+    }
+
+    /// First places of the blocks that are marked.
+    fn blocks(&self) -> impl Iterator<Item = usize> {
+        self.marked.iter().enumerate().filter(|(_, marked)| **marked).map(|(block, _)| block * BLOCK)
+    }
+
+    /// Zeros everywhere.
+    fn clear(&mut self) {
+        for (values, marked) in self.values.chunks_mut(BLOCK).zip(&mut self.marked) {
+            if std::mem::take(marked) {
+                values.fill(0.0);
+            }
+        }
+    }
 }
 
 const KINDS: [RangeKind; 4] = [RangeKind::Cells, RangeKind::Faces(0), RangeKind::Faces(1), RangeKind::Faces(2)];
@@ -82,13 +120,29 @@ pub fn add(
     layer: &mut Layer<f64>,
     tol: f64,
 ) -> Vec<usize> {
-    let mut doubtful = Vec::new();
     for (sums, kind) in memory.sums.iter_mut().zip(KINDS) {
-        sums.clear();
-        sums.resize(length(layer, kind), 0.0);
+        sums.make_room(length(layer, kind));
     }
-    let FormulaMemory { sums, entries, .. } = memory;
+    let doubtful = tell_shares(solids, grid, part, memory);
+    if doubtful.is_empty() {
+        add_alone(&memory.sums, layer);
+        add_shared(solids, grid, part, memory, layer, tol);
+    }
+    memory.sums.iter_mut().for_each(Sums::clear);
+    doubtful
+}
+
+/// Adds up the shares of solids where they meet no other, and lists the others. Returns those that cannot be relied on.
+fn tell_shares(
+    solids: &[&FormulaSolid],
+    grid: &Grid<f64>,
+    part: LayerPart,
+    FormulaMemory { sums, entries, .. }: &mut FormulaMemory,
+) -> Vec<usize> {
+    let mut doubtful = Vec::new();
     entries.clear();
+    let rows = KINDS.map(|kind| row_length(grid, kind) as u32);
+    let z = part.planes().map(|plane| grid.edges(2)[plane]);
     for (n, s) in solids.iter().enumerate() {
         let worst = match &s.kind {
             Kind::Torus(solid, _) => {
@@ -96,12 +150,14 @@ pub fn add(
                 0.0
             }
             Kind::Quadric(solid, _) => {
-                let alone = s.partners.is_empty();
+                let [columns, lines] = s.shared_with_partners(grid, z);
+                let within = rows.map(|row| lines.start * row as usize..lines.end * row as usize);
                 let mut visit = |kind: RangeKind, at: usize, share: f64| {
-                    if alone {
-                        sums[number(kind)][at] += share;
+                    let of_kind = number(kind);
+                    if within[of_kind].contains(&at) && columns.contains(&((at as u32 % rows[of_kind]) as usize)) {
+                        entries.push((of_kind as u8, at as u32, n as u32, [share, 0.0]));
                     } else {
-                        entries.push((number(kind) as u8, at as u32, n as u32, [share, 0.0]));
+                        sums[of_kind].add(at, share);
                     }
                 };
                 match part {
@@ -117,22 +173,22 @@ pub fn add(
             doubtful.push(n);
         }
     }
-    if !doubtful.is_empty() {
-        return doubtful;
-    }
-    add_alone(sums, layer);
-    add_shared(solids, grid, part, memory, layer, tol);
     doubtful
 }
 
 /// Adds the shares of solids that meet no other.
-fn add_alone(sums: &[Vec<f64>; 4], layer: &mut Layer<f64>) {
+fn add_alone(sums: &[Sums; 4], layer: &mut Layer<f64>) {
     for (sums, kind) in sums.iter().zip(KINDS) {
         let (lower, sum) = values(layer, kind);
-        for ((share, lower), sum) in sums.iter().zip(lower).zip(sum) {
-            if *share > 0.0 {
-                let whole = if *share > FULL { 1.0 } else { *share };
-                (*lower, *sum) = (lower.max(whole), *sum + whole);
+        for first in sums.blocks() {
+            let block = first..lower.len().min(first + BLOCK);
+            for ((share, lower), sum) in
+                sums.values[block.clone()].iter().zip(&mut lower[block.clone()]).zip(&mut sum[block])
+            {
+                // Zeros change nothing.
+                let share = if *share > FULL { 1.0 } else { *share };
+                *lower = if share > *lower { share } else { *lower };
+                *sum += share;
             }
         }
     }
@@ -173,7 +229,7 @@ fn add_shared(
         shares.clear();
         place.iter().for_each(|entry| add_share(&mut shares, entry));
         let place = Place { solids, grid, kind, range: cell(grid, kind, at, part), shares: &shares };
-        let alone = sums[number(kind)][at];
+        let alone = sums[number(kind)].values[at];
         let (mut found, known) = place.apart_and_meeting(alone, &mut bodies);
         if !bodies.is_empty() {
             *shared += usize::from(kind == RangeKind::Cells);
@@ -261,12 +317,17 @@ fn add_share(shares: &mut Vec<(usize, [f64; 2])>, &(_, _, n, share): &Entry) {
     }
 }
 
-/// A single cell or face of a layer.
-fn cell(grid: &Grid<f64>, kind: RangeKind, at: usize, part: LayerPart) -> CellRange {
-    let row = match kind {
+/// Places of a kind along x.
+fn row_length(grid: &Grid<f64>, kind: RangeKind) -> usize {
+    match kind {
         RangeKind::Cells => grid.cells()[0],
         RangeKind::Faces(axis) => grid.face_shape(axis)[0],
-    };
+    }
+}
+
+/// A single cell or face of a layer.
+fn cell(grid: &Grid<f64>, kind: RangeKind, at: usize, part: LayerPart) -> CellRange {
+    let row = row_length(grid, kind);
     let lo = [at % row, at / row, part.layer()].map(|n| n as u32);
     CellRange { lo, hi: lo.map(|n| n + 1) }
 }

@@ -220,7 +220,7 @@ impl SumVecs {
         }
         let SumVecs { reals, flags, numbers, groups, union, .. } = self;
         let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
-        LayerMemory::new(grid, reals, flags, numbers, groups, union).expect(FITS)
+        LayerMemory::of_zero_sums(grid, reals, flags, numbers, groups, union).expect(FITS)
     }
 }
 

@@ -58,6 +58,22 @@ impl<'a, V: Vector> LayerMemory<'a, V> {
         groups: &'a mut [Group<V>],
         union: UnionMemory<'a, V::Scalar>,
     ) -> Result<Self, ShapeMismatch> {
+        reals.get_mut(..Fields::<u8>::needed(grid)).unwrap_or_default().fill(V::Scalar::ZERO);
+        Self::of_zero_sums(grid, reals, flags, numbers, groups, union)
+    }
+
+    /// As [`LayerMemory::new`], without the work of clearing the sums: the first [`Fields::needed`] of `reals` must be zero, as a layer leaves them.
+    ///
+    /// # Errors
+    /// As [`LayerMemory::new`].
+    pub fn of_zero_sums(
+        grid: &Grid<V::Scalar>,
+        reals: &'a mut [V::Scalar],
+        flags: &'a mut [u8],
+        numbers: &'a mut [u32],
+        groups: &'a mut [Group<V>],
+        union: UnionMemory<'a, V::Scalar>,
+    ) -> Result<Self, ShapeMismatch> {
         let [nx, ny, _] = grid.cells();
         let fields = Fields::<u8>::needed(grid);
         let short = ShapeMismatch { expected: 2 * fields + Scratch::needed(grid), found: reals.len() };
@@ -67,7 +83,7 @@ impl<'a, V: Vector> LayerMemory<'a, V> {
         at_least(fields, flags.len())?;
         let short = ShapeMismatch { expected: fields, found: flags.len() };
         let (has_surface, flags) = flags.split_at_mut_checked(fields).ok_or(short)?;
-        sum.fill(V::Scalar::ZERO);
+        debug_assert!(sum.iter().all(|s| *s == V::Scalar::ZERO), "a layer leaves zeros");
         Ok(LayerMemory { cells: [nx, ny], sum, spare, scratch, has_surface, reals, flags, numbers, groups, union })
     }
 }

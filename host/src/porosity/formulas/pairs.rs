@@ -1,11 +1,12 @@
 //! Which solids by formula meet: asked of GJK once for each two whose boxes overlap.
 
 use super::round::Round;
-use super::solid::{FormulaSolid, Kind, Pair};
+use super::solid::{FormulaSolid, Kind, Pair, Partner};
 use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::convex::gjk::{Intersection, intersect};
 use voidage_core::convex::support::{Support, SupportPoint, Transformed};
+use voidage_core::number::aabb::Aabb;
 use voidage_core::solids::torus::TorusSolid;
 
 /// Solids that overlap by less than this share of their size are taken to touch.
@@ -88,8 +89,16 @@ pub fn find_partners(solids: &mut [FormulaSolid]) {
         .collect();
     for (a, b, pair) in found {
         let (one, other) = (solids[a].body, solids[b].body);
-        solids[a].partners.push((other, pair));
-        solids[b].partners.push((one, pair));
+        let overlap = overlap(solids[a].bounds, solids[b].bounds);
+        solids[a].partners.push(Partner { body: other, pair, overlap });
+        solids[b].partners.push(Partner { body: one, pair, overlap });
     }
-    solids.iter_mut().for_each(|s| s.partners.sort_unstable_by_key(|p| p.0));
+    solids.iter_mut().for_each(|s| s.partners.sort_unstable_by_key(|p| p.body));
+}
+
+/// What two boxes have in common, enlarged against rounding of the places where solids end.
+fn overlap(a: Aabb<DVec3>, b: Aabb<DVec3>) -> Aabb<DVec3> {
+    let (min, max) = (a.min.max(b.min), a.max.min(b.max));
+    let margin = TOUCHING * (a.max.abs().max(a.min.abs()) + b.max.abs().max(b.min.abs()));
+    Aabb { min: min - margin, max: max + margin }
 }

@@ -3,6 +3,8 @@
 use super::round::closed_form;
 use crate::porosity::convex::Convex;
 use glam::DVec3;
+use std::ops::Range;
+use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::solids::enclosure::{BoxAround, Enclosed, Enclosure};
@@ -32,8 +34,17 @@ pub struct FormulaSolid {
     /// A box around it.
     pub bounds: Aabb<DVec3>,
     pub(super) kind: Kind,
-    /// Numbers of the bodies that it meets or touches, ascending.
-    pub(super) partners: Vec<(usize, Pair)>,
+    /// The bodies that it meets or touches, by ascending numbers.
+    pub(super) partners: Vec<Partner>,
+}
+
+/// A body that a solid meets or touches.
+#[derive(Debug, Clone)]
+pub(super) struct Partner {
+    pub body: usize,
+    pub pair: Pair,
+    /// The box outside of which they share no cell or face.
+    pub overlap: Aabb<DVec3>,
 }
 
 #[derive(Debug, Clone)]
@@ -104,8 +115,26 @@ impl FormulaSolid {
     }
 
     pub(super) fn pair_with(&self, body: usize) -> Option<Pair> {
-        let at = self.partners.binary_search_by_key(&body, |p| p.0).ok()?;
-        Some(self.partners[at].1)
+        let at = self.partners.binary_search_by_key(&body, |p| p.body).ok()?;
+        Some(self.partners[at].pair)
+    }
+
+    /// Rows and columns of cells and faces, by their numbers along x and y, of which partners may have a share too between two planes across z.
+    pub(super) fn shared_with_partners(&self, grid: &Grid<f64>, z: [f64; 2]) -> [Range<usize>; 2] {
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for Partner { overlap: Aabb { min, max }, .. } in &self.partners {
+            if min.z <= z[1] && max.z >= z[0] {
+                bounds = [0, 1].map(|axis| [bounds[axis][0].min(min[axis]), bounds[axis][1].max(max[axis])]);
+            }
+        }
+        [0, 1].map(|axis| {
+            let (edges, [lo, hi]) = (grid.edges(axis), bounds[axis]);
+            if lo > hi {
+                return 0..0;
+            }
+            // The plane above a cell has the number of the next one.
+            edges.partition_point(|&e| e < lo).saturating_sub(1)..edges.partition_point(|&e| e <= hi) + 1
+        })
     }
 }
 
