@@ -127,6 +127,18 @@ struct Reached {
     counted: bool,
 }
 
+/// The second strip at its widest: where its middle crosses the first axis, how far that moves with the place beside that axis, and half its
+/// length along that.
+#[derive(Clone, Copy, Debug)]
+struct SecondStrip {
+    middle: f64,
+    lean: f64,
+    half: f64,
+}
+
+/// With a smaller sine between the axes rounding of where the strips meet counts.
+const WELL_CROSSED: f64 = 0.25;
+
 /// Two pipes that cross in a box.
 #[derive(Debug)]
 pub(super) struct Crossing {
@@ -136,6 +148,8 @@ pub(super) struct Crossing {
     lines: Vec<Line, MOST_LINES>,
     /// How long the first strip is, at most.
     along: P2,
+    /// The second strip, where it is not all but parallel to the first.
+    second: Option<SecondStrip>,
     /// Heights between which both pipes and the box lie.
     heights: P2,
     /// By how much rounding may move a side.
@@ -203,7 +217,7 @@ impl Crossing {
             (-one.radius).max(axes[1] - other.radius).max(middle - tall),
             one.radius.min(axes[1] + other.radius).min(middle + tall),
         ];
-        let mut found = Crossing { radii, axes, lines: Vec::new(), along: [0.0; 2], heights, noise, far };
+        let mut found = Crossing { radii, axes, lines: Vec::new(), along: [0.0; 2], second: None, heights, noise, far };
         // The second strip, which limits the first one along its axis; so do its ends, and the box.
         let normal = in_plane(across);
         let place = dot(normal, in_plane(apart));
@@ -211,6 +225,9 @@ impl Crossing {
         let long = (other.radius + normal[1].abs() * one.radius) / normal[0].abs();
         let along = within(-space::dot(one.foot, one.axis), size, one.ends);
         found.along = within(place / normal[0], long + noise / sine, along);
+        let [one_over, lean] = [1.0 / normal[0], -normal[1] / normal[0]];
+        let second = SecondStrip { middle: place * one_over, lean, half: radii[1] * one_over.abs() };
+        found.second = (normal[0].abs() > WELL_CROSSED).then_some(second);
         found.add_first();
         for sign in [1.0, -1.0] {
             found.add(normal.map(|x| x * sign), -place * sign, 0.0, Some(1));
@@ -344,14 +361,18 @@ impl Crossing {
         self.lines.extend(sides);
     }
 
-    /// Adds a line, unless all of the first strip is inside; one that is the same all along a plane limits the heights.
+    /// Adds a line, unless all that both strips have in common is inside; one that is the same all along a plane limits the heights.
     fn add(&mut self, normal: P2, offset: f64, rise: f64, strip: Option<usize>) {
         let [low, high] = self.heights;
         let far = self.along[0].abs().max(self.along[1].abs());
         let wide = normal[0].abs() * far + normal[1].abs() * self.radii[0];
         if strip.is_none() {
-            let along = (normal[0] * self.along[0]).min(normal[0] * self.along[1]);
-            let least = offset + (rise * low).min(rise * high) + along - normal[1].abs() * self.radii[0];
+            let along = (normal[0] * self.along[0]).min(normal[0] * self.along[1]) - normal[1].abs() * self.radii[0];
+            let both = self.second.map_or(along, |second| {
+                let beside = normal[1] + normal[0] * second.lean;
+                normal[0] * second.middle - normal[0].abs() * second.half - beside.abs() * self.radii[0]
+            });
+            let least = offset + (rise * low).min(rise * high) + along.max(both);
             if least >= -self.noise {
                 return;
             }

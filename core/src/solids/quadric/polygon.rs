@@ -46,10 +46,11 @@ pub(super) enum Cut {
 
 /// The part of a polygon where `normal · x + offset` is not negative, where that is neither all nor nothing; its side along that line gets a number.
 pub(super) fn cut(corners: &Corners, normal: P2, offset: f64, number: u8, kept: &mut Corners) -> Cut {
-    let value = |corner: &Corner| dot(normal, corner.at) + offset;
     let (mut all, mut nearest) = (true, (f64::NEG_INFINITY, 0));
-    for (n, corner) in corners.iter().enumerate() {
-        let value = value(corner);
+    let mut values = [0.0; MOST_CORNERS];
+    for ((n, corner), place) in corners.iter().enumerate().zip(&mut values) {
+        let value = dot(normal, corner.at) + offset;
+        *place = value;
         all &= value >= 0.0;
         if value > nearest.0 {
             nearest = (value, n);
@@ -65,9 +66,9 @@ pub(super) fn cut(corners: &Corners, normal: P2, offset: f64, number: u8, kept: 
     }
     kept.clear();
     let followers = corners.iter().skip(1).chain(corners.first());
-    let mut here = corners.first().map_or(0.0, value);
-    for (corner, to) in corners.iter().zip(followers) {
-        let there = value(to);
+    let mut here = values[0];
+    let after = values.iter().take(corners.len()).skip(1).chain(&values[..1]);
+    for ((corner, to), &there) in corners.iter().zip(followers).zip(after) {
         if here >= 0.0 {
             let _ = kept.push(*corner);
         }

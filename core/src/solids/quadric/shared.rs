@@ -84,16 +84,17 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
     }
     let plane = flat.map(|n| (n, cell[n][0]));
     let mut found = [0.0, 0.0];
-    let mut pairs_left = pairs(&parts, flat);
+    let mut left = SetsLeft::new(&parts, flat);
     // Sets of parts of different solids, each set after those that it holds.
     let mut set: Vec<usize, MOST_PARTS> = Vec::new();
+    // No more than the first two of these have in common, the first three, and so on.
+    let mut holding: Vec<f64, MOST_PARTS> = Vec::new();
     let (mut next, mut sets) = (0, 0);
     loop {
         if next >= parts.len() {
-            match set.pop() {
-                Some(last) => next = last + 1,
-                None => return Some(found),
-            }
+            let Some(last) = set.pop() else { return Some(found) };
+            holding.truncate(set.len().saturating_sub(1));
+            next = last + 1;
             continue;
         }
         let one = parts.get(next)?;
@@ -110,8 +111,12 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
         }
         if !set.is_empty() {
             sets += 1;
-            let left = (enough - (found[1] - found[0])).max(0.1 * enough);
-            let [low, high] = common_of(of_set().chain([one]), &extent, plane, share(left, set.len(), &mut pairs_left));
+            let share = left.share((enough - (found[1] - found[0])).max(0.1 * enough), set.len());
+            let most = holding.last().copied().unwrap_or(f64::INFINITY);
+            let [low, high] = match plane {
+                None if most <= share => [0.0, most],
+                _ => common_of(of_set().chain([one]), &extent, plane, share),
+            };
             // Of huge solids rounding may leave nothing to rely on.
             if sets > MOST_SETS || !(low - high <= enough) {
                 return None;
@@ -124,6 +129,7 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
                 next += 1;
                 continue;
             }
+            holding.push(high).ok()?;
         }
         set.push(next).ok()?;
         next += 1;
@@ -136,20 +142,41 @@ fn narrowed<'a>(parts: impl Iterator<Item = &'a OnePart<'a>> + Clone, extent: [P
     once(once(extent))
 }
 
-/// How many pairs of parts of different solids may have something in common.
-fn pairs(parts: &[OnePart], flat: Option<Axis>) -> usize {
-    let meets = |a: &OnePart, b: &OnePart| a.solid != b.solid && reaches(&meet(&a.extent, &b.extent), flat);
-    parts.iter().enumerate().map(|(n, b)| parts.iter().take(n).filter(|a| meets(a, b)).count()).sum()
+/// How many pairs and threes of parts of different solids may still have something in common.
+struct SetsLeft {
+    pairs: usize,
+    threes: usize,
 }
 
-/// How far apart the bounds of a set may be, out of the tolerance that is `left`; `others` counts its parts but the last. Three parts or more get an
-/// eighth; a pair gets three quarters, divided by the number of pairs still to come, itself included.
-fn share(left: f64, others: usize, pairs_left: &mut usize) -> f64 {
-    if others > 1 {
-        return 0.125 * left;
+/// A set of three parts is bounded less easily than pairs, by so many of them.
+const HARDER: usize = 4;
+
+impl SetsLeft {
+    fn new(parts: &[OnePart], flat: Option<Axis>) -> Self {
+        let meets = |a: &OnePart, b: &OnePart| a.solid != b.solid && reaches(&meet(&a.extent, &b.extent), flat);
+        let mut left = SetsLeft { pairs: 0, threes: 0 };
+        for (n, c) in parts.iter().enumerate() {
+            for (m, b) in parts.iter().take(n).enumerate().filter(|(_, b)| meets(b, c)) {
+                left.pairs += 1;
+                left.threes += parts.iter().take(m).filter(|a| meets(a, b) && meets(a, c)).count();
+            }
+        }
+        left
     }
-    *pairs_left = pairs_left.saturating_sub(1);
-    0.75 * left / (*pairs_left + 1) as f64
+
+    /// How far apart the bounds of a set may be, out of the tolerance that is `left`; `others` counts its parts but the last. More than three parts get an
+    /// eighth; the others share three quarters, each three as much as some pairs, with all that are still to come.
+    fn share(&mut self, left: f64, others: usize) -> f64 {
+        let weight = match others {
+            1 => 1,
+            2 => HARDER,
+            _ => return 0.125 * left,
+        };
+        let all = (self.pairs + HARDER * self.threes).max(weight);
+        let count = if others == 1 { &mut self.pairs } else { &mut self.threes };
+        *count = count.saturating_sub(1);
+        0.75 * left * (weight as f64 / all as f64)
+    }
 }
 
 /// Bounds of what some parts have in common in a box, or in a plane.
