@@ -7,7 +7,7 @@
 //! a triangle by the σ of its corners, of a lens by how the weight of its arc changes in the shadow.
 
 use super::arc::{Bow, Lens, bends, lens_of};
-use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
+use super::outline::{Piece, Rectangle, Region, Section};
 use super::wall::{Curved, Ellipse};
 use crate::number::axis::Axis;
 use crate::number::plane::{P2, cross, sub};
@@ -118,8 +118,8 @@ impl RegionOfCone<'_> {
         let sum = match region {
             Region::Empty => 0.0,
             Region::Ellipse(ellipse) => return self.through_ellipse(ellipse),
-            Region::Pieces(pieces, major) => self.of_pieces(pieces, *major),
-            Region::Whole => self.of_pieces(&rectangle.sides(), false),
+            Region::Pieces(pieces, size) => self.of_pieces(pieces, *size),
+            Region::Whole => self.of_pieces(&rectangle.sides(), [0.0; 2]),
         };
         sum * self.plane.through() / self.reference.radius
     }
@@ -135,8 +135,9 @@ impl RegionOfCone<'_> {
         ellipse.area / (3.0 * through) * less * (1.0 + ratio * (1.0 + ratio)) / (1.0 + ratio)
     }
 
-    /// Sum over fans of triangles and lenses, in units of [`PlaneOfCone::through`] in radii of the reference.
-    fn of_pieces(&self, pieces: &[Piece], major: MayBeMajor) -> f64 {
+    /// Sum over fans of triangles and lenses, in units of [`PlaneOfCone::through`] in radii of the reference. `size` is that of the polygon around the
+    /// pieces.
+    fn of_pieces(&self, pieces: &[Piece], size: P2) -> f64 {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return 0.0 };
         let base = first.from;
         let low = self.sigma(base);
@@ -144,7 +145,7 @@ impl RegionOfCone<'_> {
         let (mut before, mut corner) = (last.to, base);
         for piece in pieces {
             if !piece.joined {
-                let major = major && self.section.is_major(before, piece.from);
+                let major = self.section.is_major(before, piece.from, size);
                 total += self.arc(before, piece.from, major);
             }
             for next in [piece.from, piece.to] {
@@ -174,7 +175,8 @@ impl RegionOfCone<'_> {
     }
 
     fn minor(&self, p: P2, q: P2) -> f64 {
-        match lens_of(p, q, &self.section.conic, self.size) {
+        let conic = &self.section.conic;
+        match lens_of([p, q], conic.turn(p, q), conic, self.size) {
             Lens::Nothing => 0.0,
             Lens::Triangle(corner, area) => {
                 let low = self.sigma(p);

@@ -2,7 +2,7 @@
 
 use super::arc::{Conic, Moments};
 use super::end_line::EndLine;
-use super::outline::{Rectangle, Section, Side, cut};
+use super::outline::{Pieces, Rectangle, Section, Side, cut};
 use super::twofold::{Twofold, difference, difference_of_squares};
 use super::wall::{Ellipse, Span, hypotenuse};
 use crate::number::axis::Axis;
@@ -63,7 +63,7 @@ impl End {
         let aside = a[u] * (q[0] - self.shift[u]) + a[v] * (q[1] - self.shift[v]);
         let all = Span::ALL;
         if a[m] == 0.0 {
-            return if aside >= 0.0 { all } else { Span::EMPTY };
+            return if aside > 0.0 || (aside == 0.0 && self.closed) { all } else { Span::EMPTY };
         }
         let at = self.shift[m] - aside / a[m];
         if a[m] > 0.0 { Span { lo: at, ..all } } else { Span { hi: at, ..all } }
@@ -84,7 +84,8 @@ impl End {
             return Moments::default();
         }
         let section = self.seen_along(xi);
-        let region = section.pieces(&corners, |corner, to| self.piece(xi, corner.at, to));
+        let mut pieces = Pieces::new();
+        let region = section.pieces(&corners, &mut pieces, |corner, to| self.piece(xi, corner.at, to));
         section.moments(&region, rectangle)
     }
 

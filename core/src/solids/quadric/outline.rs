@@ -115,20 +115,93 @@ pub(super) struct Piece {
     pub side: u8,
 }
 
-/// Whether an arc may go more than half around its ellipse: only if half the area of the ellipse fits the box around the polygon.
-pub(super) type MayBeMajor = bool;
+/// The straight pieces of an outline, in order.
+pub(super) type Pieces = Vec<Piece, MAX_CORNERS>;
 
 /// What a solid has of a rectangle.
-#[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "nothing is allocated here")]
-pub(super) enum Region {
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Region<'p> {
     Empty,
     /// All of it.
     Whole,
     /// An ellipse inside it.
     Ellipse(Ellipse),
-    /// A polygon with arcs between some of its corners.
-    Pieces(Vec<Piece, MAX_CORNERS>, MayBeMajor),
+    /// A polygon with arcs between some of its corners, and the width and height of the polygon around it.
+    Pieces(&'p [Piece], P2),
+}
+
+/// Straight pieces of an outline, side by side.
+struct Outline<'p> {
+    pieces: &'p mut Pieces,
+    /// The first side has a piece that begins in its corner.
+    from_corner: bool,
+    /// The side before has a piece that ends in its corner.
+    to_corner: bool,
+    first: bool,
+}
+
+impl<'p> Outline<'p> {
+    /// In memory that holds nothing yet.
+    fn new(pieces: &'p mut Pieces) -> Self {
+        Outline { pieces, from_corner: false, to_corner: false, first: true }
+    }
+
+    /// What there is inside of the next side.
+    #[inline(always)]
+    fn add(&mut self, side: u8, found: Option<Side>) {
+        if let Some(Side { from, to, from_corner, to_corner }) = found {
+            let _ = self.pieces.push(Piece { from, to, joined: from_corner && self.to_corner, side });
+            self.from_corner |= self.first && from_corner;
+            self.to_corner = to_corner;
+        } else {
+            self.to_corner = false;
+        }
+        self.first = false;
+    }
+
+    /// All pieces; the first side comes after the last.
+    #[inline(always)]
+    fn close(self) -> &'p [Piece] {
+        if self.from_corner
+            && self.to_corner
+            && let Some(first) = self.pieces.first_mut()
+        {
+            first.joined = true;
+        }
+        self.pieces
+    }
+}
+
+/// Triangles that share a corner, and lenses beside them: area, and first moments about that corner.
+struct Fan {
+    base: P2,
+    /// The corner before, from the base.
+    last: P2,
+    total: Moments,
+}
+
+impl Fan {
+    /// The triangle of the base, the corner before and this one.
+    #[inline(always)]
+    fn add(&mut self, corner: P2) {
+        let (a, b) = (self.last, sub(corner, self.base));
+        let triangle = cross(a, b) * 0.5;
+        self.total.area += triangle;
+        for k in 0..2 {
+            self.total.first[k] += triangle * (a[k] + b[k]) / 3.0;
+        }
+        self.last = b;
+    }
+
+    /// A lens whose moments are about a point.
+    #[inline(always)]
+    fn add_lens(&mut self, about: P2, lens: &Moments) {
+        let shift = sub(about, self.base);
+        self.total.area += lens.area;
+        for k in 0..2 {
+            self.total.first[k] += lens.first[k] + shift[k] * lens.area;
+        }
+    }
 }
 
 /// What a plane cuts out of a curved surface.
@@ -141,9 +214,15 @@ pub(super) struct Section {
 
 impl Section {
     /// What lies in a rectangle and inside all ends. `spans` are those of the lines along its sides, in the order of [`Rectangle::corners`];
-    /// `ends` are lines of flat ends with the chord that the end's disc has on each.
+    /// `ends` are lines of flat ends with the chord that the end's disc has on each; `pieces` is memory that holds nothing yet.
     #[inline]
-    pub fn region(&self, rectangle: &Rectangle, spans: &[Span; 4], ends: &[Option<EndLine>; 2]) -> Region {
+    pub fn region<'p>(
+        &self,
+        rectangle: &Rectangle,
+        spans: &[Span; 4],
+        ends: &[Option<EndLine>; 2],
+        pieces: &'p mut Pieces,
+    ) -> Region<'p> {
         let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
         let mut corners = None;
         let mut chords = [None; 2];
@@ -177,41 +256,58 @@ impl Section {
                 return self.ellipse_in(rectangle);
             }
         }
-        let corners = corners.unwrap_or_else(|| rectangle.corners());
-        self.pieces(&corners, |corner, to| match corner.side {
-            0 | 2 => clip(corner.at, to, 0, spans[usize::from(corner.side)]),
-            1 | 3 => clip(corner.at, to, 1, spans[usize::from(corner.side)]),
+        let Some(corners) = corners else { return self.pieces_of_rectangle(rectangle, spans, pieces) };
+        self.pieces(&corners, pieces, |corner, to| match corner.side {
+            0 => clip::<0, true>(corner.at, to, spans[0]),
+            1 => clip::<1, true>(corner.at, to, spans[1]),
+            2 => clip::<0, false>(corner.at, to, spans[2]),
+            3 => clip::<1, false>(corner.at, to, spans[3]),
             n => on_chord(corner.at, to, chords[usize::from(n == 5)]),
         })
     }
 
-    /// The straight pieces of a polygon inside the conic, of each side what `inside` tells; or the whole conic.
-    pub fn pieces(&self, corners: &Corners, inside: impl Fn(&Corner, P2) -> Option<Side>) -> Region {
-        let mut sides: Vec<(u8, Option<Side>), MAX_CORNERS> = Vec::new();
-        for (n, corner) in corners.iter().enumerate() {
-            let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
-            let _ = sides.push((corner.side, inside(corner, next)));
+    /// As [`Section::pieces`], of a rectangle that no end cuts.
+    #[inline(always)]
+    fn pieces_of_rectangle<'p>(&self, rectangle: &Rectangle, spans: &[Span; 4], pieces: &'p mut Pieces) -> Region<'p> {
+        let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
+        let mut outline = Outline::new(pieces);
+        outline.add(0, clip::<0, true>([u0, v0], [u1, v0], spans[0]));
+        outline.add(1, clip::<1, true>([u1, v0], [u1, v1], spans[1]));
+        outline.add(2, clip::<0, false>([u1, v1], [u0, v1], spans[2]));
+        outline.add(3, clip::<1, false>([u0, v1], [u0, v0], spans[3]));
+        if outline.pieces.is_empty() {
+            return self.ellipse_within(&rectangle.corners());
         }
-        let mut pieces = Vec::new();
-        let mut before = sides.last().and_then(|s| s.1);
-        for &(side, found) in &sides {
-            if let Some(found) = found {
-                let joined = found.from_corner && before.is_some_and(|b| b.to_corner);
-                let _ = pieces.push(Piece { from: found.from, to: found.to, joined, side });
-            }
-            before = found;
-        }
-        if pieces.is_empty() { self.ellipse_within(corners) } else { Region::Pieces(pieces, self.half_fits(corners)) }
+        Region::Pieces(outline.close(), [u1 - u0, v1 - v0])
     }
 
-    /// Does half of the ellipse fit a polygon? Not if the conic is none.
-    fn half_fits(&self, corners: &Corners) -> MayBeMajor {
-        let [width, height] = size(corners).map(|x| x * MARGIN);
+    /// The straight pieces of a polygon inside the conic, of each side what `inside` tells; or the whole conic.
+    pub fn pieces<'p>(
+        &self,
+        corners: &Corners,
+        pieces: &'p mut Pieces,
+        inside: impl Fn(&Corner, P2) -> Option<Side>,
+    ) -> Region<'p> {
+        let mut outline = Outline::new(pieces);
+        for (n, corner) in corners.iter().enumerate() {
+            let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
+            outline.add(corner.side, inside(corner, next));
+        }
+        if outline.pieces.is_empty() {
+            self.ellipse_within(corners)
+        } else {
+            Region::Pieces(outline.close(), size(corners))
+        }
+    }
+
+    /// Does half of the ellipse fit a polygon of this width and height? Not if the conic is none.
+    fn half_fits(&self, size: P2) -> bool {
+        let [width, height] = size.map(|x| x * MARGIN);
         self.ellipse.is_some_and(|e| e.area * 0.5 <= width * height && self.conic.is_within([width, height]))
     }
 
     /// The whole conic, if it is an ellipse about a point of a rectangle.
-    fn ellipse_in(&self, rectangle: &Rectangle) -> Region {
+    fn ellipse_in(&self, rectangle: &Rectangle) -> Region<'static> {
         let Some(ellipse) = self.ellipse else { return Region::Empty };
         let [u, v] = ellipse.center;
         let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
@@ -220,7 +316,7 @@ impl Section {
     }
 
     /// The whole conic, if it is an ellipse about a point of a polygon.
-    fn ellipse_within(&self, corners: &Corners) -> Region {
+    fn ellipse_within(&self, corners: &Corners) -> Region<'static> {
         let Some(ellipse) = self.ellipse else { return Region::Empty };
         let mut inside = corners.len() > 2;
         for (n, corner) in corners.iter().enumerate() {
@@ -247,57 +343,54 @@ impl Section {
             Region::Ellipse(ellipse) => {
                 Moments { area: ellipse.area, first: sub(ellipse.center, middle).map(|c| c * ellipse.area) }
             }
-            Region::Pieces(pieces, major) => self.moments_of(pieces, *major, middle, (u1 - u0) + (v1 - v0)),
+            Region::Pieces(pieces, size) => self.moments_of(pieces, *size, middle, (u1 - u0) + (v1 - v0)),
         }
     }
 
-    fn moments_of(&self, pieces: &[Piece], major: MayBeMajor, middle: P2, reach: f64) -> Moments {
+    /// `size` is that of the polygon around the pieces.
+    fn moments_of(&self, pieces: &[Piece], size: P2, middle: P2, reach: f64) -> Moments {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Moments::default() };
-        let base = first.from;
-        let mut total = Moments::default();
+        let mut fan = Fan { base: first.from, last: [0.0; 2], total: Moments::default() };
         let mut before = last.to;
-        let mut a = [0.0; 2];
         for piece in pieces {
+            // A piece that is joined begins where the one before ended.
             if !piece.joined {
-                let arc = self.arc(before, piece.from, major && self.is_major(before, piece.from), reach);
-                let shift = sub(before, base);
-                total.area += arc.area;
-                for k in 0..2 {
-                    total.first[k] += arc.first[k] + shift[k] * arc.area;
-                }
+                fan.add_lens(before, &self.arc(before, piece.from, size, reach));
+                fan.add(piece.from);
             }
-            for corner in [piece.from, piece.to] {
-                let b = sub(corner, base);
-                let triangle = cross(a, b) * 0.5;
-                total.area += triangle;
-                for k in 0..2 {
-                    total.first[k] += triangle * (a[k] + b[k]) / 3.0;
-                }
-                a = b;
-            }
+            fan.add(piece.to);
             before = piece.to;
         }
+        let Fan { base, mut total, .. } = fan;
         for k in 0..2 {
             total.first[k] += (base[k] - middle[k]) * total.area;
         }
         total
     }
 
-    /// The arc from `p` to `q` goes more than half around an ellipse.
-    pub fn is_major(&self, p: P2, q: P2) -> bool {
-        self.conic.factor > 0.0 && self.conic.turn(p, q) < 0.0
+    /// Does the arc from `p` to `q` go more than half around an ellipse? Only if half the area of the ellipse fits a polygon of this width and height.
+    #[inline(always)]
+    pub fn is_major(&self, p: P2, q: P2, size: P2) -> bool {
+        self.is_major_if(self.conic.turn(p, q), size)
     }
 
-    /// What lies between the arc from `p` to `q` and its chord, moments about `p`.
-    fn arc(&self, p: P2, q: P2, major: bool, reach: f64) -> Moments {
-        if major {
+    /// The same, by what [`Conic::turn`] tells.
+    #[inline(always)]
+    fn is_major_if(&self, turn: f64, size: P2) -> bool {
+        self.conic.factor > 0.0 && turn < 0.0 && self.half_fits(size)
+    }
+
+    /// What lies between the arc from `p` to `q` and its chord, moments about `p`. `size` is that of the polygon around.
+    fn arc(&self, p: P2, q: P2, size: P2, reach: f64) -> Moments {
+        let turn = self.conic.turn(p, q);
+        if self.is_major_if(turn, size) {
             let Some(ellipse) = self.ellipse else { return Moments::default() };
-            let rest = lens(q, p, &self.conic, reach);
+            let rest = lens([q, p], self.conic.turn(q, p), &self.conic, reach);
             let first =
                 |k: usize| ellipse.area * (ellipse.center[k] - p[k]) - rest.first[k] - rest.area * (q[k] - p[k]);
             return Moments { area: ellipse.area - rest.area, first: [first(0), first(1)] };
         }
-        lens(p, q, &self.conic, reach)
+        lens([p, q], turn, &self.conic, reach)
     }
 }
 
@@ -310,29 +403,21 @@ pub(super) struct Side {
     pub to_corner: bool,
 }
 
-/// What a span has of a side along a coordinate.
+/// What a span has of a side along a coordinate, upwards or downwards.
 #[inline(always)]
-fn clip(from: P2, to: P2, along: usize, span: Span) -> Option<Side> {
-    let up = to[along] >= from[along];
-    let [lo, hi] = if up { [from[along], to[along]] } else { [to[along], from[along]] };
-    let (covers_lo, covers_hi) = (span.lo <= lo, span.hi >= hi);
-    let (a, b) = (if covers_lo { lo } else { span.lo }, if covers_hi { hi } else { span.hi });
+fn clip<const ALONG: usize, const UP: bool>(from: P2, to: P2, span: Span) -> Option<Side> {
+    let [low, high] = if UP { [from, to] } else { [to, from] };
+    let (covers_lo, covers_hi) = (span.lo <= low[ALONG], span.hi >= high[ALONG]);
+    let (a, b) = (if covers_lo { low[ALONG] } else { span.lo }, if covers_hi { high[ALONG] } else { span.hi });
     if !(a < b) {
         return None;
     }
-    let point = |t: f64, at_corner: bool, corner: P2| {
-        let mut p = corner;
-        if !at_corner {
-            p[along] = t;
-        }
-        p
-    };
-    Some(if up {
-        let (from, to) = (point(a, covers_lo, from), point(b, covers_hi, to));
-        Side { from, to, from_corner: covers_lo, to_corner: covers_hi }
+    let (mut lower, mut upper) = (low, high);
+    (lower[ALONG], upper[ALONG]) = (a, b);
+    Some(if UP {
+        Side { from: lower, to: upper, from_corner: covers_lo, to_corner: covers_hi }
     } else {
-        let (from, to) = (point(b, covers_hi, from), point(a, covers_lo, to));
-        Side { from, to, from_corner: covers_hi, to_corner: covers_lo }
+        Side { from: upper, to: lower, from_corner: covers_hi, to_corner: covers_lo }
     })
 }
 

@@ -2,13 +2,14 @@
 //!
 //! The volume in a cell is the flux through the cell's faces and the part's flat ends of a field of divergence 1 that is tangent to the
 //! curved surface: of a cylinder (ξ − ξₘ) a / a_ξ with ξ the coordinate along which the axis `a` is longest and ξₘ the cell's middle; of cones
-//! see [`super::cone`], of balls and ellipsoids [`super::solid_angle`].
+//! see [`super::cone`], of balls and ellipsoids [`super::solid_angle`]. Of half balls in cells that the whole ball holds, (ξ − ξₘ) along ξ will do, and
+//! however large the ball is, no digit is lost.
 
 use super::arc::Moments;
 use super::cone::{PlaneOfCone, Reference, along_axis};
 use super::end_line::EndLine;
 use super::ends::End;
-use super::outline::{Rectangle, Region, Section};
+use super::outline::{Pieces, Rectangle, Region, Section};
 use super::solid_angle::PlaneOfUnitBall;
 use super::twofold::{Twofold, difference, difference_of_squares};
 use super::wall::{Curved, Span, Wall, hypotenuse};
@@ -83,7 +84,7 @@ impl Part {
     pub fn plane(&self, n: Axis, coordinate: f64) -> Plane {
         let h = difference(coordinate, self.origin[n]);
         let section = Section { conic: self.curved.conic(n, h), ellipse: self.curved.ellipse(n, h) };
-        let lines = self.ends.map(|end| end.map(|end| end.line(n, coordinate)));
+        let lines = self.ends.each_ref().map(|end| end.as_ref().map(|end| end.line(n, coordinate)));
         Plane { n, h, section, lines }
     }
 
@@ -93,16 +94,17 @@ impl Part {
         self.curved.span(m, planes.map(|p| p.h))
     }
 
-    /// The same inside the ends too.
-    pub fn span_between_ends(&self, m: Axis, planes: [&Plane; 2]) -> Span {
+    /// The same inside the ends too, by what it has inside the curved surface.
+    pub fn span_between_ends(&self, m: Axis, planes: [&Plane; 2], span: Span) -> Span {
         let inside = |end: &End| end.span(m, planes.map(|p| p.h.value));
-        self.ends.iter().flatten().map(inside).fold(self.span(m, planes), Span::intersection)
+        self.ends.iter().flatten().map(inside).fold(span, Span::intersection)
     }
 
     /// Area and flux of a face, `spans` those of its sides in the order of [`Rectangle::corners`].
     #[inline]
     pub fn face(&self, plane: &Plane, rectangle: &Rectangle, spans: &[Span; 4]) -> FaceFlux {
-        let region = plane.section.region(rectangle, spans, &plane.lines);
+        let mut pieces = Pieces::new();
+        let region = plane.section.region(rectangle, spans, &plane.lines, &mut pieces);
         if matches!(region, Region::Empty) {
             return FaceFlux::default();
         }
@@ -135,17 +137,13 @@ impl Part {
         let [u, v] = n.others();
         let h = plane.h.value;
         let (du, dv) = (rectangle.u[1] - rectangle.u[0], rectangle.v[1] - rectangle.v[0]);
-        let place = |p: [f64; 2], height: f64| {
-            let mut q = [0.0; 3];
-            (q[n], q[u], q[v]) = (height, p[0], p[1]);
-            q
-        };
         match &self.curved.wall {
             Wall::Ball { radius } => {
                 let scale = 1.0 / radius;
                 let square = difference_of_squares(*radius, plane.h) * scale * scale;
-                let normal = self.normal_of_ball(n);
-                let to_unit = |p, height| place(p, height).map(|x| x * scale);
+                // In the plane's own coordinates and its height: a turned ball is the same.
+                let normal = [0.0, 0.0, 1.0];
+                let to_unit = |p: [f64; 2], height: f64| [p[0] * scale, p[1] * scale, height * scale];
                 let far = is_far((du + dv) * scale, to_unit(rectangle.middle(), h));
                 let ends = plane.lines.map(|line| line.map_or(0.0, |line| line.aside() * scale));
                 let (height, foot, area) = (h * scale, [0.0; 2], scale * scale);
@@ -158,7 +156,11 @@ impl Part {
                 let square = difference_of_squares(reach, plane.h) / (reach * reach);
                 let normal = self.normal_of_ball(n);
                 let [columns_u, columns_v] = [u, v].map(|m| map.form[m][m]);
-                let to_unit = |p, height| map.map(place(p, height));
+                let to_unit = |p: [f64; 2], height: f64| {
+                    let mut q = [0.0; 3];
+                    (q[n], q[u], q[v]) = (height, p[0], p[1]);
+                    map.map(q)
+                };
                 let size = Real::sqrt(columns_u * du * du + columns_v * dv * dv);
                 let (far, ends) = (is_far(size, to_unit(rectangle.middle(), h)), [0.0; 2]);
                 let (height, outermost) = (h / reach, map.outermost[n]);
@@ -184,6 +186,10 @@ impl Part {
                 along + fluxes + self.flux_through_ends(sides)
             }
             Wall::Cone { radius, slope } => self.volume_of_cone(*radius, *slope, sides, faces),
+            Wall::Ball { radius } if self.ends[0].is_some() && ball_holds(*radius, sides) => {
+                let along = width(self.xi) * 0.5 * (faces[self.xi][0].area + faces[self.xi][1].area);
+                along + self.flux_along_through_ends(sides)
+            }
             Wall::Ball { radius } => fluxes + radius * radius * radius * self.angle_at_center(sides) / 3.0,
             Wall::Ellipsoid(map) => fluxes + map.scale * self.angle_at_center(sides) / 3.0,
         }
@@ -244,8 +250,23 @@ impl Part {
 
     /// Flux of the field through what a cell has of the flat ends of a cylinder.
     fn flux_through_ends(&self, sides: &Sides) -> f64 {
-        let [u, v] = self.xi.others();
         let mut flux = 0.0;
+        self.moments_of_ends(sides, |inward, moment| {
+            flux -= moment * inward / (inward.abs() * inward.abs() * inward.abs())
+        });
+        flux
+    }
+
+    /// Flux of (ξ − ξₘ) along ξ through what a cell has of the flat ends.
+    fn flux_along_through_ends(&self, sides: &Sides) -> f64 {
+        let mut flux = 0.0;
+        self.moments_of_ends(sides, |inward, moment| flux -= if inward > 0.0 { moment } else { -moment });
+        flux
+    }
+
+    /// Tells of each flat end in a cell what its inward normal has along ξ, and the integral of ξ − ξₘ over the end as seen along ξ.
+    fn moments_of_ends(&self, sides: &Sides, mut tell: impl FnMut(f64, f64)) {
+        let [u, v] = self.xi.others();
         for (end, rectangle, disc) in self.discs(sides) {
             let (inward, middle) = (end.inward[self.xi], rectangle.middle());
             // Height of the end's plane above the cell's middle, over the middle of the rectangle and by its slope.
@@ -253,10 +274,8 @@ impl Part {
             let at_middle = end.shift[self.xi] - (sides[self.xi][0].h.value + sides[self.xi][1].h.value) * 0.5
                 + slope[0] * (middle[0] - end.shift[u])
                 + slope[1] * (middle[1] - end.shift[v]);
-            let moment = at_middle * disc.area + slope[0] * disc.first[0] + slope[1] * disc.first[1];
-            flux -= moment * inward / (inward.abs() * inward.abs() * inward.abs());
+            tell(inward, at_middle * disc.area + slope[0] * disc.first[0] + slope[1] * disc.first[1]);
         }
-        flux
     }
 
     /// The same of a cone whose field vanishes at the height of the cell's middle, or with none at its apex.
@@ -306,6 +325,12 @@ impl Part {
             }
         }
     }
+}
+
+/// Does a ball hold all of a cell?
+fn ball_holds(radius: f64, sides: &Sides) -> bool {
+    let far = sides.map(|[low, high]| low.h.value.abs().max(high.h.value.abs()));
+    far[0] * far[0] + far[1] * far[1] + far[2] * far[2] <= radius * radius
 }
 
 /// Solid angle of what lies before up to three planes through the centre, by their normals.

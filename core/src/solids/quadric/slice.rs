@@ -555,8 +555,8 @@ impl<'a, const N: usize> Slice<'a, N> {
         let Some(wall) = self.walls.get(usize::from(n)) else { return trapezoid };
         let (from, to) = ([p - wall.origin[0], a.v - wall.origin[1]], [q - wall.origin[0], b.v - wall.origin[1]]);
         let lens = match side {
-            Side::High => lens_of(from, to, &wall.conic, ANY_REACH),
-            Side::Low => lens_of(to, from, &wall.conic, ANY_REACH),
+            Side::High => lens_of([from, to], wall.conic.turn(from, to), &wall.conic, ANY_REACH),
+            Side::Low => lens_of([to, from], wall.conic.turn(to, from), &wall.conic, ANY_REACH),
         };
         let area = match lens {
             Lens::Nothing => 0.0,

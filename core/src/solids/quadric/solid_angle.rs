@@ -6,7 +6,7 @@
 //!
 //! Reference for triangles: A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983).
 
-use super::outline::{MayBeMajor, Piece, Rectangle, Region, Section};
+use super::outline::{Piece, Rectangle, Region, Section};
 use crate::number::plane::{self, P2};
 use crate::number::real::Real;
 use crate::number::space::{dot, length, sub};
@@ -55,37 +55,37 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
         match region {
             Region::Empty => 0.0,
             Region::Ellipse(_) => 2.0 * PI * self.square / (1.0 + self.height.abs()),
-            Region::Pieces(pieces, major) => self.of_pieces(section, pieces, *major),
-            Region::Whole => self.of_pieces(section, &rectangle.sides(), false),
+            Region::Pieces(pieces, size) => self.of_pieces(section, pieces, *size),
+            Region::Whole => self.of_pieces(section, &rectangle.sides(), [0.0; 2]),
         }
     }
 
-    fn of_pieces(&self, section: &Section, pieces: &[Piece], major: MayBeMajor) -> f64 {
+    /// `polygon` is the size of the polygon around the pieces.
+    fn of_pieces(&self, section: &Section, pieces: &[Piece], polygon: P2) -> f64 {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return 0.0 };
-        let base = self.mapped(first.from);
-        let (mut fan, mut rest) = ([1.0, 0.0], 0.0);
+        let mut fan = Fan::new(self, self.mapped(first.from));
+        let mut rest = 0.0;
         let mut before = self.mapped(last.to);
-        let mut corner = None;
         for piece in pieces {
-            let (from, to) = (self.mapped(piece.from), self.mapped(piece.to));
+            // A piece that is joined begins where the one before ended.
+            let from = if piece.joined { before } else { self.mapped(piece.from) };
+            let to = self.mapped(piece.to);
             if !piece.joined {
-                let major = major && section.is_major(before.plane, piece.from);
+                let major = section.is_major(before.plane, piece.from, polygon);
                 rest += if self.far { self.lens(before, from, major) } else { self.sector(before, from, major) };
             }
             if self.far {
-                for next in [from, to] {
-                    if let Some(corner) = corner {
-                        fan = turned(fan, self.triangle(base, corner, next));
-                    }
-                    corner = Some(next);
+                if !(piece.joined || fan.corner.is_none()) {
+                    fan.add(from);
                 }
+                fan.add(to);
             } else {
                 let aside = usize::from(piece.side).checked_sub(4).and_then(|end| self.ends.get(end));
                 rest += self.triangle_at_foot(from, to, aside.copied());
             }
             before = to;
         }
-        rest + 2.0 * libm::atan2(fan[1], fan[0])
+        rest + fan.solid_angle()
     }
 
     /// Twice the area of a triangle from a point of the plane, by its other corners.
@@ -97,15 +97,6 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
     fn about_foot(&self, p: Mapped, q: Mapped) -> (f64, f64) {
         let foot = self.normal.map(|x| x * self.height);
         (self.twice(self.foot, p, q), dot(sub(p.unit, foot), sub(q.unit, foot)))
-    }
-
-    /// Real and imaginary part of a number whose argument is half the solid angle of a triangle.
-    fn triangle(&self, a: Mapped, b: Mapped, c: Mapped) -> [f64; 2] {
-        let volume = self.height.abs() * self.twice(a.plane, b, c);
-        let (a, b, c) = (a.unit, b.unit, c.unit);
-        let (la, lb, lc) = (length(a), length(b), length(c));
-        let real = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-        [real, volume]
     }
 
     /// Signed solid angle of the triangle of the plane's foot and two of its points, whose line passes `aside` of the foot, if that is known
@@ -156,10 +147,15 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
         if t > 0.05 {
             return 2.0 * (libm::atan(h * tau) - h * libm::atan(tau));
         }
-        // Σ (−t)ᵏ (1 − h²ᵏ⁺²) / (2k + 3), each 1 − h²ᵏ⁺² a multiple of 1 − h².
-        let (mut sum, mut power, mut factor, mut n) = (0.0, 1.0, 1.0, 3.0);
-        while n < 31.0 {
-            sum += power * factor / n;
+        // Σ (−t)ᵏ (1 − h²ᵏ⁺²) / (2k + 3), each 1 − h²ᵏ⁺² a multiple of 1 − h². Terms alternate and each is less than a sixteenth of the one before,
+        // so that all that follow one below the rounding of the sum are so together.
+        let (mut sum, mut power, mut factor, mut n) = (1.0 / 3.0, -t, 1.0 + h_square, 5.0);
+        loop {
+            let term = power * factor / n;
+            sum += term;
+            if !(term.abs() > NEGLIGIBLE) {
+                break;
+            }
             power *= -t;
             factor = factor * h_square + 1.0;
             n += 2.0;
@@ -167,6 +163,42 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
         2.0 * h * tau * t * self.square * sum
     }
 }
+
+/// Triangles that share a point of the plane: half of their solid angle together as the argument of a complex number.
+struct Fan<'a, M> {
+    plane: &'a PlaneOfUnitBall<M>,
+    base: Mapped,
+    base_length: f64,
+    /// The corner before, its length, and its scalar product with the base.
+    corner: Option<(Mapped, f64, f64)>,
+    product: [f64; 2],
+}
+
+impl<'a, M: Fn(P2, f64) -> [f64; 3]> Fan<'a, M> {
+    fn new(plane: &'a PlaneOfUnitBall<M>, base: Mapped) -> Self {
+        Fan { plane, base, base_length: length(base.unit), corner: None, product: [1.0, 0.0] }
+    }
+
+    /// The triangle of the base, the corner before and this one.
+    #[inline(always)]
+    fn add(&mut self, next: Mapped) {
+        let (own, to_base) = (length(next.unit), dot(next.unit, self.base.unit));
+        if let Some((corner, before, before_to_base)) = self.corner {
+            let volume = self.plane.height.abs() * self.plane.twice(self.base.plane, corner, next);
+            let a = self.base_length;
+            let real = a * before * own + before_to_base * own + dot(corner.unit, next.unit) * a + to_base * before;
+            self.product = turned(self.product, [real, volume]);
+        }
+        self.corner = Some((next, own, to_base));
+    }
+
+    fn solid_angle(&self) -> f64 {
+        2.0 * libm::atan2(self.product[1], self.product[0])
+    }
+}
+
+/// Terms below this share of a sum that is at least a quarter do not change it.
+const NEGLIGIBLE: f64 = f64::EPSILON / 32.0;
 
 /// The product of two complex numbers.
 fn turned(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

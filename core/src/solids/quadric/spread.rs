@@ -20,18 +20,57 @@ fn rectangle(u: [&Plane; 2], v: [&Plane; 2]) -> Rectangle {
 /// A part over one row of cells: planes below and above along y and z, and lines along x, `[y][z]`.
 struct Row<'a> {
     part: &'a Part,
-    y: &'a [Plane; 2],
-    z: &'a [Plane; 2],
+    j: usize,
+    y: [&'a Plane; 2],
+    z: [&'a Plane; 2],
     x_lines: [[Span; 2]; 2],
 }
 
-/// What stands in a plane across x: lines along y by z, lines along z by y, and the face.
-#[derive(Clone, Copy)]
+/// What stands in a plane across x: lines along y by z; and in one row lines along z by y, and the face.
 struct Column {
+    at: usize,
     plane: Plane,
     y_lines: [Span; 2],
+    row: Option<usize>,
     z_lines: [Span; 2],
     face: FaceFlux,
+}
+
+/// Columns that stay at hand, by their numbers.
+const COLUMNS: usize = 4;
+
+/// The columns of a layer that were computed last.
+#[derive(Default)]
+struct Columns([Option<Column>; COLUMNS]);
+
+impl Columns {
+    /// The column of a number, if it is at hand.
+    fn get(&self, at: usize) -> Option<&Column> {
+        self.0.get(at % COLUMNS)?.as_ref().filter(|column| column.at == at)
+    }
+
+    /// Computes column `at`, at `x`, for a row, as far as it is not known.
+    #[inline]
+    fn find(&mut self, row: &Row, at: usize, x: f64) {
+        let Some(slot) = self.0.get_mut(at % COLUMNS) else { return };
+        let (part, j, [y0, y1], [z0, z1]) = (row.part, row.j, row.y, row.z);
+        let column = match slot {
+            Some(column) if column.at == at && column.row == Some(j) => return,
+            Some(column) if column.at == at => column,
+            _ => {
+                let plane = part.plane(Axis::X, x);
+                let y_lines = [z0, z1].map(|z| part.span(Axis::Y, [z, &plane]));
+                let (z_lines, face) = ([Span::EMPTY; 2], FaceFlux::default());
+                slot.insert(Column { at, plane, y_lines, row: None, z_lines, face })
+            }
+        };
+        let below = column.row.filter(|row| row + 1 == j).map(|_| column.z_lines[1]);
+        let z_line = |y: &Plane| part.span(Axis::Z, [&column.plane, y]);
+        column.z_lines = [below.unwrap_or_else(|| z_line(y0)), z_line(y1)];
+        let spans = [column.y_lines[0], column.z_lines[1], column.y_lines[1], column.z_lines[0]];
+        column.face = part.face(&column.plane, &rectangle([y0, y1], [z0, z1]), &spans);
+        column.row = Some(j);
+    }
 }
 
 /// Shares of a cell and its low faces; and the high ones.
@@ -41,9 +80,11 @@ struct CellShares {
 }
 
 impl<'a> Row<'a> {
-    fn new(part: &'a Part, y: &'a [Plane; 2], z: &'a [Plane; 2]) -> Self {
-        let x_lines = y.each_ref().map(|y| z.each_ref().map(|z| part.span(Axis::X, [y, z])));
-        Row { part, y, z, x_lines }
+    /// `below`: the lines along x between it and the row below, if they are known.
+    fn new(part: &'a Part, j: usize, [y, z]: [[&'a Plane; 2]; 2], below: Option<[Span; 2]>) -> Self {
+        let [y0, y1] = y.map(|y| move || z.map(|z| part.span(Axis::X, [y, z])));
+        let x_lines = [below.unwrap_or_else(y0), y1()];
+        Row { part, j, y, z, x_lines }
     }
 
     /// The run along x, from the part's origin, in which whole cells of the row are inside.
@@ -51,21 +92,11 @@ impl<'a> Row<'a> {
         let mut run = Span::ALL;
         for j in 0..2 {
             for k in 0..2 {
-                run = run.intersection(self.part.span_between_ends(Axis::X, [&self.y[j], &self.z[k]]));
+                let line = self.x_lines[j][k];
+                run = run.intersection(self.part.span_between_ends(Axis::X, [self.y[j], self.z[k]], line));
             }
         }
         run
-    }
-
-    #[inline]
-    fn column(&self, x: f64) -> Column {
-        let (part, [y0, y1], [z0, z1]) = (self.part, self.y, self.z);
-        let plane = part.plane(Axis::X, x);
-        let y_lines = [z0, z1].map(|z| part.span(Axis::Y, [z, &plane]));
-        let z_lines = [y0, y1].map(|y| part.span(Axis::Z, [&plane, y]));
-        let spans = [y_lines[0], z_lines[1], y_lines[1], z_lines[0]];
-        let face = part.face(&plane, &rectangle([y0, y1], [z0, z1]), &spans);
-        Column { plane, y_lines, z_lines, face }
     }
 
     /// `low_y`: the low face along y, if it is known.
@@ -75,11 +106,11 @@ impl<'a> Row<'a> {
         let (x, x_lines) = ([&low.plane, &high.plane], &self.x_lines);
         let across_y = |j: usize| {
             let spans = [low.z_lines[j], x_lines[j][1], high.z_lines[j], x_lines[j][0]];
-            part.face(&self.y[j], &rectangle([z0, z1], x), &spans)
+            part.face(self.y[j], &rectangle([z0, z1], x), &spans)
         };
         let across_z = |k: usize| {
             let spans = [x_lines[0][k], high.y_lines[k], x_lines[1][k], low.y_lines[k]];
-            part.face(&self.z[k], &rectangle(x, [y0, y1]), &spans)
+            part.face(self.z[k], &rectangle(x, [y0, y1]), &spans)
         };
         let faces =
             [[low.face, high.face], [low_y.unwrap_or_else(|| across_y(0)), across_y(1)], [across_z(0), across_z(1)]];
@@ -111,6 +142,13 @@ impl HighFaces {
         let face = self.faces.get(i.checked_sub(self.first)?)?;
         face.filter(|_| self.row + 1 == row)
     }
+}
+
+/// What rows of a layer have of each other: columns, the high faces of the row below, and those of the row itself.
+struct AtHand<'a> {
+    columns: &'a mut Columns,
+    below: &'a HighFaces,
+    own: &'a mut HighFaces,
 }
 
 /// The fraction of a face.
@@ -151,18 +189,28 @@ pub(super) fn layer<R: Real>(
     let without = part.without_far_ends([around(xs, &columns), around(ys, &rows), zs]);
     let near = without.as_ref().unwrap_or(part);
     let z = zs.map(|z| near.plane(Axis::Z, z));
-    let mut below: Option<(usize, Plane)> = None;
+    // Planes between rows by the parity of their numbers, and the row that stands below the next one.
+    let mut planes: [Option<Plane>; 2] = [None, None];
+    let mut below: Option<(usize, [Span; 2])> = None;
+    let mut columns = Columns::default();
     let (mut even, mut odd) = (HighFaces::default(), HighFaces::default());
     for j in rows.clone() {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
         let last_row = j + 1 == rows.end;
         let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
-        let low =
-            below.filter(|(row, _)| *row == j).map_or_else(|| near.plane(Axis::Y, y0.to_f64()), |(_, plane)| plane);
-        let y = [low, near.plane(Axis::Y, y1.to_f64())];
-        below = Some((j + 1, y[1]));
-        let faces = if j % 2 == 0 { (&odd, &mut even) } else { (&even, &mut odd) };
-        told.row(xs, &Row::new(near, &y, &z), (j, last_row), reached(xs, run), faces);
+        let known = below.filter(|(row, _)| *row + 1 == j).map(|(_, lines)| lines);
+        let [even_plane, odd_plane] = &mut planes;
+        let (low, high) = if j % 2 == 0 { (even_plane, odd_plane) } else { (odd_plane, even_plane) };
+        if known.is_none() {
+            *low = Some(near.plane(Axis::Y, y0.to_f64()));
+        }
+        *high = Some(near.plane(Axis::Y, y1.to_f64()));
+        let (Some(low), Some(high)) = (low, high) else { break };
+        let row = Row::new(near, j, [[low, high], z.each_ref()], known);
+        let (own, other) = if j % 2 == 0 { (&mut even, &odd) } else { (&mut odd, &even) };
+        let at_hand = AtHand { columns: &mut columns, below: other, own };
+        told.row(xs, &row, last_row, reached(xs, run), at_hand);
+        below = Some((j, row.x_lines[1]));
     }
     told.worst
 }
@@ -181,30 +229,25 @@ impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
         }
     }
 
-    /// Tells a row of cells; `faces` are those of the row below, and its own.
-    fn row<R: Real>(
-        &mut self,
-        xs: &[R],
-        row: &Row,
-        (j, last_row): (usize, bool),
-        cells: Range<usize>,
-        (below, own): (&HighFaces, &mut HighFaces),
-    ) {
+    /// Tells a row of cells.
+    fn row<R: Real>(&mut self, xs: &[R], row: &Row, last_row: bool, cells: Range<usize>, at_hand: AtHand) {
+        let (AtHand { columns, below, own }, j) = (at_hand, row.j);
         let inside = row.inside();
         let from_origin = |i: usize| xs.get(i).map_or(f64::NAN, |x| x.to_f64() - row.part.origin[0]);
-        let mut before: Option<Column> = None;
+        // A face in the plane of an end that does not belong to the part is none of it.
+        let open = row.part.ends.iter().flatten().any(|end| !end.closed);
+        let covers = |lo: f64, hi: f64| if open { inside.lo < lo && inside.hi > hi } else { inside.covers(lo, hi) };
         own.begin(j, cells.start);
         for i in cells.clone() {
             let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };
-            let (shares, face) = if inside.covers(from_origin(i), from_origin(i + 1)) {
-                before = None;
+            let (shares, face) = if covers(from_origin(i), from_origin(i + 1)) {
                 (Shares::WHOLE, None)
             } else {
-                let low = before.get_or_insert_with(|| row.column(x0.to_f64()));
-                let high = row.column(x1.to_f64());
-                let found = row.cell(low, &high, below.below(j, i));
-                let shares = self.shares(row, [low, &high], &found);
-                before = Some(high);
+                columns.find(row, i, x0.to_f64());
+                columns.find(row, i + 1, x1.to_f64());
+                let (Some(low), Some(high)) = (columns.get(i), columns.get(i + 1)) else { break };
+                let found = row.cell(low, high, below.below(j, i));
+                let shares = self.shares(row, [low, high], &found);
                 (shares, Some(found.faces[1][1]))
             };
             let _ = own.faces.push(face);

@@ -86,6 +86,8 @@ pub(super) struct Curved {
     pub axis: [f64; 3],
     /// Length of the axis seen along each coordinate axis.
     pub across: [f64; 3],
+    /// The unit vector along the axis as it is seen along each coordinate axis, in the order of [`Axis::others`]; zeros if it runs along that.
+    pub seen: [P2; 3],
 }
 
 impl Curved {
@@ -94,7 +96,11 @@ impl Curved {
             let [u, v] = m.others();
             hypotenuse(axis[u], axis[v])
         });
-        Curved { wall, axis, across }
+        let seen = Axis::ALL.map(|m| {
+            let (along, across) = (m.others().map(|n| axis[n]), across[m]);
+            if across > 0.0 { along.map(|a| a / across) } else { [0.0; 2] }
+        });
+        Curved { wall, axis, across, seen }
     }
 
     /// What a line along axis `m` has inside, by its other two coordinates in the order of [`Axis::others`].
@@ -125,9 +131,8 @@ impl Curved {
     /// How lines along axis `m` lie to the axis; none if that runs along them.
     #[inline(always)]
     pub fn lines(&self, m: Axis) -> Option<Lines> {
-        let [u, v] = m.others();
-        let (au, av, across) = (self.axis[u], self.axis[v], self.across[m]);
-        (across > 0.0).then(|| Lines { along: [au / across, av / across], lean: self.axis[m], across })
+        let across = self.across[m];
+        (across > 0.0).then(|| Lines { along: self.seen[m], lean: self.axis[m], across })
     }
 
     /// With f and d the line's distances from the origin along and beside the axis, as seen along the line, and σ² = 1 − (slope cot)², the
@@ -279,12 +284,12 @@ impl Curved {
     /// The conic of a cone, or of a cylinder with no slope: 1 across the axis as it is seen in the plane.
     #[inline(always)]
     fn conic_of_cone(&self, [radius, slope]: [f64; 2], n: Axis, h: f64) -> Conic {
-        let ([u, v], a, across) = (n.others(), &self.axis, self.across[n]);
+        let (a, across) = (&self.axis, self.across[n]);
         let reach = slope * h + radius * a[n];
         if !(across > 0.0) {
             return Conic::circle(reach * reach);
         }
-        let (factor, along) = (self.steeper(n, slope), [a[u] / across, a[v] / across]);
+        let (factor, along) = (self.steeper(n, slope), self.seen[n]);
         let linear = -((1.0 + slope * slope) * a[n] * h + slope * radius) * across;
         Conic { size: 1.0, across: [along[1], -along[0]], factor, along, linear: [0.0, linear], tau: reach * reach }
     }
