@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use voidage::flow::{Flow, Scalar, Treatment};
-use voidage_core::flow::{Boundary, Gas, PressureForm, Primitive};
+use voidage_core::flow::{Boundary, Gas, PressureForm, Primitive, Riemann as FluxName};
 use voidage_core::number::real::Real;
 use voidage_tests::euler::property::Source;
 use voidage_tests::euler::space::{OpenFractions, half_space, open_fractions};
@@ -265,12 +265,78 @@ fn turned_tube(degrees: f64, n: usize) -> [f64; 2] {
 #[test]
 fn a_shock_tube_may_be_turned() {
     let [straight, _] = turned_tube(0.0, 100);
-    // In the front of the shock beside a wall the gas of single cells is too fast. With slopes from what stands in the solid by 6.2 % at 20°, 8.4 % at 37°.
-    for (degrees, limit) in [(20.0, 0.05), (37.0, 0.083), (45.0, 0.04)] {
+    // In the front of the shock beside a wall the gas of single cells was too fast by up to 12 % while walls pushed with the pressure of their cells
+    // alone and HLLC kept the shear beside them. Without any wall 3.7 % are left at 30°, of the steps in which the tube begins.
+    for (degrees, limit) in [(10.0, 0.03), (20.0, 0.03), (30.0, 0.04), (37.0, 0.03), (45.0, 0.03), (64.0, 0.03)] {
+        let [coarse, _] = turned_tube(degrees, 50);
         let [turned, over] = turned_tube(degrees, 100);
-        println!("{degrees}°: L1(u) {turned:.4}, along the grid {straight:.4}; {over:.4} too fast");
+        println!("{degrees}°: L1(u) {coarse:.4}, {turned:.4}, along the grid {straight:.4}; {over:.4} too fast");
         assert!(turned < 0.02 && turned < 2.0 * straight, "{degrees}°: {turned}, straight {straight}");
+        assert!(turned < 0.55 * coarse, "{degrees}°: {turned}, with half the cells {coarse}");
         assert!(over < limit, "{degrees}°: {over} too fast");
+    }
+}
+
+/// A blast beside a skew plane, in a mesh whose axes are those of another in an order, some turned around; told in the frame of that other mesh.
+fn blast_beside_a_plane(order: [usize; 3], turned: [bool; 3], riemann: FluxName) -> Vec<[u64; 5]> {
+    let n = [9, 8, 10];
+    let open = open_fractions(n, [0.0; 3], 0.1, |low, high| half_space([1.0, -2.0, 1.7], 0.55, low, high));
+    let m = order.map(|a| n[a]);
+    // Where a cell, or a face of a new axis, stands in the other mesh.
+    let from = |i: usize, axis: Option<usize>| {
+        let size: [usize; 3] = std::array::from_fn(|a| m[a] + usize::from(axis == Some(a)));
+        let at = [i % size[0], i / size[0] % size[1], i / size[0] / size[1]];
+        let (mut old, mut of) = ([0; 3], [0; 3]);
+        for a in 0..3 {
+            old[order[a]] = if turned[a] { size[a] - 1 - at[a] } else { at[a] };
+            of[order[a]] = size[a];
+        }
+        (old[2] * of[1] + old[1]) * of[0] + old[0]
+    };
+    let cells = open.volume.len();
+    let here = OpenFractions {
+        volume: (0..cells).map(|c| open.volume[from(c, None)]).collect(),
+        faces: std::array::from_fn(|a| {
+            let old = &open.faces[order[a]];
+            (0..old.len()).map(|f| old[from(f, Some(a))]).collect()
+        }),
+    };
+    let mut flow: Flow<f64, 3> = flow(m, 0.1, [[Boundary::ZeroGradient; 2]; 3], &here, PressureForm::Geometric);
+    flow.scheme.riemann = riemann;
+    let sign = |a: usize| if turned[a] { -1.0 } else { 1.0 };
+    for c in 0..cells {
+        let old = from(c, None);
+        let pressure = if old % n[0] < 4 { 8.0 } else { 1.0 };
+        let velocity: [f64; 3] = [0.3, -0.2, 0.1];
+        flow.set(c, &Primitive { pressure, ..stream(std::array::from_fn(|a| sign(a) * velocity[order[a]])) });
+    }
+    for _ in 0..12 {
+        flow.step(0.008).unwrap();
+    }
+    let mut out = vec![[0; 5]; cells];
+    for c in 0..cells {
+        let w = flow.get(c);
+        let mut velocity = [0.0; 3];
+        (0..3).for_each(|a| velocity[order[a]] = sign(a) * w.velocity[a]);
+        let [x, y, z] = velocity;
+        out[from(c, None)] = [w.density, x, y, z, w.pressure].map(|x| (x + 0.0).to_bits());
+    }
+    out
+}
+
+#[test]
+fn a_blast_beside_a_plane_has_the_same_bits_along_every_axis() {
+    for riemann in [FluxName::Hllc, FluxName::HllcLowMach, FluxName::Hlle] {
+        let plain = blast_beside_a_plane([0, 1, 2], [false; 3], riemann);
+        for (order, turned) in [
+            ([1, 0, 2], [false; 3]),
+            ([2, 0, 1], [false; 3]),
+            ([0, 2, 1], [true, false, false]),
+            ([1, 2, 0], [false, true, true]),
+            ([0, 1, 2], [true; 3]),
+        ] {
+            assert!(blast_beside_a_plane(order, turned, riemann) == plain, "{riemann:?} {order:?} {turned:?}");
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! - `rows`: loops over the cells of a row; `mixed`: what comes to them for a mixed gas
 //! - `slab`: what a step reads, and where each row stands in the window
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
+//! - `inclined_walls`: the half step beside walls askew to the grid
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
 //! - `shocks`: fluxes through faces that lie along a strong shock
@@ -15,6 +16,7 @@
 
 pub(crate) mod flux_choice;
 pub(crate) mod fluxes;
+pub(crate) mod inclined_walls;
 pub(crate) mod long_line;
 pub(crate) mod mixed;
 pub(crate) mod positive_fluxes;

@@ -45,7 +45,7 @@ pub struct Flux<R, const D: usize> {
 #[non_exhaustive]
 pub enum Riemann {
     /// Three waves: keeps contacts and shear. In two and three dimensions faces along a strong shock have the flux of [`Riemann::Hlle`], without
-    /// which it would wander.
+    /// which it would wander; so have faces of cells that an inclined wall cuts, where a shock passes.
     Hllc,
     /// The same, shocks included, softened where the gas is slow and no sound passes; along one axis the same.
     HllcLowMach,

@@ -1,14 +1,16 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
+use crate::flow::kernel::inclined_walls::slip_along_walls;
 use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
+use crate::flow::kernel::shocks::Pressures;
 use crate::flow::kernel::slab::{RowAt, Slab};
 use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use crate::flow::porosity::flags::{KIND, any_marked, break_high, break_low, marked};
+use crate::flow::porosity::flags::{KIND, SEALED, SMALL, any_marked, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
@@ -48,6 +50,12 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
         drag_half::<R, D, MIXED>(slab, row, here, work.half);
     }
     fall_back::<R, D, MIXED>(slab, row, here, &mut work.slope, work.half, marks, first_order_cells);
+    let end = work.half.len();
+    work.half.copy_within((D + 1) * n..(D + 2) * n, end - n);
+    if slab.medium.is_some() {
+        let seen = Pressures { window: work.window, ranges: work.ranges };
+        slip_along_walls::<R, D, MIXED>(slab, row, place, seen, &mut work.strength[..n], work.half);
+    }
 }
 
 /// Slopes of a row along all axes.
@@ -179,7 +187,7 @@ fn fall_back<R: Real, const D: usize, const MIXED: bool>(
         let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
         let leaves = !(stays(0) && stays(D + 1));
         let asked = asked.is_some_and(|f| f[i] != 0);
-        let small = small.is_some_and(|m| m[i] & KIND != 0);
+        let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], SEALED));
         if leaves || asked || small {
             *first_order_cells += usize::from((leaves || asked) && slab.reported.contains(&i));
             for v in 0..D + 2 + usize::from(MIXED) {

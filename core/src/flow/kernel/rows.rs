@@ -338,7 +338,7 @@ pub(crate) fn leaves_physical_set<R: Real, const D: usize>(half: &[R], slope: &[
     bad != 0
 }
 
-/// States on the high (`SIDE` = 1) or low (−1) face of each cell, and the pressure on the walls inside the cell there.
+/// States on the high (`SIDE` = 1) or low (−1) face of each cell, and the pressure on the walls inside the cell, which stands at the end of `half`.
 /// `weight` = g dx tilts both along the hydrostatic gradient. The velocity is turned into the frame of axis `d`.
 pub(crate) fn face_states<R: Real, const D: usize>(
     high: bool,
@@ -358,7 +358,7 @@ pub(crate) fn face_states<R: Real, const D: usize>(
             o[i] = h[i] + sign * s[i];
         }
     }
-    out[(D + 2) * stride + offset..][..n].copy_from_slice(var(half, D + 1, n));
+    out[(D + 2) * stride + offset..][..n].copy_from_slice(&half[half.len() - n..]);
     if let Some(weight) = weight {
         let rho = var(half, 0, n);
         for v in [D + 1, D + 2] {

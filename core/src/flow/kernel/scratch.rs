@@ -101,7 +101,7 @@ impl Sizes {
     pub const fn total<const D: usize>(&self) -> usize {
         let (v, f) = (self.state, self.face);
         let window = product([self.layers, self.rows_padded, v, self.padded]);
-        let row = product([D + 1, v, self.n]).saturating_add(product([3, f, self.m]));
+        let row = product([D + 1, v, self.n]).saturating_add(self.n).saturating_add(product([3, f, self.m]));
         let (middle, last) = self.lagged::<D>();
         let lagged = product([2 * f, self.n, middle + last]);
         let (mut changes, mut d) = (0usize, 0);
@@ -141,6 +141,7 @@ pub(in crate::flow) struct Work<'s, R, const D: usize> {
     /// The least and the largest pressure of each row of the window; of none in one dimension.
     pub ranges: &'s mut [R],
     pub slope: [&'s mut [R]; D],
+    /// Half-step states of the row, and after them the pressures on the walls inside its cells.
     pub half: &'s mut [R],
     pub left: &'s mut [R],
     pub right: &'s mut [R],
@@ -195,7 +196,7 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
             window: arena.take(s.layers * s.rows_padded * v * s.padded),
             ranges: arena.take(s.ranges::<D>()),
             slope: arena.axes(v * s.n),
-            half: arena.take(v * s.n),
+            half: arena.take((v + 1) * s.n),
             left: arena.take(f * s.m),
             right: arena.take(f * s.m),
             flux: arena.take(f * s.m),

@@ -5,10 +5,13 @@
 //! another axis has a share of the flux of HLLE, which damps it. The share grows with that jump, less what jumps at the face itself. Across the shock, and
 //! where there is none, the solver asked for stands as it is. The jumps looked at are those of the H-correction (R. Sanders, E. Morano, M.-C. Druguet,
 //! J. Comput. Phys. 145 (1998) 511): of the cells on both sides of a face.
+//!
+//! Beside a cell that an inclined wall cuts, weaker shocks have the same: what differs there along the shock is made anew in every cell, as each is cut in its own way.
 
 use crate::flow::kernel::rows::{Openings, var};
 use crate::flow::kernel::slab::Slab;
 use crate::flow::kernel::solver_calls::RowCall;
+use crate::flow::porosity::flags::{INCLINED, any_inclined, is};
 use crate::number::real::Real;
 
 /// Jump of pressure from cell to cell, in units of the smaller one, from which on HLLE has a share. Smaller: weaker shocks, which need no damping, and
@@ -17,6 +20,16 @@ use crate::number::real::Real;
 const ONSET: f64 = 1.0;
 /// Jump at which HLLE has all of the flux.
 const FULL: f64 = 2.0;
+
+/// Jump of pressure from cell to cell, in units of the smaller one, from which on a cell that an inclined wall cuts counts as passed by a shock, and from
+/// which on it does so wholly.
+pub(in crate::flow) const PASSED: [f64; 2] = [0.03, 0.1];
+
+/// How far a jump of pressure beside an inclined wall is that of a shock: from 0 to 1.
+pub(in crate::flow) fn passed<R: Real>(jump: R) -> R {
+    let [onset, full] = PASSED.map(R::from_f64);
+    R::larger(R::smaller((jump - onset) / (full - onset), R::ONE), R::ZERO)
+}
 
 /// Pressures of the rows in the window, and the least and the largest of each row.
 #[derive(Clone, Copy)]
@@ -29,13 +42,13 @@ pub(in crate::flow) struct Pressures<'w, R> {
 const MOST: usize = 8;
 
 /// Row of the window: layer and row.
-type Place = (isize, isize);
+pub(in crate::flow) type Place = (isize, isize);
 
 /// A row of cells: its place, and the indices of its first cell in the mesh.
-type CellRow<const D: usize> = (Place, [usize; D]);
+pub(in crate::flow) type CellRow<const D: usize> = (Place, [usize; D]);
 
 /// Neighbour of a row of the window along an axis above 0.
-fn beside<const D: usize>((l, j): Place, e: usize, step: isize) -> Place {
+pub(in crate::flow) fn beside<const D: usize>((l, j): Place, e: usize, step: isize) -> Place {
     if e == D - 1 { (l + step, j) } else { (l, j + step) }
 }
 
@@ -58,7 +71,9 @@ pub(in crate::flow) fn fluxes_along_shocks<R: Real, const D: usize>(
         let [Some(below), Some(above)] = slab.problem.mesh.beside(d, at, slab.periodic[d]) else { return };
         [Some((beside::<D>(here, d, -1), below)), Some((here, above))]
     };
-    if !any_jump(slab, d, rows, seen.ranges) {
+    let walls = Beside::new(slab, rows);
+    let onset = if walls.is_some() { PASSED[0] } else { ONSET };
+    if !any_jump(slab, d, rows, seen.ranges, R::from_f64(onset)) {
         return;
     }
     let n = slab.size.n;
@@ -73,13 +88,44 @@ pub(in crate::flow) fn fluxes_along_shocks<R: Real, const D: usize>(
     }
     let m = strength.len();
     let [left, right] = states.map(|s| var(s, D + 1, m));
-    for (i, strength) in strength.iter().enumerate().filter(|(_, s)| **s > R::from_f64(ONSET)) {
-        // What jumps at the face itself lies across it: beside steps of a ball of gas under pressure HLLE would smear its contact.
-        let above = *strength - jump(left[i], right[i]) - R::from_f64(ONSET);
-        if above > R::ZERO {
-            let share = R::smaller(above / R::from_f64(FULL - ONSET), R::ONE);
+    for (i, strength) in strength.iter().enumerate().filter(|(_, s)| **s > R::from_f64(onset)) {
+        let share = if walls.is_some_and(|w| w.inclined(i, d == 0)) {
+            passed(*strength)
+        } else {
+            // What jumps at the face itself lies across it: beside steps of a ball of gas under pressure HLLE would smear its contact.
+            let above = *strength - jump(left[i], right[i]) - R::from_f64(ONSET);
+            R::smaller(above / R::from_f64(FULL - ONSET), R::ONE)
+        };
+        if share > R::ZERO {
             blend_at(slab, (states, openings), (i, m), (hlle, share), flux);
         }
+    }
+}
+
+/// Marks of the cells below and above the faces of a row, some of which an inclined wall may cut.
+#[derive(Clone, Copy)]
+struct Beside<'m> {
+    below: &'m [u8],
+    above: &'m [u8],
+}
+
+impl<'m> Beside<'m> {
+    /// `None` if no inclined wall cuts any of the cells.
+    fn new<R: Real, const D: usize>(slab: &Slab<'m, R, D>, rows: [Option<CellRow<D>>; 2]) -> Option<Self> {
+        let medium = slab.medium.as_ref()?;
+        let n = slab.size.n;
+        let of = |row: CellRow<D>| &medium.porosity.marks[slab.problem.mesh.index(row.1)..][..n];
+        let above = of(rows[1]?);
+        let below = rows[0].map_or(above, of);
+        (any_inclined(below) || any_inclined(above)).then_some(Beside { below, above })
+    }
+
+    /// Whether such a wall cuts a cell beside face `i`; the faces stand one behind the other where they are those `along` the row.
+    fn inclined(self, i: usize, along: bool) -> bool {
+        let marked = |marks: &[u8], i: usize| marks.get(i).is_some_and(|&m| is(m, INCLINED));
+        let n = self.below.len();
+        let (below, above) = if along { ((i + n - 1) % n, i % n) } else { (i, i) };
+        marked(self.below, below) || marked(self.above, above)
     }
 }
 
@@ -99,12 +145,13 @@ fn from_cells_to_faces<R: Real>(values: &mut [R], periodic: bool) {
     (values[0], values[n]) = (seam, seam);
 }
 
-/// Whether some rows of cells and those beside them along other axes than `d` hold a jump of pressure that may count.
-fn any_jump<R: Real, const D: usize>(
+/// Whether some rows of cells and those beside them along other axes than `d` hold a jump of pressure that may be above `onset`.
+pub(in crate::flow) fn any_jump<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     d: usize,
     rows: [Option<CellRow<D>>; 2],
     ranges: &[R],
+    onset: R,
 ) -> bool {
     let (mut least, mut most) = (R::MAX, R::ZERO);
     let mut widen = |(l, j): Place| {
@@ -119,11 +166,11 @@ fn any_jump<R: Real, const D: usize>(
         }
     }
     // A little less, since the jumps are rounded.
-    most - least > R::from_f64(0.99 * ONSET) * least
+    most - least > R::from_f64(0.99) * onset * least
 }
 
 /// Raises `strength` of each cell of a row to its larger jump of pressure along axis `e`, to a cell that it has an open face with.
-fn jumps_along<R: Real, const D: usize>(
+pub(in crate::flow) fn jumps_along<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     e: usize,
     (place, cells): CellRow<D>,

@@ -1,16 +1,24 @@
 //! One byte of marks per cell: at which faces the porosity breaks, and what kind of cell it is.
 
-/// The two bits that say what kind of cell it is; none for a plain one.
+/// The two bits that say what kind of cell it is; none for a plain one. Ask with [`is`]: a kind may hold the bits of others.
 pub const KIND: u8 = 3 << 6;
 /// Kind of a cell with no open face: nothing happens there.
 pub const SEALED: u8 = 1 << 6;
 /// Kind of a cell whose own reconstruction stays first order: less open volume than [`crate::flow::porosity::fractions::SMALL_SHARE`] of its largest face.
 pub const SMALL: u8 = 2 << 6;
+/// Kind of a cell that an inclined wall cuts and that is not small.
+pub const INCLINED: u8 = 3 << 6;
 
 /// Whether a mark is of a kind.
 #[inline(always)]
 pub const fn is(mark: u8, kind: u8) -> bool {
     mark & KIND == kind
+}
+
+/// Whether any of the marks is of the kind [`INCLINED`].
+pub(crate) fn any_inclined(marks: &[u8]) -> bool {
+    // The highest bit of what is left stays where both bits of the kind are set.
+    marks.iter().fold(0, |a, b| a | b & (b << 1)) & 1 << 7 != 0
 }
 
 /// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall. None for `d` above 2.

@@ -1,7 +1,7 @@
-//! Which faces are walls or porosity jumps, and which cells small or sealed, found once from the open fractions.
+//! Which faces are walls or porosity jumps, and which cells small, sealed or cut by an inclined wall, found once from the open fractions.
 
 use crate::flow::error::{Error, fits};
-use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low};
+use crate::flow::porosity::flags::{INCLINED, SEALED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE, rounding};
 use crate::number::real::Real;
 
@@ -26,7 +26,7 @@ fn is_wall<R: Real>(width: R, threshold: R) -> bool {
 }
 
 /// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
-/// for no jumps), which cells are small, which are sealed.
+/// for no jumps), which cells are small, which are sealed, which an inclined wall cuts.
 ///
 /// Both belong to ducts, layers and walls aligned with the grid, and to obstacles smaller than a cell. A face beside a cell that an
 /// inclined wall cuts is neither: the area of such a cell's faces changes though no duct does, and the stream runs along the wall, not
@@ -76,6 +76,8 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
             bits |= SEALED;
         } else if volume[cell] < (R::from_f64(SMALL_SHARE) - rounding::<R>()) * widest {
             bits |= SMALL;
+        } else if medium.holds_inclined_wall(at) {
+            bits |= INCLINED;
         }
         marks[cell] = bits;
     }
