@@ -5,8 +5,9 @@
 //!
 //! In reading order: `options`, `result`, `fields`; `snap`, `local`, corners in planes and far origins; [`convex`], `formulas`, `road`, how each body
 //! is measured; `targets`, `worker`, the core's layers in a thread's memory; `levels`, `windows`, `doubt`, porous and doubtful bodies; `solid_layers`, `curved_cells`, `surface_layers`,
-//! [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], [`divided`], what follows from it.
+//! `patch`, `cell_triangles`, [`surface_fields`], [`shadows`], the surface in cells; `solid`, [`resistance`], [`drag`], [`rod`], [`congestion`], [`throat`], [`divided`], what follows from it.
 
+mod cell_triangles;
 pub mod congestion;
 pub mod convex;
 mod curved_cells;
@@ -18,6 +19,7 @@ mod formulas;
 mod levels;
 mod local;
 mod options;
+mod patch;
 pub mod resistance;
 mod result;
 mod road;
@@ -237,7 +239,7 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
         first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
     }
     let total = summaries.iter().fold(Summary::default(), Summary::join);
-    let surface = areas.map(|areas| Arc::new(finish(grid, &layers, &beta, areas, &summaries)));
+    let surface = areas.map(|areas| Arc::new(finish(grid, (bodies, &layers), &beta, areas, &summaries)));
     let porosity = Porosity {
         beta,
         bounds,

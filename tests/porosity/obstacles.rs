@@ -1,6 +1,6 @@
 //! Frontal and wetted area: boxes by coordinate compression, curved solids by closed forms, and what must not count.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
@@ -10,7 +10,7 @@ use voidage::porosity::{Options, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::solids::torus::TorusShape;
 use voidage_tests::random::Random;
-use voidage_tests::solids::{Triangle, cuboid, formulas, scene};
+use voidage_tests::solids::{Triangle, cuboid, formulas, scene, turned_box};
 
 /// `cells` cells along each axis from `lo` to `hi`.
 fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
@@ -142,6 +142,24 @@ fn a_body_within_another_adds_nothing() {
     for cells in [1, 2, 5, 9] {
         let found = obstacles(&edges(cells, 0.0, 3.0), &scene(&[outer.clone(), inner.clone()])).totals;
         assert!(close(found.wetted_area, 6.0 * 2.4 * 2.4), "{cells}: {found:?}");
+    }
+}
+
+/// A column below a lid whose lower side lies in a plane of the grid: in the cell of the column it alone has surface inside, and what it covers of the lid
+/// is not wetted.
+#[test]
+fn a_column_below_a_lid() {
+    let lid = cuboid(DVec3::new(0.1, 0.1, 1.0), DVec3::new(1.9, 1.9, 1.5));
+    let of_lid = 2.0 * 1.8 * 1.8 + 4.0 * 1.8 * 0.5;
+    for (width, angle, top) in [(0.5, 0.0, 1.0), (0.4, 0.3, 1.0), (0.3, 0.8, 1.0), (0.4, 0.3, 0.9), (1e-3, 0.5, 1.0)] {
+        let half = DVec3::new(width, width, top - 0.3) / 2.0;
+        let column = turned_box(DVec3::new(0.45, 0.55, (0.3 + top) / 2.0), half, DMat3::from_rotation_z(angle));
+        let ends = if top < 1.0 { 2.0 * width * width } else { 0.0 };
+        let truth = of_lid + 4.0 * width * (top - 0.3) + ends;
+        for cells in [2, 4, 6] {
+            let found = obstacles(&edges(cells, 0.0, 2.0), &scene(&[lid.clone(), column.clone()])).totals;
+            assert!(close(found.wetted_area, truth), "{width} {angle} {top} {cells}: {found:?} {truth}");
+        }
     }
 }
 

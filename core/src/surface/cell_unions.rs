@@ -48,6 +48,8 @@ pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
     type Found: KeptSurface<V::Scalar>;
     /// Is the surface of the union in a cell of the layer asked for?
     fn wants_union(&self, cell: usize) -> bool;
+    /// Told from what is known already: where one body alone has surface inside a cell, of which this share is solid. Was that so?
+    fn settle(&mut self, at: (usize, Aabb<V>), solid: V::Scalar) -> bool;
     /// What the union has of surface in a cell.
     fn set_union(&mut self, cell: usize, found: Self::Found);
     /// The same where there is no proof for the cell as a whole, whose bounds may have been `refined`.
@@ -65,6 +67,10 @@ impl<V: Vector> UnionSums<V> for () {
     type Found = ();
     #[inline(always)]
     fn wants_union(&self, _: usize) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn settle(&mut self, _: (usize, Aabb<V>), _: V::Scalar) -> bool {
         false
     }
     #[inline(always)]
@@ -264,7 +270,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             let at = At { i, j, cells: [nx, ny] };
             resolved.ambiguous += usize::from(at.cell_gap(layer) > V::Scalar::ZERO);
             let open = at.largest_gap(layer);
-            let wanted = P::WANTED && at.wants_union(layer, pieces);
+            let wanted = P::WANTED && at.wants_union(site, layer, pieces);
             if !(open > known() || wanted) {
                 continue;
             }
@@ -488,14 +494,20 @@ impl At {
         self.j * self.cells[0] + self.i
     }
 
-    /// Is the surface of the union in the cell asked for? If one body fills it, that is told at once.
-    fn wants_union<V: Vector, P: UnionSums<V>>(self, layer: &Layer<V::Scalar>, pieces: &mut P) -> bool {
-        let wanted = pieces.wants_union(self.cell());
-        let closed = layer.lower.cell.get(self.cell()).is_some_and(|&lower| lower >= V::Scalar::ONE);
-        if wanted && closed {
-            pieces.set_union(self.cell(), P::Found::closed());
+    /// Is the surface of the union in the cell asked for? If one body fills it, or has all surface in it, that is told at once.
+    fn wants_union<V: Vector, P: UnionSums<V>>(self, site: &Site<V>, layer: &Layer<V::Scalar>, pieces: &mut P) -> bool {
+        if !pieces.wants_union(self.cell()) {
+            return false;
         }
-        wanted && !closed
+        let solid = layer.lower.cell.get(self.cell()).copied().unwrap_or_default();
+        if solid >= V::Scalar::ONE {
+            pieces.set_union(self.cell(), P::Found::closed());
+            return false;
+        }
+        // Then the others have no share of it, nor has one of them all of it but for rounding.
+        let is_of_one = layer.sum.cell.get(self.cell()).is_some_and(|&sum| sum - solid <= known());
+        let cell = site.grid.cell_box([self.i, self.j, site.k]).filter(|_| is_of_one);
+        !cell.is_some_and(|cell| pieces.settle((self.cell(), cell), solid))
     }
 
     /// The faces that the cell decides: its low ones, and at the upper ends of the grid the high ones; axis, position, and whether high.

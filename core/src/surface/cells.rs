@@ -273,7 +273,8 @@ pub(super) fn add_body_and<R: Real, V: Vector<Scalar = R>, P: PieceSums<R>>(
     let Some(window) = Window::around(grid, triangles, ids)? else { return Ok(none) };
     let mut sums = Sums::new(grid, window, scratch, layer, pieces);
     let mut b = Buffers::default();
-    for triangle in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
+    for (id, triangle) in ids.iter().filter_map(|&id| Some((id, triangles.get(id as usize)?))) {
+        sums.pieces.begin_triangle(id);
         let mut corners = triangle.map(Vector::to_array);
         sums.x.origin = take_origin(&mut corners, 0);
         sums.y.origin = take_origin(&mut corners, 1);

@@ -57,6 +57,8 @@ pub(super) trait PieceSums<R> {
     const WANTED: bool;
     /// The pieces that follow are of this body, which may be a sheet without volume.
     fn begin_body(&mut self, body: u32, sheet: bool);
+    /// The pieces that follow are of this triangle of the body.
+    fn begin_triangle(&mut self, triangle: u32);
     /// A piece that counts for a cell of the layer, by twice its area vector, and itself, in the coordinates of the grid if it lies inside the cell.
     fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: &Polygon<R>);
 }
@@ -65,6 +67,8 @@ impl<R> PieceSums<R> for () {
     const WANTED: bool = false;
     #[inline(always)]
     fn begin_body(&mut self, _: u32, _: bool) {}
+    #[inline(always)]
+    fn begin_triangle(&mut self, _: u32) {}
     #[inline(always)]
     fn add(&mut self, _: usize, _: Place, _: [R; 3], _: &Polygon<R>) {}
 }
@@ -78,7 +82,10 @@ pub struct CellSurface<R> {
     pub(super) in_plane: R,
     /// Of sheets without volume, both sides.
     pub(super) sheets: SurfaceArea<R>,
+    /// Those with surface inside or in the planes of its faces.
     pub(super) bodies: Bodies,
+    /// Those with surface inside.
+    inner: Bodies,
     /// Of several bodies, what their union has.
     pub(super) union: Option<UnionSurface<R>>,
     /// The pieces inside that have been kept.
@@ -126,8 +133,18 @@ pub struct KeptPiece {
     /// The piece of the same cell before it.
     before: CellPieces,
     first_corner: u32,
-    corners: u32,
+    owner: Owner,
+    /// How many corners it has.
+    corners: u8,
+}
+
+/// What a piece of surface is cut from. The default serves as memory.
+#[derive(Clone, Copy, Debug, Default)]
+struct Owner {
     body: u32,
+    /// The number of the triangle among those of the body.
+    triangle: u32,
+    /// The body has no volume.
     sheet: bool,
 }
 
@@ -150,15 +167,9 @@ pub struct PiecesUsed {
 }
 
 impl<R: Real> PieceMemory<'_, R> {
-    /// Keep one more piece of a cell, those of which before it are given, and of a body, which may be a sheet.
+    /// Keep one more piece of a cell, those of which before it are given.
     #[inline(always)]
-    fn keep(
-        &mut self,
-        used: &mut PiecesUsed,
-        before: CellPieces,
-        (body, sheet): (u32, bool),
-        piece: &Polygon<R>,
-    ) -> CellPieces {
+    fn keep(&mut self, used: &mut PiecesUsed, before: CellPieces, owner: Owner, piece: &Polygon<R>) -> CellPieces {
         if before == CellPieces::Incomplete {
             return before;
         }
@@ -167,7 +178,7 @@ impl<R: Real> PieceMemory<'_, R> {
         let places = self.corners.get_mut(first..).and_then(|free| free.get_mut(..corners.len()));
         let (Some(places), Some(kept)) = (places, self.pieces.get_mut(number)) else { return CellPieces::Incomplete };
         places.iter_mut().zip(corners).for_each(|(place, corner)| *place = *corner);
-        *kept = KeptPiece { before, first_corner: first as u32, corners: corners.len() as u32, body, sheet };
+        *kept = KeptPiece { before, first_corner: first as u32, owner, corners: corners.len() as u8 };
         *used = PiecesUsed { pieces: number + 1, corners: first + corners.len() };
         CellPieces::Last(number as u32)
     }
@@ -216,17 +227,42 @@ impl<'a, R> KeptPieces<'a, R> {
         self.cells.get(cell).copied().filter(|kept| kept.pieces != CellPieces::Incomplete)
     }
 
+    /// The triangles that have a piece inside a cell, if all of these have been kept: the number of the body, and that of the triangle among those of the
+    /// body. Those of a body come one after the other.
+    pub fn triangles(&self, cell: usize) -> Option<impl Iterator<Item = [u32; 2]> + use<'a, R>> {
+        Some(list(self.pieces, self.of(cell)?.pieces).map(|KeptPiece { owner, .. }| [owner.body, owner.triangle]))
+    }
+
+    /// The corners of all pieces inside a cell, if one body alone has surface there or in the planes of its sides, as seen from the cell.
+    pub fn of_one(&self, cell: usize) -> Option<impl Iterator<Item = &'a [[R; 3]]> + use<'a, R>> {
+        let own = self.of(cell).filter(|own| own.alone.is_some())?;
+        Some(self.pieces(own).map(|(corners, ..)| corners))
+    }
+
     /// The pieces of a cell, the last first: corners, the body and whether it is a sheet.
     pub(super) fn pieces(&self, cell: KeptCell) -> impl Iterator<Item = (&'a [[R; 3]], u32, bool)> + use<'a, R> {
-        let KeptPieces { pieces, corners, .. } = *self;
-        let mut at = cell.pieces;
-        core::iter::from_fn(move || {
-            let CellPieces::Last(number) = at else { return None };
-            let KeptPiece { before, first_corner, corners: count, body, sheet } = *pieces.get(number as usize)?;
-            // Lists lead downwards, so that they end.
-            at = if matches!(before, CellPieces::Last(n) if n < number) { before } else { CellPieces::None };
-            Some((corners.get(first_corner as usize..)?.get(..count as usize)?, body, sheet))
-        })
+        let corners = self.corners;
+        list(self.pieces, cell.pieces)
+            .map_while(|piece| Some((piece.corners_in(corners)?, piece.owner.body, piece.owner.sheet)))
+    }
+}
+
+/// The last piece of a cell, and those before it.
+fn list(pieces: &[KeptPiece], last: CellPieces) -> impl Iterator<Item = &KeptPiece> {
+    let mut at = last;
+    core::iter::from_fn(move || {
+        let CellPieces::Last(number) = at else { return None };
+        let piece = pieces.get(number as usize)?;
+        // Lists lead downwards, so that they end.
+        at = if matches!(piece.before, CellPieces::Last(n) if n < number) { piece.before } else { CellPieces::None };
+        Some(piece)
+    })
+}
+
+impl KeptPiece {
+    /// Its corners, among those of all pieces.
+    fn corners_in<'a, R>(&self, corners: &'a [[R; 3]]) -> Option<&'a [[R; 3]]> {
+        corners.get(self.first_corner as usize..)?.get(..self.corners.into())
     }
 }
 
@@ -237,6 +273,18 @@ pub(super) enum Bodies {
     None,
     One(u32),
     Several,
+}
+
+impl Bodies {
+    /// One more, which may be among them.
+    #[inline(always)]
+    fn add(&mut self, body: u32) {
+        *self = match *self {
+            Bodies::None => Bodies::One(body),
+            Bodies::One(other) if other == body => Bodies::One(body),
+            _ => Bodies::Several,
+        };
+    }
 }
 
 /// What the union of several bodies has of surface inside a cell.
@@ -286,8 +334,8 @@ impl<R: Real> KeptSurface<R> for UnionSurface<R> {
 pub(super) struct LayerSurface<'a, R> {
     /// `ny*nx`, x fastest.
     cells: &'a mut [CellSurface<R>],
-    body: u32,
-    sheet: bool,
+    /// What the pieces are cut from.
+    owner: Owner,
     pieces: PieceMemory<'a, R>,
     used: PiecesUsed,
 }
@@ -296,7 +344,7 @@ impl<'a, R: Real> LayerSurface<'a, R> {
     /// Of no surface yet; pieces are kept as far as the memory goes.
     pub fn new(cells: &'a mut [CellSurface<R>], pieces: PieceMemory<'a, R>) -> Self {
         cells.fill(CellSurface::default());
-        LayerSurface { cells, body: 0, sheet: false, pieces, used: PiecesUsed::default() }
+        LayerSurface { cells, owner: Owner::default(), pieces, used: PiecesUsed::default() }
     }
 
     /// How many pieces and corners have been kept.
@@ -309,6 +357,15 @@ impl<'a, R: Real> LayerSurface<'a, R> {
         self.cells
     }
 
+    /// What a cell holds inside which one body with volume has all surface, and the pieces of that surface; none if several have some, or pieces are not
+    /// known.
+    pub fn of_one(&self, cell: usize) -> Option<(&CellSurface<R>, impl Iterator<Item = &[[R; 3]]>)> {
+        let known = |s: &&CellSurface<R>| matches!(s.inner, Bodies::One(_)) && s.kept != CellPieces::Incomplete;
+        let surface = self.cells.get(cell).filter(known)?;
+        let pieces = list(self.pieces.pieces, surface.kept).filter(|piece| !piece.owner.sheet);
+        Some((surface, pieces.map_while(|piece| piece.corners_in(self.pieces.corners))))
+    }
+
     /// What a cell holds; none if there is no such cell.
     pub fn cell_mut(&mut self, cell: usize) -> Option<&mut CellSurface<R>> {
         self.cells.get_mut(cell)
@@ -319,30 +376,34 @@ impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
     const WANTED: bool = true;
 
     fn begin_body(&mut self, body: u32, sheet: bool) {
-        (self.body, self.sheet) = (body, sheet);
+        self.owner = Owner { body, sheet, triangle: 0 };
+    }
+
+    #[inline(always)]
+    fn begin_triangle(&mut self, triangle: u32) {
+        self.owner.triangle = triangle;
     }
 
     #[inline(always)]
     fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: &Polygon<R>) {
         let Some(cell) = self.cells.get_mut(cell) else { return };
+        let Owner { body, sheet, .. } = self.owner;
         if place == Place::Inside {
-            let owner = (self.body, self.sheet);
-            cell.kept = self.pieces.keep(&mut self.used, cell.kept, owner, piece);
+            cell.kept = self.pieces.keep(&mut self.used, cell.kept, self.owner, piece);
         }
         let area = SurfaceArea::of_polygon(doubled_area);
-        match (self.sheet, place) {
+        match (sheet, place) {
             (true, Place::Inside) => cell.sheets = cell.sheets.plus(area),
             (true, Place::InPlane) => cell.sheets.wetted += area.wetted,
             (false, Place::Inside) => cell.inside = cell.inside.plus(area),
             (false, Place::InPlane) => cell.in_plane += area.wetted,
             (_, Place::Top) => cell.wall_on_top = true,
         }
-        if !self.sheet && place != Place::Top {
-            cell.bodies = match cell.bodies {
-                Bodies::None => Bodies::One(self.body),
-                Bodies::One(body) if body == self.body => Bodies::One(body),
-                _ => Bodies::Several,
-            };
+        if !sheet && place != Place::Top {
+            cell.bodies.add(body);
+            if place == Place::Inside {
+                cell.inner.add(body);
+            }
         }
     }
 }

@@ -470,7 +470,7 @@ pub enum Limit {
 }
 
 /// Add ∫ n dA and ∫ n_a (1 − x_a) dA of a polygon.
-fn integrate<R: Real>(polygon: &Polygon<R>, flux: &mut [R; 3], moment: &mut [R; 3]) {
+pub(super) fn integrate<R: Real>(polygon: &Polygon<R>, flux: &mut [R; 3], moment: &mut [R; 3]) {
     let [o, first, others @ ..] = polygon.corners() else { return };
     let third = R::ONE / R::from_f64(3.0);
     let mut a = sub(*first, *o);

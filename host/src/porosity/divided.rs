@@ -10,7 +10,7 @@ mod near;
 mod parts;
 
 use super::fields::FieldSet;
-use super::shadows::{HIDDEN, Shadows, faces_of_cell, hidden_share, place_of_cell};
+use super::shadows::{HIDDEN, Shadows, faces_of_cell, place_of_cell};
 use crate::geometry::bodies::Bodies;
 use crate::geometry::repair::sets::Sets;
 use near::Near;
@@ -28,58 +28,74 @@ pub struct DividedCells {
     pub first: Option<[usize; 3]>,
 }
 
-/// A cell is looked at if along one axis it blocks this share of its section beyond what its faces show: a wall that divides it does.
+/// A cell is looked at if along one axis it blocks this share of its section beyond what its faces show: a wall that divides it does. A neighbour of a
+/// divided cell is looked at if it hides anything: the corner of a cell that the wall cuts off.
 const LEAST_HIDDEN: f64 = 0.25;
-
-/// A neighbour of a divided cell is looked at from here: the corner of a cell that the wall cuts off.
-const LEAST_BESIDE: f64 = 0.02;
 
 /// A face is open from this open fraction on.
 const OPEN: f64 = 0.05;
 
-/// The cells of a grid that surface divides, and their parts.
-#[derive(Debug, Clone, Default)]
+/// The cells of a grid that surface may divide.
+#[derive(Debug)]
 pub struct Division {
-    /// Of divided cells.
-    parts: Vec<Parts>,
-    /// Where each cell's parts stand; beyond the end of them for those that are not known to be divided.
-    slots: Vec<u32>,
-    /// Cells that may be told: neighbours are known by their parts only.
-    candidates: Vec<usize>,
+    near: Near,
+    /// Cells that hide something in ascending order, and how much.
+    hiding: Vec<(usize, f64)>,
 }
 
 impl Division {
-    /// Of solid bodies with known shadows; `beta` holds open fractions in the planes of faces. Porous bodies divide nothing. Runs in the current
-    /// rayon pool.
+    /// Of solid bodies with known shadows; `beta` holds open fractions in the planes of faces. Porous bodies divide nothing.
     #[must_use]
     pub fn find(grid: &Grid<f64>, bodies: &Bodies, beta: &FieldSet, shadows: &Shadows) -> Self {
-        let all = hiding(grid, beta, shadows);
-        let first: Vec<_> =
-            numbered(&all).filter(|(_, hidden)| *hidden >= LEAST_HIDDEN).map(|(cell, _)| cell).collect();
-        if first.is_empty() {
-            return Division::default();
+        let mut hiding = shadows.hiding(grid, beta);
+        if hiding.iter().all(|(_, hidden)| *hidden < LEAST_HIDDEN) {
+            hiding.clear();
         }
-        let near = Near::new(grid, bodies, &all.iter().map(|(n, _)| *n).collect::<Vec<_>>());
-        let mut found = Division { slots: vec![u32::MAX; grid.cell_count()], ..Division::default() };
-        found.candidates = found.add_divided(grid, &near, &first);
-        let mut beside = vec![false; grid.cell_count()];
-        for &n in &found.candidates {
-            around(grid, n).for_each(|at| beside[grid.cell_index(at)] = true);
-        }
-        let more = numbered(&all).filter(|((_, n), hidden)| *hidden < LEAST_HIDDEN && beside[*n]);
-        found.add_divided(grid, &near, &more.map(|(cell, _)| cell).collect::<Vec<_>>());
-        found
+        let cells = hiding.iter().map(|(n, _)| *n).collect();
+        Division { near: Near::new(grid, bodies, cells, &shadows.triangles), hiding }
     }
 
-    /// Adds those of some cells that have several parts, and tells them. The cells are given with their numbers among those that triangles are known near.
-    fn add_divided(&mut self, grid: &Grid<f64>, near: &Near, cells: &[(usize, usize)]) -> Vec<usize> {
-        let parts = |hits: &mut Hits, &(number, n): &(usize, usize)| {
+    /// The cells that let gas pass with the open fractions `beta` of faces, which may have been lowered since; without those that are hidden passages
+    /// by the `shadows`, if these are given. Runs in the current rayon pool.
+    #[must_use]
+    pub fn told(&self, grid: &Grid<f64>, beta: &FieldSet, shadows: Option<&Shadows>) -> DividedCells {
+        let is_passage = |n: usize| {
+            shadows.is_some_and(|shadows| shadows.largest_hidden(grid, beta, place_of_cell(grid, n)) > HIDDEN)
+        };
+        let first = self.hiding.iter().filter(|(n, hidden)| *hidden >= LEAST_HIDDEN && !is_passage(*n));
+        let first: Vec<usize> = first.map(|(n, _)| *n).collect();
+        let mut parts = AllParts { parts: Vec::new(), slots: vec![None; grid.cell_count()] };
+        let candidates = parts.add(grid, &self.near, &first);
+        // Of their neighbours only the parts count.
+        let mut beside: Vec<usize> =
+            candidates.iter().flat_map(|&n| around(grid, n).map(|at| grid.cell_index(at))).collect();
+        beside.sort_unstable();
+        beside.dedup();
+        let hides = |n: &usize| self.hiding.binary_search_by_key(n, |(cell, _)| *cell).is_ok();
+        beside.retain(|n| hides(n) && first.binary_search(n).is_err());
+        parts.add(grid, &self.near, &beside);
+        let found: Vec<usize> = candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, beta, n)).collect();
+        DividedCells { cells: found.len(), first: found.first().map(|&n| place_of_cell(grid, n)) }
+    }
+}
+
+/// The parts of cells that are divided.
+struct AllParts {
+    parts: Vec<Parts>,
+    /// Where each cell's parts stand; none for those that are not known to be divided.
+    slots: Vec<Option<u32>>,
+}
+
+impl AllParts {
+    /// Adds those of some cells that have several parts, and tells them.
+    fn add(&mut self, grid: &Grid<f64>, near: &Near, cells: &[usize]) -> Vec<usize> {
+        let parts = |hits: &mut Hits, &n: &usize| {
             let cell = grid.cell_box(place_of_cell(grid, n))?;
-            Some((n, Parts::of_cell(cell, near.of(number), hits)?))
+            Some((n, Parts::of_cell(cell, near.of(n), hits)?))
         };
         let found: Vec<_> = cells.par_iter().map_init(Hits::default, parts).collect();
         let add = |(n, parts): (usize, Parts)| {
-            self.slots[n] = self.parts.len() as u32;
+            self.slots[n] = Some(self.parts.len() as u32);
             self.parts.push(parts);
             n
         };
@@ -88,19 +104,7 @@ impl Division {
 
     /// The parts of a cell that is divided.
     fn of(&self, n: usize) -> Option<&Parts> {
-        self.parts.get(*self.slots.get(n)? as usize)
-    }
-
-    /// The cells that let gas pass with the open fractions `beta` of faces, which may have been lowered since; without those that are hidden passages
-    /// by the `shadows`, if these are given.
-    #[must_use]
-    pub fn told(&self, grid: &Grid<f64>, beta: &FieldSet, shadows: Option<&Shadows>) -> DividedCells {
-        let is_told = |n: &&usize| {
-            let known = shadows.is_some_and(|shadows| hidden(grid, beta, shadows, place_of_cell(grid, **n)) > HIDDEN);
-            !known && self.lets_pass(grid, beta, **n)
-        };
-        let found: Vec<usize> = self.candidates.par_iter().filter(is_told).copied().collect();
-        DividedCells { cells: found.len(), first: found.first().map(|&n| place_of_cell(grid, n)) }
+        self.parts.get(self.slots[n]? as usize)
     }
 
     /// Do two parts of a cell reach beyond it that have no way to each other around it?
@@ -190,28 +194,4 @@ fn around(grid: &Grid<f64>, n: usize) -> impl Iterator<Item = [usize; 3]> {
 
 fn open_side(grid: &Grid<f64>, beta: &FieldSet, n: usize, (axis, side): (usize, usize)) -> bool {
     beta.faces(axis)[faces_of_cell(grid, axis, place_of_cell(grid, n))[side]] >= OPEN
-}
-
-/// The cells that are not closed and block a share of their section beyond what their faces show, with that share.
-fn hiding(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows) -> Vec<(usize, f64)> {
-    let [x, y, z] = &shadows.tau;
-    // No more can be hidden than is blocked.
-    let may_hide = |n: &usize| beta.v[*n] > 0.0 && x[*n].max(y[*n]).max(z[*n]) >= LEAST_BESIDE;
-    let cells = (0..grid.cell_count()).filter(may_hide);
-    cells
-        .map(|n| (n, hidden(grid, beta, shadows, place_of_cell(grid, n))))
-        .filter(|(_, h)| *h >= LEAST_BESIDE)
-        .collect()
-}
-
-/// Cells with their numbers in a list.
-fn numbered(cells: &[(usize, f64)]) -> impl Iterator<Item = ((usize, usize), f64)> {
-    cells.iter().enumerate().map(|(number, &(n, hidden))| ((number, n), hidden))
-}
-
-/// The largest share of its section that a cell blocks along an axis beyond what its faces show.
-fn hidden(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows, at: [usize; 3]) -> f64 {
-    let n = grid.cell_index(at);
-    let along = |axis: usize| hidden_share(grid, axis, shadows.tau[axis][n], beta, at);
-    along(0).max(along(1)).max(along(2))
 }

@@ -1,6 +1,8 @@
 //! Passages that no face of the grid sees blocked: shadows of the solids in every cell.
 
+use super::cell_triangles::CellTriangles;
 use super::fields::FieldSet;
+use crate::geometry::bodies::Bodies;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
@@ -22,6 +24,8 @@ pub struct Shadows {
     pub too_full: usize,
     /// Hidden passages along x, y and z.
     pub hidden: [HiddenPassages; 3],
+    /// What stands in the cells that hide something.
+    pub(super) triangles: CellTriangles,
 }
 
 /// What is told beside the areas of a layer, and the pieces of surface that have been kept of it.
@@ -41,13 +45,16 @@ pub struct HiddenPassages {
 /// Blockage of its section that makes a cell between two open faces a hidden passage.
 pub const HIDDEN: f64 = 0.95;
 
+/// A cell hides something if along one axis it blocks this share of its section beyond what its faces show.
+const LEAST_HIDDEN: f64 = 0.02;
+
 impl Shadows {
     /// Of bodies in layers, whose open fractions and areas of surface are known, with what is told beside the areas for each layer, and the pieces of surface
     /// that have been kept of it.
     #[must_use]
     pub fn of_layers(
         grid: &Grid<f64>,
-        layers: &Layers<DVec3>,
+        (bodies, layers): (&Bodies, &Layers<DVec3>),
         beta: &FieldSet,
         (areas, known): (&[SurfaceArea<f64>], &[BesideAreas]),
     ) -> Self {
@@ -73,6 +80,10 @@ impl Shadows {
         let too_full = slices.into_par_iter().enumerate().map(layer).sum();
         let mut found = Shadows { tau, place, too_full, ..Shadows::default() };
         found.find_hidden(grid, beta);
+        let kept: Vec<_> = known.iter().map(|(_, kept)| *kept).collect();
+        // What hides nearly all of a section is a wall.
+        let hiding = found.hiding(grid, beta).into_iter().map(|(cell, hidden)| (cell, hidden <= HIDDEN));
+        found.triangles = CellTriangles::of(bodies, &kept, nx * ny, hiding);
         found
     }
 
@@ -98,6 +109,25 @@ impl Shadows {
     /// Counts the hidden passages, now that the faces are known.
     pub(super) fn find_hidden(&mut self, grid: &Grid<f64>, beta: &FieldSet) {
         self.hidden = [0, 1, 2].map(|axis| hidden(grid, axis, &self.tau[axis], beta));
+    }
+
+    /// The cells that are not closed and hide something, in ascending order, with the largest share of its section that each hides along an axis.
+    pub(super) fn hiding(&self, grid: &Grid<f64>, beta: &FieldSet) -> Vec<(usize, f64)> {
+        let [x, y, z] = &self.tau;
+        // No more can be hidden than is blocked.
+        let may_hide = |n: &usize| beta.v[*n] > 0.0 && x[*n].max(y[*n]).max(z[*n]) >= LEAST_HIDDEN;
+        let cells = (0..grid.cell_count()).filter(may_hide);
+        cells
+            .map(|n| (n, self.largest_hidden(grid, beta, place_of_cell(grid, n))))
+            .filter(|(_, hidden)| *hidden >= LEAST_HIDDEN)
+            .collect()
+    }
+
+    /// The largest share of its section that a cell blocks along an axis beyond what its faces show.
+    pub(super) fn largest_hidden(&self, grid: &Grid<f64>, beta: &FieldSet, at: [usize; 3]) -> f64 {
+        let n = grid.cell_index(at);
+        let along = |axis: usize| hidden_share(grid, axis, self.tau[axis][n], beta, at);
+        along(0).max(along(1)).max(along(2))
     }
 }
 

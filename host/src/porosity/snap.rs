@@ -20,7 +20,7 @@ const NEAR_ULPS: f64 = 2.0;
 pub fn into_planes(grid: &Grid<f64>, bodies: &Bodies) -> Option<Vec<[DVec3; 3]>> {
     let to_planes = ToPlanes::new(grid);
     let moved = |t: usize| {
-        let body = body_of(bodies, t);
+        let body = bodies.bodies.get(number_of_body(bodies, t));
         bodies.triangles[t].map(|p| to_planes.corner(p, body))
     };
     let all = 0..bodies.triangles.len();
@@ -71,9 +71,10 @@ pub fn near(grid: &Grid<f64>) -> DVec3 {
     }))
 }
 
-/// The body that a triangle belongs to; bodies have their triangles one after the other.
-fn body_of(bodies: &Bodies, triangle: usize) -> Option<&Body> {
-    bodies.bodies.get(bodies.bodies.partition_point(|b| b.triangles.end <= triangle))
+/// The number of the body that a triangle belongs to; bodies have their triangles one after the other.
+#[must_use]
+pub fn number_of_body(bodies: &Bodies, triangle: usize) -> usize {
+    bodies.bodies.partition_point(|b| b.triangles.end <= triangle)
 }
 
 /// The plane nearest to a coordinate.

@@ -8,6 +8,7 @@ use super::surface_fields::SurfaceFields;
 use super::targets::targets;
 use super::worker::{Summary, Workers};
 use super::{Options, curved_cells};
+use crate::geometry::bodies::Bodies;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -31,7 +32,7 @@ pub fn of_layers(
         .map(|(k, target)| workers.layer(grid, layers, &road, k, target))
         .collect();
     let change = curved_cells::measure(grid, bodies, &mut areas, &mut summaries);
-    let found = finish(grid, layers, beta, areas, &summaries);
+    let found = finish(grid, (bodies, layers), beta, areas, &summaries);
     SurfaceFields { sum: found.sum.plus(change), facet_error: *facet_error, ..found }
 }
 
@@ -39,7 +40,7 @@ pub fn of_layers(
 #[must_use]
 pub fn finish(
     grid: &Grid<f64>,
-    layers: &Layers<DVec3>,
+    (bodies, layers): (&Bodies, &Layers<DVec3>),
     beta: &FieldSet,
     mut areas: Vec<SurfaceArea<f64>>,
     summaries: &[Summary],
@@ -50,7 +51,7 @@ pub fn finish(
         layers.finish_areas(k, &open, &summary.sides, areas).expect("slices of a layer fit its grid");
     });
     let known: Vec<_> = summaries.iter().map(|summary| (&summary.sides[..], summary.kept.pieces())).collect();
-    let shadows = Arc::new(Shadows::of_layers(grid, layers, beta, (&areas, &known)));
+    let shadows = Arc::new(Shadows::of_layers(grid, (bodies, layers), beta, (&areas, &known)));
     let reports = summaries.iter().map(|summary| summary.areas);
     SurfaceFields {
         // In the order of layers, so that the bits do not depend on the number of threads.

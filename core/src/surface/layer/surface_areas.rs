@@ -16,10 +16,12 @@ use crate::surface::cell_unions::{
     OtherBodies, Refined, Shared, Site, SpareMemory, UnionSums, divide, known, side_areas, with_effort,
 };
 use crate::surface::cells::Defects;
+use crate::surface::clip::Polygon;
 use crate::surface::surface_area::{
     Bodies, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea, UnionSurface,
     gather_weighted,
 };
+use crate::surface::union::{Frame, integrate};
 
 /// Open fractions of a layer that are known already: cells `ny*nx`, x faces `ny*(nx+1)`, y faces `(ny+1)*nx`, z faces below and above
 /// `ny*nx` each; x fastest.
@@ -262,6 +264,14 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         self.cells().get(cell).is_some_and(shared)
     }
 
+    fn settle(&mut self, (number, cell): (usize, Aabb<V>), solid: V::Scalar) -> bool {
+        let Some((surface, pieces)) = self.of_one(number) else { return false };
+        let sides = (surface.in_plane > V::Scalar::ZERO).then(|| sides_of_one(cell, pieces, solid));
+        let found = UnionSurface { area: surface.inside, exact: true, sides, ..UnionSurface::default() };
+        UnionSums::<V>::set_union(self, number, found);
+        true
+    }
+
     fn set_union(&mut self, cell: usize, found: UnionSurface<V::Scalar>) {
         if let Some(surface) = self.cell_mut(cell) {
             surface.union = Some(found);
@@ -288,6 +298,32 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         };
         surface.union = Some(UnionSurface { area, doubt, sides, exact: false });
     }
+}
+
+/// Solid fractions of the sides of a cell, low and high along each axis, as seen from inside, where one body has these pieces of surface and `solid` is
+/// its share of the cell. Along an axis i, over its pieces in the frame of the cell, the share is that of the low side − ∫ n_i (1 − x_i) dA, and the high side has that of the
+/// low one − ∫ n_i dA.
+fn sides_of_one<'p, V: Vector>(
+    cell: Aabb<V>,
+    pieces: impl Iterator<Item = &'p [[V::Scalar; 3]]>,
+    solid: V::Scalar,
+) -> Sides<V::Scalar>
+where
+    V::Scalar: 'p,
+{
+    let (frame, mut polygon) = (Frame::of(cell), Polygon::default());
+    let (mut flux, mut moment) = ([V::Scalar::ZERO; 3], [V::Scalar::ZERO; 3]);
+    for corners in pieces {
+        polygon.clear();
+        for corner in corners {
+            polygon.push(frame.framed(*corner));
+        }
+        integrate(&polygon, &mut flux, &mut moment);
+    }
+    [0, 1, 2].map(|axis| {
+        let low = solid + moment[axis];
+        [low, low - flux[axis]].map(|side| side.max(V::Scalar::ZERO).min(V::Scalar::ONE))
+    })
 }
 
 /// Area of the surface in the planes of a cell's sides that is wetted from the cell: what is blocked, less what is solid on this side of it.

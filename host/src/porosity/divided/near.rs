@@ -2,6 +2,7 @@
 
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::facets;
+use crate::porosity::cell_triangles::CellTriangles;
 use crate::porosity::{snap, windows};
 use glam::DVec3;
 use std::ops::Range;
@@ -12,9 +13,12 @@ use voidage_core::surface::clip::{Polygon, keep};
 pub type OfBody = (u32, [DVec3; 3]);
 
 /// The triangles that reach each of some cells, or nearly so.
+#[derive(Debug, Default)]
 pub struct Near {
     triangles: Vec<OfBody>,
-    /// Of each cell, in ascending order.
+    /// The cells in ascending order.
+    cells: Vec<usize>,
+    /// Of each cell, those of a body one after the other.
     lists: Vec<Vec<u32>>,
 }
 
@@ -22,28 +26,59 @@ pub struct Near {
 const FEW_CELLS: usize = 27;
 
 impl Near {
-    /// Of cells in ascending order; curved bodies as facets.
-    pub fn new(grid: &Grid<f64>, bodies: &Bodies, cells: &[usize]) -> Self {
-        let mut slots = vec![u32::MAX; grid.cell_count()];
-        cells.iter().zip(0..).for_each(|(&n, slot)| slots[n] = slot);
-        let mut near = Near { triangles: Vec::new(), lists: vec![Vec::new(); cells.len()] };
-        let solid = |(_, body): &(usize, &Body)| body.porosity == 0.0 && body.doubt != Doubt::Unknown;
-        let to_planes = snap::ToPlanes::new(grid);
-        for (n, body) in bodies.bodies.iter().enumerate().filter(solid) {
-            match facets::of_body(body) {
-                Some(facets) => facets.iter().for_each(|facet| near.add(grid, &slots, n as u32, facet, |t| t)),
-                None => {
-                    let triangles = &bodies.triangles[body.triangles.clone()];
-                    triangles.iter().for_each(|t| near.add(grid, &slots, n as u32, t, |t| to_planes.moved(t, body)));
-                }
-            }
+    /// Of cells in ascending order, some of which may be `known`; curved bodies as facets.
+    pub fn new(grid: &Grid<f64>, bodies: &Bodies, cells: Vec<usize>, known: &CellTriangles) -> Self {
+        let mut near = Near { lists: vec![Vec::new(); cells.len()], cells, ..Near::default() };
+        let unknown = near.take_known(grid, bodies, known);
+        if !unknown.is_empty() {
+            near.search(grid, bodies, &unknown);
         }
         near
     }
 
-    /// Those that reach the cell of this number among the cells.
+    /// Those that reach one of the cells.
     pub fn of(&self, cell: usize) -> impl Iterator<Item = OfBody> {
-        self.lists[cell].iter().map(|&t| self.triangles[t as usize])
+        let list = self.cells.binary_search(&cell).map_or(&[][..], |at| &self.lists[at]);
+        list.iter().map(|&t| self.triangles[t as usize])
+    }
+
+    /// Fills the lists of cells that are known; where the others stand among the cells.
+    fn take_known(&mut self, grid: &Grid<f64>, bodies: &Bodies, known: &CellTriangles) -> Vec<usize> {
+        let mut places = vec![u32::MAX; bodies.triangles.len()];
+        let (to_planes, mut unknown) = (snap::ToPlanes::new(grid), Vec::new());
+        for (at, (&n, list)) in self.cells.iter().zip(&mut self.lists).enumerate() {
+            let Some(own) = known.of_cell(n) else {
+                unknown.push(at);
+                continue;
+            };
+            list.extend(own.iter().filter_map(|&t| {
+                let place = places.get_mut(t as usize)?;
+                if *place == u32::MAX {
+                    let number = snap::number_of_body(bodies, t as usize);
+                    let body = bodies.bodies.get(number).filter(|body| is_solid(body))?;
+                    *place = self.triangles.len() as u32;
+                    self.triangles.push((number as u32, to_planes.moved(bodies.triangles[t as usize], body)));
+                }
+                Some(*place)
+            }));
+        }
+        unknown
+    }
+
+    /// Fills some of the lists from all triangles.
+    fn search(&mut self, grid: &Grid<f64>, bodies: &Bodies, lists: &[usize]) {
+        let mut slots = vec![u32::MAX; grid.cell_count()];
+        lists.iter().for_each(|&at| slots[self.cells[at]] = at as u32);
+        let to_planes = snap::ToPlanes::new(grid);
+        for (n, body) in bodies.bodies.iter().enumerate().filter(|(_, body)| is_solid(body)) {
+            match facets::of_body(body) {
+                Some(facets) => facets.iter().for_each(|facet| self.add(grid, &slots, n as u32, facet, |t| t)),
+                None => {
+                    let triangles = &bodies.triangles[body.triangles.clone()];
+                    triangles.iter().for_each(|t| self.add(grid, &slots, n as u32, t, |t| to_planes.moved(t, body)));
+                }
+            }
+        }
     }
 
     /// Add a triangle of a body to the cells that it reaches, once it is moved into planes of the grid that it misses by rounding: then it lies within no
@@ -88,6 +123,10 @@ impl Near {
             self.triangles.push((body, cut.unwrap_or_else(|| moved(*triangle))));
         }
     }
+}
+
+fn is_solid(body: &Body) -> bool {
+    body.porosity == 0.0 && body.doubt != Doubt::Unknown
 }
 
 /// The cells along an axis that a polygon reaches or touches.

@@ -77,6 +77,9 @@ impl Parts {
         for (body, triangle) in triangles {
             cross(&places, &triangle.map(|p| (p - cell.min) / size), body, hits);
         }
+        if hits.is_empty() {
+            return None;
+        }
         let (mut blocked, mut open) = (Blocked::default(), [u64::MAX; ALONG]);
         for of_body in hits.chunk_by(|a, b| a.body == b.body) {
             let (of_body, solid) = solid_points(of_body, ends);
@@ -128,12 +131,20 @@ fn places(axis: usize) -> [f64; ALONG] {
 /// Which places lie from `lo` to `hi`.
 #[inline(always)]
 fn within(places: &[f64; ALONG], lo: f64, hi: f64) -> Range<usize> {
-    let (mut first, mut end) = (0, 0);
-    for &place in places {
-        first += usize::from(place < lo);
-        end += usize::from(place <= hi);
+    let first = up_to(places, lo);
+    first - usize::from(first > 0 && places[first - 1] == lo)..up_to(places, hi)
+}
+
+/// How many places lie below a value or at it.
+#[inline(always)]
+fn up_to(places: &[f64; ALONG], value: f64) -> usize {
+    // Beside the place that would be the last if the inner ones were not moved.
+    let near = ((value * 6.0 + 0.5) as usize).min(ALONG - 2);
+    match near + usize::from(places[near] <= value) {
+        0 => 0,
+        n if n > near => n + usize::from(places[n] <= value),
+        n => n - usize::from(places[n - 1] > value),
     }
-    first..end
 }
 
 /// Where the lines between points cross a triangle.
@@ -156,7 +167,7 @@ fn cross(places: &[[f64; ALONG]; 3], triangle: &[DVec3; 3], body: u32, hits: &mu
             let p = places[u][m];
             for n in projected.reached(p, &places[v], along_v.clone()) {
                 let Some(at) = projected.at(p, places[v][n]) else { continue };
-                let before = within(&places[axis], at, at).end;
+                let before = up_to(&places[axis], at);
                 if before > 0 && before < ALONG {
                     let point = ((before - 1) * STEP[axis] + m * STEP[u] + n * STEP[v]) as u16;
                     hits.push(Hit { body, axis: axis as u8, point, enters: projected.doubled < 0.0, at });
