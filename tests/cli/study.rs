@@ -114,6 +114,20 @@ fn every_scene_grid_method_and_number_of_threads_is_a_row() {
 }
 
 #[test]
+fn an_exact_volume_that_the_scene_does_not_hold_is_told_once() {
+    let dir = Scratch::new();
+    let brick = "[[solid]]\nname = \"b\"\nshape = \"box\"\nmin = [0.1, 0.1, 0.1]\nmax = [0.5, 0.5, 0.5]\n";
+    fs::write(dir.file("scene.toml"), brick).expect("written");
+    let case = dir.file("case.toml");
+    let told = |exact: &str| {
+        fs::write(&case, CASE.replace("exact = 0.064", &format!("exact = {exact}"))).expect("written");
+        let said = stderr(&voidage(&[&"study", &case]));
+        said.matches("but the scene holds 0.064").count()
+    };
+    assert_eq!([told("0.064"), told("0.0640000000000001"), told("0.06400001"), told("0.05")], [0, 0, 1, 1]);
+}
+
+#[test]
 fn wrong_cases_say_where() {
     let dir = Scratch::new();
     fs::write(dir.file("scene.toml"), "").expect("written");

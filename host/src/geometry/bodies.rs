@@ -9,6 +9,7 @@ use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::{LARGEST, Mesh};
 use crate::geometry::repair::copies;
+use crate::geometry::repair::cracks::{self, Cracks};
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::edges::EdgeUses;
 use crate::geometry::repair::junctions;
@@ -65,7 +66,7 @@ pub struct Body {
     pub cavities: usize,
     /// What is not known of it.
     pub doubt: Doubt,
-    /// How far corners may be off where surfaces crossed and were cut; 0 if none were.
+    /// How far corners may be off where surfaces crossed and were cut, or cracks wider than rounding were closed; 0 if none were.
     pub rounding: f64,
     /// Boxes in which it is not known what is solid: around rims of holes that are not plane, and around parts that may have each other's triangles.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -163,7 +164,7 @@ impl Bodies {
         let solid_of = |n: u32| mesh.solids.partition_point(|s| s.triangles.end <= n as usize);
         let rounding = rounding(d.bounds, mesh.single_precision);
         let cleaned = clean(&scaled, solid_of, rounding, &mut d, &mut report);
-        let Some(Cleaned { mesh: indexed, shells, clusters, with_backs }) = cleaned else {
+        let Some(Cleaned { mesh: indexed, shells, clusters, with_backs, cracks }) = cleaned else {
             let reason = format!("all triangles ({}) are degenerate (no area): nothing solid", d.triangles);
             return Err(mesh.error(reason));
         };
@@ -178,6 +179,9 @@ impl Bodies {
         say_copies(&d, &mut report);
         let first = self.bodies.len();
         self.assemble(closed, &mut d, &mut report);
+        for body in &mut self.bodies[first..] {
+            body.rounding = body.rounding.max(cracks.rounding(&self.triangles[body.triangles.clone()]));
+        }
         if mesh.single_precision {
             self.bodies[first..].iter_mut().for_each(|b| b.single = Some(SingleSource::scaled(scale)));
         }
@@ -314,6 +318,7 @@ struct Cleaned {
     clusters: Vec<Cluster>,
     /// Which triangles have three corners, those too that were dropped, if some are the backs of others.
     with_backs: Option<Vec<bool>>,
+    cracks: Cracks,
 }
 
 /// Double-sided triangles that are no shells, for their edges do not tell what belongs together.
@@ -400,8 +405,12 @@ fn clean(
     let mut all = distinct(&mesh);
     let mut alive = all.clone();
     [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
-    let uses = EdgeUses::new(&mesh, &alive);
-    let uses = close_cracks(&mut mesh, &alive, uses, rounding, d, report);
+    let mut uses = EdgeUses::new(&mesh, &alive);
+    let cracks = cracks::close(&mut mesh, &alive, &mut uses, rounding);
+    d.welded_by = cracks.moved;
+    if cracks.moved > 0.0 {
+        report.warn(format!("points up to {:.1e} apart were merged to close cracks", cracks.moved));
+    }
     let uses = if alive == all { uses } else { EdgeUses::new(&mesh, &all) };
     d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
     d.boundary_edges = d.t_junction_edges;
@@ -424,7 +433,7 @@ fn clean(
             either(d.one_sided, "it", "them")
         ));
     }
-    Some(Cleaned { mesh, shells, clusters, with_backs })
+    Some(Cleaned { mesh, shells, clusters, with_backs, cracks })
 }
 
 /// Split a mesh into shells, and clusters of which edges do not tell enough. Of its triangles, two lists: which have three corners, and which of these
@@ -495,39 +504,4 @@ fn say_copies(d: &Diagnosis, report: &mut Reporter) {
 /// Triangles with three different corners.
 fn distinct(mesh: &Indexed) -> Vec<bool> {
     mesh.triangles.iter().map(|[a, b, c]| a != b && b != c && c != a).collect()
-}
-
-/// Cracks wider than rounding, in units of it: 0.03 mm to a metre. They count as cracks only if every edge finds its partner across them.
-const WIDE_CRACKS: [f64; 2] = [8.0, 64.0];
-
-/// If edges lack partners, try whether points that differ by rounding are meant to be one, or by a little more if that closes everything. Returns
-/// the uses of the edges then.
-fn close_cracks(
-    mesh: &mut Indexed,
-    alive: &[bool],
-    uses: EdgeUses,
-    rounding: f64,
-    d: &mut Diagnosis,
-    report: &mut Reporter,
-) -> EdgeUses {
-    let before = uses.unmatched();
-    if before == 0 {
-        return uses;
-    }
-    let loose = uses.unmatched_points(mesh.points.len());
-    let merged_within = |distance: f64| {
-        let mut merged = mesh.clone();
-        let moved = weld::merge_close(&mut merged, alive, &loose, distance);
-        let uses = EdgeUses::new(&merged, alive);
-        (merged, uses, moved)
-    };
-    let closed_by = |factor: f64| Some(merged_within(rounding * factor)).filter(|(_, uses, _)| uses.unmatched() == 0);
-    let narrow = merged_within(rounding);
-    let left = narrow.1.unmatched();
-    let wide = if left == 0 { None } else { WIDE_CRACKS.into_iter().find_map(closed_by) };
-    let Some((merged, after, moved)) = wide.or_else(|| (2 * left <= before).then_some(narrow)) else { return uses };
-    report.warn(format!("points up to {moved:.1e} apart were merged to close cracks"));
-    d.welded_by = moved;
-    *mesh = merged;
-    after
 }

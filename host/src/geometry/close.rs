@@ -3,6 +3,7 @@
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
 use crate::geometry::repair::apart::Pieces;
 use crate::geometry::repair::edges::{EdgeUses, key, without_opposites};
+use crate::geometry::repair::gaps::{self, Gaping, Loose};
 use crate::geometry::repair::nesting::Closed;
 use crate::geometry::repair::rims::{Rim, rims};
 use crate::geometry::repair::sets::Sets;
@@ -40,7 +41,7 @@ pub(super) fn close(
         uses.is_some_and(|uses| is_contested(mesh, uses, *edge))
     };
     let (mut closed, mut open) = (Vec::new(), Open::default());
-    let mut without_caps = Vec::new();
+    let (mut without_caps, mut loose) = (Vec::new(), Vec::new());
     d.area = 0.0;
     for group in groups(mesh, shells, rounding) {
         let members: Vec<u32> = group.iter().flat_map(|&s| shells[s].triangles.iter().copied()).collect();
@@ -64,12 +65,14 @@ pub(super) fn close(
             open.uneven.extend(&caps.open.uneven);
             shell.unknown = caps.open.uneven;
         }
+        loose.extend(boundary.iter().map(|&edge| Loose { part: closed.len(), edge }));
         let contested = is_capped && boundary.iter().any(contested);
         if !is_capped {
             without_caps.push((closed.len(), members));
         }
         closed.push(Part { name, shell, cluster, guessed, contested, own });
     }
+    doubt_gaping(mesh, &mut closed, &loose, report);
     // Parts joined at T-junctions may look opposite ways, whatever the volumes of the whole say.
     if d.t_junction_edges > 0 || !look_alike(&closed) {
         separate(surface, &mut closed, without_caps, name_of);
@@ -82,6 +85,28 @@ pub(super) fn close(
     }
     open.say(report);
     closed
+}
+
+/// Sheets that nearly meet may be a body whose corners were written too coarsely: all in the box around them is in doubt.
+fn doubt_gaping(mesh: &Indexed, parts: &mut [Part], loose: &[Loose], report: &mut Reporter) {
+    if !parts.iter().any(|p| p.shell.is_sheet()) {
+        return;
+    }
+    for Gaping { parts: members, width } in gaps::gaping(mesh, loose, parts.len()) {
+        let own = members.iter().flat_map(|&n| parts[n].shell.triangles[..parts[n].own].iter().copied());
+        let whole = Closed::new(own.collect());
+        let sheet = members.iter().find(|&&n| parts[n].shell.is_sheet());
+        let Some(&sheet) = sheet.filter(|_| gaps::holds_volume(&whole)) else { continue };
+        let [lo, hi] = whole.bounds;
+        parts[sheet].shell.unknown.push([lo, hi]);
+        report.warn(format!(
+            "{} from {} to {} nearly {} along edges, with gaps of up to {width:.1e}: whether they close a body cannot be told, and the bounds of all cells within their box are 0 and 1",
+            counted(members.len(), "open part", "open parts"),
+            show(lo),
+            show(hi),
+            either(members.len(), "meets itself", "meet"),
+        ));
+    }
 }
 
 /// Takes those parts apart that were joined although each closes by itself, if some of them look the other way, or a part that looks the other way holds one

@@ -2,9 +2,11 @@
 
 pub mod apart;
 pub mod copies;
+pub mod cracks;
 pub mod crossing;
 pub mod edges;
 pub mod face;
+pub mod gaps;
 pub mod join;
 pub mod junctions;
 pub mod lines;

@@ -3,10 +3,11 @@
 use super::case::{ProbeCell, StudyCase, Subject, cost};
 use super::points;
 use super::recipe::{Precision, Recipe};
-use super::row::{Errors, Row, Truth, mark_fronts};
+use super::row::{EXACT, Errors, Row, Truth, mark_fronts};
 use super::session::Session;
 use super::single;
 use super::spread::{Spread, timed};
+use super::table::{Reading, readable};
 use super::values::word;
 use crate::command::cli::SceneArgs;
 use crate::command::progress::Progress;
@@ -102,7 +103,9 @@ fn on_grid(
             let key = format!("{} | {nx}x{ny}x{nz} | {} | {threads}", subject.name, recipe.name);
             if reference.is_none() && session.before::<Row>(&key).is_none() {
                 let what = format!("reference of {} on {nx}x{ny}x{nz}", subject.name);
-                reference = Some(session.prepare(&what, || self::reference(bodies, edges, case.areas))?);
+                let made = session.prepare(&what, || self::reference(bodies, edges, case.areas))?;
+                doubt_exact(subject, &made, session);
+                reference = Some(made);
             }
             let measure = |_: &mut Progress| {
                 let reference = reference.as_ref().ok_or_else(|| Error::new("no reference"))?;
@@ -112,6 +115,25 @@ fn on_grid(
         }
     }
     Ok(())
+}
+
+/// Tells of an exact volume that is not what the scene holds by the reference and its bounds.
+fn doubt_exact(subject: &Subject, reference: &Reference, session: &mut Session) {
+    let Some(exact) = subject.exact else { return };
+    let volume = reference.found.solid_volume;
+    let off = (exact - volume).abs();
+    if off <= reference.uncertainty * volume + EXACT * exact {
+        return;
+    }
+    let said = format!(
+        "{}: exact is {exact}, but the scene holds {} m3 in the grid (to within {:.0e}); errors of volumes are counted from exact all the same",
+        subject.name,
+        readable(volume, Reading::Volume),
+        reference.uncertainty * volume + EXACT * exact,
+    );
+    if !session.progress.warnings.contains(&said) {
+        session.progress.warn(said);
+    }
 }
 
 /// The bodies of a scene of the case file at `path`.

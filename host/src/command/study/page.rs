@@ -3,7 +3,7 @@
 use super::case::Published;
 use super::flows::runs::{self, FlowOrder};
 use super::found::StudyFindings;
-use super::row::{ROUNDING, Row};
+use super::row::{EXACT, ROUNDING, Row};
 use super::table::{Cell, Listing, Reading, readable};
 use super::values::unique;
 use super::{left_out, points, scaling};
@@ -14,9 +14,6 @@ use std::fmt::Write;
 
 /// A limit on errors, and its name in a table.
 const LIMITS: [(f64, &str); 3] = [(1e-2, "below_1e-2"), (1e-4, "below_1e-4"), (EXACT, "exact")];
-
-/// Unions whose proof is found are exact to this; closed forms and single bodies to less.
-const EXACT: f64 = 1e-9;
 
 const STYLE: &str = "body{font:15px/1.45 Helvetica,Arial,'DejaVu Sans',sans-serif;color:#222;max-width:1180px;margin:24px auto;padding:0 16px}\
 h1{font-size:24px}h2{font-size:18px;margin-top:32px}table{border-collapse:collapse;font-size:13px;margin:8px 0}\

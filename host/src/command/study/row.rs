@@ -110,5 +110,8 @@ pub fn mark_fronts(rows: &mut [Row]) {
     }
 }
 
+/// Unions whose proof is found are exact to this; closed forms and single bodies to less.
+pub const EXACT: f64 = 1e-9;
+
 /// Relative errors of a volume below this are those of sums in double precision.
 pub const ROUNDING: f64 = 1e-13;

@@ -68,7 +68,8 @@ const OF_AN_EDGE: f64 = 0.25;
 
 /// Points in cubic buckets, for searches within distances ("reaches") of very different sizes: one set of buckets for each binary order of
 /// the reach, as wide as the reach or wider.
-struct Buckets {
+#[derive(Debug)]
+pub struct Buckets {
     origin: DVec3,
     points: HashMap<(i32, [i64; 3]), Vec<u32>>,
     /// Binary orders of the smallest and the largest reach.
@@ -76,7 +77,9 @@ struct Buckets {
 }
 
 impl Buckets {
-    fn new(origin: DVec3, reach: impl Iterator<Item = f64>) -> Self {
+    /// None yet, for points of these reaches above and beside `origin`.
+    #[must_use]
+    pub fn new(origin: DVec3, reach: impl Iterator<Item = f64>) -> Self {
         let (least, most) = reach.filter(|&r| r > 0.0).fold((f64::INFINITY, 0.0_f64), |(a, b), r| (a.min(r), b.max(r)));
         let highest = Self::order(most);
         // Points that reach less than the lowest order are looked for farther than they reach, which only takes longer.
@@ -100,7 +103,8 @@ impl Buckets {
         ((p - self.origin) / 2_f64.powi(order)).floor().to_array().map(|c| c as i64)
     }
 
-    fn add(&mut self, v: u32, p: DVec3, reach: f64) {
+    /// Add a point.
+    pub fn add(&mut self, v: u32, p: DVec3, reach: f64) {
         for order in self.orders(reach) {
             let bucket = self.bucket(p, order);
             self.points.entry((order, bucket)).or_default().push(v);
@@ -108,7 +112,7 @@ impl Buckets {
     }
 
     /// Points that may lie as close as both they and a point of this reach do reach; some more than once.
-    fn near(&self, p: DVec3, reach: f64) -> impl Iterator<Item = u32> {
+    pub fn near(&self, p: DVec3, reach: f64) -> impl Iterator<Item = u32> {
         self.orders(reach).flat_map(move |order| {
             let [a, b, c] = self.bucket(p, order);
             let side = |n: i64| n.saturating_sub(1)..=n.saturating_add(1);
@@ -118,28 +122,21 @@ impl Buckets {
     }
 }
 
-/// Merge `loose` points closer than `distance`, and much closer than the edges of `alive` triangles there are long; each group
-/// moves to the place of its first point. Other points stay where they are. Returns the largest move.
-pub fn merge_close(mesh: &mut Indexed, alive: &[bool], loose: &[bool], distance: f64) -> f64 {
+/// For each point, the point that it may be one with: of `loose` points closer than `distance`, and much closer than the edges of `alive` triangles there are
+/// long, the first of each group. Other points stand for themselves.
+pub fn close_points(mesh: &Indexed, alive: &[bool], loose: &[bool], distance: f64) -> Vec<u32> {
     let reach = reach(mesh, alive, loose, distance);
     let origin = mesh.points.iter().fold(DVec3::INFINITY, |a, p| a.min(*p));
     let mut buckets = Buckets::new(origin, reach.iter().copied());
-    let (mut target, mut largest_move): (Vec<u32>, f64) = ((0..mesh.points.len() as u32).collect(), 0.0);
+    let mut target: Vec<u32> = (0..mesh.points.len() as u32).collect();
     for (v, &p) in mesh.points.iter().enumerate().filter(|&(v, _)| loose[v] && reach[v] > 0.0) {
-        let apart = |q: u32| mesh.points[q as usize].distance(p);
-        let near = buckets.near(p, reach[v]).filter(|&q| apart(q) <= reach[v].min(reach[q as usize])).min();
-        match near {
-            Some(q) => {
-                largest_move = largest_move.max(apart(q));
-                target[v] = q;
-            }
+        let is_close = |q: u32| mesh.points[q as usize].distance(p) <= reach[v].min(reach[q as usize]);
+        match buckets.near(p, reach[v]).filter(|&q| is_close(q)).min() {
+            Some(q) => target[v] = q,
             None => buckets.add(v as u32, p, reach[v]),
         }
     }
-    for t in &mut mesh.triangles {
-        *t = t.map(|v| target[v as usize]);
-    }
-    largest_move
+    target
 }
 
 /// How far from each loose point others are still the same.
