@@ -7,12 +7,13 @@
 //!
 //! **Proof.** The new surface must be closed: its areas cancel and its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
-use crate::geometry::repair::face::{Crossing, Face, beside, cut, meeting, push_parts, sides_on};
+use crate::geometry::repair::face::{Crossing, Face, cut, is_apart, meeting, push_parts, sides_on};
 use crate::geometry::repair::lines::Lines;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use std::cell::LazyCell;
 
 /// Points closer to a plane or line than this share of the shell's size are on it: some hundred roundings, …
 const ON: f64 = 1e-13;
@@ -91,19 +92,30 @@ pub type SideUse = ([u32; 2], u32, usize);
 /// The uses of all edges of some triangles, sorted.
 #[must_use]
 pub fn edges(triangles: &[[DVec3; 3]]) -> Vec<SideUse> {
-    let mut numbers: HashMap<[u64; 3], u32> = HashMap::default();
-    let mut number = |p: DVec3| {
-        let next = numbers.len() as u32;
-        *numbers.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert(next)
-    };
-    let mut edges = Vec::with_capacity(3 * triangles.len());
-    for (n, t) in triangles.iter().enumerate() {
-        let [a, b, c] = t.map(&mut number);
-        let sides = [[a, b], [b, c], [c, a]].into_iter().enumerate();
-        edges.extend(sides.map(|(side, [p, q])| ([p.min(q), p.max(q)], n as u32, side)));
-    }
+    let mut edges: Vec<SideUse> = sides(triangles).collect();
     edges.sort_unstable();
     edges
+}
+
+/// The sides of triangles in their order.
+fn sides(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = SideUse> {
+    let mut numbers: HashMap<[u64; 3], u32> = HashMap::default();
+    triangles.iter().enumerate().flat_map(move |(n, t)| {
+        let [a, b, c] = t.map(|p| {
+            let next = numbers.len() as u32;
+            *numbers.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert(next)
+        });
+        let sides = [([a, b], 0), ([b, c], 1), ([c, a], 2)];
+        sides.map(|([p, q], side)| ([p.min(q), p.max(q)], n as u32, side))
+    })
+}
+
+/// The first triangle, by the order of edges, that has an edge with more than one other.
+fn at_edge_of_many(triangles: &[[DVec3; 3]]) -> Option<u32> {
+    let mut keys: Vec<u64> = sides(triangles).map(|([p, q], ..)| u64::from(p) << 32 | u64::from(q)).collect();
+    keys.sort_unstable();
+    let many = keys.windows(3).find(|w| w[0] == w[2])?[0];
+    sides(triangles).find(|([p, q], ..)| u64::from(*p) << 32 | u64::from(*q) == many).map(|(_, n, _)| n)
 }
 
 /// Triangles, and where they meet.
@@ -148,15 +160,24 @@ impl<'a> Meetings<'a> {
         let tree = Tree::new(triangles);
         tree.touching_pairs(|m, n| {
             let (a, b) = (&faces[m as usize], &faces[n as usize]);
-            if beside(a, b, on) || beside(b, a, on) {
+            let seen = a.sees(b);
+            if seen.is_beside(on) {
                 return;
             }
-            for (m, n, a, b) in [(m, n, a, b), (n, m, b, a)] {
-                let found = meeting(a, b, on);
+            let back = b.sees(a);
+            if back.is_beside(on) {
+                return;
+            }
+            let inward =
+                [(a, b), (b, a)].map(|(face, other)| LazyCell::new(move || other.corners.map(|p| face.inward(p))));
+            let have_area = a.normal != DVec3::ZERO && b.normal != DVec3::ZERO;
+            let covers = LazyCell::new(|| have_area && !inward.iter().any(|inward| is_apart(inward, on)));
+            for (m, n, a, b, seen, inward) in [(m, n, a, b, &seen, &inward[0]), (n, m, b, a, &back, &inward[1])] {
+                let found = meeting(a, b, seen, on, || *covers);
                 if found != Crossing::None {
                     met.entry(m).or_default().push((n, found));
                 }
-                let sides = sides_on(a, b, on);
+                let sides = sides_on(a, b, seen, on, || **inward);
                 resting.extend((0..3).filter(|&side| sides[side]).map(|side| (n, side)));
             }
         });
@@ -316,8 +337,7 @@ pub fn tolerance([lo, hi]: [DVec3; 2]) -> f64 {
 pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let on = tolerance([lo, hi]);
     let shell = Meetings::new(triangles, on);
-    let many = || edges(triangles).chunk_by(|a, b| a.0 == b.0).find(|uses| uses.len() > 2).map(|uses| uses[0].1);
-    let Some(n) = shell.met.keys().min().copied().or_else(many) else {
+    let Some(n) = shell.met.keys().min().copied().or_else(|| at_edge_of_many(triangles)) else {
         return Found::Simple { walls: false };
     };
     let place = triangles[n as usize][0];
@@ -331,7 +351,7 @@ pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
                 surface,
                 place,
                 both_ways: forward && backward,
-                touches: many().is_some(),
+                touches: at_edge_of_many(triangles).is_some(),
                 walls,
             })
         }

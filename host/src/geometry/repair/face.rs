@@ -9,6 +9,17 @@ pub struct Face {
     pub corners: [DVec3; 3],
     /// Unit normal; zero if it has no area.
     pub normal: DVec3,
+    /// Unit vectors in its plane, inward from the sides, which go from each corner to the next.
+    inward: [DVec3; 3],
+}
+
+/// A triangle as another one sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Which of its corners are corners of the other, too.
+    shared: [bool; 3],
+    /// Signed distances of its corners from the plane of the other; 0 where they share it.
+    heights: [f64; 3],
 }
 
 impl Face {
@@ -20,7 +31,20 @@ impl Face {
         let normals = [(b - a).cross(c - a), (c - b).cross(a - b), (a - c).cross(b - c)];
         let largest =
             normals.into_iter().fold(DVec3::ZERO, |l, n| if n.length_squared() > l.length_squared() { n } else { l });
-        Face { corners, normal: largest.normalize_or_zero() }
+        let normal = largest.normalize_or_zero();
+        let inward = [b - a, c - b, a - c].map(|side| normal.cross(side).normalize_or_zero());
+        Face { corners, normal, inward }
+    }
+
+    /// How it sees another one.
+    #[must_use]
+    pub fn sees(&self, other: &Face) -> Seen {
+        let mut seen = Seen { shared: [false; 3], heights: [0.0; 3] };
+        for (i, &p) in other.corners.iter().enumerate() {
+            seen.shared[i] = self.corners[0] == p || self.corners[1] == p || self.corners[2] == p;
+            seen.heights[i] = if seen.shared[i] { 0.0 } else { self.height(p) };
+        }
+        seen
     }
 
     /// Signed distance of a point from the plane.
@@ -32,10 +56,23 @@ impl Face {
     /// Distances of a point inward from the lines of the sides, in the plane.
     #[must_use]
     pub fn inward(&self, p: DVec3) -> [f64; 3] {
-        [0, 1, 2].map(|i| {
-            let (a, b) = (self.corners[i], self.corners[(i + 1) % 3]);
-            self.normal.cross(b - a).normalize_or_zero().dot(p - a)
-        })
+        [0, 1, 2].map(|i| self.inward[i].dot(p - self.corners[i]))
+    }
+}
+
+impl Seen {
+    /// Does it lie off the plane, all on one side, but for corners that both share? Most neighbours do.
+    #[must_use]
+    pub fn is_beside(&self, on: f64) -> bool {
+        let [mut above, mut below] = [false; 2];
+        for (height, shared) in self.heights.iter().zip(self.shared) {
+            above |= *height > on;
+            below |= *height < -on;
+            if !shared && height.abs() <= on {
+                return false;
+            }
+        }
+        above != below
     }
 }
 
@@ -50,14 +87,13 @@ pub enum Crossing {
     Cover,
 }
 
-/// How `other` meets the inner part of `face`.
+/// How `other` meets the inner part of `face`, which sees it so. `covers`: do they share more than their sides, if they lie in one plane?
 #[must_use]
-pub fn meeting(face: &Face, other: &Face, on: f64) -> Crossing {
-    let shared = other.corners.map(|p| face.corners.contains(&p));
-    let heights = [0, 1, 2].map(|i| if shared[i] { 0.0 } else { face.height(other.corners[i]) });
+pub fn meeting(face: &Face, other: &Face, seen: &Seen, on: f64, covers: impl FnOnce() -> bool) -> Crossing {
+    let heights = seen.heights;
     let (above, below) = (heights.iter().any(|&h| h > on), heights.iter().any(|&h| h < -on));
     if !above && !below {
-        return if covers(face, other, on) { Crossing::Cover } else { Crossing::None };
+        return if covers() { Crossing::Cover } else { Crossing::None };
     }
     let mut ends = [DVec3::ZERO; 2];
     let mut count = 0;
@@ -79,13 +115,41 @@ pub fn meeting(face: &Face, other: &Face, on: f64) -> Crossing {
     if count != 2 {
         return Crossing::None;
     }
-    // The part of the segment that lies within the triangle, off its sides.
-    let (from, to) = (face.inward(ends[0]), face.inward(ends[1]));
+    let share = share_within(&face.inward(ends[0]), &face.inward(ends[1]), on).unwrap_or(0.0);
+    if share * ends[0].distance(ends[1]) > on { Crossing::Cut(ends) } else { Crossing::None }
+}
+
+/// A side that lies on another triangle for no more than so many tolerances touches it in a point.
+const TOUCH: f64 = 16.0;
+
+/// The sides of `other`, from each of its corners to the next, that lie on `face` for some length and are not sides of it; `face` sees it so. `inward`:
+/// the distances of its corners [inward](Face::inward) from the sides of `face`.
+#[must_use]
+pub fn sides_on(face: &Face, other: &Face, seen: &Seen, on: f64, inward: impl FnOnce() -> [[f64; 3]; 3]) -> [bool; 3] {
+    let in_plane = |i: usize| seen.heights[i].abs() <= on;
+    let may = |i: usize, j: usize| in_plane(i) && in_plane(j) && !(seen.shared[i] && seen.shared[j]);
+    let may = [may(0, 1), may(1, 2), may(2, 0)];
+    if may == [false; 3] || face.normal == DVec3::ZERO || other.normal == DVec3::ZERO {
+        return [false; 3];
+    }
+    let inward = inward();
+    let mut found = [false; 3];
+    for i in (0..3).filter(|&i| may[i]) {
+        let j = (i + 1) % 3;
+        let share = share_within(&inward[i], &inward[j], -on);
+        found[i] = share.is_some_and(|share| share * other.corners[i].distance(other.corners[j]) > TOUCH * on);
+    }
+    found
+}
+
+/// The share of a segment that lies within a triangle, farther than `by` from its sides; none if it lies beyond one of them. For its ends, the distances inward
+/// from the sides.
+fn share_within(from: &[f64; 3], to: &[f64; 3], by: f64) -> Option<f64> {
     let (mut lo, mut hi) = (0.0_f64, 1.0_f64);
-    for i in 0..3 {
-        let (a, b) = (from[i] - on, to[i] - on);
+    for (from, to) in from.iter().zip(to) {
+        let (a, b) = (from - by, to - by);
         if a <= 0.0 && b <= 0.0 {
-            return Crossing::None;
+            return None;
         }
         if a <= 0.0 {
             lo = lo.max(a / (a - b));
@@ -93,50 +157,13 @@ pub fn meeting(face: &Face, other: &Face, on: f64) -> Crossing {
             hi = hi.min(a / (a - b));
         }
     }
-    if (hi - lo) * ends[0].distance(ends[1]) > on { Crossing::Cut(ends) } else { Crossing::None }
+    Some(hi - lo)
 }
 
-/// A side that lies on another triangle for no more than so many tolerances touches it in a point.
-const TOUCH: f64 = 16.0;
-
-/// The sides of `other`, from each of its corners to the next, that lie on `face` for some length and are not sides of it.
+/// Does a triangle in one plane with another lie beyond one of its sides? `inward`: distances of its corners inward from these sides.
 #[must_use]
-pub fn sides_on(face: &Face, other: &Face, on: f64) -> [bool; 3] {
-    if face.normal == DVec3::ZERO || other.normal == DVec3::ZERO {
-        return [false; 3];
-    }
-    let shared = other.corners.map(|p| face.corners.contains(&p));
-    let in_plane = [0, 1, 2].map(|i| shared[i] || face.height(other.corners[i]).abs() <= on);
-    [0, 1, 2].map(|i| {
-        let j = (i + 1) % 3;
-        if !in_plane[i] || !in_plane[j] || (shared[i] && shared[j]) {
-            return false;
-        }
-        let (p, q) = (other.corners[i], other.corners[j]);
-        let (from, to) = (face.inward(p), face.inward(q));
-        let (mut lo, mut hi) = (0.0_f64, 1.0_f64);
-        for side in 0..3 {
-            let (a, b) = (from[side] + on, to[side] + on);
-            if a < 0.0 && b < 0.0 {
-                return false;
-            }
-            if a < 0.0 {
-                lo = lo.max(a / (a - b));
-            } else if b < 0.0 {
-                hi = hi.min(a / (a - b));
-            }
-        }
-        (hi - lo) * p.distance(q) > TOUCH * on
-    })
-}
-
-/// Do two triangles in one plane share more than their sides?
-fn covers(a: &Face, b: &Face, on: f64) -> bool {
-    let apart = |a: &Face, b: &Face| {
-        let inward = b.corners.map(|p| a.inward(p));
-        (0..3).any(|side| inward.iter().all(|d| d[side] <= on))
-    };
-    a.normal != DVec3::ZERO && b.normal != DVec3::ZERO && !apart(a, b) && !apart(b, a)
+pub fn is_apart(inward: &[[f64; 3]; 3], on: f64) -> bool {
+    (0..3).any(|side| inward.iter().all(|d| d[side] <= on))
 }
 
 /// Cut convex polygons by the plane through `at` normal to `normal`, those near the box `lo..hi`.
@@ -177,20 +204,6 @@ pub fn cut(parts: &mut Vec<Vec<DVec3>>, at: DVec3, normal: DVec3, [lo, hi]: [DVe
         more.push(below);
     }
     parts.append(&mut more);
-}
-
-/// Does `b` lie off the plane of `a`, all on one side, but for corners that they share? Most neighbours do.
-#[must_use]
-pub fn beside(a: &Face, b: &Face, on: f64) -> bool {
-    let mut sides = [false; 2];
-    for p in b.corners.iter().filter(|p| !a.corners.contains(p)) {
-        let height = a.height(*p);
-        if height.abs() <= on {
-            return false;
-        }
-        sides[usize::from(height > 0.0)] = true;
-    }
-    sides[0] != sides[1]
 }
 
 /// Add those of the convex parts of a triangle that are wanted, as they are (`true`) or turned; the triangle itself if all are wanted alike,
