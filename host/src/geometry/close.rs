@@ -93,7 +93,7 @@ fn doubt_gaping(mesh: &Indexed, parts: &mut [Part], loose: &[Loose], report: &mu
         return;
     }
     for Gaping { parts: members, width } in gaps::gaping(mesh, loose, parts.len()) {
-        let own = members.iter().flat_map(|&n| parts[n].shell.triangles[..parts[n].own].iter().copied());
+        let own = members.iter().flat_map(|&n| parts[n].own().iter().copied());
         let whole = Closed::new(own.collect());
         let sheet = members.iter().find(|&&n| parts[n].shell.is_sheet());
         let Some(&sheet) = sheet.filter(|_| gaps::holds_volume(&whole)) else { continue };

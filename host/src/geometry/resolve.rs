@@ -6,6 +6,7 @@ use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
 use crate::geometry::repair::regions::{self, Regions, SourceTriangles, Unknown};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
+use crate::geometry::repair::weld::bits;
 use crate::words::{counted, either};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -27,7 +28,7 @@ pub(super) struct Part {
 
 impl Part {
     /// Its triangles without caps.
-    fn own(&self) -> &[[DVec3; 3]] {
+    pub fn own(&self) -> &[[DVec3; 3]] {
         &self.shell.triangles[..self.own]
     }
 
@@ -52,7 +53,7 @@ enum Seen {
 /// For each triangle: is its exact reverse there, too?
 fn have_backs(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = bool> {
     let key = |t: &[DVec3; 3]| {
-        let t = t.map(|p| (p + 0.0).to_array().map(f64::to_bits));
+        let t = t.map(bits);
         let lowest = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
         [t[lowest], t[(lowest + 1) % 3], t[(lowest + 2) % 3]]
     };

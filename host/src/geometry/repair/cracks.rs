@@ -1,7 +1,7 @@
 //! Cracks: edges without partners whose ends lie so close to those of others that they are meant to be one.
 
 use crate::geometry::repair::edges::{EdgeUses, balance, ends, key};
-use crate::geometry::repair::weld::{Indexed, close_points};
+use crate::geometry::repair::weld::{Indexed, bits, close_points};
 use glam::DVec3;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
@@ -24,10 +24,6 @@ impl Cracks {
         let any = !self.wide.is_empty() && triangles.iter().flatten().any(is_moved);
         if any { self.moved } else { 0.0 }
     }
-}
-
-fn bits(p: DVec3) -> [u64; 3] {
-    (p + 0.0).to_array().map(f64::to_bits)
 }
 
 /// Merges points close to each other where edges of `alive` triangles find their partners by it, and no others; narrow cracks before wider ones.

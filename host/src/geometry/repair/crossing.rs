@@ -7,10 +7,12 @@
 //!
 //! **Proof.** The new surface must be closed: its areas cancel and its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
+use crate::geometry::repair::edges::key;
 use crate::geometry::repair::face::{Crossing, Face, cut, is_apart, meeting, push_parts, sides_on};
 use crate::geometry::repair::lines::Lines;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
+use crate::geometry::repair::weld::bits;
 use glam::DVec3;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::cell::LazyCell;
@@ -103,7 +105,7 @@ fn sides(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = SideUse> {
     triangles.iter().enumerate().flat_map(move |(n, t)| {
         let [a, b, c] = t.map(|p| {
             let next = numbers.len() as u32;
-            *numbers.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert(next)
+            *numbers.entry(bits(p)).or_insert(next)
         });
         let sides = [([a, b], 0), ([b, c], 1), ([c, a], 2)];
         sides.map(|([p, q], side)| ([p.min(q), p.max(q)], n as u32, side))
@@ -112,10 +114,10 @@ fn sides(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = SideUse> {
 
 /// The first triangle, by the order of edges, that has an edge with more than one other.
 fn at_edge_of_many(triangles: &[[DVec3; 3]]) -> Option<u32> {
-    let mut keys: Vec<u64> = sides(triangles).map(|([p, q], ..)| u64::from(p) << 32 | u64::from(q)).collect();
+    let mut keys: Vec<u64> = sides(triangles).map(|([p, q], ..)| key(p, q)).collect();
     keys.sort_unstable();
     let many = keys.windows(3).find(|w| w[0] == w[2])?[0];
-    sides(triangles).find(|([p, q], ..)| u64::from(*p) << 32 | u64::from(*q) == many).map(|(_, n, _)| n)
+    sides(triangles).find(|&([p, q], ..)| key(p, q) == many).map(|(_, n, _)| n)
 }
 
 /// Triangles, and where they meet.

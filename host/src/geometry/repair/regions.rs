@@ -17,6 +17,7 @@ use crate::geometry::repair::lines::{FLAT, directions};
 use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
+use crate::geometry::repair::weld::bits;
 use glam::DVec3;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::sync::OnceLock;
@@ -87,7 +88,6 @@ struct Sided {
 
 /// The triangles of a surface, each once.
 fn sided(triangles: &[[DVec3; 3]]) -> Vec<Sided> {
-    let bits = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
     let mut at: HashMap<[[u64; 3]; 3], usize> = HashMap::default();
     let mut all: Vec<Sided> = Vec::new();
     for &corners in triangles {
@@ -501,9 +501,8 @@ impl<'a> Complex<'a> {
         if solid.is_empty() || !closed(&solid) || !closed(&perhaps) {
             return None;
         }
-        let bits = |p: &DVec3| (*p + 0.0).to_array().map(f64::to_bits);
-        let read: HashSet<[u64; 3]> = self.sided.iter().flat_map(|t| t.corners.iter().map(bits)).collect();
-        let cut = solid.iter().chain(&perhaps).flatten().any(|p| !read.contains(&bits(p)));
+        let read: HashSet<[u64; 3]> = self.sided.iter().flat_map(|t| t.corners.map(bits)).collect();
+        let cut = solid.iter().chain(&perhaps).flatten().any(|p| !read.contains(&bits(*p)));
         let way = |surface: Vec<[DVec3; 3]>| match inverted {
             true => surface.into_iter().map(|[a, b, c]| [a, c, b]).collect(),
             false => surface,

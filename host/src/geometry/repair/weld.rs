@@ -43,6 +43,12 @@ pub fn edges_of(t: [u32; 3]) -> [[u32; 2]; 3] {
     [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
 }
 
+/// The bits of a point's coordinates: the same for equal points; −0 equals 0.
+#[must_use]
+pub fn bits(p: DVec3) -> [u64; 3] {
+    (p + 0.0).to_array().map(f64::to_bits)
+}
+
 /// Weld points that are equal; −0 equals 0.
 #[must_use]
 pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
@@ -53,7 +59,7 @@ pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
         .iter()
         .map(|t| {
             t.map(|p| {
-                *seen.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert_with(|| {
+                *seen.entry(bits(p)).or_insert_with(|| {
                     points.push(p + 0.0);
                     (points.len() - 1) as u32
                 })
