@@ -3,7 +3,7 @@
 use crate::geometry::repair::edges::{EdgeUses, balance, key};
 use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::rims::rims;
-use crate::geometry::repair::sets::Sets;
+use crate::geometry::repair::sets::{Sets, by_number};
 use crate::geometry::repair::shells::Shell;
 use crate::geometry::repair::weld::{Indexed, edges_of};
 use glam::DVec3;
@@ -191,6 +191,10 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Redundant {
 /// Doubts what belongs together where shells share edges and some of them are backs of others. A shell alone is beyond doubt, and so are parts that all
 /// look outward, and closed shells each with its back; but in a surface that was `cut` at T-junctions only two shells that are each other's back.
 pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
+    let owners = twins(mesh, shells);
+    if owners.is_empty() {
+        return;
+    }
     let mut sets = Sets::new(shells.len());
     let mut owner: HashMap<u64, usize> = HashMap::default();
     for (s, shell) in shells.iter().enumerate() {
@@ -198,7 +202,6 @@ pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
             sets.join(*owner.entry(key(a, b)).or_insert(s), s);
         }
     }
-    let owners = twins(mesh, shells);
     let backs_of = |n: u32| owners.get(&back(from_lowest(mesh.triangles[n as usize]))).map_or(&[][..], |o| o);
     for members in sets.groups() {
         let cluster = members[0];
@@ -238,8 +241,8 @@ enum Kind {
 /// The shells to which triangles belong that are there more than once, whichever way round; by corners from the lowest on.
 fn twins(mesh: &Indexed, shells: &[Shell]) -> HashMap<[u32; 3], Vec<usize>> {
     let members = || shells.iter().enumerate().flat_map(|(s, shell)| shell.triangles.iter().map(move |&n| (s, n)));
-    let mut all: Vec<[u32; 3]> = members().map(|(_, n)| mesh.sorted(n)).collect();
-    all.sort_unstable();
+    let mut all = by_number(members().map(|(_, n)| mesh.sorted(n)), mesh.points.len(), |corners| corners[0] as usize);
+    all.chunk_by_mut(|a, b| a[0] == b[0]).for_each(<[_]>::sort_unstable);
     let twice: HashSet<[u32; 3]> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
     let mut owners: HashMap<[u32; 3], Vec<usize>> = HashMap::default();
     if !twice.is_empty() {

@@ -8,7 +8,7 @@
 //! **Proof.** The new surface must be closed: its areas cancel and its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
 use crate::geometry::repair::edges::key;
-use crate::geometry::repair::face::{Crossing, Face, cut, is_apart, meeting, push_parts, sides_on};
+use crate::geometry::repair::face::{Crossing, Face, cut, is_apart, meeting, near, push_parts, sides_on};
 use crate::geometry::repair::lines::Lines;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
@@ -130,6 +130,8 @@ pub struct Meetings<'a> {
     met: HashMap<u32, Vec<(u32, Crossing)>>,
     /// Triangles and their sides that lie on others: there the surface on both sides of an edge may be in different regions.
     resting: HashSet<(u32, usize)>,
+    /// Sides that two triangles share, counted for each pair of them.
+    shared_sides: usize,
     on: f64,
 }
 
@@ -159,17 +161,13 @@ impl<'a> Meetings<'a> {
         let faces: Vec<Face> = triangles.iter().map(|&t| Face::new(t)).collect();
         let mut met: HashMap<u32, Vec<(u32, Crossing)>> = HashMap::default();
         let mut resting = HashSet::default();
+        let mut shared_sides = 0;
         let tree = Tree::new(triangles);
         tree.touching_pairs(|m, n| {
             let (a, b) = (&faces[m as usize], &faces[n as usize]);
             let seen = a.sees(b);
-            if seen.is_beside(on) {
-                return;
-            }
-            let back = b.sees(a);
-            if back.is_beside(on) {
-                return;
-            }
+            shared_sides += seen.shared_sides();
+            let Some(back) = near(a, b, &seen, on) else { return };
             let inward =
                 [(a, b), (b, a)].map(|(face, other)| LazyCell::new(move || other.corners.map(|p| face.inward(p))));
             let have_area = a.normal != DVec3::ZERO && b.normal != DVec3::ZERO;
@@ -183,7 +181,7 @@ impl<'a> Meetings<'a> {
                 resting.extend((0..3).filter(|&side| sides[side]).map(|side| (n, side)));
             }
         });
-        Meetings { triangles, faces, tree, met, resting, on }
+        Meetings { triangles, faces, tree, met, resting, shared_sides, on }
     }
 
     /// Lines through the triangles.
@@ -217,6 +215,12 @@ impl<'a> Meetings<'a> {
             patch.into_iter().map(|n| n as u32).filter(|&n| !self.meets(n)).collect()
         };
         sets.groups().into_iter().map(free).filter(|patch| !patch.is_empty()).collect()
+    }
+
+    /// The first triangle, by the order of edges, that has an edge with more than one other; the triangles are closed.
+    fn at_edge_of_many(&self) -> Option<u32> {
+        // An edge of two is shared by one pair, an edge of four by six.
+        if 2 * self.shared_sides == 3 * self.triangles.len() { None } else { at_edge_of_many(self.triangles) }
     }
 
     /// Do other triangles cut or cover this one?
@@ -339,7 +343,7 @@ pub fn tolerance([lo, hi]: [DVec3; 2]) -> f64 {
 pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let on = tolerance([lo, hi]);
     let shell = Meetings::new(triangles, on);
-    let Some(n) = shell.met.keys().min().copied().or_else(|| at_edge_of_many(triangles)) else {
+    let Some(n) = shell.met.keys().min().copied().or_else(|| shell.at_edge_of_many()) else {
         return Found::Simple { walls: false };
     };
     let place = triangles[n as usize][0];
@@ -353,7 +357,7 @@ pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
                 surface,
                 place,
                 both_ways: forward && backward,
-                touches: at_edge_of_many(triangles).is_some(),
+                touches: shell.at_edge_of_many().is_some(),
                 walls,
             })
         }

@@ -1,5 +1,6 @@
 //! Which triangles use which edges.
 
+use crate::geometry::repair::sets::by_number;
 use crate::geometry::repair::weld::{Indexed, edges_of};
 
 /// One triangle's use of an edge: the triangle and whether it runs from the lower to the higher vertex.
@@ -29,11 +30,13 @@ impl EdgeUses {
     /// Of the triangles that are `alive`.
     #[must_use]
     pub fn new(mesh: &Indexed, alive: &[bool]) -> Self {
-        let mut uses = Vec::with_capacity(mesh.triangles.len() * 3);
-        for (n, &t) in mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]) {
-            uses.extend(edges_of(t).map(|[a, b]| (key(a, b), Use { triangle: n as u32, up: a < b })));
-        }
-        uses.sort_unstable_by_key(|&(edge, u)| (edge, u.triangle, u.up));
+        let alive = mesh.triangles.iter().enumerate().filter(|&(n, _)| alive[n]);
+        let sides =
+            alive.flat_map(|(n, &t)| edges_of(t).map(|[a, b]| (key(a, b), Use { triangle: n as u32, up: a < b })));
+        let lower = |edge: u64| ends(edge)[0] as usize;
+        let mut uses = by_number(sides, mesh.points.len(), |&(edge, _)| lower(edge));
+        let runs = uses.chunk_by_mut(|a, b| lower(a.0) == lower(b.0));
+        runs.for_each(|run| run.sort_unstable_by_key(|&(edge, u)| (edge, u.triangle, u.up)));
         EdgeUses(uses)
     }
 

@@ -53,6 +53,21 @@ impl Face {
         self.normal.dot(p - self.corners[0])
     }
 
+    /// Does another one, which it sees so, lie beyond one of its sides, clearly but for corners that both share? Then neither has a part of the other within its
+    /// sides, if they share no corner; if they do, the other has none within the sides of this one, nor a side along them.
+    fn is_passed_by(&self, other: &Face, seen: &Seen, on: f64) -> bool {
+        let depth = |side: usize, i: usize| self.inward[side].dot(other.corners[i] - self.corners[side]);
+        let is_clear = |side| (0..3).all(|i| seen.shared[i] || depth(side, i) < -CLEAR * on);
+        // At a corner that both share, the angle counts: a side that leaves it at a small one lies on the other for some length.
+        let is_steep = |side: usize, i: usize, j: usize| {
+            let length = other.corners[i].distance_squared(other.corners[j]);
+            seen.shared[i] || length <= (depth(side, i) / STEEP).powi(2)
+        };
+        let may_touch = |side, j| depth(side, j).abs() <= on && (0..3).all(|i| is_steep(side, i, j));
+        let is_beyond = |side| is_clear(side) && (0..3).all(|j| !seen.shared[j] || may_touch(side, j));
+        self.normal != DVec3::ZERO && (0..3).any(is_beyond)
+    }
+
     /// Distances of a point inward from the lines of the sides, in the plane.
     #[must_use]
     pub fn inward(&self, p: DVec3) -> [f64; 3] {
@@ -61,9 +76,20 @@ impl Face {
 }
 
 impl Seen {
-    /// Does it lie off the plane, all on one side, but for corners that both share? Most neighbours do.
+    /// No corner of it is a corner of the other.
+    fn shares_none(&self) -> bool {
+        self.shared == [false; 3]
+    }
+
+    /// Number of its sides that are sides of the other.
     #[must_use]
-    pub fn is_beside(&self, on: f64) -> bool {
+    pub fn shared_sides(&self) -> usize {
+        let [a, b, c] = self.shared.map(usize::from);
+        a * b + b * c + c * a
+    }
+
+    /// Does it lie off the plane, all on one side, but for corners that both share? Most neighbours do.
+    fn is_beside(&self, on: f64) -> bool {
         let [mut above, mut below] = [false; 2];
         for (height, shared) in self.heights.iter().zip(self.shared) {
             above |= *height > on;
@@ -74,6 +100,27 @@ impl Seen {
         }
         above != below
     }
+}
+
+/// Beyond a side by so many tolerances a triangle is clear of another one.
+const CLEAR: f64 = 1e6;
+
+/// Sine of the angle from which on sides that begin in one corner share no more than [`TOUCH`] tolerances.
+const STEEP: f64 = 1.0 / TOUCH;
+
+/// How `b` sees `a`, which sees it so, if they are near enough to meet.
+#[must_use]
+pub fn near(a: &Face, b: &Face, seen: &Seen, on: f64) -> Option<Seen> {
+    if seen.is_beside(on) {
+        return None;
+    }
+    let passed = a.is_passed_by(b, seen, on);
+    if passed && seen.shares_none() {
+        return None;
+    }
+    let back = b.sees(a);
+    let apart = back.is_beside(on) || ((passed || back.shares_none()) && b.is_passed_by(a, &back, on));
+    (!apart).then_some(back)
 }
 
 /// How a triangle meets the inner part of another.

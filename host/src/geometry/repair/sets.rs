@@ -43,3 +43,22 @@ impl Sets {
         groups
     }
 }
+
+/// Values in the order of their numbers, which are below `count`; those of one number in their own order.
+pub fn by_number<T: Copy>(
+    values: impl Iterator<Item = T> + Clone,
+    count: usize,
+    number: impl Fn(&T) -> usize,
+) -> Vec<T> {
+    let mut next = vec![0; count + 1];
+    values.clone().for_each(|value| next[number(&value) + 1] += 1);
+    (0..count).for_each(|n| next[n + 1] += next[n]);
+    let Some(any) = values.clone().next() else { return Vec::new() };
+    let mut sorted = vec![any; next[count]];
+    for value in values {
+        let at = &mut next[number(&value)];
+        sorted[*at] = value;
+        *at += 1;
+    }
+    sorted
+}

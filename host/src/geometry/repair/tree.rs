@@ -122,10 +122,11 @@ impl Tree {
 
     fn leaves(&self, p: &Node, q: &Node, same: bool, visit: &mut impl FnMut(u32, u32)) {
         for m in p.first..p.end {
-            for n in (if same { m + 1 } else { q.first })..q.end {
-                let ((a, [a_min, a_max]), (b, [b_min, b_max])) = (self.members[m as usize], self.members[n as usize]);
-                if a_min.cmple(b_max).all() && a_max.cmpge(b_min).all() {
-                    visit(a, b);
+            let (a, [a_min, a_max]) = &self.members[m as usize];
+            let others = if same { m + 1 } else { q.first } as usize..q.end as usize;
+            for (b, [b_min, b_max]) in &self.members[others] {
+                if a_min.cmple(*b_max).all() && a_max.cmpge(*b_min).all() {
+                    visit(*a, *b);
                 }
             }
         }
