@@ -76,6 +76,35 @@ fn gratings_without_resistance_are_told() {
     }
 }
 
+/// What a solid resists by its own `cr` or `cd` it resists without a law, too; a `cr` of the case stands in place of it, which is told.
+#[test]
+fn what_solids_have_of_their_own_needs_no_law() {
+    let at = Scratch::new();
+    let grating = |keys: &str| {
+        format!("[[solid]]\nname = \"grating\"\nshape = \"box\"\nmin = [5, -1, -1]\nmax = [5.5, 4, 4]\n{keys}\n")
+    };
+    let run = |drag: &str, out: &str| stderr(&solved(&at, &channel("own.toml", drag), out, &[]));
+    fs::write(at.file("own.toml"), grating("porosity = 0.5\ncr = 4")).expect("written");
+    let said = run("", "alone");
+    assert!(!said.contains("without cr") && !said.contains("exert no force"), "{said}");
+    run("[drag]\nlaw = \"pdr\"", "pdr");
+    // u in the pores is twice that of the stream: ½ρ · 4 · 0.5 m · (2u)² in ½ρu².
+    assert!((loss(&at, "alone") - 8.0).abs() < 0.4, "{}", loss(&at, "alone"));
+    assert_eq!(loss(&at, "alone"), loss(&at, "pdr"));
+    let told = "its cr or from stands in place of the cd and cr that solids of the scene have";
+    assert!(run("[drag]\ncr = [0, 0, 0]", "given").contains(told));
+    assert!(loss(&at, "given").abs() < 0.1);
+    // Bars with a C_D of their own, and one that has none: of that it is told.
+    bars(&at);
+    let text = fs::read_to_string(at.file("bars.toml")).expect("written");
+    fs::write(at.file("own.toml"), text.replace("shape", "cd = 2\nshape")).expect("written");
+    let said = run("faces = \"plane\"", "bars");
+    assert!(!said.contains("exert no force"), "{said}");
+    assert!((loss(&at, "bars") - 0.733).abs() < 0.01, "{}", loss(&at, "bars"));
+    fs::write(at.file("own.toml"), text.replacen("shape", "cd = 2\nshape", 10)).expect("written");
+    assert!(run("", "ten").contains("exert no force"));
+}
+
 /// Without a law there is no force, and that is said; `none` says that it is meant so.
 #[test]
 fn frontal_area_without_force_is_told() {
