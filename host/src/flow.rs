@@ -514,7 +514,13 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// The largest stable step at a CFL number; infinite where nothing can move.
+    ///
+    /// # Errors
+    /// If the state is unphysical, or the CFL number is not positive.
     pub fn stable_dt(&mut self, cfl: R) -> Result<R, Error> {
+        if !(cfl > R::ZERO) {
+            return Err(Error::Step);
+        }
         let rate = self.rate()?;
         let share = if self.steps < self.careful_steps { R::from_f64(CAREFUL_SHARE) } else { R::ONE };
         Ok(if rate > R::ZERO { cfl * share / rate } else { R::INFINITY })
@@ -553,6 +559,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     pub fn advance(&mut self, cfl: R, end: R) -> Result<R, Error> {
         let longest = self.stable_dt(cfl)?;
         let done = stable_step(self.time, end, longest, |dt| self.attempt(dt))?;
+        if self.time < end && !(done.time > self.time) {
+            return Err(Error::Step);
+        }
         self.accept(done.time, &done.report);
         self.repeated += done.repeated;
         Ok(done.dt)

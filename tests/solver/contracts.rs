@@ -1,5 +1,6 @@
 //! What a caller may get wrong is named, whatever it is: nothing panics.
 
+use voidage::flow::Flow;
 use voidage_core::flow::{
     Boundary, Conserved, Drag, Error, Fields, FieldsMut, Fractions, Gas, Merging, Mesh, Primitive, Problem, Report,
     Treatment, cluster_scratch, prepare, scratch_needed,
@@ -241,4 +242,22 @@ fn any_call_of_the_flow_answers() {
     }
     println!("{calls:?}");
     assert!(calls.merged > 100 && calls.stepped > 500 && calls.refused > 3000, "{calls:?}");
+}
+
+#[test]
+fn a_run_that_cannot_advance_ends_with_an_error() {
+    let walls = [[Boundary::Wall; 2]; 2];
+    let mut flow = Flow::<f64, 2>::uniform([4, 3], [0.1; 2], Gas::Ideal { gamma: 1.4 }, walls);
+    flow.fill(|_| Primitive { density: 1.2, velocity: [0.0; 2], pressure: 1e5 });
+    for cfl in [0.0, -0.5, f64::NAN] {
+        assert_eq!(flow.run(cfl, 1.0), Err(Error::Step), "CFL number {cfl}");
+        assert_eq!((flow.time, flow.steps), (0.0, 0), "CFL number {cfl}");
+    }
+    // A stable step here is some 1e-4: less than the last digit of the time.
+    flow.time = 1e15;
+    assert_eq!(flow.run(0.5, 2e15), Err(Error::Step));
+    assert_eq!(flow.time, 1e15);
+    flow.time = 0.0;
+    assert_eq!(flow.run(0.5, 1e-3), Ok(()));
+    assert_eq!(flow.time, 1e-3);
 }

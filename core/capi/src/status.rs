@@ -175,6 +175,8 @@ impl From<flow::Error> for Refusal {
             flow::Error::HalfPeriodic { axis } => Status::Periodic.of(c"side").axis(axis),
             flow::Error::Width { axis, cell } => Status::Grid.of(c"grid").axis(axis).index(cell),
             flow::Error::Gas => Status::Value.of(c"gas"),
+            flow::Error::Side { axis } => Status::Value.of(c"side").axis(axis),
+            flow::Error::Step => Status::Value.of(c"dt"),
             flow::Error::Unphysical { cell } => Status::Unphysical.of(c"state").index(cell),
             flow::Error::TooManyCells => Status::TooMany.of(c"grid"),
             _ => Status::Length.of(c"grid"),

@@ -70,6 +70,22 @@ impl<R: Real, const D: usize> Patch<R, D> {
 }
 
 impl<R: Real, const D: usize> Boundary<R, D> {
+    /// What stands outside is a state of the gas: its density and pressure (of an isothermal gas its density alone) are positive, all numbers finite.
+    pub(in crate::flow) fn is_sound(&self, gas: Gas<R>) -> bool {
+        let positive = |x: R| x > R::ZERO && x.is_finite();
+        let density_alone = !matches!(gas, Gas::Ideal { .. } | Gas::Mixed { .. });
+        match self {
+            Boundary::Periodic | Boundary::Wall | Boundary::ZeroGradient => true,
+            Boundary::FarField(w) | Boundary::Inlet(w) => {
+                positive(w.density)
+                    && (density_alone || positive(w.pressure))
+                    && w.velocity.iter().all(|u| u.is_finite())
+            }
+            Boundary::Outlet { pressure } => positive(*pressure),
+            Boundary::Reservoir { density, pressure } => positive(*density) && positive(*pressure),
+        }
+    }
+
     /// Nothing flows through.
     pub fn is_wall(&self) -> bool {
         match self {

@@ -46,6 +46,13 @@ pub enum Error {
         /// The first among them that is below the one before it.
         number: usize,
     },
+    /// What stands outside a side is no state of the gas: a density or pressure that is not positive, or a number that is not finite.
+    Side {
+        /// The axis of the side.
+        axis: usize,
+    },
+    /// A step that is negative or not finite, a CFL number that is not positive, or steps too short to advance the time.
+    Step,
     /// A cell outside the physical set (density or pressure not positive, or not finite; of a mixed gas a capacity out of its bounds).
     Unphysical {
         /// Its flat index.
@@ -74,6 +81,10 @@ impl fmt::Display for Error {
             Error::OtherFlux => f.write_str("the step is compiled for another Riemann solver or another kind of gas"),
             Error::MixedReservoir => {
                 f.write_str("a reservoir has no place beside a gas of several ratios of specific heats")
+            }
+            Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
+            Error::Step => {
+                f.write_str("the step or the CFL number is not positive and finite, or too small to advance the time")
             }
             Error::WatchedOrder { number } => {
                 write!(f, "watched cell {number} has a lower index than the one before it")

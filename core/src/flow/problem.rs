@@ -64,7 +64,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     /// that of the lowest ratio of specific heats; see [`Problem::with_feed`].
     ///
     /// # Errors
-    /// An axis is periodic on one side only, or a number of the gas makes no sense.
+    /// An axis is periodic on one side only, a number of the gas makes no sense, or what stands outside a side is no state of it.
     pub fn new(mesh: Mesh<'a, R, D>, gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Result<Self, Error> {
         for (axis, [low, high]) in boundaries.iter().enumerate() {
             if low.is_periodic() != high.is_periodic() {
@@ -80,16 +80,24 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         let feed = Feed { sides: [[gas.gamma(); 2]; D], patches: &[] };
         let problem =
             Problem { mesh, gas, boundaries, patches, feed, scheme, porosity: None, clusters, drag: None, gravity };
-        problem.without_reservoirs(boundaries.iter().flatten())
+        let sides = boundaries.iter().enumerate().flat_map(|(axis, sides)| sides.iter().map(move |side| (axis, side)));
+        problem.with_sound_sides(sides)
     }
 
-    /// The same, unless the gas is mixed and one of these sides a reservoir.
-    fn without_reservoirs<'b>(self, mut sides: impl Iterator<Item = &'b Boundary<R, D>>) -> Result<Self, Error>
+    /// The same, unless what stands outside one of these sides of axes is no state, or the gas is mixed and it is a reservoir.
+    fn with_sound_sides<'b>(self, sides: impl Iterator<Item = (usize, &'b Boundary<R, D>)>) -> Result<Self, Error>
     where
         R: 'b,
     {
-        let reservoir = |side: &Boundary<R, D>| matches!(side, Boundary::Reservoir { .. });
-        if self.gas.is_mixed() && sides.any(reservoir) { Err(Error::MixedReservoir) } else { Ok(self) }
+        for (axis, side) in sides {
+            if !side.is_sound(self.gas) {
+                return Err(Error::Side { axis });
+            }
+            if self.gas.is_mixed() && matches!(side, Boundary::Reservoir { .. }) {
+                return Err(Error::MixedReservoir);
+            }
+        }
+        Ok(self)
     }
 
     /// The same where far fields and inlets feed gases of these ratios of specific heats: of each side, and of each patch that there is.
@@ -110,7 +118,8 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     /// The same with patches on the sides; of those that overlap, the last counts.
     ///
     /// # Errors
-    /// A patch names no axis, stands on a periodic side, or is periodic itself; the mesh is a line, whose sides have no parts.
+    /// A patch names no axis, stands on a periodic side, or is periodic itself; the mesh is a line, whose sides have no parts; what stands outside a patch
+    /// is no state of the gas.
     pub fn with_patches(self, patches: &'a [Patch<R, D>]) -> Result<Self, Error> {
         let wrong = |p: &Patch<R, D>| {
             let side = self.boundaries.get(p.axis).map(|sides| sides[usize::from(p.high)]);
@@ -118,7 +127,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         };
         match patches.iter().position(wrong) {
             Some(number) => Err(Error::Patch { number }),
-            None => Problem { patches, ..self }.without_reservoirs(patches.iter().map(|p| &p.boundary)),
+            None => Problem { patches, ..self }.with_sound_sides(patches.iter().map(|p| (p.axis, &p.boundary))),
         }
     }
 

@@ -109,6 +109,9 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         report: &mut Report<R, D>,
     ) -> Result<(), Error> {
         let by = F::sweep(self)?;
+        if !(dt >= R::ZERO && dt < R::INFINITY) {
+            return Err(Error::Step);
+        }
         self.check_fields(old)?;
         let cells = self.mesh.cells();
         let slab = if D == 1 { 0..1 } else { slab.start..slab.end.min(cells[D - 1]) };
