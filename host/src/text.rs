@@ -1,6 +1,7 @@
 //! Texts of files, which are UTF-8.
 
 use crate::error::{Error, Result};
+use std::io::Read;
 use std::path::Path;
 
 /// The mark that some editors put before a text.
@@ -20,15 +21,27 @@ pub fn is_file(path: &Path) -> Result<()> {
     }
 }
 
+/// The longest text, in bytes: far more than anybody writes; a device never ends.
+const LONGEST: u64 = 1 << 28;
+
 /// The text of a file, without a byte order mark.
 ///
 /// # Errors
-/// It is a directory, cannot be read, or is no UTF-8.
+/// It is a directory, cannot be read, is too long, or is no UTF-8.
 pub fn read(path: &Path) -> Result<String> {
     if path.is_dir() {
         return Err(Error::file(path, "is a directory, not a file"));
     }
-    of_bytes(path, std::fs::read(path).map_err(|e| Error::io(path, "read", &e))?)
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|e| Error::io(path, "read", &e))?;
+    file.take(LONGEST + 1).read_to_end(&mut bytes).map_err(|e| Error::io(path, "read", &e))?;
+    if bytes.len() as u64 > LONGEST && !bytes.contains(&0) {
+        return Err(Error::file(
+            path,
+            format!("is longer than {} MiB, which no text for this program is", LONGEST >> 20),
+        ));
+    }
+    of_bytes(path, bytes)
 }
 
 /// The text in these bytes, without a byte order mark; `path` names it in messages.
