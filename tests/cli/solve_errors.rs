@@ -224,14 +224,21 @@ fn slips_in_states_and_regions() {
 fn a_slice_outside_the_grid() {
     let end = "end = 0.1";
     for (point, place, range) in [
-        ("[5, 0.5, 0.5]", "output.slice[0]: x = 5", "from 0 to 1 along x"),
-        ("[0.5, -0.1, 0.5]", "output.slice[1]: y = -0.1", "from 0 to 1 along y"),
-        ("[0.5, 0.5, nan]", "output.slice[2]: z = ", "from 0 to 1 along z"),
+        ("[5, 0.5, 0.5]", "output.slice: x = 5", "from 0 to 1 along x"),
+        ("[0.5, -0.1, 0.5]", "output.slice: y = -0.1", "from 0 to 1 along y"),
+        ("[0.5, 0.5, 1.5]", "output.slice: z = 1.5", "from 0 to 1 along z"),
     ] {
         for formats in ["", "formats = [\"png\"]\n"] {
             let output = format!("{end}\n[output]\n{formats}slice = {point}\n");
             fails(end, &output, &[place, &format!("the grid reaches {range}"), "slice = ["]);
         }
+    }
+    for (point, words) in [
+        ("[0.5, 0.5, nan]", "output.slice: is not a number along z"),
+        ("[0.5]", "output.slice: needs a place along y, where the grid has "),
+        ("[]", "output.slice: needs one to three numbers, not 0"),
+    ] {
+        fails(end, &format!("{end}\n[output]\nslice = {point}\n"), &[words]);
     }
 }
 

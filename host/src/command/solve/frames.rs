@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::files::vtr::{CellField, NamedField, Vtr};
 use crate::files::{atomically, npy};
 use crate::flow::Flow;
-use crate::grid::Edges;
+use crate::grid::{AXES, Edges};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -82,6 +82,35 @@ impl Snapshot {
         let [u, v, w] = &self.velocity;
         (0..u.len()).map(|c| (u[c] * u[c] + v[c] * v[c] + w[c] * w[c]).sqrt()).collect()
     }
+}
+
+/// A point from one to three numbers; along axes that are left out, which have one cell, it lies in its middle.
+///
+/// # Errors
+/// It has no numbers or too many, leaves an axis with several cells out, or is outside the grid; as a reason.
+pub fn point(edges: &Edges, given: &[f64]) -> std::result::Result<[f64; 3], String> {
+    if !(1..=3).contains(&given.len()) {
+        return Err(format!("needs one to three numbers, not {}", given.len()));
+    }
+    let mut point = [0.0; 3];
+    for axis in 0..3 {
+        point[axis] = match given.get(axis) {
+            Some(x) if x.is_nan() => return Err(format!("is not a number along {}", AXES[axis])),
+            Some(&x) => x,
+            None if edges.cells()[axis] == 1 => edges.0[axis][0] + 0.5 * (edges.0[axis][1] - edges.0[axis][0]),
+            None => {
+                return Err(format!(
+                    "needs a place along {}, where the grid has {} cells",
+                    AXES[axis],
+                    edges.cells()[axis]
+                ));
+            }
+        };
+        if let Some(reaches) = edges.misses(axis, point[axis]) {
+            return Err(format!("{} = {} is outside the grid: {reaches}", AXES[axis], point[axis]));
+        }
+    }
+    Ok(point)
 }
 
 /// Indices of the cell that holds a point.

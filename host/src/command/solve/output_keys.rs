@@ -20,7 +20,7 @@ pub struct OutputKeys {
     #[serde(default)]
     pub forces: Vec<String>,
     /// Point through which pictures are cut.
-    pub slice: Option<[f64; 3]>,
+    pub slice: Option<Vec<f64>>,
     /// Ends of the colours of pictures.
     #[serde(default)]
     pub range: RangeKeys,
@@ -78,8 +78,8 @@ pub enum Format {
 pub struct Probe {
     /// Name in the file; its number, if left out.
     pub name: Option<String>,
-    /// The point.
-    pub at: [f64; 3],
+    /// The point; axes of one cell may be left out.
+    pub at: Vec<f64>,
 }
 
 /// A plane of the grid whose flow is kept: one of `x`, `y`, `z` tells its place.

@@ -6,12 +6,12 @@
 
 use super::case_file::CaseFile;
 use super::charges::Charges;
-use super::frames::{self, SLICES, Snapshot, cell_at};
+use super::frames::{self, SLICES, Snapshot, cell_at, point};
 use super::output_keys::OutputKeys;
 use super::setup::Setup;
 use crate::error::{Error, Result};
 use crate::files::npy;
-use crate::grid::{AXES, Edges};
+use crate::grid::Edges;
 use crate::picture::colour::ColourMap;
 use crate::picture::figure::Figure;
 use crate::picture::png;
@@ -33,13 +33,8 @@ pub fn check(file: &CaseFile, edges: &Edges) -> Result<()> {
             return Err(file.wrong(&format!("output.range.{name}"), "needs two numbers, the lower one first"));
         }
     }
-    let Some(point) = keys.slice else { return Ok(()) };
-    match (0..3).find_map(|axis| Some((axis, edges.misses(axis, point[axis])?))) {
-        None => Ok(()),
-        Some((axis, why)) => {
-            Err(file.wrong(&format!("output.slice[{axis}]"), format!("{} = {}: {why}", AXES[axis], point[axis])))
-        }
-    }
+    let Some(given) = &keys.slice else { return Ok(()) };
+    point(edges, given).map(drop).map_err(|why| file.wrong("output.slice", why))
 }
 
 /// Where pictures are cut, what is written over them, and their colours.
@@ -109,7 +104,8 @@ impl Pictures {
         let telling = |beta| png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta);
         let usual = setup.flow.beta_v().and_then(telling).unwrap_or(middle);
         let [lo, _] = edges.bounds().map(|p| p.to_array());
-        let at = match (keys.slice, charges.middle()) {
+        let given = keys.slice.as_ref().and_then(|given| point(edges, given).ok());
+        let at = match (given, charges.middle()) {
             (Some(point), _) => cell_at(edges, point).unwrap_or(middle),
             (None, places) => {
                 let through = cell_at(edges, [0, 1, 2].map(|a| places[a].unwrap_or(lo[a]))).unwrap_or(usual);

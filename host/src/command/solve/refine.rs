@@ -3,7 +3,7 @@
 use super::arrays::position;
 use super::case_file::CaseFile;
 use super::charges::Charges;
-use super::frames::cell_at;
+use super::frames::{cell_at, point};
 use super::maxima::{Maxima, Peaks};
 use super::output_keys::MaximaKeys;
 use super::setup::setup;
@@ -145,7 +145,7 @@ pub fn run<const D: usize>(
         }
     }
     let probes = file.case.output.probes.iter().enumerate().filter_map(|(n, probe)| {
-        let at = cell_at(&edges, probe.at)?;
+        let at = cell_at(&edges, point(&edges, &probe.at).ok()?)?;
         Some(maxima.peaks(probe.name(n), position(at, edges.cells()), setup.flow.beta_v()))
     });
     let of_fine = charges.finer(edges.cells(), fine.edges.cells(), &live, fine.beta_v);

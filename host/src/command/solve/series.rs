@@ -4,7 +4,7 @@ use super::arrays::position;
 use super::case_file::CaseFile;
 use super::checkpoint::Journal;
 use super::force::force_on_all;
-use super::frames::cell_at;
+use super::frames::{cell_at, point};
 use super::monitors::{Monitor, MonitorReport, head, monitors, planes};
 use super::output_keys::OutputKeys;
 use super::setup::Setup;
@@ -195,7 +195,7 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
     let cells = probe_places(file, &setup.edges)?;
     for (n, (probe, cell)) in file.case.output.probes.iter().zip(&cells).enumerate() {
         if setup.flow.beta_v().is_some_and(|b| b[*cell] == 0.0) {
-            let (at, name) = (probe.at, probe.name(n));
+            let (at, name) = (&probe.at, probe.name(n));
             let reason = format!("the cell of the point {at:?} of \"{name}\" is solid: it has no values");
             progress.warn(file.remark(&format!("output.probes[{n}].at"), reason));
         }
@@ -212,11 +212,9 @@ fn probe_places(file: &CaseFile, edges: &Edges) -> Result<Vec<usize>> {
         let name = probe.name(n);
         let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
         file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
-        let at = cell_at(edges, probe.at).ok_or_else(|| {
-            let reaches = (0..3).find_map(|axis| edges.misses(axis, probe.at[axis])).unwrap_or_default();
-            file.wrong(&format!("{key}.at"), format!("of \"{name}\" is outside the grid: {reaches}"))
-        })?;
-        cells.push(position(at, edges.cells()));
+        let at =
+            point(edges, &probe.at).map_err(|why| file.wrong(&format!("{key}.at"), format!("\"{name}\": {why}")))?;
+        cells.extend(cell_at(edges, at).map(|at| position(at, edges.cells())));
     }
     Ok(cells)
 }
