@@ -116,9 +116,12 @@ impl Edges {
         [end(|e| e.first()), end(|e| e.last())]
     }
 
-    /// What there is to say of a coordinate that lies outside the grid along an axis; nothing of others.
+    /// What there is to say of a coordinate that lies outside the grid along an axis, or is none; nothing of others.
     #[must_use]
     pub fn misses(&self, axis: usize, at: f64) -> Option<String> {
+        if at.is_nan() {
+            return Some("is not a number".to_owned());
+        }
         let ([lo, hi], name) = (self.bounds().map(|p| p[axis]), AXES[axis]);
         let outside = !(lo..=hi).contains(&at);
         outside.then(|| format!("the grid reaches from {} to {} along {name}", written(lo), written(hi)))

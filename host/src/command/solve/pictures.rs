@@ -37,7 +37,8 @@ pub fn check(file: &CaseFile, edges: &Edges) -> Result<()> {
     match (0..3).find_map(|axis| Some((axis, edges.misses(axis, point[axis])?))) {
         None => Ok(()),
         Some((axis, why)) => {
-            Err(file.wrong(&format!("output.slice[{axis}]"), format!("{} = {}: {why}", AXES[axis], point[axis])))
+            let at = if point[axis].is_nan() { String::new() } else { format!("{} = {}: ", AXES[axis], point[axis]) };
+            Err(file.wrong(&format!("output.slice[{axis}]"), at + &why))
         }
     }
 }

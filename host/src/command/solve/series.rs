@@ -212,6 +212,9 @@ fn probe_places(file: &CaseFile, edges: &Edges) -> Result<Vec<usize>> {
         let name = probe.name(n);
         let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
         file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
+        if let Some(axis) = probe.at.iter().position(|x| x.is_nan()) {
+            return Err(file.wrong(&format!("{key}.at[{axis}]"), format!("of \"{name}\" is not a number")));
+        }
         let at = cell_at(edges, probe.at).ok_or_else(|| {
             let reaches = (0..3).find_map(|axis| edges.misses(axis, probe.at[axis])).unwrap_or_default();
             file.wrong(&format!("{key}.at"), format!("of \"{name}\" is outside the grid: {reaches}"))

@@ -46,7 +46,9 @@ pub fn load<const D: usize>(
         (Some(scene), None) => from_scene(file, scene, edges, live, progress)?,
         (None, Some(dir)) => {
             let dir = file.existing("porosity.from", dir)?;
-            let read = |name: &str, shape| arrays::read(&dir.join(format!("beta_{name}.npy")), shape, arrays::fraction);
+            let read = |name: &str, shape| {
+                file.array("porosity.from", &dir.join(format!("beta_{name}.npy")), shape, arrays::fraction)
+            };
             let cells = edges.cells();
             let faces: Vec<Vec<f64>> = live
                 .iter()
