@@ -111,6 +111,8 @@ fn slips_of_outputs_are_told_first() {
             "probes[1].name: \"a\" is the name of another",
         ),
         ("probes = [{ at = [0, 0, 50] }]", "probes[0].at: of \"probe 1\" is outside the grid"),
+        ("probes = [{ name = \"a\", at = [0, nan, 0] }]", "probes[0].at[1]: of \"a\" is not a number"),
+        ("probes = [{ name = \"\", at = [0, 0, 0] }]", "probes[0].name: is empty: give a name"),
         ("monitors = [{ x = 50 }]", "monitors[0].x: the grid reaches from 0 to 1 along x"),
         ("monitors = [{ x = 0, min = [1], max = [0] }]", "monitors[0].max: must not lie below min"),
         ("range = { speed = [3, 1] }", "range.speed: needs two numbers, the lower one first"),

@@ -146,6 +146,21 @@ pub fn warn_of_gratings(bodies: &Bodies, progress: &mut Progress) {
     }
 }
 
+/// Say which solids have a resistance that nothing asks for: without a law there is no drag.
+pub fn warn_of_idle_resistance(bodies: &Bodies, progress: &mut Progress) {
+    let mut idle = bodies.bodies.iter().filter(|b| b.drag.cr.is_some_and(|cr| cr > 0.0));
+    if let Some(first) = idle.next() {
+        let others = idle.count();
+        let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+        progress.warn(format!(
+            "{}: cr of \"{}\"{others} has no effect without a law: [drag] law = \"pdr\" or \"bluff\" makes it count, law = \"none\" says \
+             that it is meant so",
+            bodies.files(),
+            first.name
+        ));
+    }
+}
+
 /// Digits of areas that are known: fewer where facets stand for round solids, whose width they miss by up to 4e-4.
 #[must_use]
 pub fn digits_of_areas(bodies: &Bodies) -> i32 {

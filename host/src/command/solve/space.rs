@@ -5,7 +5,7 @@ use super::case::{LawName, Paths, PorosityKeys};
 use super::case_file::CaseFile;
 use super::solids::{self, Measured, OTHERS};
 use crate::command::cli::SceneArgs;
-use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_no_force};
+use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_idle_resistance, warn_of_no_force};
 use crate::command::progress::Progress;
 use crate::command::stages;
 use crate::command::streams::{INPUT, is_stream};
@@ -109,7 +109,8 @@ fn from_scene<const D: usize>(
     let (bodies, _) = stages::load(&scene_files(file, scene)?, progress)?;
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
-    let mut result = stages::measure(&bodies, edges, Options { resistance: true, ..options }, progress)?;
+    let (left_out, with_surface) = (file.case.grid.left_out(), Options { resistance: true, ..options });
+    let mut result = stages::measure(&bodies, edges, left_out, with_surface, progress)?;
     let (wanted, faces) = (wanted_solids(file, &bodies)?, keys.faces.unwrap_or(Faces::Throat));
     let solids = match wanted.is_empty() {
         true => Vec::new(),
@@ -130,6 +131,7 @@ fn from_scene<const D: usize>(
     }
     if !silent && law.is_none() {
         warn_of_gratings(&bodies, progress);
+        warn_of_idle_resistance(&bodies, progress);
     }
     let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));
     let FieldSet { v, x, y, z } = result.beta;
