@@ -154,7 +154,8 @@ fn out_of_range(edges: &[Vec<f64>; 3]) -> (String, String) {
         let [least, whole] = [finest, sizes].map(|of| of[..n].iter().product::<f64>());
         if !(least >= f64::MIN_POSITIVE / f64::EPSILON) {
             let axis = (1..n).fold(0, |found, a| if finest[a] < finest[found] { a } else { found });
-            let reason = format!("cells are too small to be computed with: the smallest is {:.0e} m wide", finest[axis]);
+            let reason =
+                format!("cells are too small to be computed with: the smallest is {:.0e} m wide", finest[axis]);
             return (AXES[axis].to_owned(), reason);
         }
         if !(whole <= f64::MAX * f64::EPSILON) {

@@ -315,7 +315,10 @@ fn files() {
     assert!(text.contains("line 9, column 8") && text.contains(place) && text.contains("start: cannot open"), "{text}");
     fs::create_dir(at.file("start")).expect("a directory");
     let text = said(&from);
-    assert!(text.contains("line 9, column 8") && text.contains(place) && text.contains("start/rho.npy: cannot open"), "{text}");
+    assert!(
+        text.contains("line 9, column 8") && text.contains(place) && text.contains("start/rho.npy: cannot open"),
+        "{text}"
+    );
     let put = |name: &str, shape: [usize; 3], values: &[f64]| {
         npy::write(&at.file(&format!("start/{name}.npy")), shape, values).expect("an array");
     };

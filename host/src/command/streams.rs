@@ -86,10 +86,9 @@ pub fn check_directory(option: &str, path: &Path) -> Result<()> {
         return Err(Error::usage(format!("{option} takes a directory, not the standard output")));
     }
     match path.ancestors().find(|place| place.exists()) {
-        Some(file) if !file.is_dir() => Err(Error::file(
-            file,
-            format!("cannot create the directory of {option}: there is a file of that name"),
-        )),
+        Some(file) if !file.is_dir() => {
+            Err(Error::file(file, format!("cannot create the directory of {option}: there is a file of that name")))
+        }
         _ => Ok(()),
     }
 }

@@ -255,7 +255,10 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
     }
     let table = PlacedValue { value: Value::Table(entries), span: node.span };
     let spec: GridTable = keys::read(&source, &table, "")?;
-    if spec.left_out() == [false; 3] && spec.x.is_some() && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some()) {
+    if spec.left_out() == [false; 3]
+        && spec.x.is_some()
+        && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some())
+    {
         warnings.push(format!("{}: x, y, z are given; origin, spacing, cells beside them are ignored", path.display()));
     }
     spec.edges(&source, "", false)

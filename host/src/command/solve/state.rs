@@ -173,9 +173,8 @@ impl<const D: usize> States<'_, D> {
     fn read(&self, dir: &Path, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
         let shape = edges.cells();
         let path = |name: &str| dir.join(format!("{name}.npy"));
-        let read = |path: &Path, wrong: &dyn Fn(f64) -> Option<String>| {
-            self.file.array("initial.from", path, shape, wrong)
-        };
+        let read =
+            |path: &Path, wrong: &dyn Fn(f64) -> Option<String>| self.file.array("initial.from", path, shape, wrong);
         let density = read(&path("rho"), &|x| QUANTITY.refuses(x))?;
         let mut velocity: [Vec<f64>; 3] = Default::default();
         for (axis, values) in velocity.iter_mut().enumerate() {
