@@ -116,9 +116,12 @@ impl Edges {
         [end(|e| e.first()), end(|e| e.last())]
     }
 
-    /// What there is to say of a coordinate that lies outside the grid along an axis; nothing of others.
+    /// What there is to say of a coordinate that lies outside the grid along an axis, or is none; nothing of others.
     #[must_use]
     pub fn misses(&self, axis: usize, at: f64) -> Option<String> {
+        if at.is_nan() {
+            return Some("is not a number".to_owned());
+        }
         let ([lo, hi], name) = (self.bounds().map(|p| p[axis]), AXES[axis]);
         let outside = !(lo..=hi).contains(&at);
         outside.then(|| format!("the grid reaches from {} to {} along {name}", written(lo), written(hi)))
@@ -136,9 +139,31 @@ fn explain(error: GridError, edges: &[Vec<f64>; 3]) -> (String, String) {
             let (before, here) = (written(edges[axis][index - 1]), written(edges[axis][index]));
             (format!("{}[{index}]", name(axis)), format!("edge {here} does not lie above the one before it, {before}"))
         }
-        GridError::OutOfRange => ("all axes".into(), "cells are too small, too large or too many to be counted".into()),
+        GridError::OutOfRange => out_of_range(edges),
         other => ("all axes".into(), other.to_string()),
     }
+}
+
+/// The axis to blame for cells that are too small, too large or too many, and why. Axes beyond the first that go too far may be anything.
+fn out_of_range(edges: &[Vec<f64>; 3]) -> (String, String) {
+    let smallest = |e: &Vec<f64>| e.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+    let size = |e: &Vec<f64>| e.last().zip(e.first()).map_or(0.0, |(last, first)| last - first);
+    let (finest, sizes) = (edges.each_ref().map(smallest), edges.each_ref().map(size));
+    // The volumes that the core computes with, axis by axis.
+    for n in 1..=3 {
+        let [least, whole] = [finest, sizes].map(|of| of[..n].iter().product::<f64>());
+        if !(least >= f64::MIN_POSITIVE / f64::EPSILON) {
+            let axis = (1..n).fold(0, |found, a| if finest[a] < finest[found] { a } else { found });
+            let reason =
+                format!("cells are too small to be computed with: the smallest is {:.0e} m wide", finest[axis]);
+            return (AXES[axis].to_owned(), reason);
+        }
+        if !(whole <= f64::MAX * f64::EPSILON) {
+            let axis = (1..n).fold(0, |found, a| if sizes[a] > sizes[found] { a } else { found });
+            return (AXES[axis].to_owned(), format!("is too large: it reaches over {:.0e} m", sizes[axis]));
+        }
+    }
+    ("all axes".to_owned(), "cells are too many to be counted".to_owned())
 }
 
 /// What a sum or a product of coordinates between two others is rounded by.

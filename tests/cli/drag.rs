@@ -236,6 +236,12 @@ fn what_is_refused() {
     fs::write(at.file("zones.toml"), "[[zone]]\nname = \"far\"\nmin = [90, 90, 90]\nmax = [91, 91, 91]\n")
         .expect("written");
     let zones = at.file("zones.toml");
+    let twice = at.file("twice.toml");
+    fs::write(&twice, "[[zone]]\nname = \"a\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n".repeat(2)).expect("written");
+    let output =
+        voidage(&[&"porosity", &scene, &"--cells", &"4x4x4", &"--zones", &twice, &"--report", &at.file("none.json")]);
+    let said = stderr(&output);
+    assert!(said.contains("twice.toml: line 6, column 8: zone 2: name is that of another table before"), "{said}");
     for (arguments, reason) in [
         ([&"--cd" as &dyn AsRef<OsStr>, &"2"], "--drag"),
         ([&"--zones", &zones], "--zones makes a table of the report: give --report FILE.json"),

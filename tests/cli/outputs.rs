@@ -161,15 +161,22 @@ fn reports_and_tables_of_solve() {
 fn tables_of_studies() {
     let at = Scratch::new();
     let template = String::from_utf8(voidage(&[&"study", &"--template"]).stdout).expect("UTF-8");
-    fs::write(at.file("study.toml"), template.replace("repeats = 3", "repeats = 1")).expect("written");
+    let points = template.replace("repeats = 3", "repeats = 1\nleft_out = true");
+    let more = "[[flow]]\nproblem = \"sod\"\ncells = [10, 20]\n[[scaling]]\nalong = \"bodies\"\ncounts = [1, 2]\n";
+    fs::write(at.file("study.toml"), format!("{points}\n{more}")).expect("written");
     let output = voidage(&[&"study", &at.file("study.toml"), &"-o", &at.file("out"), &"-q"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    assert_eq!(columns(&at.file("out/study.csv")), documented("study"));
-    let more = "repeats = 1\nleft_out = true\n[[flow]]\nproblem = \"sod\"\ncells = 10\n[[scaling]]\nalong = \"bodies\"\ncounts = 1\n";
-    fs::write(at.file("more.toml"), more).expect("written");
-    let output = voidage(&[&"study", &at.file("more.toml"), &"-o", &at.file("more"), &"-q"]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    for table in ["study_flows", "study_scaling", "study_left_out"] {
-        assert_eq!(columns(&at.file("more").join(format!("{table}.csv"))), documented(table));
+    for table in ["study", "study_flows", "study_scaling", "study_left_out"] {
+        assert_eq!(columns(&at.file("out").join(format!("{table}.csv"))), documented(table));
     }
+    assert_told("study_json", &[json(&at.file("out/study.json"))]);
+}
+
+#[test]
+fn outcomes_of_stress() {
+    let at = Scratch::new();
+    let file = at.file("stress.json");
+    let output = voidage(&[&"stress", &"--only", &"geometry/nano", &"--json", &file, &"-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_told("stress_json", &[json(&file)]);
 }

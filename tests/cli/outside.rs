@@ -41,6 +41,26 @@ fn solids_outside_are_named() {
     assert!(text.contains("solid \"s4\" and 2 more: outside the grid"), "{text}");
 }
 
+/// One cell that the user gave is not one that the case left out.
+#[test]
+fn axes_that_are_left_out_are_told() {
+    let at = Scratch::new();
+    let ball = "[[solid]]\nshape = \"sphere\"\ncenter = [0.5, 0.5, 0.5]\nradius = 2\n";
+    fs::write(at.file("ball.toml"), ball).expect("written");
+    let said = |grid: &str| {
+        let case = format!(
+            "[grid]\nx = {{ points = [-4, 4], cells = [8] }}\n{grid}[porosity]\nscene = \"ball.toml\"\n[gas]\nmodel = \"ideal\"\n\
+             gamma = 1.4\n[initial]\nuniform = {{ rho = 1, p = 1 }}\n[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n\
+             [time]\nmax_steps = 1\n"
+        );
+        stderr(&solved(&at, &case, "out", &["--force"]))
+    };
+    assert!(said("").contains("(one cell along y, z, which the case leaves out)"), "{}", said(""));
+    assert!(said("y = [0, 1]\n").contains("(one cell along z, which the case leaves out)"));
+    let text = said("y = [0, 1]\nz = [0, 1]\n");
+    assert!(text.contains("extends beyond the grid") && !text.contains("leaves out"), "{text}");
+}
+
 #[test]
 fn regions_outside_are_named() {
     let case = |region: &str| {

@@ -28,8 +28,10 @@ fn a_case_without_a_suffix_needs_another_directory() {
     let here = Command::new(program()).args(["solve", "case"]).current_dir(&at.0).output().expect("a run");
     let text = stderr(&here);
     assert!(text.contains("a directory of the name of the case itself: give -o DIR"), "{text}");
-    let text = stderr(&voidage(&[&"solve", &case, &"-o", &case]));
-    assert!(text.contains("there is a file of that name"), "{text}");
+    for dir in [case.clone(), case.join("x"), case.join("x/y")] {
+        let text = stderr(&voidage(&[&"solve", &case, &"-o", &dir]));
+        assert!(text.contains("case: cannot create the directory of -o: there is a file of that name"), "{text}");
+    }
     let text = stderr(&voidage(&[&"solve", &case, &"-o", &"-"]));
     assert!(text.contains("-o takes a directory, not the standard output"), "{text}");
 }

@@ -166,6 +166,20 @@ fn errors_name_file_place_and_reason() {
         ("x = [0, 1]\ny = [0, 1]\nz = [0, \n", "line"),
         ("x = [0, 1]\n", "needs all of x, y, z"),
         (
+            "x = [0, 1]\norigin = [0, 0, 0]\nspacing = [1, 1, 1]\ncells = [1, 1, 1]\n",
+            "line 2, column 10: key origin: does not go with edges: a grid is x, y, z or origin, spacing, cells",
+        ),
+        ("x = [0, 1]\ny = [0, 1e300]\nz = [0, 1]\n", "key y: is too large: it reaches over 1e300 m"),
+        ("x = [0, 1e300]\ny = []\nz = [1, 0]\n", "key x: is too large: it reaches over 1e300 m"),
+        (
+            "x = [0, 1e-320]\ny = [0, 1]\nz = [0, 1]\n",
+            "key x: cells are too small to be computed with: the smallest is 1e-320 m wide",
+        ),
+        (
+            "x = [0, 1]\ny = [0, 1]\nz = { points = [0, 1], cells = [1000], ratios = [1e300] }\n",
+            "key z: cells are too small to be computed with",
+        ),
+        (
             "origin = [0, 0, 0]\nspacing = [1, 1, 1]\ncells = [10, 10, 4000000000]\n",
             "key cells: 10 × 10 × 4000000000 cells",
         ),

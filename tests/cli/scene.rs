@@ -89,7 +89,12 @@ fn warnings_name_the_solid() {
 }
 
 /// What is wrong, and the words of the message besides file and line; `@` marks the line that must be named.
-const WRONG: [(&str, &[&str]); 53] = [
+const WRONG: [(&str, &[&str]); 55] = [
+    ("[[solid]]\nshape = \"file\"\npath = \"\"@", &["solid 1: path is empty: it names an STL or OBJ file"]),
+    (
+        "[[solid]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"-y\", angle = 3 }@",
+        &["axis needs three numbers or x, y, z, not \"-y\"; that is [0, -1, 0]"],
+    ),
     (
         "[[solid]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nrotate = { axis = \"z\", angel = 3 }@",
         &["column 24: solid 1: rotate: key angel is not known here; did you mean angle?"],
@@ -307,6 +312,20 @@ fn what_is_wrong_is_said_with_its_place() {
         );
         words.iter().for_each(|w| assert!(said.contains(w), "{w}: {text}\n{said}"));
     }
+}
+
+/// A solid that is all open is told, unless it resists.
+#[test]
+fn solids_that_are_all_open_are_told() {
+    let dir = Scratch::new();
+    let scene = dir.file("scene.toml");
+    let told = |keys: &str| {
+        fs::write(&scene, format!("{BOX}porosity = 1\n{keys}")).expect("written");
+        stderr(&voidage(&[&"porosity", &scene, &"--cells", &"2x2x2"]))
+    };
+    let words = "porosity is 1 and there is no cr: all of it is open, it has no effect";
+    assert!(told("").contains(words), "{}", told(""));
+    assert!(!told("cr = 4\n").contains(words), "{}", told("cr = 4\n"));
 }
 
 /// Copies that a step of 0 leaves in one place count once, and are told.

@@ -224,9 +224,9 @@ fn slips_in_states_and_regions() {
 fn a_slice_outside_the_grid() {
     let end = "end = 0.1";
     for (point, place, range) in [
-        ("[5, 0.5, 0.5]", "output.slice: x = 5", "from 0 to 1 along x"),
-        ("[0.5, -0.1, 0.5]", "output.slice: y = -0.1", "from 0 to 1 along y"),
-        ("[0.5, 0.5, 1.5]", "output.slice: z = 1.5", "from 0 to 1 along z"),
+        ("[5, 0.5, 0.5]", "output.slice[0]: x = 5", "from 0 to 1 along x"),
+        ("[0.5, -0.1, 0.5]", "output.slice[1]: y = -0.1", "from 0 to 1 along y"),
+        ("[0.5, 0.5, 1.5]", "output.slice[2]: z = 1.5", "from 0 to 1 along z"),
     ] {
         for formats in ["", "formats = [\"png\"]\n"] {
             let output = format!("{end}\n[output]\n{formats}slice = {point}\n");
@@ -234,7 +234,7 @@ fn a_slice_outside_the_grid() {
         }
     }
     for (point, words) in [
-        ("[0.5, 0.5, nan]", "output.slice: is not a number along z"),
+        ("[0.5, 0.5, nan]", "output.slice[2]: is not a number"),
         ("[0.5]", "output.slice: needs a place along y, where the grid has "),
         ("[]", "output.slice: needs one to three numbers, not 0"),
     ] {
@@ -321,7 +321,11 @@ fn files() {
     let (text, place) = (said(&from), "key initial.from: ");
     assert!(text.contains("line 9, column 8") && text.contains(place) && text.contains("start: cannot open"), "{text}");
     fs::create_dir(at.file("start")).expect("a directory");
-    assert!(said(&from).contains("start/rho.npy: cannot open"), "{}", said(&from));
+    let text = said(&from);
+    assert!(
+        text.contains("line 9, column 8") && text.contains(place) && text.contains("start/rho.npy: cannot open"),
+        "{text}"
+    );
     let put = |name: &str, shape: [usize; 3], values: &[f64]| {
         npy::write(&at.file(&format!("start/{name}.npy")), shape, values).expect("an array");
     };

@@ -255,6 +255,7 @@ fn checkpoints_that_do_not_fit_are_refused() {
         (whole.len(), 7, "is no checkpoint of this version"),
         (whole.len() - 9, 0, "damaged"),
         (4, 0, "no checkpoint"),
+        (0, 0, "is empty (0 bytes): there is nothing to resume from"),
     ] {
         let mut bytes = whole[..length].to_vec();
         if flip > 0 {

@@ -1,17 +1,21 @@
 //! Pressures in kPa, temperatures in °C, gas constants in kJ are doubted; cases without units are not.
 
-use crate::kit::{Scratch, fixture, solved, stderr, stdout, voidage};
+use crate::kit::{Scratch, fixture, solve, solved, stderr, stdout, voidage};
 use std::fs;
 use std::path::Path;
 
-/// What is said of a tube of gas with a state, a side and more.
-fn said(gas: &str, state: &str, side: &str, output: &str) -> String {
-    let at = Scratch::new();
-    let case = format!(
+/// A tube of gas with a state, a side and more.
+fn case(gas: &str, state: &str, side: &str, output: &str) -> String {
+    format!(
         "[grid]\nx = {{ points = [0, 1], cells = [8] }}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n{gas}\n[initial]\nuniform = {{ {state} }}\n\
          [boundary]\nx_min = \"wall\"\nx_max = {side}\n[time]\nmax_steps = 1\n[output]\n{output}\n"
-    );
-    stderr(&solved(&at, &case, "out", &[]))
+    )
+}
+
+/// What is said of it.
+fn said(gas: &str, state: &str, side: &str, output: &str) -> String {
+    let at = Scratch::new();
+    stderr(&solved(&at, &case(gas, state, side, output), "out", &[]))
 }
 
 const AIR: &str = "gas_constant = 287";
@@ -26,6 +30,9 @@ fn kilopascals_in_a_case_with_temperatures_are_doubted() {
     assert!(text.contains("not in kPa or bar"), "{text}");
     let text = said(AIR, "T = 288, p = 101325", "{ type = \"outlet\", p = 1.013 }", "");
     assert!(text.contains("key boundary.x_max.p: 1.013 Pa"), "{text}");
+    let refused = case(AIR, "T = 288, p = 101325", "{ type = \"wall\", p = 3 }", "");
+    let text = stderr(&solve(&Scratch::new(), &refused, "out", &[]));
+    assert!(text.contains("is not a key of this type (wall)") && !text.contains("3 Pa"), "{text}");
     let text = said("", "rho = 1.2, p = 101325", wall, "ambient = 101.325");
     assert!(text.contains("key output.ambient: 101.325 is less than a hundredth of the lowest pressure"), "{text}");
     let text = said("", "rho = 1.2, p = 101325", wall, "ambient = 1013250");

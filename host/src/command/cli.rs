@@ -180,7 +180,7 @@ pub struct PorosityArgs {
     /// How volumes are found
     #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
-    /// Where bodies overlap and their union has no proof, divide cells until the bounds are this close
+    /// Where bodies overlap and their union has no proof, divide cells until the bounds are this close; 0 asks for the last digit and may take hours
     #[arg(long, value_name = "T", default_value_t = 1e-4, value_parser = parse_tol, allow_negative_numbers = true)]
     pub tol: f64,
     /// How often a cell without a proof may be divided by two (default: 6; 3 with --leaf solid or half)

@@ -139,7 +139,7 @@ pub fn warn_of_gratings(bodies: &Bodies, progress: &mut Progress) {
         let others = if others > 0 { format!(" and {others} more") } else { String::new() };
         progress.warn(format!(
             "{}: \"{}\"{others} with a porosity, but without cr: the gas passes with no loss but that of narrower faces; cr = … of the solid \
-             gives a loss of ½ ρ cr |u| u a metre",
+             gives a loss of ½ ρ cr |u| u a metre, u in the pores",
             bodies.files(),
             first.name
         ));

@@ -56,7 +56,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf, resistance };
         // Throats need the surface in each cell, which porosity cuts anyway.
         let with_surface = Options { resistance: resistance || args.faces == Faces::Throat, ..options };
-        let mut result = measure(&bodies, &edges, with_surface, &mut progress)?;
+        let mut result = measure(&bodies, &edges, [false; 3], with_surface, &mut progress)?;
         let (grid, coefficients) = (edges.grid(None)?, args.cd.unwrap_or_default());
         let drag = args.drag.map(|law| (law, coefficients));
         let wanted = Wanted { resistance, drag, faces: args.faces, warning: false };

@@ -9,7 +9,6 @@ use crate::geometry::form::Form;
 use crate::geometry::read;
 use crate::geometry::scene;
 use crate::geometry::unit::Unit;
-use crate::grid::file::UNIT_CELL;
 use crate::grid::{AXES, Edges};
 use crate::picture::ticks::{measure as number, number as short, number_to};
 use crate::porosity::snap::{self, OffPlanes};
@@ -122,13 +121,19 @@ pub fn threads(count: Option<u16>) -> Result<rayon::ThreadPool> {
     pool.map_err(|e| Error::new(format!("cannot start {}: {e}", counted(count, "thread", "threads"))))
 }
 
-/// Porosity of bodies on a grid, with a warning for whatever makes it less certain.
+/// Porosity of bodies on a grid, with a warning for whatever makes it less certain. `left_out` are the axes that a case leaves out.
 ///
 /// # Errors
 /// The edges are no grid, or one beyond memory.
-pub fn measure(bodies: &Bodies, edges: &Edges, options: Options, progress: &mut Progress) -> Result<Porosity> {
+pub fn measure(
+    bodies: &Bodies,
+    edges: &Edges,
+    left_out: [bool; 3],
+    options: Options,
+    progress: &mut Progress,
+) -> Result<Porosity> {
     let grid = edges.grid(None)?;
-    warn_if_outside(bodies, edges, &grid, progress);
+    warn_if_outside(bodies, edges, left_out, &grid, progress);
     room_for(porosity::memory(&grid, bodies, options))?;
     let layers = edges.cells()[2] * porosity::levels(bodies).len();
     let result = progress.stage("porosity", |p| {
@@ -207,21 +212,19 @@ pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
 }
 
 /// Geometry outside the grid does not count; say so.
-fn warn_if_outside(bodies: &Bodies, edges: &Edges, grid: &Grid<f64>, progress: &mut Progress) {
+fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &Grid<f64>, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     let fine = 1e-6 * (hi - lo).max(max - min).max_element();
     let point = |p: DVec3| {
         format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
     };
     let extent = |p, q| format!("{} to {}", point(p), point(q));
-    let unit_cells: Vec<&str> = (0..3).filter(|&a| edges.0[a] == UNIT_CELL).map(|a| AXES[a]).collect();
+    let unit_cells: Vec<&str> = (0..3).filter(|&a| left_out[a]).map(|a| AXES[a]).collect();
     let within = match unit_cells.is_empty() {
         true => extent(lo, hi),
-        false => format!(
-            "{} (one cell along {}, as along an axis that a case leaves out)",
-            extent(lo, hi),
-            unit_cells.join(", ")
-        ),
+        false => {
+            format!("{} (one cell along {}, which the case leaves out)", extent(lo, hi), unit_cells.join(", "))
+        }
     };
     // What is flush with the grid but for rounding is within.
     let near = snap::near(grid);

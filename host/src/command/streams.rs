@@ -85,13 +85,12 @@ pub fn check_directory(option: &str, path: &Path) -> Result<()> {
     if is_stream(path) {
         return Err(Error::usage(format!("{option} takes a directory, not the standard output")));
     }
-    if path.exists() && !path.is_dir() {
-        return Err(Error::file(
-            path,
-            format!("cannot create the directory of {option}: there is a file of that name"),
-        ));
+    match path.ancestors().find(|place| place.exists()) {
+        Some(file) if !file.is_dir() => {
+            Err(Error::file(file, format!("cannot create the directory of {option}: there is a file of that name")))
+        }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// `output` would replace `input`.

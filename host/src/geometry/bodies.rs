@@ -146,6 +146,9 @@ impl Bodies {
     /// # Errors
     /// If nothing in it has an area, or a coordinate is beyond all measure.
     pub fn add(&mut self, mesh: &Mesh, scale: f64) -> Result<()> {
+        if mesh.triangles.is_empty() {
+            return Err(mesh.error("no triangles: nothing solid"));
+        }
         let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
         // Each coordinate by itself: the largest of several passes over NaN.
         let measurable = |p: &DVec3| p.abs().cmple(DVec3::splat(LARGEST)).all();

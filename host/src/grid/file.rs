@@ -76,7 +76,7 @@ impl<'de> Visitor<'de> for AxisVisitor {
 }
 
 /// Edges of an axis that is left out: a flow that does not vary along it has one cell there, of unit width.
-pub const UNIT_CELL: [f64; 2] = [0.0, 1.0];
+const UNIT_CELL: [f64; 2] = [0.0, 1.0];
 
 impl GridTable {
     /// The file that holds the grid, if nothing but its name is given.
@@ -84,6 +84,16 @@ impl GridTable {
     pub fn elsewhere(&self) -> Option<&Path> {
         let only = GridTable { file: self.file.clone(), ..GridTable::default() };
         self.file.as_deref().filter(|_| *self == only)
+    }
+
+    /// The axes that a case leaves out, which then hold one cell of unit width.
+    #[must_use]
+    pub fn left_out(&self) -> [bool; 3] {
+        match (&self.cells, [self.x.is_some(), self.y.is_some(), self.z.is_some()]) {
+            _ if self.file.is_some() => [false; 3],
+            (Some(cells), [false, false, false]) => [0, 1, 2].map(|a| a >= cells.len()),
+            (_, given) => given.map(|given| !given),
+        }
     }
 
     /// The edges. With `fewer_axes`, as `voidage solve` allows, later axes may be left out and hold one cell of unit width; `place`
@@ -105,17 +115,20 @@ impl GridTable {
             (None, None, None) => self.uniform(fewer_axes, &whole, &wrong)?,
             (x, y, z) => {
                 let given = [x.is_some(), y.is_some(), z.is_some()];
+                // Beside all edges a grid file may hold other keys.
+                let mixed = !place.is_empty() || given != [true; 3];
+                if let Some((key, _)) = [("origin", self.origin.is_some()), ("spacing", self.spacing.is_some())]
+                    .into_iter()
+                    .chain([("cells", self.cells.is_some())])
+                    .find(|(_, given)| *given && mixed)
+                {
+                    let reason = "does not go with edges: a grid is x, y, z or origin, spacing, cells";
+                    return Err(wrong(key, reason.into()));
+                }
                 if !fewer_axes && given != [true; 3] {
                     return Err(whole(
                         "a grid needs all of x, y, z: only that of a case of voidage solve may lack some",
                     ));
-                }
-                if let Some((key, _)) = [("origin", self.origin.is_some()), ("spacing", self.spacing.is_some())]
-                    .into_iter()
-                    .chain([("cells", self.cells.is_some())])
-                    .find(|(_, given)| *given && !place.is_empty())
-                {
-                    return Err(wrong(key, "does not go with edges".into()));
                 }
                 let read = |name, spec: &Option<AxisSpec>| {
                     let edges = |s: &AxisSpec| axis(s).map_err(|reason| wrong(name, reason));
@@ -242,7 +255,10 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
     }
     let table = PlacedValue { value: Value::Table(entries), span: node.span };
     let spec: GridTable = keys::read(&source, &table, "")?;
-    if spec.x.is_some() && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some()) {
+    if spec.left_out() == [false; 3]
+        && spec.x.is_some()
+        && (spec.origin.is_some() || spec.spacing.is_some() || spec.cells.is_some())
+    {
         warnings.push(format!("{}: x, y, z are given; origin, spacing, cells beside them are ignored", path.display()));
     }
     spec.edges(&source, "", false)

@@ -15,7 +15,7 @@ const LARGEST_FILE: u64 = 1 << 24;
 /// The zones of a file; without one, the whole grid.
 ///
 /// # Errors
-/// A file that cannot be read, a key that is wrong, missing or not known, a zone without extent or wholly outside the grid.
+/// A file that cannot be read, a key that is wrong, missing or not known, two zones of one name, a zone without extent or wholly outside the grid.
 pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
     let whole = edges.bounds();
     let Some(path) = path else {
@@ -30,7 +30,8 @@ pub(super) fn read(path: Option<&Path>, edges: &Edges) -> Result<Vec<Zone>> {
     let root = source.toml()?;
     let mut keys = StrictTable::new(&source, "", 0..0, root.get_ref());
     keys.is_a("a list of zones")?;
-    let zones: Vec<Zone> = keys.tables("zone")?.into_iter().map(|keys| zone(keys, whole)).collect::<Result<_>>()?;
+    let tables = StrictTable::with_names_of_their_own(keys.tables("zone")?)?;
+    let zones: Vec<Zone> = tables.into_iter().map(|keys| zone(keys, whole)).collect::<Result<_>>()?;
     keys.finish()?;
     if zones.is_empty() { Err(Error::file(path, "no zones: it needs at least one [[zone]]")) } else { Ok(zones) }
 }

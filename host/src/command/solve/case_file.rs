@@ -1,7 +1,7 @@
 //! A case file of `voidage solve`: reading it, errors that name its keys, paths that count from its directory.
 
 use super::case::Case;
-use super::{places, ranges};
+use super::{arrays, places, ranges};
 use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
 use crate::files::csv::needs_quotes;
@@ -80,6 +80,20 @@ impl CaseFile {
         }
     }
 
+    /// The values of an array in the directory that a key names, see [`arrays::read`].
+    ///
+    /// # Errors
+    /// Those of the array, at the key.
+    pub fn array(
+        &self,
+        key: &str,
+        path: &Path,
+        shape: [usize; 3],
+        wrong: impl Fn(f64) -> Option<String>,
+    ) -> Result<Vec<f64>> {
+        arrays::read(path, shape, wrong).map_err(|e| self.wrong(key, e.to_string()))
+    }
+
     /// An error at a key.
     #[must_use]
     pub fn wrong(&self, key: &str, reason: impl Into<String>) -> Error {
@@ -108,7 +122,10 @@ impl CaseFile {
     /// # Errors
     /// It is one, or cannot head a column.
     pub fn column_name<'a>(&self, key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
-        if name.is_empty() || needs_quotes(name) {
+        if name.is_empty() {
+            return Err(self.wrong(key, "is empty: give a name, or leave the key out"));
+        }
+        if needs_quotes(name) {
             return Err(self.wrong(key, "needs a name without commas, quotes and line ends"));
         }
         match others.any(|other| other == name) {

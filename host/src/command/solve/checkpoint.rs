@@ -291,6 +291,9 @@ pub fn resume<const D: usize>(
         io::ErrorKind::NotFound => Error::file(path, "there is no checkpoint to resume from; run without --resume"),
         _ => Error::io(path, "read", &e),
     })?;
+    if bytes.is_empty() {
+        return Err(Error::file(path, "is empty (0 bytes): there is nothing to resume from; run without --resume"));
+    }
     let (header, values) = parse(&bytes).map_err(|reason| Error::file(path, reason))?;
     let differ = |(a, b): &(&(String, u32), &(String, u32))| a != b;
     if let Some((part, _)) = case.0.iter().zip(&header.case.0).find(differ) {

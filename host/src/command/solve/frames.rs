@@ -87,27 +87,23 @@ impl Snapshot {
 /// A point from one to three numbers; along axes that are left out, which have one cell, it lies in its middle.
 ///
 /// # Errors
-/// It has no numbers or too many, leaves an axis with several cells out, or is outside the grid; as a reason.
-pub fn point(edges: &Edges, given: &[f64]) -> std::result::Result<[f64; 3], String> {
+/// It has no numbers or too many, leaves an axis with several cells out, or is outside the grid: which of the numbers, as a key's ending, and the reason.
+pub fn point(edges: &Edges, given: &[f64]) -> std::result::Result<[f64; 3], (String, String)> {
+    let all = |reason| Err((String::new(), reason));
     if !(1..=3).contains(&given.len()) {
-        return Err(format!("needs one to three numbers, not {}", given.len()));
+        return all(format!("needs one to three numbers, not {}", given.len()));
     }
     let mut point = [0.0; 3];
-    for axis in 0..3 {
+    for (axis, name) in AXES.into_iter().enumerate() {
+        let (number, cells) = (format!("[{axis}]"), edges.cells()[axis]);
         point[axis] = match given.get(axis) {
-            Some(x) if x.is_nan() => return Err(format!("is not a number along {}", AXES[axis])),
+            Some(x) if x.is_nan() => return Err((number, "is not a number".to_owned())),
             Some(&x) => x,
-            None if edges.cells()[axis] == 1 => edges.0[axis][0] + 0.5 * (edges.0[axis][1] - edges.0[axis][0]),
-            None => {
-                return Err(format!(
-                    "needs a place along {}, where the grid has {} cells",
-                    AXES[axis],
-                    edges.cells()[axis]
-                ));
-            }
+            None if cells == 1 => edges.0[axis][0] + 0.5 * (edges.0[axis][1] - edges.0[axis][0]),
+            None => return all(format!("needs a place along {name}, where the grid has {cells} cells")),
         };
         if let Some(reaches) = edges.misses(axis, point[axis]) {
-            return Err(format!("{} = {} is outside the grid: {reaches}", AXES[axis], point[axis]));
+            return Err((number, format!("{name} = {} is outside the grid: {reaches}", point[axis])));
         }
     }
     Ok(point)

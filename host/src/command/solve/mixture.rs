@@ -1,6 +1,5 @@
 //! The gas of a case whose states give ratios of specific heats of their own: burnt gas beside fresh gas.
 
-use super::arrays;
 use super::case::Model;
 use super::case_file::CaseFile;
 use super::ranges::GAMMA;
@@ -30,7 +29,7 @@ pub fn mixture(file: &CaseFile, gas: Gas<f64>, edges: &Edges) -> Result<Gas<f64>
             return Err(file
                 .wrong("initial.from", "holds gamma.npy: only an ideal gas may have a gamma of its own in each cell"));
         }
-        found.extend(arrays::read(&path, edges.cells(), |g| GAMMA.refuses(g))?);
+        found.extend(file.array("initial.from", &path, edges.cells(), |g| GAMMA.refuses(g))?);
     }
     if found.is_empty() {
         return Ok(gas);

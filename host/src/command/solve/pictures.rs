@@ -34,7 +34,7 @@ pub fn check(file: &CaseFile, edges: &Edges) -> Result<()> {
         }
     }
     let Some(given) = &keys.slice else { return Ok(()) };
-    point(edges, given).map(drop).map_err(|why| file.wrong("output.slice", why))
+    point(edges, given).map(drop).map_err(|(at, why)| file.wrong(&format!("output.slice{at}"), why))
 }
 
 /// Where pictures are cut, what is written over them, and their colours.

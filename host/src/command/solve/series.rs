@@ -212,8 +212,8 @@ fn probe_places(file: &CaseFile, edges: &Edges) -> Result<Vec<usize>> {
         let name = probe.name(n);
         let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
         file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
-        let at =
-            point(edges, &probe.at).map_err(|why| file.wrong(&format!("{key}.at"), format!("\"{name}\": {why}")))?;
+        let at = point(edges, &probe.at)
+            .map_err(|(at, why)| file.wrong(&format!("{key}.at{at}"), format!("\"{name}\": {why}")))?;
         cells.extend(cell_at(edges, at).map(|at| position(at, edges.cells())));
     }
     Ok(cells)

@@ -1,6 +1,5 @@
 //! From a case to a flow that is ready to step: every value checked, nothing made that the case does not need.
 
-use super::arrays;
 use super::case::{GasKeys, LimiterName, Model, Pressure, RiemannName};
 use super::case_file::CaseFile;
 use super::force::pushed_cells;
@@ -97,9 +96,10 @@ pub fn setup<const D: usize>(
 
     let pressures = cells.iter().map(|w| w.pressure);
     let ends = pressures.fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p), high.max(p)]);
-    units::doubts(file, ends).into_iter().for_each(|doubt| progress.warn(doubt));
     let widths = live.map(|d| edges.widths(d));
     let Sides { boundaries, patches, feed, mut inlets } = sides::sides(file, &states, edges, &cells)?;
+    // After keys that are refused: of these nothing else is said.
+    units::doubts(file, ends).into_iter().for_each(|doubt| progress.warn(doubt));
     let mut flow = Flow::new(widths, gas, boundaries);
     flow.patches = patches;
     (flow.feed_sides, flow.feed_patches) = feed;
@@ -275,7 +275,7 @@ fn drag<const D: usize>(
                 (Some(_), Some(_)) => {
                     return Err(file.wrong(&format!("drag.{name}"), "is given here and in drag.from"));
                 }
-                (Some(path), None) => arrays::read(&path, edges.cells(), |c| NOT_NEGATIVE.refuses(c))?,
+                (Some(path), None) => file.array("drag.from", &path, edges.cells(), |c| NOT_NEGATIVE.refuses(c))?,
                 (None, Some(constants)) => {
                     vec![constants[axis]; if constants[axis] == 0.0 { 0 } else { count }]
                 }

@@ -46,7 +46,9 @@ pub fn load<const D: usize>(
         (Some(scene), None) => from_scene(file, scene, edges, live, progress)?,
         (None, Some(dir)) => {
             let dir = file.existing("porosity.from", dir)?;
-            let read = |name: &str, shape| arrays::read(&dir.join(format!("beta_{name}.npy")), shape, arrays::fraction);
+            let read = |name: &str, shape| {
+                file.array("porosity.from", &dir.join(format!("beta_{name}.npy")), shape, arrays::fraction)
+            };
             let cells = edges.cells();
             let faces: Vec<Vec<f64>> = live
                 .iter()
@@ -107,7 +109,8 @@ fn from_scene<const D: usize>(
     let (bodies, _) = stages::load(&scene_files(file, scene)?, progress)?;
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
-    let mut result = stages::measure(&bodies, edges, Options { resistance: true, ..options }, progress)?;
+    let (left_out, with_surface) = (file.case.grid.left_out(), Options { resistance: true, ..options });
+    let mut result = stages::measure(&bodies, edges, left_out, with_surface, progress)?;
     let (wanted, faces) = (wanted_solids(file, &bodies)?, keys.faces.unwrap_or(Faces::Throat));
     let solids = match wanted.is_empty() {
         true => Vec::new(),

@@ -126,7 +126,7 @@ impl<const D: usize> States<'_, D> {
             }
             (None, Some(dir)) => {
                 let gammas = match mixture::array(self.file).filter(|_| self.gas.is_mixed()) {
-                    Some(path) => arrays::read(&path, edges.cells(), |g| GAMMA.refuses(g))?,
+                    Some(path) => self.file.array("initial.from", &path, edges.cells(), |g| GAMMA.refuses(g))?,
                     None => vec![self.gamma(&StateKeys::default(), None); count],
                 };
                 let states = self.read(&self.file.existing("initial.from", dir)?, edges)?.into_iter();
@@ -172,19 +172,21 @@ impl<const D: usize> States<'_, D> {
     /// barotropic gas does not need `p.npy`.
     fn read(&self, dir: &Path, edges: &Edges) -> Result<Vec<Primitive<f64, D>>> {
         let shape = edges.cells();
-        let file = |name: &str| dir.join(format!("{name}.npy"));
-        let density = arrays::read(&file("rho"), shape, |x| QUANTITY.refuses(x))?;
+        let path = |name: &str| dir.join(format!("{name}.npy"));
+        let read =
+            |path: &Path, wrong: &dyn Fn(f64) -> Option<String>| self.file.array("initial.from", path, shape, wrong);
+        let density = read(&path("rho"), &|x| QUANTITY.refuses(x))?;
         let mut velocity: [Vec<f64>; 3] = Default::default();
         for (axis, values) in velocity.iter_mut().enumerate() {
-            let path = file(VELOCITIES[axis]);
+            let path = path(VELOCITIES[axis]);
             if self.live.contains(&axis) {
-                *values = arrays::read(&path, shape, |u| SIGNED.refuses(u))?;
+                *values = read(&path, &|u| SIGNED.refuses(u))?;
             } else if path.exists() {
-                arrays::read(&path, shape, |u| (u != 0.0).then(|| "flows along an axis of one cell".to_owned()))?;
+                read(&path, &|u| (u != 0.0).then(|| "flows along an axis of one cell".to_owned()))?;
             }
         }
         let pressure = match self.gas.has_energy() {
-            true => arrays::read(&file("p"), shape, |x| QUANTITY.refuses(x))?,
+            true => read(&path("p"), &|x| QUANTITY.refuses(x))?,
             false => density.iter().map(|&rho| self.gas.pressure(rho, 0.0)).collect(),
         };
         let state = |c: usize| Primitive {

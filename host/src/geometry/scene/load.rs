@@ -32,6 +32,12 @@ pub fn add(scene: &Scene, bodies: &mut Bodies) -> Result<()> {
                 "{scene}: solid \"{name}\": array: its copies along {axis} lie upon each other: step is 0 along {axis}"
             ));
         }
+        if solid.porosity == 1.0 && solid.drag.cr.is_none_or(|cr| cr == 0.0) {
+            let (scene, name) = (scene.path.display(), &solid.name);
+            bodies.warnings.push(format!(
+                "{scene}: solid \"{name}\": porosity is 1 and there is no cr: all of it is open, it has no effect"
+            ));
+        }
         let first = bodies.bodies.len();
         add_solid(scene, solid, bodies).map_err(|e| place(&e))?;
         let added = &bodies.bodies[first..];

@@ -113,7 +113,15 @@ pub(super) fn axis(value: &DeValue) -> std::result::Result<DVec3, String> {
         Some("x") => Ok(DVec3::X),
         Some("y") => Ok(DVec3::Y),
         Some("z") => Ok(DVec3::Z),
-        Some(other) => Err(format!("needs three numbers or x, y, z, not \"{other}\"")),
+        Some(other) => {
+            let turned = match other {
+                "-x" => "; that is [-1, 0, 0]",
+                "-y" => "; that is [0, -1, 0]",
+                "-z" => "; that is [0, 0, -1]",
+                _ => "",
+            };
+            Err(format!("needs three numbers or x, y, z, not \"{other}\"{turned}"))
+        }
         None => table::point(value),
     }
 }

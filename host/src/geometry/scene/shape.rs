@@ -305,7 +305,10 @@ fn middle(a: DVec3, b: DVec3) -> DVec3 {
 }
 
 fn file(keys: &mut StrictTable) -> Result<Shape> {
-    let path = PathBuf::from(keys.need("path", table::text)?);
+    let path = keys.need("path", |value| match table::text(value)? {
+        path if path.is_empty() => Err("is empty: it names an STL or OBJ file".to_owned()),
+        path => Ok(PathBuf::from(path)),
+    })?;
     let unit = keys.get("unit", |value| {
         let name = table::text(value)?;
         Unit::named(&name).ok_or_else(|| format!("\"{name}\" is not known: {}", Unit::ALL.map(Unit::name).join(", ")))
