@@ -24,6 +24,24 @@ const INITIAL: &str = "[initial]\nuniform = { rho = 1, p = 1 }\n";
 const WALLS: &str = "[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\nz_min = \"wall\"\nz_max = \"wall\"\n";
 const TIME: &str = "[time]\nmax_steps = 1\n";
 
+/// Points of probes and pictures have no place along axes that a case leaves out.
+#[test]
+fn points_leave_out_axes_of_one_cell() {
+    let at = Scratch::new();
+    let grid = "[grid]\nx = { points = [0, 1], cells = [8] }\n";
+    let uniform = "[initial]\nuniform = { rho = 1, p = 1 }\nregions = [{ max = [0.5], p = 2, rho = 1 }]\n";
+    let sides = "[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n";
+    let probes = |point: &str, out: &str| {
+        let output = format!("[output]\nslice = {point}\nprobes = [{{ at = {point} }}]\n");
+        let run = solve(&at, &[grid, GAS, uniform, "[time]\nmax_steps = 5\n", sides, &output].concat(), out, &[]);
+        assert!(run.status.success(), "{}", stderr(&run));
+        fs::read_to_string(at.file(out).join("probes.csv")).expect("a table")
+    };
+    let short = probes("[0.55]", "one");
+    assert!(short.lines().count() > 5);
+    assert_eq!(short, probes("[0.55, 0.5, 0]", "three"));
+}
+
 #[test]
 fn what_a_case_lacks_has_a_place() {
     let at = Scratch::new();
@@ -162,7 +180,7 @@ fn slips_that_one_can_mend_from_the_message() {
         ("[drag]\nlaw = \"pdr\"\n", "key drag.law: goes with porosity.scene: it is about the solids of a scene"),
         (
             "[output]\nprobes = [{ name = \"far\", at = [0, 0, 50] }]\n",
-            "key output.probes[0].at: of \"far\" is outside the grid: the grid reaches from 0 to 1 along z",
+            "key output.probes[0].at[2]: \"far\": z = 50 is outside the grid: the grid reaches from 0 to 1 along z",
         ),
     ] {
         fails(&solve(&at, &format!("{case}{more}"), "out", &[]), 1, &["case.toml: line ", words, "^"]);
