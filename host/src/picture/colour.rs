@@ -26,6 +26,9 @@ const LIGHTEST: usize = 222;
 /// Means over a pixel miss 1 by no more.
 const ROUNDING: f64 = 1e-9;
 
+/// Less than this share of the largest is none: what the rounding of coordinates leaves of a surface that touches a plane of the grid.
+const NONE: f64 = 1e-6;
+
 impl ColourMap {
     /// Dark blue over teal and green to a light paper: blocked (0) to open (1). For any quantity that grows from zero.
     #[must_use]
@@ -81,7 +84,7 @@ impl ColourMap {
         }
         let step = (value * (STEPS - 1) as f64).round().clamp(0.0, (STEPS - 1) as f64);
         // What is not none is told from it, be it little.
-        self.table[(step as usize).max(usize::from(self.own_ends[0] && value > ROUNDING))]
+        self.table[(step as usize).max(usize::from(self.own_ends[0] && value > NONE))]
     }
 
     /// Whether the lowest and the highest value have a colour of their own, set off from those between.
@@ -183,6 +186,13 @@ mod tests {
         }
         let at: Vec<f64> = (0..16).map(|i| lightness(map.colour(f64::from(i) / 16.0))).collect();
         assert!(at.windows(2).all(|w| w[1] - w[0] > 3.0), "{at:?}");
+    }
+
+    #[test]
+    fn little_is_told_from_none_but_for_rounding() {
+        let map = ColourMap::density();
+        assert_eq!(map.colour(1e-7), map.colour(0.0));
+        assert!(lightness(map.colour(0.0)) - lightness(map.colour(1e-5)) > 8.0);
     }
 
     #[test]
