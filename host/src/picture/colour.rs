@@ -27,7 +27,7 @@ const LIGHTEST: usize = 222;
 const ROUNDING: f64 = 1e-9;
 
 /// Less than this share of the largest is none: what the rounding of coordinates leaves of a surface that touches a plane of the grid.
-const NONE: f64 = 1e-6;
+const NONE: f64 = 3e-7;
 
 impl ColourMap {
     /// Dark blue over teal and green to a light paper: blocked (0) to open (1). For any quantity that grows from zero.
