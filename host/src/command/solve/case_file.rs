@@ -80,7 +80,7 @@ impl CaseFile {
         }
     }
 
-    /// The values of an array in the directory that a key names, see [`arrays::read`].
+    /// The values of an array in the directory that a key names.
     ///
     /// # Errors
     /// Those of the array, at the key.
