@@ -70,20 +70,20 @@ impl<R: Real, const D: usize> Patch<R, D> {
 }
 
 impl<R: Real, const D: usize> Boundary<R, D> {
-    /// What stands outside is a state of the gas: its density and pressure (of an isothermal gas its density alone) are positive, all numbers finite.
+    /// What stands outside is a state of the gas: its density and pressure (of a gas without energy its density alone) are positive, all numbers finite.
     pub(in crate::flow) fn is_sound(&self, gas: Gas<R>) -> bool {
-        let positive = |x: R| x > R::ZERO && x.is_finite();
-        let density_alone = !matches!(gas, Gas::Ideal { .. } | Gas::Mixed { .. });
-        match self {
-            Boundary::Periodic | Boundary::Wall | Boundary::ZeroGradient => true,
+        let [density, pressure] = match self {
+            Boundary::Periodic | Boundary::Wall | Boundary::ZeroGradient => return true,
             Boundary::FarField(w) | Boundary::Inlet(w) => {
-                positive(w.density)
-                    && (density_alone || positive(w.pressure))
-                    && w.velocity.iter().all(|u| u.is_finite())
+                if !w.velocity.iter().all(|u| u.is_finite()) {
+                    return false;
+                }
+                [w.density, if gas.has_energy() { w.pressure } else { w.density }]
             }
-            Boundary::Outlet { pressure } => positive(*pressure),
-            Boundary::Reservoir { density, pressure } => positive(*density) && positive(*pressure),
-        }
+            Boundary::Outlet { pressure } => [*pressure; 2],
+            Boundary::Reservoir { density, pressure } => [*density, *pressure],
+        };
+        density > R::ZERO && pressure > R::ZERO && density.is_finite() && pressure.is_finite()
     }
 
     /// Nothing flows through.

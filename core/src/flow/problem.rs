@@ -80,7 +80,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         let feed = Feed { sides: [[gas.gamma(); 2]; D], patches: &[] };
         let problem =
             Problem { mesh, gas, boundaries, patches, feed, scheme, porosity: None, clusters, drag: None, gravity };
-        let sides = boundaries.iter().enumerate().flat_map(|(axis, sides)| sides.iter().map(move |side| (axis, side)));
+        let sides = boundaries.iter().flatten().enumerate().map(|(number, side)| (number / 2, side));
         problem.with_sound_sides(sides)
     }
 

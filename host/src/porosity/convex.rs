@@ -5,6 +5,7 @@
 
 use crate::geometry::bodies::Body;
 use crate::geometry::form::Form;
+use crate::geometry::repair::weld::bits;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 use std::ops;
@@ -131,7 +132,7 @@ pub fn faceted(body: &Body, triangles: &[[DVec3; 3]]) -> Option<Faceted> {
     let mut seen = HashMap::default();
     let mut vertices = Vec::new();
     for &p in triangles.iter().flatten() {
-        seen.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| vertices.push(p));
+        seen.entry(bits(p)).or_insert_with(|| vertices.push(p));
     }
     let mut planes = vec![Facet::none(); triangles.len()];
     let count = facets(&vertices, triangles, &mut planes).ok()?;
@@ -142,7 +143,6 @@ pub fn faceted(body: &Body, triangles: &[[DVec3; 3]]) -> Option<Faceted> {
 /// Has every edge its reverse?
 #[must_use]
 pub fn is_closed(triangles: &[[DVec3; 3]]) -> bool {
-    let bits = |p: DVec3| p.to_array().map(|x| (x + 0.0).to_bits());
     let mut open = HashMap::default();
     for [a, b, c] in triangles.iter().map(|t| t.map(bits)) {
         for (from, to) in [(a, b), (b, c), (c, a)] {

@@ -16,6 +16,7 @@ use super::solid_layers::SolidLayers;
 use super::{FieldSet, Options, Porosity, porosity};
 use crate::geometry::bodies::{Bodies, Body};
 use crate::geometry::form::Form;
+use crate::geometry::repair::weld::bits;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -202,7 +203,6 @@ pub fn is_round(body: &Body, triangles: &[[DVec3; 3]]) -> bool {
 
 /// Σ length × angle over the edges of a surface that turn by less than [`CURVED`], and over all.
 fn turning(triangles: &[[DVec3; 3]]) -> [f64; 2] {
-    let bits = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
     let mut normals: FxHashMap<[[u64; 3]; 2], DVec3> = FxHashMap::default();
     let mut sums = [0.0; 2];
     for corners in triangles {

@@ -3,6 +3,7 @@
 use super::drag::is_round;
 use crate::geometry::bodies::Body;
 use crate::geometry::form::Form;
+use crate::geometry::repair::weld::bits;
 use glam::{DMat3, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 use voidage_core::surface::surface_area::SurfaceArea;
@@ -73,10 +74,6 @@ const ROUND_STEPS: usize = 16;
 fn is_simple(triangles: &[[DVec3; 3]]) -> bool {
     let corners: FxHashSet<[u64; 3]> = triangles.iter().flatten().map(|p| bits(*p)).collect();
     2 * corners.len() == triangles.len() + 4
-}
-
-fn bits(p: DVec3) -> [u64; 3] {
-    (p + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
 /// Directions of faces that are tried, those of the largest.

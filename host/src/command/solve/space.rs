@@ -11,7 +11,7 @@ use crate::command::stages;
 use crate::command::streams::{INPUT, is_stream};
 use crate::error::Result;
 use crate::files::csv::needs_quotes;
-use crate::geometry::bodies::{Bodies, OwnDrag};
+use crate::geometry::bodies::{Bodies, Body, OwnDrag};
 use crate::geometry::scene::is_scene;
 use crate::grid::{AXES, Edges};
 use crate::porosity::drag::{DragCoefficients, DragLaw};
@@ -124,15 +124,19 @@ fn from_scene<const D: usize>(
     }
     let (grid, law) = (edges.grid(None)?, law(file)?);
     let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);
-    let own = own_drag(&bodies).filter(|_| law.is_none() && !silent);
-    if given_otherwise(file) && own_drag(&bodies).is_some() {
+    let has_own = |body: &Body| body.drag != OwnDrag::default();
+    let any_has_own = bodies.bodies.iter().any(has_own);
+    // Solids with a drag of their own need no law; the others have none by this one.
+    let own = (DragLaw::Bluff, DragCoefficients { round: 0.0, sharp: 0.0 });
+    let own = (any_has_own && law.is_none() && !silent).then_some(own);
+    if given_otherwise(file) && any_has_own {
         progress
             .warn(file.remark("drag", "its cr or from stands in place of the cd and cr that solids of the scene have"));
     }
     let wanted = Wanted { resistance: law.is_none() && !silent, drag: law.or(own), faces, warning: true };
     let found = obstacles(&grid, &bodies, &mut result, options, wanted, progress);
     // What has a drag of its own has told what it resists; of the others it is asked.
-    let all_have_one = bodies.bodies.iter().all(|body| body.porosity > 0.0 || body.drag != OwnDrag::default());
+    let all_have_one = bodies.bodies.iter().all(|body| body.porosity > 0.0 || has_own(body));
     if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none() && !all_have_one) {
         warn_of_no_force(&bodies, resistance, progress);
     }
@@ -169,12 +173,6 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
         }
     }
     Ok(names)
-}
-
-/// What gives solids that have a `cd` or `cr` of their own their drag, and others none; if there is one.
-fn own_drag(bodies: &Bodies) -> Option<(DragLaw, DragCoefficients)> {
-    let any = bodies.bodies.iter().any(|body| body.drag != OwnDrag::default());
-    any.then_some((DragLaw::Bluff, DragCoefficients { round: 0.0, sharp: 0.0 }))
 }
 
 /// Is there a resistance that needs no law?
