@@ -104,11 +104,11 @@ fn normal_shock<const D: usize>(axis: usize, mach: f64, drift: f64) -> [Primitiv
     [stream(along(speed)), Primitive { density: ratio, velocity: along(speed / ratio), pressure }]
 }
 
-/// The fastest motion along a shock that lies along the grid and drifts by 0.05, over the speed before it, after so many steps; at first densities
+/// The fastest motion along a shock that lies along the grid and moves at `drift`, over the speed before it, after so many steps; at first densities
 /// were off by up to 1e-3 at random.
-fn motion_along_a_shock<const D: usize>(n: [usize; D], mach: f64, riemann: Riemann, steps: usize) -> f64 {
+fn motion_along_a_shock<const D: usize>(n: [usize; D], mach: f64, drift: f64, riemann: Riemann, steps: usize) -> f64 {
     let axis = D - 1;
-    let [before, behind] = normal_shock::<D>(axis, mach, 0.05);
+    let [before, behind] = normal_shock::<D>(axis, mach, drift);
     let mut sides = [[Boundary::Periodic; 2]; D];
     sides[axis] = [before, behind].map(Boundary::FarField);
     let mut flow: Flow<f64, D> = Flow::uniform(n, [1.0; D], Gas::Ideal { gamma: GAMMA }, sides);
@@ -126,19 +126,25 @@ fn motion_along_a_shock<const D: usize>(n: [usize; D], mach: f64, riemann: Riema
     (0..flow.len()).map(across).fold(0.0, f64::max) / before.velocity[axis]
 }
 
-/// Without damping along the shock it is 0.01 to 0.1 and more. One that does not drift at all lies where the Riemann problem across it has a wave of
-/// speed 0, which no solver here but that of Rusanov damps: there rows go apart by up to a cell with all others.
+/// Without damping along the shock it is 0.01 to 0.1 and more. One that does not drift at all needs damping across it too, or its rows go apart: to 0.2
+/// at Mach 6 while its waves had the speed 0.
 #[test]
 fn a_shock_along_the_grid_stays_plane() {
-    for riemann in [Riemann::Hllc, Riemann::HllcLowMach] {
+    let motion = |riemann, drift, most: f64| {
         for mach in [3.0, 6.0, 10.0, 20.0] {
-            let plane = motion_along_a_shock([20, 60], mach, riemann, 1500);
-            println!("Mach {mach}, {riemann:?}: {plane:.1e}");
-            assert!(plane < 1e-4, "Mach {mach}, {riemann:?}: {plane}");
+            let plane = motion_along_a_shock([20, 60], mach, drift, riemann, 1500);
+            println!("Mach {mach}, {riemann:?}, drift {drift}: {plane:.1e}");
+            assert!(plane < most, "Mach {mach}, {riemann:?}, drift {drift}: {plane}");
         }
-        let space = motion_along_a_shock([8, 8, 40], 6.0, riemann, 800);
-        println!("in space, {riemann:?}: {space:.1e}");
-        assert!(space < 1e-4, "{riemann:?} in space: {space}");
+        let space = motion_along_a_shock([8, 8, 40], 6.0, drift, riemann, 800);
+        println!("in space, {riemann:?}, drift {drift}: {space:.1e}");
+        assert!(space < most, "{riemann:?} in space, drift {drift}: {space}");
+    };
+    for riemann in [Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle] {
+        motion(riemann, 0.0, 1e-4);
+        motion(riemann, 0.05, 1e-4);
+        // Against the stream cell by cell makes more of it: 1.2e-4 at Mach 20.
+        motion(riemann, -0.05, 5e-4);
     }
 }
 

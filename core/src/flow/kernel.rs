@@ -6,7 +6,7 @@
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
 //! - `inclined_walls`: the half step beside walls askew to the grid
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
-//! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces; `update`: new states
+//! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces, by the loop over them in `face_fluxes`; `update`: new states
 //! - `shocks`: fluxes through faces that lie along a strong shock
 //! - `wall_pushes`: what the walls of watched cells feel of the fluxes
 //! - `solver_calls`: what differs from one Riemann solver to another
@@ -14,6 +14,7 @@
 //! - `flux_choice`: which solvers and gases of the sweep a program links
 //! - `long_line`: a long line of cells in pieces
 
+pub(crate) mod face_fluxes;
 pub(crate) mod flux_choice;
 pub(crate) mod fluxes;
 pub(crate) mod inclined_walls;

@@ -6,6 +6,7 @@ use super::road::{Lists, Road, RoadWithLists};
 use glam::DVec3;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
+use voidage_core::grid::fields::Fields;
 use voidage_core::subdivide::QueryCount;
 use voidage_core::surface::bins::Group;
 use voidage_core::surface::layer::{
@@ -220,6 +221,7 @@ impl SumVecs {
         }
         let SumVecs { reals, flags, numbers, groups, union, .. } = self;
         let union = union.as_mut().map_or_else(UnionMemory::default, UnionVecs::memory);
+        debug_assert!(reals.iter().take(Fields::<u8>::needed(grid)).all(|sum| *sum == 0.0), "a layer leaves zeros");
         LayerMemory::of_zero_sums(grid, reals, flags, numbers, groups, union).expect(FITS)
     }
 }

@@ -1,9 +1,10 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
 use crate::flow::boundary::Boundary;
+use crate::flow::kernel::face_fluxes::Openings;
 use crate::flow::kernel::mixed::{self, Carried};
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
-use crate::flow::kernel::rows::{self, Faces, FluxBlock, Openings, var};
+use crate::flow::kernel::rows::{self, Faces, FluxBlock, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::shocks::{Pressures, fluxes_along_shocks};
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};

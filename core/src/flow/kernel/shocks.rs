@@ -8,7 +8,8 @@
 //!
 //! Beside a cell that an inclined wall cuts, weaker shocks have the same: what differs there along the shock is made anew in every cell, as each is cut in its own way.
 
-use crate::flow::kernel::rows::{Openings, var};
+use crate::flow::kernel::face_fluxes::Openings;
+use crate::flow::kernel::rows::var;
 use crate::flow::kernel::slab::Slab;
 use crate::flow::kernel::solver_calls::RowCall;
 use crate::flow::porosity::flags::{INCLINED, any_inclined, is};

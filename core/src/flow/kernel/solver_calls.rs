@@ -1,13 +1,13 @@
 //! What differs from one Riemann solver to another, held by pointers: all else of a sweep is compiled once for all of them.
 
 use crate::flow::face_gas::{FaceGas, MixedFace};
-use crate::flow::kernel::rows::{self, Openings};
+use crate::flow::kernel::face_fluxes::{Openings, fluxes};
 use crate::flow::porosity::jump::ThroatCall;
 use crate::flow::riemann::{Flux, Hlle, Slowness, Solver};
 use crate::flow::state::Primitive;
 use crate::number::real::Real;
 
-/// Fluxes of a row of faces: [`rows::fluxes`].
+/// Fluxes of a row of faces: [`fluxes`].
 pub(in crate::flow) type RowCall<R> = fn([&[R]; 2], Openings<'_, R>, &FaceGas<R>, &[R], &mut [R]);
 /// The normal momentum that passes a wall, between the gas and its image.
 type WallCall<R, const D: usize> = fn([&Primitive<R, D>; 2], &FaceGas<R>, Slowness<R>) -> R;
@@ -32,8 +32,8 @@ impl<R: Real, const D: usize> SolverCalls<R, D> {
     pub(in crate::flow) fn of<S: Solver, const ENERGY: bool, const MIXED: bool>() -> Self {
         SolverCalls {
             low_mach: S::LOW_MACH,
-            row: rows::fluxes::<R, S, D, ENERGY, MIXED>,
-            along_shocks: if S::KEEPS_SHEAR && D > 1 { Some(rows::fluxes::<R, Hlle, D, ENERGY, MIXED>) } else { None },
+            row: fluxes::<R, S, D, ENERGY, MIXED>,
+            along_shocks: if S::KEEPS_SHEAR && D > 1 { Some(fluxes::<R, Hlle, D, ENERGY, MIXED>) } else { None },
             throat: throat::<R, S, D, MIXED>,
             wall: wall::<R, S, D>,
         }

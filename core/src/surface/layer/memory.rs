@@ -62,7 +62,8 @@ impl<'a, V: Vector> LayerMemory<'a, V> {
         Self::of_zero_sums(grid, reals, flags, numbers, groups, union)
     }
 
-    /// As [`LayerMemory::new`], without the work of clearing the sums: the first [`Fields::needed`] of `reals` must be zero, as a layer leaves them.
+    /// As [`LayerMemory::new`], without the work of clearing the sums: the first [`Fields::needed`] of `reals` must be zero, as a layer leaves them. What they
+    /// hold otherwise counts as shares of a body.
     ///
     /// # Errors
     /// As [`LayerMemory::new`].
@@ -83,7 +84,6 @@ impl<'a, V: Vector> LayerMemory<'a, V> {
         at_least(fields, flags.len())?;
         let short = ShapeMismatch { expected: fields, found: flags.len() };
         let (has_surface, flags) = flags.split_at_mut_checked(fields).ok_or(short)?;
-        debug_assert!(sum.iter().all(|s| *s == V::Scalar::ZERO), "a layer leaves zeros");
         Ok(LayerMemory { cells: [nx, ny], sum, spare, scratch, has_surface, reals, flags, numbers, groups, union })
     }
 }
