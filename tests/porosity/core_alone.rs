@@ -62,9 +62,11 @@ fn fields<V: Vector>(grid: &Grid<V::Scalar>, bodies: &[Surface<V>], given: Given
     let (mut numbers, mut groups) = (room(share(numbers, 0)), room::<Group<V>>(share(groups, 0)));
     let most = given.pieces.min(layers.union_pieces());
     let mut pieces: Vec<Piece<V::Scalar>> = room(most);
-    let (mut split_pieces, mut order) = (room(4 * most), room(4 * most));
-    let (mut nodes, mut parts): (Vec<Node<V::Scalar>>, Vec<Part>) = (room(4 * most), room(most / 4));
-    let (mut fragments, mut pending): (Vec<Fragment<V::Scalar>>, Vec<PendingNode>) = (room(most), room(most));
+    let needed = UnionMemory::<V::Scalar>::needed(most);
+    let (mut split_pieces, mut order) = (room(needed.split_pieces), room(needed.order));
+    let (mut nodes, mut parts): (Vec<Node<V::Scalar>>, Vec<Part>) = (room(needed.nodes), room(needed.parts));
+    let (mut fragments, mut pending): (Vec<Fragment<V::Scalar>>, Vec<PendingNode>) =
+        (room(needed.fragments), room(needed.pending));
     let (mut octants, mut near) = (room(given.near.min(most)), room(given.near.min(64 * most)));
     let union = UnionMemory {
         pieces: &mut pieces,

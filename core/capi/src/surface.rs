@@ -10,7 +10,7 @@ use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::OtherBodies;
 use voidage_core::surface::bins::{BinsNeeded, Group, Surface};
 use voidage_core::surface::layer::{LayerMemory, LayerOptions, LayerReport, LayerSlices, Layers, MemoryNeeded};
-use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, octree_room};
+use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory};
 
 /// The arguments of a call: bodies in a grid, and options.
 #[derive(Clone, Copy)]
@@ -160,8 +160,7 @@ impl<'a, V: Vector> Checked<'a, V> {
         let BinsNeeded { numbers, groups } = bins;
         let MemoryNeeded { reals, flags, numbers: layer_numbers, groups: layer_groups } = layer;
         let group = |_| Group::default();
-        let fourfold = pieces.saturating_mul(4);
-        let [octants, near] = octree_room(pieces);
+        let room = UnionMemory::<V::Scalar>::needed(pieces);
         SurfaceWork {
             bodies: memory.take(bodies.len(), |body| bodies.get(body)),
             numbers: memory.take(numbers, |_| 0),
@@ -171,15 +170,15 @@ impl<'a, V: Vector> Checked<'a, V> {
             layer_numbers: memory.take(layer_numbers, |_| 0),
             layer_groups: memory.take(layer_groups, group),
             union: UnionMemory {
-                pieces: memory.take(pieces, |_| Piece::default()),
-                split_pieces: memory.take(fourfold, |_| Piece::default()),
-                order: memory.take(fourfold, |_| 0),
-                nodes: memory.take(fourfold, |_| Node::default()),
-                parts: memory.take(pieces / 4 + usize::from(pieces > 0), |_| Part::default()),
-                fragments: memory.take(pieces, |_| Fragment::default()),
-                pending: memory.take(pieces, |_| PendingNode::default()),
-                octants: memory.take(octants, |_| Octant::default()),
-                near: memory.take(near, |_| 0),
+                pieces: memory.take(room.pieces, |_| Piece::default()),
+                split_pieces: memory.take(room.split_pieces, |_| Piece::default()),
+                order: memory.take(room.order, |_| 0),
+                nodes: memory.take(room.nodes, |_| Node::default()),
+                parts: memory.take(room.parts, |_| Part::default()),
+                fragments: memory.take(room.fragments, |_| Fragment::default()),
+                pending: memory.take(room.pending, |_| PendingNode::default()),
+                octants: memory.take(room.octants, |_| Octant::default()),
+                near: memory.take(room.near, |_| 0),
             },
         }
     }

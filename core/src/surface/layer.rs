@@ -118,8 +118,8 @@ impl<'a, V: Vector> Layers<'a, V> {
         self.bins.groups(k).len()
     }
 
-    /// Pieces of surface for which [`UnionMemory`](crate::surface::union::UnionMemory) should have room, with four times as many nodes: 16 for each body
-    /// of triangles in the fullest layer, for they may all be in one cell; 1024 to 32 768. With less, more cells are divided.
+    /// Pieces of surface for which [`UnionMemory`](crate::surface::union::UnionMemory) should have room: 16 for each body of triangles in the fullest layer,
+    /// for they may all be in one cell; 1024 to 32 768. With less, more cells are divided.
     #[must_use]
     pub fn union_pieces(&self) -> usize {
         let most = (0..self.grid.cells()[2]).map(|k| self.bodies_in(k)).max().unwrap_or(0);

@@ -23,13 +23,13 @@ use crate::number::space::{cross, dot, sub, unit};
 use crate::surface::clip::{Polygon, keep};
 use bsp::{Branch, BspMemory, build_bsp};
 use descent::{Descent, DescentRule};
-use octree::{Octree, OctreeSize};
+use octree::{Octree, OctreeSize, octree_room};
 use piece::NoProof::{Ambiguous, Full};
 use piece::{Ball, Plane};
 
 pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
-pub use octree::{Octant, octree_room};
+pub use octree::Octant;
 pub use piece::{NoProof, Piece};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
@@ -74,13 +74,53 @@ pub struct UnionMemory<'a, R: Real> {
     /// Branches of a tree still to grow.
     pub pending: &'a mut [PendingNode],
     /// Octants of a cell where more than 64 bodies meet. May be empty: then every piece asks every body, which takes the square of their number.
-    /// [`octree_room`] tells how many serve well.
     pub octants: &'a mut [Octant<R>],
     /// Numbers of bodies near octants.
     pub near: &'a mut [u32],
 }
 
+/// Lengths of the slices of [`UnionMemory`] that serve cells of up to so many pieces well. Any others do; with less, more cells are divided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UnionNeeded {
+    /// Of [`UnionMemory::pieces`].
+    pub pieces: usize,
+    /// Of [`UnionMemory::split_pieces`].
+    pub split_pieces: usize,
+    /// Of [`UnionMemory::order`].
+    pub order: usize,
+    /// Of [`UnionMemory::nodes`].
+    pub nodes: usize,
+    /// Of [`UnionMemory::parts`].
+    pub parts: usize,
+    /// Of [`UnionMemory::fragments`].
+    pub fragments: usize,
+    /// Of [`UnionMemory::pending`].
+    pub pending: usize,
+    /// Of [`UnionMemory::octants`]; none where too few bodies meet to need them.
+    pub octants: usize,
+    /// Of [`UnionMemory::near`]; likewise.
+    pub near: usize,
+}
+
 impl<R: Real> UnionMemory<'_, R> {
+    /// Lengths for cells of up to so many pieces; [`Layers::union_pieces`](crate::surface::layer::Layers::union_pieces) tells how many there may be.
+    #[must_use]
+    pub const fn needed(pieces: usize) -> UnionNeeded {
+        let fourfold = pieces.saturating_mul(4);
+        let [octants, near] = octree_room(pieces);
+        UnionNeeded {
+            pieces,
+            split_pieces: fourfold,
+            order: fourfold,
+            nodes: fourfold,
+            parts: pieces.div_ceil(4),
+            fragments: pieces,
+            pending: pieces,
+            octants,
+            near,
+        }
+    }
+
     /// The same memory, for a shorter time.
     pub fn reborrow(&mut self) -> UnionMemory<'_, R> {
         UnionMemory {

@@ -15,7 +15,7 @@ use voidage_core::surface::layer::{
 use voidage_core::surface::surface_area::{
     CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, PiecesUsed, SurfaceArea,
 };
-use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, octree_room};
+use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, UnionNeeded};
 
 /// Rows that miss zero by more than this fraction of a face leak.
 const LEAK: f64 = 1e-9;
@@ -286,12 +286,12 @@ impl UnionVecs {
     fn new(most_pieces: usize) -> Self {
         // Of one body, or of the parts of one polygon under way.
         let of_one = 4096;
-        let [octants, near] = octree_room(most_pieces);
+        let UnionNeeded { pieces, nodes, octants, near, .. } = UnionMemory::<f64>::needed(most_pieces);
         UnionVecs {
-            pieces: vec![Piece::default(); most_pieces],
+            pieces: vec![Piece::default(); pieces],
             split_pieces: vec![Piece::default(); of_one],
             order: vec![0; of_one],
-            nodes: vec![Node::default(); 4 * most_pieces],
+            nodes: vec![Node::default(); nodes],
             parts: vec![Part::default(); most_pieces / 2],
             fragments: vec![Fragment::default(); of_one.min(most_pieces)],
             pending: vec![PendingNode::default(); of_one],

@@ -40,10 +40,8 @@ pub struct Octant<R: Real> {
 /// Pieces of a body in a cell, as [`Layers::union_pieces`](crate::surface::layer::Layers::union_pieces) counts them.
 const PIECES_EACH: usize = 16;
 
-/// Octants and numbers of bodies near them, for [`UnionMemory::octants`](super::UnionMemory::octants) and [`near`](super::UnionMemory::near), that serve a
-/// cell of up to so many pieces well; none where too few bodies meet to need them.
-#[must_use]
-pub const fn octree_room(pieces: usize) -> [usize; 2] {
+/// Octants and numbers of bodies near them that serve a cell of up to so many pieces well; none where too few bodies meet to need them.
+pub(super) const fn octree_room(pieces: usize) -> [usize; 2] {
     if pieces > MANY * PIECES_EACH { [pieces, pieces.saturating_mul(64)] } else { [0, 0] }
 }
 
