@@ -41,6 +41,8 @@ pub struct FormulaMemory {
 #[derive(Debug, Default)]
 struct Sums {
     values: Vec<f64>,
+    /// How many entries each place has, up to two.
+    entries: Vec<u8>,
     marked: Vec<bool>,
 }
 
@@ -51,12 +53,19 @@ impl Sums {
     fn make_room(&mut self, places: usize) {
         if self.values.len() < places {
             self.values.resize(places, 0.0);
+            self.entries.resize(places, 0);
             self.marked.resize(places.div_ceil(BLOCK), false);
         }
     }
 
     fn add(&mut self, at: usize, share: f64) {
         self.values[at] += share;
+        self.marked[at / BLOCK] = true;
+    }
+
+    /// Counts an entry of a place.
+    fn count(&mut self, at: usize) {
+        self.entries[at] = (self.entries[at] + 1).min(2);
         self.marked[at / BLOCK] = true;
     }
 
@@ -67,9 +76,11 @@ impl Sums {
 
     /// Zeros everywhere.
     fn clear(&mut self) {
-        for (values, marked) in self.values.chunks_mut(BLOCK).zip(&mut self.marked) {
+        let blocks = self.values.chunks_mut(BLOCK).zip(self.entries.chunks_mut(BLOCK)).zip(&mut self.marked);
+        for ((values, entries), marked) in blocks {
             if std::mem::take(marked) {
                 values.fill(0.0);
+                entries.fill(0);
             }
         }
     }
@@ -125,6 +136,7 @@ pub fn add(
     }
     let doubtful = tell_shares(solids, grid, part, memory);
     if doubtful.is_empty() {
+        settle(memory);
         add_alone(&memory.sums, layer);
         add_shared(solids, grid, part, memory, layer, tol);
     }
@@ -146,7 +158,9 @@ fn tell_shares(
     for (n, s) in solids.iter().enumerate() {
         let worst = match &s.kind {
             Kind::Torus(solid, _) => {
+                let first = entries.len();
                 tell_torus(solid, grid, part, n as u32, entries);
+                entries[first..].iter().for_each(|e| sums[usize::from(e.0)].count(e.1 as usize));
                 0.0
             }
             Kind::Quadric(solid, _) => {
@@ -155,6 +169,7 @@ fn tell_shares(
                 let mut visit = |kind: RangeKind, at: usize, share: f64| {
                     let of_kind = number(kind);
                     if within[of_kind].contains(&at) && columns.contains(&((at as u32 % rows[of_kind]) as usize)) {
+                        sums[of_kind].count(at);
                         entries.push((of_kind as u8, at as u32, n as u32, [share, 0.0]));
                     } else {
                         sums[of_kind].add(at, share);
@@ -174,6 +189,18 @@ fn tell_shares(
         }
     }
     doubtful
+}
+
+/// Of entries that turned out to be the only one of their place, and are exact, the share joins those that meet no other.
+fn settle(FormulaMemory { sums, entries, .. }: &mut FormulaMemory) {
+    entries.retain(|&(kind, at, _, [share, error])| {
+        let (sums, at) = (&mut sums[usize::from(kind)], at as usize);
+        let alone = sums.entries[at] == 1 && error == 0.0;
+        if alone {
+            sums.add(at, share);
+        }
+        !alone
+    });
 }
 
 /// Adds the shares of solids that meet no other.
@@ -221,7 +248,7 @@ fn add_shared(
     tol: f64,
 ) {
     let FormulaMemory { sums, entries, shared } = memory;
-    entries.sort_by_key(|e| (e.0, e.1, e.2));
+    entries.sort_unstable_by_key(|e| (e.0, e.1, e.2));
     let mut shares: Vec<(usize, [f64; 2])> = Vec::new();
     let mut bodies: Vec<&FormulaSolid> = Vec::new();
     for place in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {

@@ -70,20 +70,37 @@ fn pair_of_solids(a: &Kind, b: &Kind) -> Option<Pair> {
     }
 }
 
+/// A box around a solid, and the solid's number.
+#[derive(Clone, Copy)]
+struct Boxed {
+    bounds: Aabb<DVec3>,
+    n: usize,
+}
+
+/// The axis along which boxes are shortest for the room that all of them take up: most pairs of them are apart along it.
+fn widest_axis(boxes: &[Boxed]) -> usize {
+    let (mut all, mut sizes) = (Aabb { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }, DVec3::ZERO);
+    for Boxed { bounds, .. } in boxes {
+        all = Aabb { min: all.min.min(bounds.min), max: all.max.max(bounds.max) };
+        sizes += bounds.size();
+    }
+    let filled = sizes / all.size();
+    [1, 2].into_iter().fold(0, |best, axis| if filled[axis] < filled[best] { axis } else { best })
+}
+
 /// Finds the partners of all solids, which are in the order of their numbers.
 pub fn find_partners(solids: &mut [FormulaSolid]) {
-    let mut order: Vec<usize> = (0..solids.len()).collect();
-    order.sort_by(|&a, &b| solids[a].bounds.min.x.total_cmp(&solids[b].bounds.min.x));
-    let found: Vec<(usize, usize, Pair)> = order
+    let mut boxes: Vec<Boxed> = solids.iter().enumerate().map(|(n, s)| Boxed { bounds: s.bounds, n }).collect();
+    let axis = widest_axis(&boxes);
+    boxes.sort_by(|a, b| a.bounds.min[axis].total_cmp(&b.bounds.min[axis]));
+    let found: Vec<(usize, usize, Pair)> = boxes
         .par_iter()
         .enumerate()
-        .flat_map_iter(|(n, &a)| {
-            let (solids, end) = (&*solids, solids[a].bounds.max.x);
-            let later = order[n + 1..].iter().take_while(move |&&b| solids[b].bounds.min.x <= end);
-            later.filter_map(move |&b| {
-                let (one, other) = (&solids[a], &solids[b]);
-                let pair = one.bounds.touches(other.bounds).then(|| pair_of_solids(&one.kind, &other.kind))?;
-                pair.map(|pair| (a, b, pair))
+        .flat_map_iter(|(at, one)| {
+            let (solids, boxes) = (&*solids, &boxes);
+            let later = boxes[at + 1..].iter().take_while(move |other| other.bounds.min[axis] <= one.bounds.max[axis]);
+            later.filter(|other| one.bounds.touches(other.bounds)).filter_map(move |other| {
+                pair_of_solids(&solids[one.n].kind, &solids[other.n].kind).map(|pair| (one.n, other.n, pair))
             })
         })
         .collect();
