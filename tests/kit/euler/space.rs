@@ -9,14 +9,23 @@ pub struct OpenFractions<const D: usize> {
     pub faces: [Vec<f64>; D],
 }
 
-/// The fractions that a solid leaves of `n` cells of a width, the first of which begins at `origin`. `solid` gives its share of the
-/// box between two corners, which is flat for a face.
+/// The fractions that a solid leaves of `n` cells of a width, the first of which begins at `origin`. `solid` as in [`between_edges`].
 pub fn open_fractions<const D: usize>(
     n: [usize; D],
     origin: [f64; D],
     width: f64,
     solid: impl Fn([f64; D], [f64; D]) -> f64,
 ) -> OpenFractions<D> {
+    let edges = std::array::from_fn(|d| (0..=n[d]).map(|i| origin[d] + width * i as f64).collect());
+    between_edges(&edges, solid)
+}
+
+/// The fractions that a solid leaves of cells between edges. `solid` gives its share of the box between two corners, which is flat for a face.
+pub fn between_edges<const D: usize>(
+    edges: &[Vec<f64>; D],
+    solid: impl Fn([f64; D], [f64; D]) -> f64,
+) -> OpenFractions<D> {
+    let n = edges.each_ref().map(|e| e.len() - 1);
     let all = |size: [usize; D], flat: Option<usize>| {
         let one = |mut i: usize| {
             let at = size.map(|n| {
@@ -24,9 +33,8 @@ pub fn open_fractions<const D: usize>(
                 i /= n;
                 k
             });
-            let low: [f64; D] = std::array::from_fn(|d| origin[d] + width * at[d] as f64);
-            let high =
-                std::array::from_fn(|d| if flat == Some(d) { low[d] } else { origin[d] + width * (at[d] + 1) as f64 });
+            let low: [f64; D] = std::array::from_fn(|d| edges[d][at[d]]);
+            let high = std::array::from_fn(|d| if flat == Some(d) { low[d] } else { edges[d][at[d] + 1] });
             1.0 - solid(low, high).clamp(0.0, 1.0)
         };
         (0..size.iter().product()).map(one).collect()
