@@ -3,7 +3,6 @@
 mod askew;
 mod balance;
 mod blast;
-mod blunt_bodies;
 mod clusters;
 mod contracts;
 mod convergence;
@@ -14,6 +13,7 @@ mod invariance;
 mod low_mach;
 mod mixed;
 mod patches;
+mod plane_shocks;
 mod reference;
 mod repairs;
 mod stress;

@@ -3,9 +3,18 @@
 use std::path::Path;
 use voidage_tests::euler::cases;
 
+fn all_pass(directory: &str, least: usize) {
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(directory);
+    let (passed, failed) = cases::run_directory(&directory, None).unwrap();
+    assert!(passed >= least && failed == 0, "{passed} passed, {failed} failed");
+}
+
 #[test]
 fn cases_beside_the_tests() {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/euler");
-    let (passed, failed) = cases::run_directory(&directory, None).unwrap();
-    assert!(passed >= 8 && failed == 0, "{passed} passed, {failed} failed");
+    all_pass("euler", 8);
+}
+
+#[test]
+fn walls_beside_the_tests() {
+    all_pass("walls", 9);
 }

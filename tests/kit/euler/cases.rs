@@ -12,6 +12,7 @@ mod plane;
 mod radial;
 mod riemann;
 mod steady;
+mod walls;
 
 use super::State;
 use serde_json::Value;
@@ -232,6 +233,10 @@ pub fn run(case: &Case) -> Outcome {
         "low_mach" => plane::gresho(case),
         "qualitative2d" => plane::double_mach(case),
         "channel" => channel::channel(case),
+        "wall_stream" => walls::wall_stream(case),
+        "wedge" => walls::wedge(case),
+        "turned_tube" => walls::turned_tube(case),
+        "bow_shock" => walls::bow_shock(case),
         other => Err(Trouble::Field(format!("family {other}"))),
     }
 }
