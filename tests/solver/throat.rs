@@ -162,3 +162,44 @@ fn slabs_in_a_fast_stream_conserve_mass_and_energy() {
         }
     }
 }
+
+/// What a slug of another density does to the pressure while it passes a layer: the largest deviation in dynamic pressures of the stream.
+fn slug_through_a_layer(open_share: f64, density: f64, mach: f64) -> f64 {
+    const N: usize = 100;
+    let u = mach * 1.4f64.sqrt();
+    let open = |i: usize| if (40..50).contains(&i) { open_share } else { 1.0 };
+    let far = Boundary::FarField(Primitive { density: 1.0, velocity: [u], pressure: 1.0 });
+    let mut flow: Flow<f64, 1> = Flow::uniform([N], [1.0 / N as f64], Gas::Ideal { gamma: 1.4 }, [[far, far]]);
+    let faces = (0..=N).map(|f| open(f.min(N - 1)).min(open(f.max(1) - 1))).collect();
+    flow.set_porosity((0..N).map(open).collect(), [faces], Treatment::default()).unwrap();
+    assert!(flow.jump_faces() == 2);
+    for i in 0..N {
+        let density = if (20..35).contains(&i) { density } else { 1.0 };
+        flow.set(i, &Primitive { density, velocity: [u / open(i)], pressure: 1.0 });
+    }
+    let mut most = 0.0f64;
+    while flow.time < 0.6 / u {
+        flow.advance(0.8, f64::MAX).unwrap();
+        // The layer's own pressure comes up at first.
+        if flow.time > 0.05 / u {
+            most = (0..N).map(|i| (flow.get(i).pressure - 1.0).abs() / (0.5 * u * u)).fold(most, f64::max);
+        }
+    }
+    most
+}
+
+/// The pressure in a layer is lower by what Bernoulli's law takes, of the gas that is there. Where the flux of the slug's mass was a mean of both sides, a slug
+/// of a quarter or of four times the density made sound of 500 dynamic pressures at Mach 0.001, of 50 at Mach 0.01.
+#[test]
+fn gas_of_another_density_passes_a_layer_without_noise() {
+    for open in [0.5, 0.2] {
+        for density in [0.1, 0.5, 4.0] {
+            for mach in [0.002, 0.01, 0.03] {
+                let found = slug_through_a_layer(open, density, mach);
+                let bernoulli = (1.0 / (open * open) - 1.0) * f64::max(density, 1.0);
+                println!("open {open}, density {density}, Mach {mach}: {found:.3} q, by Bernoulli's law {bernoulli:.3} q");
+                assert!(found < (1.04 + 4.0 * mach) * bernoulli, "open {open}, density {density}, Mach {mach}: {found} q");
+            }
+        }
+    }
+}

@@ -67,6 +67,12 @@ impl<R: Real> FaceGas<R> {
         self.energy(w) + w.pressure
     }
 
+    /// 1/gamma.
+    #[inline(always)]
+    pub(in crate::flow) fn inv_gamma(&self) -> R {
+        R::ONE / self.gamma
+    }
+
     /// 1/(gamma − 1).
     #[inline(always)]
     pub(in crate::flow) fn capacity(&self) -> R {

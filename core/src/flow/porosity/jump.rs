@@ -216,30 +216,60 @@ fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2]
 /// Both sides have the mass flux Q in common and differ from their cells by the outgoing wave: the pressure by ∓c (Q − Q_K)/a, the
 /// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
 /// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
+///
+/// What passes the throat is the gas upstream, and between it and the gas of the cell downstream moves a contact. So Q_K there is that of the gas
+/// upstream at the velocity and pressure downstream, and so is what it takes to reach the throat; the wave beyond the contact runs in the gas downstream,
+/// which changes its pressure by as much for a change of velocity as before: c/σ in the place of c, σ the share of densities.
 #[inline(always)]
 fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases<R>) -> JumpFlux<R, D> {
-    let [l, r] = &face.cell;
-    let (c_l, c_r) = (gas.left().sound_speed(l), gas.right().sound_speed(r));
-    let mass = |s: usize| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]);
-    let (mass_l, mass_r) = (mass(0), mass(1));
+    let sound = [gas.left().sound_speed(&face.cell[0]), gas.right().sound_speed(&face.cell[1])];
+    let mass = [0, 1].map(|s| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]));
+    let both = face.ducts[0] * face.ducts[1];
+    let drive = |pressures: [R; 2]| both * (pressures[0] - pressures[1]);
     // Stiffnesses c/a of the ducts, times both areas.
-    let (stiff_l, stiff_r) = (c_l * face.ducts[1], c_r * face.ducts[0]);
-    let drive = face.ducts[0] * face.ducts[1] * (face.throat[0].pressure - face.throat[1].pressure);
-    let common = ((stiff_l * mass_l + stiff_r * mass_r) + drive) / (stiff_l + stiff_r);
-    let own = |s: usize, wave: R, change: R| {
-        let (w, duct) = (&face.cell[s], face.ducts[s]);
-        let enthalpy = (duct * gas.upwind(s == 0).enthalpy(w) + wave * change) / (duct * w.density);
-        (duct * relative_impulse(w, face.references[s]) + (w.velocity[0] + wave) * change, common * enthalpy)
+    let stiff = [sound[0] * face.ducts[1], sound[1] * face.ducts[0]];
+    let pushed = stiff[0] * mass[0] + stiff[1] * mass[1];
+    let from_left = pushed + drive(face.throat.each_ref().map(|t| t.pressure)) >= R::ZERO;
+    let share = share_of_densities(face, gas, from_left);
+    // By side: 1 upstream.
+    let share = [if from_left { R::ONE } else { share }, if from_left { share } else { R::ONE }];
+    let at_throat = |s: usize| {
+        let (cell, throat) = (face.cell[s].pressure, face.throat[s].pressure);
+        if share[s] == R::ONE { throat } else { cell + share[s] * (throat - cell) }
     };
-    let ((left, energy_l), (right, energy_r)) = (own(0, -c_l, common - mass_l), own(1, c_r, common - mass_r));
-    let from_left = common >= R::ZERO;
+    let common = (pushed + drive([at_throat(0), at_throat(1)])) / (stiff[0] / share[0] + stiff[1] / share[1]);
+    let own = |s: usize, wave: R| {
+        let (w, duct, share) = (&face.cell[s], face.ducts[s], share[s]);
+        let (wave, change) = (wave / share, common - share * mass[s]);
+        let enthalpy = (duct * gas.upwind(s == 0).enthalpy(w) + wave * change) / (duct * w.density);
+        let impulse = share * (w.density * w.velocity[0] * w.velocity[0]) + (w.pressure - face.references[s]);
+        (duct * impulse + (w.velocity[0] + wave) * change, common * enthalpy)
+    };
+    let ((left, energy_l), (right, energy_r)) = (own(0, -sound[0]), own(1, sound[1]));
     let pick = |a: R, b: R| core::hint::select_unpredictable(from_left, a, b);
+    let [l, r] = &face.cell;
     JumpFlux {
         mass: common,
         energy: pick(energy_l, energy_r),
         momentum: each(|c| common * pick(l.velocity[c], r.velocity[c])),
         normal: [left, right],
     }
+}
+
+/// Density of the gas upstream, brought to the pressure downstream, over the density there; both as they are in the throat. 1 where one gas flows steadily.
+#[inline(always)]
+fn share_of_densities<R: Real, const D: usize>(
+    face: &JumpLane<R, D>,
+    gas: &impl FaceGases<R>,
+    from_left: bool,
+) -> R {
+    let [l, r] = &face.throat;
+    let (up, down) = if from_left { (l, r) } else { (r, l) };
+    // (p / p₀)^(1/γ), within 0.3 % for weak waves: the quotient of two lines that has its first three derivatives at 1.
+    let exponent = gas.upwind(from_left).inv_gamma();
+    let (near, far) = (R::ONE + exponent, R::ONE - exponent);
+    let compressed = (near * down.pressure + far * up.pressure) / (far * down.pressure + near * up.pressure);
+    up.density * compressed / down.density
 }
 
 impl<R: Real, const D: usize> JumpFlux<R, D> {
