@@ -226,9 +226,9 @@ fn in_one_layer<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], room: usiz
     let open = OpenLayer { cell: &v, x: &x, y: &y, z: bottom, top };
     let sides = &sides[..report.sides];
     layers.finish_areas(0, &open, sides, &mut union).expect("areas");
-    let (mut edges, mut crossed) = (vec![ShadowEdge::default(); 999], vec![0; 333]);
+    let (mut edges, mut places) = (vec![ShadowEdge::default(); 999], vec![0; 333]);
     let (mut lists, mut faces) = (vec![0; layers.shadow_lists_needed(0)], vec![ShadowFace::default(); 99]);
-    let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut lists, faces: &mut faces };
+    let memory = ShadowMemory { edges: &mut edges, places: &mut places, lists: &mut lists, faces: &mut faces };
     let (mut share, mut place) = ([0; 3].map(|_| vec![zero; cells]), [0; 3].map(|_| vec![zero; cells]));
     let slices =
         ShadowSlices { share: share.each_mut().map(|f| &mut f[..]), place: place.each_mut().map(|f| &mut f[..]) };
@@ -331,10 +331,10 @@ fn crossing_sheets_against_lines() {
         let needed = Layers::needed(&grid, &bodies);
         let (mut numbers, mut groups) = (vec![0; needed.numbers], vec![Group::default(); needed.groups]);
         let layers = Layers::new(&grid, &bodies, LayerOptions::default(), &mut numbers, &mut groups).expect("memory");
-        let (mut edges, mut crossed) = (vec![ShadowEdge::default(); 9 * 2 * count], vec![0; 3 * 2 * count]);
+        let (mut edges, mut places) = (vec![ShadowEdge::default(); 9 * 2 * count], vec![0; 3 * 2 * count]);
         let mut lists = vec![0; layers.shadow_lists_needed(0)];
         let mut faces = vec![ShadowFace::default(); 2 * count];
-        let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists: &mut lists, faces: &mut faces };
+        let memory = ShadowMemory { edges: &mut edges, places: &mut places, lists: &mut lists, faces: &mut faces };
         let open = OpenLayer { cell: &[1.0], x: &[1.0; 2], y: &[1.0; 2], z: &[1.0], top: &[1.0] };
         let (mut share, mut place) = ([[0.0]; 3], [[0.0]; 3]);
         let slices = ShadowSlices {

@@ -200,15 +200,23 @@ impl<'a, R: Real> Axis<'a, R> {
         self.edges.get(index as usize).map_or(R::INFINITY, |&e| e - self.origin)
     }
 
-    /// A coordinate of a point in a cell, its sides included, as the grid has it.
+    /// The sides of a cell in the coordinates of the grid; infinite beyond it.
     #[inline(always)]
-    fn in_grid(&self, cell: isize, value: R) -> R {
+    fn sides(&self, cell: isize) -> [R; 2] {
         let at = self.first as isize + cell;
         let edge = |at: isize| usize::try_from(at).ok().and_then(|at| self.edges.get(at).copied());
-        match (edge(at), edge(at + 1)) {
-            (Some(lo), _) if value <= lo - self.origin => lo,
-            (_, Some(hi)) if value >= hi - self.origin => hi,
-            _ => value + self.origin,
+        [edge(at).unwrap_or(-R::INFINITY), edge(at + 1).unwrap_or(R::INFINITY)]
+    }
+
+    /// A coordinate of a point between these sides, or on one, as the grid has it.
+    #[inline(always)]
+    fn in_grid(&self, [lo, hi]: [R; 2], value: R) -> R {
+        if value <= lo - self.origin {
+            lo
+        } else if value >= hi - self.origin {
+            hi
+        } else {
+            value + self.origin
         }
     }
 
@@ -345,6 +353,8 @@ struct Sums<'s, 'g, 'l, R, P> {
     flux_y: &'s mut [R],
     layer: &'s mut Layer<'l, R>,
     pieces: &'s mut P,
+    /// A piece inside a cell, in the coordinates of the grid.
+    in_grid: Polygon<R>,
 }
 
 impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
@@ -363,7 +373,7 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
             sums.fill(R::ZERO);
         }
         let (x, y) = (Axis::new(grid.edges(0), i0, ni), Axis::new(grid.edges(1), j0, nj));
-        Sums { window, grid, x, y, flux_x, moment, flux_y, layer, pieces }
+        Sums { window, grid, x, y, flux_x, moment, flux_y, layer, pieces, in_grid: Polygon::default() }
     }
 
     /// Spread what a level triangle has in the planes below and above the layer, which only `pieces` sees.
@@ -380,44 +390,49 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
     /// Spread `b.slab` over rows. In a plane of the grid only `pieces` sees it.
     #[inline]
     fn scatter(&mut self, place: Place, b: &mut Buffers<R>) {
-        let (min, max) = b.slab.extent(1);
+        let Buffers { slab, row: part, cell, spare } = b;
+        let (mut rest, mut above) = (slab, spare);
+        let (min, max) = rest.extent(1);
         let mut row = self.y.cell(min);
         if min == max && self.y.opens(row, min) {
-            let begins = b.slab.doubled_area()[1] < R::ZERO;
-            b.row.assign(&b.slab);
-            return self.scatter_row(if begins { row - 1 } else { row }, Some(row), place, b);
+            let begins = rest.doubled_area()[1] < R::ZERO;
+            return self.scatter_row(if begins { row - 1 } else { row }, (Some(row), place), [rest, cell, above]);
         }
         while row < self.y.count && max > self.y.upper(row) {
-            split(&b.slab, 1, self.y.upper(row), &mut b.row, &mut b.spare);
-            core::mem::swap(&mut b.slab, &mut b.spare);
-            self.scatter_row(row, None, place, b);
+            split(rest, 1, self.y.upper(row), part, above);
+            core::mem::swap(&mut rest, &mut above);
+            self.scatter_row(row, (None, place), [part, cell, above]);
             row += 1;
         }
-        core::mem::swap(&mut b.slab, &mut b.row);
-        self.scatter_row(row, None, place, b);
+        self.scatter_row(row, (None, place), [rest, cell, above]);
     }
 
-    /// Spread `b.row` over the cells of a row. `wall` is the y face in whose plane it lies, if it does.
+    /// Spread a part of a row over its cells. `wall` is the y face in whose plane it lies, if it does.
     #[inline]
-    fn scatter_row(&mut self, row: isize, wall: Option<isize>, place: Place, b: &mut Buffers<R>) {
-        if b.row.is_empty() {
+    fn scatter_row(
+        &mut self,
+        row: isize,
+        (wall, place): (Option<isize>, Place),
+        [mut rest, cell, mut beyond]: [&mut Polygon<R>; 3],
+    ) {
+        if rest.is_empty() {
             return;
         }
-        let (min, max) = b.row.extent(0);
+        let (min, max) = rest.extent(0);
         let mut c = self.x.cell(min);
         if min == max && self.x.opens(c, min) {
             if !P::WANTED || place == Place::Inside {
-                self.wall_x(row, c, &b.row);
+                self.wall_x(row, c, rest);
             }
             return;
         }
         while c < self.x.count && max > self.x.upper(c) {
-            split(&b.row, 0, self.x.upper(c), &mut b.cell, &mut b.spare);
-            core::mem::swap(&mut b.row, &mut b.spare);
-            self.add(row, c, (wall, place), &b.cell);
+            split(rest, 0, self.x.upper(c), cell, beyond);
+            core::mem::swap(&mut rest, &mut beyond);
+            self.add(row, c, (wall, place), cell);
             c += 1;
         }
-        self.add(row, c, (wall, place), &b.row);
+        self.add(row, c, (wall, place), rest);
     }
 
     /// Add a piece in the plane of the x face below cell `c`.
@@ -462,20 +477,21 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         if i < nx && j < ny {
             let at = j * nx + i;
             if place == Place::Inside && (self.x.origin != R::ZERO || self.y.origin != R::ZERO) {
-                self.pieces.add(at, place, doubled_area, &self.in_grid(row, c, piece));
+                self.put_in_grid(row, c, piece);
+                self.pieces.add(at, place, doubled_area, &self.in_grid);
             } else {
                 self.pieces.add(at, place, doubled_area, piece);
             }
         }
     }
 
-    /// A piece inside a cell, in the coordinates of the grid: what lies in the plane of a side lies exactly there, and nothing beyond.
-    fn in_grid(&self, row: isize, c: isize, piece: &Polygon<R>) -> Polygon<R> {
-        let mut moved = Polygon::default();
+    /// Put a piece inside a cell into `in_grid`: what lies in the plane of a side lies exactly there, and nothing beyond.
+    fn put_in_grid(&mut self, row: isize, c: isize, piece: &Polygon<R>) {
+        let (along_x, along_y) = (self.x.sides(c), self.y.sides(row));
+        self.in_grid.clear();
         for &[x, y, z] in piece.corners() {
-            moved.push([self.x.in_grid(c, x), self.y.in_grid(row, y), z]);
+            self.in_grid.push([self.x.in_grid(along_x, x), self.y.in_grid(along_y, y), z]);
         }
-        moved
     }
 
     /// Add the integrals over a piece, fanned from its first corner so that only differences enter.

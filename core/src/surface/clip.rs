@@ -109,10 +109,13 @@ impl<R: Real> Polygon<R> {
     #[must_use]
     pub fn doubled_area(&self) -> [R; 3] {
         let mut sum = [R::ZERO; 3];
-        let c = self.corners();
-        for t in 2..c.len() {
-            let n = cross(sub(c[t - 1], c[0]), sub(c[t], c[0]));
+        let [first, second, others @ ..] = self.corners() else { return sum };
+        let mut a = sub(*second, *first);
+        for corner in others {
+            let b = sub(*corner, *first);
+            let n = cross(a, b);
             sum = [sum[0] + n[0], sum[1] + n[1], sum[2] + n[2]];
+            a = b;
         }
         sum
     }

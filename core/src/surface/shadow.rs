@@ -86,8 +86,8 @@ impl<R: Real> ShadowEdge<R> {
 pub struct ShadowMemory<'a, R: Real> {
     /// Edges of faces, a third for each axis: 3 to 5 times as many as faces, and as many again in sides of the cell.
     pub edges: &'a mut [ShadowEdge<R>],
-    /// Edges that the sweeping line crosses, in their order: a third as many.
-    pub crossed: &'a mut [u32],
+    /// Places of a table that finds the inner edges of surfaces: half as many. With fewer, shadows take longer.
+    pub places: &'a mut [u32],
     /// Which triangles reach which cell of a layer; `Layers::shadow_lists_needed` tells how many are always enough.
     pub lists: &'a mut [u32],
     /// Faces in the cell.
@@ -115,7 +115,7 @@ impl<R> ShadowSlices<'_, R> {
 /// The outlines of what is in a cell, seen along x, y and z.
 pub(super) struct Outlines<'m, R> {
     axes: [Outline<'m, R>; 3],
-    crossed: &'m mut [u32],
+    places: &'m mut [u32],
 }
 
 /// The edges of what is in a cell, seen along an axis.
@@ -130,12 +130,12 @@ struct Outline<'m, R> {
 
 impl<'m, R: Real> Outlines<'m, R> {
     /// Of nothing yet.
-    pub fn new(edges: &'m mut [ShadowEdge<R>], crossed: &'m mut [u32]) -> Self {
+    pub fn new(edges: &'m mut [ShadowEdge<R>], places: &'m mut [u32]) -> Self {
         let third = edges.len() / 3;
         let (x, rest) = edges.split_at_mut_checked(third).unwrap_or_default();
         let (y, z) = rest.split_at_mut_checked(third).unwrap_or_default();
         let outline = |edges| Outline { edges, count: 0, section: R::ZERO, starting: 0 };
-        Outlines { axes: [outline(x), outline(y), outline(z)], crossed }
+        Outlines { axes: [outline(x), outline(y), outline(z)], places }
     }
 
     /// Of nothing again.
@@ -159,8 +159,15 @@ impl<'m, R: Real> Outlines<'m, R> {
                 self.finish_solid();
                 last = face.solid;
             }
-            for axis in (0..3).filter(|&axis| wanted[axis]) {
-                self.axes[axis].add(&face.polygon, face.doubled[axis], face.sheet, axis)?;
+            let [x, y, z] = &mut self.axes;
+            if wanted[0] {
+                x.add::<0>(face)?;
+            }
+            if wanted[1] {
+                y.add::<1>(face)?;
+            }
+            if wanted[2] {
+                z.add::<2>(face)?;
             }
         }
         self.finish_solid();
@@ -177,14 +184,14 @@ impl<'m, R: Real> Outlines<'m, R> {
         }
     }
 
-    /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid; none if patience or memory is spent.
+    /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid; none if patience is spent.
     #[inline(never)]
     pub fn shadow(&mut self, axis: usize) -> Option<R> {
         let outline = self.axes.get_mut(axis.min(2))?;
-        let count = cancelled(outline.edges.get_mut(..outline.count)?, self.crossed);
+        let count = cancelled(outline.edges.get_mut(..outline.count)?, self.places);
         let count = joined(outline.edges.get_mut(..count)?);
         let edges = outline.edges.get_mut(..count)?;
-        Sweep { edges, crossed: self.crossed, count: 0, starting: outline.starting }.shadow()
+        Sweep { edges, count: 0, next: 0, starting: outline.starting }.shadow()
     }
 }
 
@@ -197,16 +204,17 @@ impl<R: Real> Outline<'_, R> {
         Some(())
     }
 
-    /// Add the edges of a face whose normal has this component along `axis`.
-    fn add(&mut self, polygon: &Polygon<R>, normal: R, sheet: bool, axis: usize) -> Option<()> {
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    /// Add the edges of a face as seen along `AXIS`, which is 0, 1 or 2.
+    fn add<const AXIS: usize>(&mut self, face: &ShadowFace<R>) -> Option<()> {
+        let (u, v) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
+        let normal = face.doubled[AXIS];
         // A face that is entered is seen from behind: beyond an edge that leads upwards it begins.
         let covering = if normal < R::ZERO { 1 } else { -1 };
-        let corners = polygon.corners();
+        let corners = face.polygon.corners();
         let mut last = corners.last()?;
         for corner in corners {
             let (a, b) = ([last[u], last[v]], [corner[u], corner[v]]);
-            let in_side = !sheet && last[axis] == R::ZERO && corner[axis] == R::ZERO;
+            let in_side = !face.sheet && last[AXIS] == R::ZERO && corner[AXIS] == R::ZERO;
             last = corner;
             if normal != R::ZERO {
                 self.push(ShadowEdge::new(a, b, [covering, 0]))?;
@@ -510,33 +518,25 @@ fn sort<R: Real>(edges: &mut [ShadowEdge<R>]) {
 
 /// A line that sweeps over edges.
 struct Sweep<'m, R> {
-    /// By their low ends.
+    /// First those that are crossed, in their order; from `next` on those not met yet, by their low ends.
     edges: &'m mut [ShadowEdge<R>],
-    crossed: &'m mut [u32],
     /// So many edges are crossed.
     count: usize,
+    next: usize,
     /// In how many solids lines begin before the first edge.
     starting: i32,
 }
 
 impl<R: Real> Sweep<'_, R> {
-    /// The area that is covered or solid; none if memory or patience is spent.
+    /// The area that is covered or solid; none if patience is spent.
     fn shadow(&mut self) -> Option<R> {
-        let (mut next, mut steps, mut v, mut area) = (0, 0_usize, R::ZERO, R::ZERO);
+        let (mut steps, mut v, mut area) = (0_usize, R::ZERO, R::ZERO);
         // The places of the edges crossed so far are known at `v`.
         let mut known = true;
         while v < R::ONE {
             let nearest_end = self.drop_passed(v);
-            let (mut top, before) = (nearest_end, if known { self.count } else { 0 });
-            while let Some(edge) = self.edges.get(next).filter(|e| e.low[1] <= v) {
-                if edge.high[1] > v {
-                    top = top.smaller(edge.high[1]);
-                    *self.crossed.get_mut(self.count)? = next as u32;
-                    self.count += 1;
-                }
-                next += 1;
-            }
-            top = top.smaller(self.edges.get(next).map_or(R::ONE, |e| e.low[1]));
+            let before = if known { self.count } else { 0 };
+            let top = self.take_met(v, nearest_end);
             self.arrange(v, top, before);
             let stop = self.first_crossing(v, top);
             area += self.strips(v, stop, top);
@@ -551,19 +551,20 @@ impl<R: Real> Sweep<'_, R> {
 
     /// The crossed edges, in their order.
     #[inline(always)]
-    fn crossed(&self) -> impl Iterator<Item = &ShadowEdge<R>> {
-        self.crossed.iter().take(self.count).filter_map(|&id| self.edges.get(id as usize))
+    fn crossed(&self) -> &[ShadowEdge<R>] {
+        self.edges.get(..self.count).unwrap_or_default()
     }
 
     /// Forget the edges that end at or before `v`; where the first of the others ends.
     fn drop_passed(&mut self, v: R) -> R {
         let (mut kept, mut nearest) = (0, R::INFINITY);
         for nth in 0..self.count {
-            let Some(&id) = self.crossed.get(nth) else { continue };
-            let Some(end) = self.edges.get(id as usize).map(|e| e.high[1]).filter(|end| *end > v) else { continue };
-            nearest = nearest.smaller(end);
-            if let Some(place) = self.crossed.get_mut(kept) {
-                *place = id;
+            let Some(end) = self.edges.get(nth).map(|edge| edge.high[1]) else { continue };
+            if end > v {
+                nearest = nearest.smaller(end);
+                if kept < nth {
+                    self.copy(nth, kept);
+                }
                 kept += 1;
             }
         }
@@ -571,28 +572,63 @@ impl<R: Real> Sweep<'_, R> {
         nearest
     }
 
+    /// Cross the edges that begin at or before `v` and go on; where the first of all that are crossed ends or another one begins.
+    fn take_met(&mut self, v: R, nearest_end: R) -> R {
+        let mut top = nearest_end;
+        while let Some(edge) = self.edges.get(self.next) {
+            if !(edge.low[1] <= v) {
+                return top.smaller(edge.low[1]);
+            }
+            if edge.high[1] > v {
+                top = top.smaller(edge.high[1]);
+                // There is room: no more are crossed than have been met.
+                self.copy(self.next, self.count);
+                self.count += 1;
+            }
+            self.next += 1;
+        }
+        top.smaller(R::ONE)
+    }
+
+    /// Copy an edge to the place of another.
+    #[inline(always)]
+    fn copy(&mut self, from: usize, to: usize) {
+        let Some(&edge) = self.edges.get(from) else { return };
+        if let Some(place) = self.edges.get_mut(to) {
+            *place = edge;
+        }
+    }
+
     /// Find the places of the crossed edges at `v` and at `top`, and put them in order, as the line meets them just beyond `v`. Of the first ones, so many,
     /// the step before has ended at `v`.
     fn arrange(&mut self, v: R, top: R, known: usize) {
+        let mut last = [-R::INFINITY; 2];
         for start in 0..self.count {
-            let Some(&id) = self.crossed.get(start) else { continue };
-            let Some(edge) = self.edges.get_mut(id as usize) else { continue };
+            let Some(edge) = self.edges.get_mut(start) else { continue };
             let low = if start < known { edge.step[1] } else { edge.at(v) };
-            edge.step = [low, edge.at(top)];
-            let (step, mut at) = (edge.step, start);
-            while let Some(before) = at.checked_sub(1) {
-                let Some(&other) = self.crossed.get(before) else { break };
-                if !self.edges.get(other as usize).is_some_and(|other| is_before(step, other.step)) {
-                    break;
-                }
-                if let Some(place) = self.crossed.get_mut(at) {
-                    *place = other;
-                }
-                at = before;
+            let step = [low, edge.at(top)];
+            edge.step = step;
+            if start > 0 && is_before(step, last) {
+                self.move_down(start);
+            } else {
+                last = step;
             }
-            if let Some(place) = self.crossed.get_mut(at).filter(|_| at < start) {
-                *place = id;
+        }
+    }
+
+    /// Move a crossed edge before those among the ones before it that it is before.
+    fn move_down(&mut self, start: usize) {
+        let Some(&edge) = self.edges.get(start) else { return };
+        let mut at = start;
+        while let Some(before) = at.checked_sub(1) {
+            if !self.edges.get(before).is_some_and(|other| is_before(edge.step, other.step)) {
+                break;
             }
+            self.copy(before, at);
+            at = before;
+        }
+        if let Some(place) = self.edges.get_mut(at) {
+            *place = edge;
         }
     }
 
@@ -620,8 +656,9 @@ impl<R: Real> Sweep<'_, R> {
             if covering > 0 || starting > 0 {
                 width += ((here[0] - last[0]) + (here[1] - last[1])).max(R::ZERO) * R::HALF;
             }
-            covering = covering.saturating_add(more[0]);
-            starting = starting.saturating_add(more[1]);
+            // There are fewer edges than would make them overflow.
+            covering = covering.wrapping_add(more[0]);
+            starting = starting.wrapping_add(more[1]);
             last = here;
         };
         for edge in self.crossed() {

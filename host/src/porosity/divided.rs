@@ -10,7 +10,7 @@ mod near;
 mod parts;
 
 use super::fields::FieldSet;
-use super::shadows::{HIDDEN, Shadows, faces_of_cell, place_of_cell};
+use super::shadows::{HIDDEN, Shadows, faces_of_nth_cell, place_of_cell};
 use crate::geometry::bodies::Bodies;
 use crate::geometry::repair::sets::Sets;
 use near::Near;
@@ -59,20 +59,15 @@ impl Division {
     /// by the `shadows`, if these are given. Runs in the current rayon pool.
     #[must_use]
     pub fn told(&self, grid: &Grid<f64>, beta: &FieldSet, shadows: Option<&Shadows>) -> DividedCells {
-        let is_passage = |n: usize| {
-            shadows.is_some_and(|shadows| shadows.largest_hidden(grid, beta, place_of_cell(grid, n)) > HIDDEN)
-        };
+        let is_passage = |n| shadows.is_some_and(|shadows| shadows.largest_hidden(grid, beta, n) > HIDDEN);
         let first = self.hiding.iter().filter(|(n, hidden)| *hidden >= LEAST_HIDDEN && !is_passage(*n));
         let first: Vec<usize> = first.map(|(n, _)| *n).collect();
         let mut parts = AllParts { parts: Vec::new(), slots: vec![None; grid.cell_count()] };
         let candidates = parts.add(grid, &self.near, &first);
         // Of their neighbours only the parts count.
-        let mut beside: Vec<usize> =
-            candidates.iter().flat_map(|&n| around(grid, n).map(|at| grid.cell_index(at))).collect();
-        beside.sort_unstable();
-        beside.dedup();
-        let hides = |n: &usize| self.hiding.binary_search_by_key(n, |(cell, _)| *cell).is_ok();
-        beside.retain(|n| hides(n) && first.binary_search(n).is_err());
+        let is_beside = |n: usize| around(grid, n).into_iter().flatten().any(|cell| parts.of(cell).is_some());
+        let others = self.hiding.iter().map(|(n, _)| *n).filter(|n| first.binary_search(n).is_err());
+        let beside: Vec<usize> = others.filter(|&n| is_beside(n)).collect();
         parts.add(grid, &self.near, &beside);
         let found: Vec<usize> = candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, beta, n)).collect();
         DividedCells { cells: found.len(), first: found.first().map(|&n| place_of_cell(grid, n)) }
@@ -127,48 +122,55 @@ impl AllParts {
         let through = |&(axis, side): &(usize, usize)| {
             let next = neighbour(grid, n, axis, side).filter(|&next| self.of(next).is_some());
             let Some(next) = next.filter(|_| open_side(grid, beta, n, (axis, side))) else { return false };
-            self.shared(n, next, (axis, side)).any(|(own_part, beyond)| own_part == part && own(next, beyond))
+            let mut shared = shared(self.of(n), self.of(next), (axis, side));
+            shared.any(|(own_part, beyond)| own_part == part && own(next, beyond))
         };
         own(n, part) || SIDES.iter().any(through)
     }
 
-    /// The pairs of parts of two neighbours that meet in their common side. A cell that is not divided has one part.
-    fn shared(&self, n: usize, next: usize, (axis, side): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
-        let [here, there] = [self.of(n), self.of(next)];
-        let counts = [here, there].map(|parts| parts.map_or(1, Parts::count));
-        let pairs = (0..counts[0]).flat_map(move |a| (0..counts[1]).map(move |b| (a, b)));
-        pairs.filter(move |&(a, b)| match (here, there) {
-            (Some(here), Some(there)) => here.meet(a, (there, b), axis, side),
-            (Some(here), None) => here.touches(a, axis, side),
-            (None, Some(there)) => there.touches(b, axis, 1 - side),
-            (None, None) => true,
-        })
-    }
-
     /// For each part of a cell a number, the same for parts that are one in the block of cells around it.
     fn ways_around(&self, grid: &Grid<f64>, n: usize) -> Vec<usize> {
-        let middle = place_of_cell(grid, n);
-        let in_block = |at: [usize; 3]| (0..3).fold(0, |place, axis| 3 * place + at[axis] + 1 - middle[axis]);
-        let (mut numbers, mut count) = ([None; 27], 0);
-        for at in around(grid, n) {
-            numbers[in_block(at)] = Some(count);
-            count += self.of(grid.cell_index(at)).map_or(1, Parts::count);
+        let block = around(grid, n);
+        let parts = block.map(|cell| self.of(cell?));
+        let (mut numbers, mut count) = ([0; 27], 0);
+        for place in 0..27 {
+            numbers[place] = count;
+            count += block[place].map_or(0, |_| parts[place].map_or(1, Parts::count));
         }
         let mut sets = Sets::new(count);
-        for at in around(grid, n) {
-            let cell = grid.cell_index(at);
-            for axis in (0..3).filter(|&axis| at[axis] <= middle[axis]) {
-                let mut beyond = at;
-                beyond[axis] += 1;
-                let (Some(first), Some(second)) = (numbers[in_block(at)], numbers[in_block(beyond)]) else { continue };
-                for (a, b) in self.shared(cell, grid.cell_index(beyond), (axis, 1)) {
-                    sets.join(first + a, second + b);
+        for (axis, step) in [1, 3, 9].into_iter().enumerate() {
+            let before_last = (0..27).filter(|place| place / step % 3 < 2);
+            for (here, there) in before_last.map(|place| (place, place + step)) {
+                if block[here].is_none() || block[there].is_none() {
+                    continue;
+                }
+                if parts[here].is_none() && parts[there].is_none() {
+                    sets.join(numbers[here], numbers[there]);
+                    continue;
+                }
+                for (a, b) in shared(parts[here], parts[there], (axis, 1)) {
+                    sets.join(numbers[here] + a, numbers[there] + b);
                 }
             }
         }
-        let own = numbers[in_block(middle)].unwrap_or_default();
-        (0..self.of(n).map_or(1, Parts::count)).map(|part| sets.find(own + part)).collect()
+        (0..parts[MIDDLE].map_or(1, Parts::count)).map(|part| sets.find(numbers[MIDDLE] + part)).collect()
     }
+}
+
+/// The pairs of parts of two neighbours that meet in their common side, which is given as the first one has it. A cell that is not divided has one part.
+fn shared(
+    here: Option<&Parts>,
+    there: Option<&Parts>,
+    (axis, side): (usize, usize),
+) -> impl Iterator<Item = (usize, usize)> {
+    let counts = [here, there].map(|parts| parts.map_or(1, Parts::count));
+    let pairs = (0..counts[0]).flat_map(move |a| (0..counts[1]).map(move |b| (a, b)));
+    pairs.filter(move |&(a, b)| match (here, there) {
+        (Some(here), Some(there)) => here.meet(a, (there, b), axis, side),
+        (Some(here), None) => here.touches(a, axis, side),
+        (None, Some(there)) => there.touches(b, axis, 1 - side),
+        (None, None) => true,
+    })
 }
 
 /// The sides of a cell: axis, and 0 for the low side or 1 for the high one.
@@ -180,18 +182,19 @@ fn neighbour(grid: &Grid<f64>, n: usize, axis: usize, side: usize) -> Option<usi
     (at[axis] < grid.cells()[axis]).then(|| grid.cell_index(at))
 }
 
-/// A cell and those around it.
-fn around(grid: &Grid<f64>, n: usize) -> impl Iterator<Item = [usize; 3]> {
-    let (at, cells) = (place_of_cell(grid, n), grid.cells());
-    let [x, y, z] = [0, 1, 2].map(|a| at[a].saturating_sub(1)..(at[a] + 2).min(cells[a]));
-    z.flat_map(move |k| {
-        y.clone().flat_map({
-            let x = x.clone();
-            move |j| x.clone().map(move |i| [i, j, k])
-        })
+/// Where a cell stands among those around it.
+const MIDDLE: usize = 13;
+
+/// A cell and those around it, x fastest; none beyond the grid.
+fn around(grid: &Grid<f64>, n: usize) -> [Option<usize>; 27] {
+    let ([i, j, k], [nx, ny, nz]) = (place_of_cell(grid, n), grid.cells());
+    std::array::from_fn(|place| {
+        let (i, j, k) = (i + place % 3, j + place / 3 % 3, k + place / 9);
+        let is_inside = (1..=nx).contains(&i) && (1..=ny).contains(&j) && (1..=nz).contains(&k);
+        is_inside.then(|| ((k - 1) * ny + (j - 1)) * nx + (i - 1))
     })
 }
 
 fn open_side(grid: &Grid<f64>, beta: &FieldSet, n: usize, (axis, side): (usize, usize)) -> bool {
-    beta.faces(axis)[faces_of_cell(grid, axis, place_of_cell(grid, n))[side]] >= OPEN
+    beta.faces(axis)[faces_of_nth_cell(grid, axis, n)[side]] >= OPEN
 }

@@ -6,7 +6,7 @@
 /// Memory for one cell at a time.
 #[derive(Default)]
 pub struct Patches {
-    /// A hash table of the edges of pieces, by their ends in ascending order; the pieces beside each.
+    /// A hash table of the edges of pieces, by their ends; the first piece beside each.
     edges: Vec<Edge>,
     /// Places of the table that are taken.
     taken: Vec<usize>,
@@ -21,16 +21,24 @@ struct Edge {
     count: u32,
 }
 
-/// Cells with more edges are not looked at.
-const MOST_EDGES: usize = 512;
+/// Places of the table.
+const PLACES: usize = 1 << 10;
 
-/// What the coordinates of an edge are multiplied with to scatter them over the table.
+/// Cells with more edges are not looked at.
+const MOST_EDGES: usize = PLACES / 2;
+
+/// What corners are multiplied with to scatter them over the table.
 const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// A number that scatters a corner over the table by its highest bits.
+fn scattered([x, y, z]: [f64; 3]) -> u64 {
+    (x.to_bits() ^ y.to_bits().rotate_left(21) ^ z.to_bits().rotate_left(42)).wrapping_mul(SCATTER)
+}
 
 impl Patches {
     /// Do pieces of surface, given by their corners, hang together by edges that two of them share, none by one that more share?
     pub fn are_one<'p>(&mut self, pieces: impl Iterator<Item = &'p [[f64; 3]]>) -> bool {
-        self.edges.resize(2 * MOST_EDGES, Edge::default());
+        self.edges.resize(PLACES, Edge::default());
         self.pieces.clear();
         let clear = self.join(pieces);
         for place in self.taken.drain(..) {
@@ -47,22 +55,22 @@ impl Patches {
             if self.taken.len() + corners.len() > MOST_EDGES {
                 return false;
             }
+            let mut last_scattered = scattered(*last);
             for corner in corners {
-                if last != corner && !self.add([*last, *corner], piece) {
+                let scattered = scattered(*corner);
+                // The same for both directions.
+                let place = (scattered.wrapping_add(last_scattered) >> (u64::BITS - PLACES.ilog2())) as usize;
+                if last != corner && !self.add([*last, *corner], place, piece) {
                     return false;
                 }
-                last = corner;
+                (last, last_scattered) = (corner, scattered);
             }
         }
         true
     }
 
-    /// Adds an edge of a piece; false if two have it already.
-    fn add(&mut self, [a, b]: [[f64; 3]; 2], piece: u32) -> bool {
-        let ends = if a < b { [a, b] } else { [b, a] };
-        let hash =
-            ends.iter().flatten().fold(0_u64, |hash, at| (hash.rotate_left(5) ^ at.to_bits()).wrapping_mul(SCATTER));
-        let mut place = (hash >> 32) as usize % (2 * MOST_EDGES);
+    /// Adds an edge of a piece, which is looked for from a place on; false if two have it already.
+    fn add(&mut self, ends: [[f64; 3]; 2], mut place: usize, piece: u32) -> bool {
         loop {
             let edge = &mut self.edges[place];
             if edge.count == 0 {
@@ -70,14 +78,15 @@ impl Patches {
                 self.taken.push(place);
                 return true;
             }
-            if edge.ends == ends {
+            // Neighbours have it in opposite directions, as a rule.
+            if edge.ends == [ends[1], ends[0]] || edge.ends == ends {
                 edge.count += 1;
                 let (first, clear) = (edge.piece, edge.count == 2);
                 let [one, other] = [first, piece].map(|piece| self.first_of(piece));
                 self.pieces[one.max(other) as usize] = one.min(other);
                 return clear;
             }
-            place = (place + 1) % (2 * MOST_EDGES);
+            place = (place + 1) % PLACES;
         }
     }
 

@@ -59,8 +59,8 @@ impl Shadows {
         (areas, known): (&[SurfaceArea<f64>], &[BesideAreas]),
     ) -> Self {
         let [nx, ny, nz] = grid.cells();
-        let fields = |value: f64| [0; 3].map(|_| vec![value; nx * ny * nz]);
-        let (mut tau, mut place) = (fields(0.0), fields(0.5));
+        let fields = || [0; 3].map(|_| vec![0.0; nx * ny * nz]);
+        let (mut tau, mut place) = (fields(), fields());
         let mut slices: Vec<ShadowSlices<f64>> = Vec::with_capacity(nz);
         let [mut share_x, mut share_y, mut share_z] = tau.each_mut().map(|field| field.chunks_exact_mut(nx * ny));
         let [mut place_x, mut place_y, mut place_z] = place.each_mut().map(|field| field.chunks_exact_mut(nx * ny));
@@ -114,19 +114,22 @@ impl Shadows {
     /// The cells that are not closed and hide something, in ascending order, with the largest share of its section that each hides along an axis.
     pub(super) fn hiding(&self, grid: &Grid<f64>, beta: &FieldSet) -> Vec<(usize, f64)> {
         let [x, y, z] = &self.tau;
-        // No more can be hidden than is blocked.
-        let may_hide = |n: &usize| beta.v[*n] > 0.0 && x[*n].max(y[*n]).max(z[*n]) >= LEAST_HIDDEN;
-        let cells = (0..grid.cell_count()).filter(may_hide);
-        cells
-            .map(|n| (n, self.largest_hidden(grid, beta, place_of_cell(grid, n))))
-            .filter(|(_, hidden)| *hidden >= LEAST_HIDDEN)
-            .collect()
+        let mut hiding = Vec::new();
+        for (n, (((&x, &y), &z), &open)) in x.iter().zip(y).zip(z).zip(&beta.v).enumerate() {
+            // No more can be hidden than is blocked.
+            if open > 0.0 && (x >= LEAST_HIDDEN || y >= LEAST_HIDDEN || z >= LEAST_HIDDEN) {
+                let hidden = self.largest_hidden(grid, beta, n);
+                if hidden >= LEAST_HIDDEN {
+                    hiding.push((n, hidden));
+                }
+            }
+        }
+        hiding
     }
 
-    /// The largest share of its section that a cell blocks along an axis beyond what its faces show.
-    pub(super) fn largest_hidden(&self, grid: &Grid<f64>, beta: &FieldSet, at: [usize; 3]) -> f64 {
-        let n = grid.cell_index(at);
-        let along = |axis: usize| hidden_share(grid, axis, self.tau[axis][n], beta, at);
+    /// The largest share of its section that the n-th cell blocks along an axis beyond what its faces show.
+    pub(super) fn largest_hidden(&self, grid: &Grid<f64>, beta: &FieldSet, n: usize) -> f64 {
+        let along = |axis: usize| hidden_share(grid, axis, self.tau[axis][n], beta, n);
         along(0).max(along(1)).max(along(2))
     }
 }
@@ -136,6 +139,16 @@ pub fn faces_of_cell(grid: &Grid<f64>, axis: usize, [i, j, k]: [usize; 3]) -> [u
     let [nx, ny, _] = grid.face_shape(axis);
     let low = (k * ny + j) * nx + i;
     [low, low + [1, nx, nx * ny][axis]]
+}
+
+/// The same of the n-th cell.
+pub(super) fn faces_of_nth_cell(grid: &Grid<f64>, axis: usize, n: usize) -> [usize; 2] {
+    let [nx, ny, _] = grid.cells();
+    match axis {
+        0 => [n + n / nx, n + n / nx + 1],
+        1 => [n + n / (nx * ny) * nx, n + n / (nx * ny) * nx + nx],
+        _ => [n, n + nx * ny],
+    }
 }
 
 /// All cells of a grid, x fastest.
@@ -151,21 +164,19 @@ pub fn place_of_cell(grid: &Grid<f64>, n: usize) -> [usize; 3] {
     [n % nx, n / nx % ny, n / (nx * ny)]
 }
 
-/// The share of its section that a cell of shadow `tau` blocks along an axis beyond what either of its two faces shows.
-#[must_use]
-pub fn hidden_share(grid: &Grid<f64>, axis: usize, tau: f64, beta: &FieldSet, at: [usize; 3]) -> f64 {
-    let [low, high] = faces_of_cell(grid, axis, at).map(|face| beta.faces(axis)[face]);
-    tau - (1.0 - low.min(high))
+/// The share of its section that the n-th cell, of shadow `tau`, blocks along an axis beyond what either of its two faces shows.
+fn hidden_share(grid: &Grid<f64>, axis: usize, tau: f64, beta: &FieldSet, n: usize) -> f64 {
+    let ([low, high], faces) = (faces_of_nth_cell(grid, axis, n), beta.faces(axis));
+    tau - (1.0 - faces[low].min(faces[high]))
 }
 
 fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> HiddenPassages {
     let mut found = HiddenPassages::default();
     for (n, &tau) in tau.iter().enumerate().filter(|(_, tau)| **tau > HIDDEN) {
-        let at = place_of_cell(grid, n);
         // A closed face shows all there can be.
-        if hidden_share(grid, axis, tau, beta, at) > HIDDEN {
+        if hidden_share(grid, axis, tau, beta, n) > HIDDEN {
             found.cells += 1;
-            found.first = found.first.or(Some(at));
+            found.first = found.first.or_else(|| Some(place_of_cell(grid, n)));
         }
     }
     found
@@ -178,14 +189,14 @@ const MOST_FACES: usize = 1 << 18;
 /// A thread's memory.
 struct Buffers {
     edges: Vec<ShadowEdge<f64>>,
-    crossed: Vec<u32>,
+    places: Vec<u32>,
     lists: Vec<u32>,
     faces: Vec<ShadowFace<f64>>,
 }
 
 impl Buffers {
     fn new() -> Self {
-        let mut new = Buffers { edges: Vec::new(), crossed: Vec::new(), lists: Vec::new(), faces: Vec::new() };
+        let mut new = Buffers { edges: Vec::new(), places: Vec::new(), lists: Vec::new(), faces: Vec::new() };
         new.make_room(FACES);
         new
     }
@@ -193,7 +204,7 @@ impl Buffers {
     /// Room for so many faces in a cell.
     fn make_room(&mut self, faces: usize) {
         self.edges.resize(3 * faces, ShadowEdge::default());
-        self.crossed.resize(faces, 0);
+        self.places.resize(faces, 0);
         self.faces.resize(faces, ShadowFace::default());
     }
 
@@ -206,8 +217,8 @@ impl Buffers {
         mut into: ShadowSlices<f64>,
     ) -> usize {
         loop {
-            let Buffers { edges, crossed, lists, faces } = self;
-            let memory = ShadowMemory { edges, crossed, lists, faces };
+            let Buffers { edges, places, lists, faces } = self;
+            let memory = ShadowMemory { edges, places, lists, faces };
             match layers.shadows(k, open, (Some(areas), Some(kept)), into.reborrow(), memory) {
                 Err(LayerError::Shape(ShapeMismatch { expected, found })) if found == self.lists.len() => {
                     self.lists.resize(expected.max(2 * found), 0);

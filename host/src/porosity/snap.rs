@@ -32,6 +32,8 @@ pub fn into_planes(grid: &Grid<f64>, bodies: &Bodies) -> Option<Vec<[DVec3; 3]>>
 #[derive(Debug)]
 pub struct ToPlanes<'a> {
     grid: &'a Grid<'a, f64>,
+    /// Cells over the length of the grid along each axis.
+    scale: [f64; 3],
     near: DVec3,
 }
 
@@ -39,7 +41,11 @@ impl<'a> ToPlanes<'a> {
     /// Of a grid.
     #[must_use]
     pub fn new(grid: &'a Grid<'a, f64>) -> Self {
-        ToPlanes { grid, near: near(grid) }
+        let scale = [0, 1, 2].map(|axis| {
+            let edges = grid.edges(axis);
+            (edges.len() - 1) as f64 / (edges[edges.len() - 1] - edges[0])
+        });
+        ToPlanes { grid, scale, near: near(grid) }
     }
 
     /// A triangle of a body, as [`into_planes`] moves it.
@@ -50,7 +56,7 @@ impl<'a> ToPlanes<'a> {
 
     /// A corner, its coordinates replaced by those of the planes that it misses by rounding.
     fn corner(&self, p: DVec3, body: Option<&Body>) -> DVec3 {
-        let plane = DVec3::new(nearest(self.grid, 0, p.x), nearest(self.grid, 1, p.y), nearest(self.grid, 2, p.z));
+        let plane = DVec3::new(self.nearest(0, p.x), self.nearest(1, p.y), self.nearest(2, p.z));
         let off = (plane - p).abs();
         let mut room = self.near;
         let reach = |source: &SingleSource| off.min_element() <= self.near.max_element() + source.reach(p);
@@ -58,6 +64,17 @@ impl<'a> ToPlanes<'a> {
             room += source.error(p);
         }
         DVec3::select(off.cmple(room), plane, p)
+    }
+
+    /// The plane nearest to a coordinate, whose cell is guessed as if all were equally wide, and searched where it is another.
+    #[inline(always)]
+    fn nearest(&self, axis: usize, value: f64) -> f64 {
+        let edges = self.grid.edges(axis);
+        let guess = ((value - edges[0]) * self.scale[axis]) as u32 as usize;
+        match edges.get(guess..) {
+            Some(&[below, above, ..]) if below <= value && value < above => nearer(below, above, value),
+            _ => nearest(self.grid, axis, value),
+        }
     }
 }
 
@@ -86,7 +103,13 @@ fn nearest(grid: &Grid<f64>, axis: usize, value: f64) -> f64 {
         Located::Cell(i) => (i, i + 1),
         Located::Above => (last, last),
     };
-    if value - edges[below] <= edges[above] - value { edges[below] } else { edges[above] }
+    nearer(edges[below], edges[above], value)
+}
+
+/// The nearer of two planes, the first if both are equally near.
+#[inline(always)]
+fn nearer(below: f64, above: f64, value: f64) -> f64 {
+    if value - below <= above - value { below } else { above }
 }
 
 /// Sheets without thickness that lie, wholly or in part, in no plane of the grid: such parts block nothing.

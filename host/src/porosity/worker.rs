@@ -181,7 +181,10 @@ impl AreaVecs {
         self.sides.resize(cells, CellSides::default());
         self.kept.cells.resize(cells, KeptCell::default());
         self.kept.pieces.resize(pieces, KeptPiece::default());
-        self.kept.corners.resize(CORNERS_EACH * pieces, [0.0; 3]);
+        if self.kept.corners.len() != CORNERS_EACH * pieces {
+            // A new list of zeros takes no memory before it is used.
+            self.kept.corners = vec![[0.0; 3]; CORNERS_EACH * pieces];
+        }
     }
 
     /// A copy of what has been kept of a layer.

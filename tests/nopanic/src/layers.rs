@@ -86,10 +86,10 @@ fn shadowed<V: Vector>(
     areas: KnownSurface<V::Scalar>,
     at: usize,
 ) -> usize {
-    let (mut edges, mut crossed, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);
+    let (mut edges, mut places, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);
     let lists = lists.get_mut(..layers.shadow_lists_needed(at)).unwrap_or_default();
     let mut faces = core::array::from_fn::<_, 9, _>(|_| ShadowFace::default());
-    let memory = ShadowMemory { edges: &mut edges, crossed: &mut crossed, lists, faces: &mut faces };
+    let memory = ShadowMemory { edges: &mut edges, places: &mut places, lists, faces: &mut faces };
     let (mut share, mut place) = ([[V::Scalar::ZERO; 99]; 3], [[V::Scalar::ZERO; 99]; 3]);
     let mut slices = ShadowSlices {
         share: share.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),

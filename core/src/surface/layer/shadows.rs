@@ -60,9 +60,9 @@ impl<V: Vector> Layers<'_, V> {
                 _ => WantedList::Triangles,
             }
         };
-        let ShadowMemory { edges, crossed, lists, faces } = memory;
+        let ShadowMemory { edges, places, lists, faces } = memory;
         let lists = CellLists::new(&self.bins, &self.grid, k, wanted, lists)?;
-        let mut work = Work::new(Outlines::new(edges, crossed), CellFaces::new(faces));
+        let mut work = Work::new(Outlines::new(edges, places), CellFaces::new(faces));
         let mut too_full = 0;
         for c in 0..nx * ny {
             let Some(entries) = lists.of(c) else { continue };

@@ -18,8 +18,8 @@ use crate::surface::cell_unions::{
 use crate::surface::cells::Defects;
 use crate::surface::clip::Polygon;
 use crate::surface::surface_area::{
-    Bodies, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea, UnionSurface,
-    gather_weighted,
+    Bodies, CellPieces, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea,
+    UnionSurface, gather_weighted,
 };
 use crate::surface::union::{Frame, integrate};
 
@@ -185,6 +185,11 @@ impl<V: Vector> Layers<'_, V> {
 fn note_kept<R: Real>(cells: &[CellSurface<R>], walls: &Fields<u8>, has_top: bool, nx: usize, kept: &mut [KeptCell]) {
     let is_wall = |faces: &[u8], at: usize| faces.get(at).is_none_or(|&flag| flag != 0);
     for ((c, cell), kept) in cells.iter().enumerate().zip(kept) {
+        if cell.kept == CellPieces::None && cell.bodies == Bodies::None {
+            // Without pieces nobody asks for the sides.
+            *kept = KeptCell::default();
+            continue;
+        }
         let x = c + c.checked_div(nx).unwrap_or(0);
         let walls = [
             is_wall(walls.x, x) || is_wall(walls.x, x + 1),

@@ -51,6 +51,7 @@ impl Near {
                 unknown.push(at);
                 continue;
             };
+            list.reserve_exact(own.len());
             list.extend(own.iter().filter_map(|&t| {
                 let place = places.get_mut(t as usize)?;
                 if *place == u32::MAX {

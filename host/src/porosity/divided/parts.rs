@@ -24,6 +24,9 @@ const LEAST_POINTS: u32 = 2;
 /// Points of a cell as bits: eight layers along z, in each x fastest.
 type Points = [u64; ALONG];
 
+/// How many there are.
+const POINTS: usize = ALONG * ALONG * ALONG;
+
 /// How far a step along x, y and z leads in the numbers of points.
 const STEP: [usize; 3] = [1, ALONG, ALONG * ALONG];
 
@@ -49,10 +52,8 @@ pub struct Parts {
 #[derive(Clone, Copy)]
 struct Hit {
     body: u32,
-    /// What the line is along.
-    axis: u8,
-    /// The number of the point before.
-    point: u16,
+    /// The number of the point before, more by [`POINTS`] along y and by twice that along z.
+    line: u16,
     /// Whether the line enters the solid there.
     enters: bool,
     /// Along the axis, in cells.
@@ -72,7 +73,7 @@ impl Parts {
     pub fn of_cell(cell: Aabb<DVec3>, triangles: impl Iterator<Item = OfBody>, memory: &mut Hits) -> Option<Self> {
         let (places, size) = ([0, 1, 2].map(places), cell.size());
         let Hits { hits, ends } = memory;
-        ends.resize(3 * ALONG * STEP[2], [0.0; 2]);
+        ends.resize(3 * POINTS, [0.0; 2]);
         hits.clear();
         for (body, triangle) in triangles {
             cross(&places, &triangle.map(|p| (p - cell.min) / size), body, hits);
@@ -139,7 +140,7 @@ fn within(places: &[f64; ALONG], lo: f64, hi: f64) -> Range<usize> {
 #[inline(always)]
 fn up_to(places: &[f64; ALONG], value: f64) -> usize {
     // Beside the place that would be the last if the inner ones were not moved.
-    let near = ((value * 6.0 + 0.5) as usize).min(ALONG - 2);
+    let near = ((value * 6.0 + 0.5) as u32 as usize).min(ALONG - 2);
     match near + usize::from(places[near] <= value) {
         0 => 0,
         n if n > near => n + usize::from(places[n] <= value),
@@ -154,31 +155,44 @@ fn cross(places: &[[f64; ALONG]; 3], triangle: &[DVec3; 3], body: u32, hits: &mu
     let x = within(&places[0], lo.x, hi.x);
     let y = within(&places[1], lo.y, hi.y);
     let z = within(&places[2], lo.z, hi.z);
-    for (axis, [along_u, along_v]) in [[&y, &z], [&z, &x], [&x, &y]].into_iter().enumerate() {
-        if along_u.is_empty() || along_v.is_empty() {
-            continue;
-        }
-        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-        let projected = ProjectedTriangle::new(axis, triangle);
-        if !(projected.doubled.abs() > LEAST_DOUBLED) {
-            continue;
-        }
-        for m in along_u.clone() {
-            let p = places[u][m];
-            for n in projected.reached(p, &places[v], along_v.clone()) {
-                let Some(at) = projected.at(p, places[v][n]) else { continue };
-                let before = up_to(&places[axis], at);
-                if before > 0 && before < ALONG {
-                    let point = ((before - 1) * STEP[axis] + m * STEP[u] + n * STEP[v]) as u16;
-                    hits.push(Hit { body, axis: axis as u8, point, enters: projected.doubled < 0.0, at });
-                }
-            }
-        }
-    }
+    let triangle = triangle.map(|p| p.to_array());
+    cross_along::<0>(places, &triangle, [y.clone(), z.clone()], body, hits);
+    cross_along::<1>(places, &triangle, [z, x.clone()], body, hits);
+    cross_along::<2>(places, &triangle, [x, y], body, hits);
 }
 
 /// Triangles that are seen smaller along an axis, as twice their area in sides of the cell, are not crossed along it.
 const LEAST_DOUBLED: f64 = 1e-14;
+
+/// Those of the lines along `AXIS`; only lines in these ranges can meet the triangle.
+#[inline(always)]
+fn cross_along<const AXIS: usize>(
+    places: &[[f64; ALONG]; 3],
+    triangle: &[[f64; 3]; 3],
+    [along_u, along_v]: [Range<usize>; 2],
+    body: u32,
+    hits: &mut Vec<Hit>,
+) {
+    if along_u.is_empty() || along_v.is_empty() {
+        return;
+    }
+    let (u, v) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
+    let projected = ProjectedTriangle::new::<AXIS>(triangle);
+    if !(projected.doubled.abs() > LEAST_DOUBLED) {
+        return;
+    }
+    for m in along_u {
+        let row = projected.row(places[u][m]);
+        for n in projected.reached(row, &places[v], along_v.clone()) {
+            let Some(at) = projected.at(row, places[v][n]) else { continue };
+            let before = up_to(&places[AXIS], at);
+            if before > 0 && before < ALONG {
+                let line = (AXIS * POINTS + (before - 1) * STEP[AXIS] + m * STEP[u] + n * STEP[v]) as u16;
+                hits.push(Hit { body, line, enters: projected.doubled < 0.0, at });
+            }
+        }
+    }
+}
 
 /// A triangle as it is seen along an axis.
 struct ProjectedTriangle {
@@ -190,7 +204,7 @@ struct ProjectedTriangle {
     edges: [ProjectedEdge; 3],
 }
 
-/// An edge of a triangle that is seen along an axis, from its beginning.
+/// An edge of a triangle that is seen along an axis, from its beginning, and its way, turned back if the triangle is seen clockwise.
 struct ProjectedEdge {
     from: [f64; 2],
     way: [f64; 2],
@@ -198,26 +212,35 @@ struct ProjectedEdge {
 
 impl ProjectedTriangle {
     #[inline(always)]
-    fn new(axis: usize, [a, b, c]: &[DVec3; 3]) -> Self {
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let edge = |from: &DVec3, to: &DVec3| ProjectedEdge {
-            from: [from[u], from[v]],
-            way: [to[u] - from[u], to[v] - from[v]],
-        };
+    fn new<const AXIS: usize>([a, b, c]: &[[f64; 3]; 3]) -> Self {
+        let (u, v) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
         let doubled = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
-        ProjectedTriangle { height: [a[axis], b[axis], c[axis]], doubled, edges: [edge(b, c), edge(c, a), edge(a, b)] }
+        let turn = doubled.signum();
+        let edge = |from: &[f64; 3], to: &[f64; 3]| ProjectedEdge {
+            from: [from[u], from[v]],
+            way: [(to[u] - from[u]) * turn, (to[v] - from[v]) * turn],
+        };
+        ProjectedTriangle { height: [a[AXIS], b[AXIS], c[AXIS]], doubled, edges: [edge(b, c), edge(c, a), edge(a, b)] }
     }
 
-    /// Those of some lines, all at `p` in the first direction, that may cross the triangle: the others surely pass beside it.
+    /// Of the area between each edge and the lines at `p` in the first direction, the part that is the same for all these lines.
     #[inline(always)]
-    fn reached(&self, p: f64, places: &[f64; ALONG], lines: Range<usize>) -> Range<usize> {
-        let (Range { start: mut first, mut end }, turn) = (lines, self.doubled.signum());
-        for edge in &self.edges {
+    fn row(&self, p: f64) -> [f64; 3] {
+        self.edges.each_ref().map(|edge| edge.way[1] * (p - edge.from[0]))
+    }
+
+    /// Those lines of a row that may cross the triangle: the others surely pass beside it.
+    #[inline(always)]
+    fn reached(&self, row: [f64; 3], places: &[f64; ALONG], lines: Range<usize>) -> Range<usize> {
+        let Range { start: mut first, mut end } = lines;
+        if end - first < 2 {
+            return first..end;
+        }
+        for (ProjectedEdge { from, way }, part) in self.edges.iter().zip(row) {
             // An edge is no longer than the sum of its ways. From line to line the area beside it grows all the way or falls all the way, rounding included.
-            let far = -2.0 * NEAR * (edge.way[0].abs() + edge.way[1].abs());
-            let [factor, part] = [edge.way[0] * turn, edge.way[1] * (p - edge.from[0]) * turn];
-            let is_beside = |n: usize| factor * (places[n] - edge.from[1]) - part < far;
-            if factor >= 0.0 {
+            let far = -2.0 * NEAR * (way[0].abs() + way[1].abs());
+            let is_beside = |n: usize| way[0] * (places[n] - from[1]) - part < far;
+            if way[0] >= 0.0 {
                 while first < end && is_beside(first) {
                     first += 1;
                 }
@@ -230,14 +253,13 @@ impl ProjectedTriangle {
         first..end
     }
 
-    /// Where along the axis a line crosses the triangle, if it does.
+    /// Where along the axis a line of a row crosses the triangle, if it does.
     #[inline(always)]
-    fn at(&self, p: f64, q: f64) -> Option<f64> {
-        let turn = self.doubled.signum();
+    fn at(&self, row: [f64; 3], q: f64) -> Option<f64> {
         let mut shares = [0.0; 3];
-        for (share, ProjectedEdge { from, way }) in shares.iter_mut().zip(&self.edges) {
+        for ((share, ProjectedEdge { from, way }), part) in shares.iter_mut().zip(&self.edges).zip(row) {
             // The distance of the line times the edge's length.
-            let area = (way[0] * (q - from[1]) - way[1] * (p - from[0])) * turn;
+            let area = way[0] * (q - from[1]) - part;
             if area < 0.0 && area < -NEAR * way[0].hypot(way[1]) {
                 return None;
             }
@@ -248,9 +270,9 @@ impl ProjectedTriangle {
     }
 }
 
-/// Adds a point; was it there?
-fn add(points: &mut Points, point: usize) -> bool {
-    let (layer, bit) = (&mut points[point / STEP[2]], 1 << (point % STEP[2]));
+/// Adds a line to those from some points along x, y and z; was it there?
+fn add(lines: &mut Blocked, line: usize) -> bool {
+    let (layer, bit) = (&mut lines.as_flattened_mut()[line / STEP[2]], 1 << (line % STEP[2]));
     let was_there = *layer & bit != 0;
     *layer |= bit;
     was_there
@@ -274,20 +296,19 @@ fn behind(axis: usize, mut points: Points) -> Points {
 /// what most of the points of a region say holds for all of it.
 fn solid_points(hits: &[Hit], ends: &mut [[f64; 2]]) -> (Blocked, Points) {
     let [mut blocked, mut enters, mut leaves] = [Blocked::default(); 3];
-    let line = |hit: &Hit| usize::from(hit.axis) * ALONG * STEP[2] + usize::from(hit.point);
     for hit in hits {
-        let [first, last] = &mut ends[line(hit)];
-        let known = add(&mut blocked[usize::from(hit.axis)], hit.point.into());
+        let [first, last] = &mut ends[usize::from(hit.line)];
+        let known = add(&mut blocked, hit.line.into());
         (*first, *last) = if known { (first.min(hit.at), last.max(hit.at)) } else { (hit.at, hit.at) };
     }
     for hit in hits {
         // A sheet has two surfaces at one place, and is seen from outside on both sides.
-        let ([first, last], axis) = (ends[line(hit)], usize::from(hit.axis));
+        let [first, last] = ends[usize::from(hit.line)];
         if hit.enters && hit.at - first <= NEAR {
-            add(&mut enters[axis], hit.point.into());
+            add(&mut enters, hit.line.into());
         }
         if !hit.enters && last - hit.at <= NEAR {
-            add(&mut leaves[axis], hit.point.into());
+            add(&mut leaves, hit.line.into());
         }
     }
     let [mut outside, mut inside] = [Points::default(); 2];
