@@ -163,7 +163,8 @@ pub enum Crossing {
     Cover,
 }
 
-/// How `other`, whose corners have these heights over the plane of `face`, meets the inner part of it. `covers`: do they share more than their sides, if they lie in one plane?
+/// How `other`, whose corners have these heights over the plane of `face`, meets the inner part of it. `covers`: do they share more than their sides, if they
+/// lie in one plane?
 #[must_use]
 pub fn meeting(face: &Face, other: &Face, heights: &[f64; 3], on: f64, covers: impl FnOnce() -> bool) -> Crossing {
     let (above, below) = (heights.iter().any(|&h| h > on), heights.iter().any(|&h| h < -on));
