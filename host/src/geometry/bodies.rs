@@ -8,7 +8,7 @@ use crate::geometry::close::{Unclosed, close};
 use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::{LARGEST, Mesh};
-use crate::geometry::repair::copies;
+use crate::geometry::repair::copies::{self, Twins};
 use crate::geometry::repair::cracks::{self, Cracks};
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::edges::EdgeUses;
@@ -358,13 +358,12 @@ impl Cluster {
 
 /// Of all `count` triangles, those of shells of which edges do not tell enough: that are open or hold their own backs, or of which it is a guess which
 /// triangles belong to them. Shells that say nothing that others do not are left out.
-fn unclear(mesh: &Indexed, shells: &[Shell], count: usize, rounding: f64) -> Vec<bool> {
-    let (mut unclear, mut kept) = (vec![false; count], shells.to_vec());
-    drop_copies(mesh, &mut kept, rounding, &mut Diagnosis::default());
-    let is_unclear = |shell: &Shell| {
-        shell.guessed || !shell.boundary.is_empty() || copies::hold_backs(mesh, shell.triangles.iter().copied())
-    };
-    let of_shells = kept.iter().filter(|shell| is_unclear(shell)).flat_map(|shell| &shell.triangles);
+fn unclear(mesh: &Indexed, shells: &[Shell], twins: &Twins, count: usize, rounding: f64) -> Vec<bool> {
+    let mut unclear = vec![false; count];
+    let redundant = copies::redundant(mesh, shells, twins, rounding).shells;
+    let hold_backs = copies::hold_own_backs(twins, shells.len());
+    let is_unclear = |s: usize| !redundant[s] && (hold_backs[s] || shells[s].guessed || !shells[s].boundary.is_empty());
+    let of_shells = (0..shells.len()).filter(|&s| is_unclear(s)).flat_map(|s| &shells[s].triangles);
     of_shells.for_each(|&n| unclear[n as usize] = true);
     unclear
 }
@@ -407,19 +406,33 @@ fn clean(
     }
     let mut all = distinct(&mesh);
     let mut alive = all.clone();
-    [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive);
     let mut uses = EdgeUses::new(&mesh, &alive);
+    [d.repeated, d.doubled] = copies::drop_repeats(&mesh, &mut alive, &uses);
+    if alive != all {
+        uses = EdgeUses::new(&mesh, &alive);
+    }
     let cracks = cracks::close(&mut mesh, &alive, &mut uses, rounding);
     d.welded_by = cracks.moved;
     if cracks.moved > 0.0 {
         report.warn(format!("points up to {:.1e} apart were merged to close cracks", cracks.moved));
     }
-    let uses = if alive == all { uses } else { EdgeUses::new(&mesh, &all) };
-    d.t_junction_edges = junctions::cut(&mut mesh, &mut all, &uses, rounding);
+    let of_all = (alive != all).then(|| EdgeUses::new(&mesh, &all));
+    let of_all = of_all.as_ref().unwrap_or(&uses);
+    let mut has_backs = of_all.any_pair(|a, b| a.up != b.up && mesh.are_same(a.triangle, b.triangle));
+    d.t_junction_edges = junctions::cut(&mut mesh, &mut all, of_all, has_backs, rounding);
     d.boundary_edges = d.t_junction_edges;
-    let with_backs = copies::hold_backs(&mesh, (0..all.len() as u32).filter(|&n| all[n as usize])).then(|| all.clone());
-    let (shells, clusters) = split(&mut mesh, [all, alive], with_backs.is_some(), &solid_of, rounding, d);
+    if d.t_junction_edges > 0 {
+        has_backs = copies::hold_backs(&mesh, (0..all.len() as u32).filter(|&n| all[n as usize]));
+    }
+    let with_backs = has_backs.then(|| all.clone());
+    let (shells, clusters) = split(&mut mesh, [all, alive], (uses, has_backs), &solid_of, rounding, d);
     d.shells = shells.len() + clusters.len();
+    say_turned(&shells, d, report);
+    Some(Cleaned { mesh, shells, clusters, with_backs, cracks })
+}
+
+/// Tell of triangles that were the wrong way round.
+fn say_turned(shells: &[Shell], d: &mut Diagnosis, report: &mut Reporter) {
     d.turned = shells.iter().map(|s| s.turned).sum();
     if d.turned > 0 {
         report.warn(format!(
@@ -436,28 +449,28 @@ fn clean(
             either(d.one_sided, "it", "them")
         ));
     }
-    Some(Cleaned { mesh, shells, clusters, with_backs, cracks })
 }
 
 /// Split a mesh into shells, and clusters of which edges do not tell enough. Of its triangles, two lists: which have three corners, and which of these
-/// are left without repeats.
+/// are left without repeats. The edges of these as they were before triangles were cut, and whether some are backs of others.
 fn split(
     mesh: &mut Indexed,
     [mut all, mut alive]: [Vec<bool>; 2],
-    has_backs: bool,
+    (uses, has_backs): (EdgeUses, bool),
     solid_of: impl Fn(u32) -> usize,
     rounding: f64,
     d: &mut Diagnosis,
 ) -> (Vec<Shell>, Vec<Cluster>) {
     let mut clusters = Vec::new();
     let cut = d.t_junction_edges > 0;
-    let (mut shells, mut asked) = (Vec::new(), Vec::new());
+    let (mut shells, mut twins, mut asked) = (Vec::new(), Twins::default(), Vec::new());
     if !cut {
         let before = has_backs.then(|| mesh.clone());
-        shells = shells::shells(mesh, &alive, &solid_of);
+        shells = shells::shells(mesh, &alive, uses, &solid_of);
+        twins = copies::twins(mesh, &shells);
         if let Some(before) = before {
             // Where edges tell what belongs together, they tell more than regions: which parts touch, and what is open between them.
-            asked = unclear(mesh, &shells, alive.len(), rounding);
+            asked = unclear(mesh, &shells, &twins, alive.len(), rounding);
             if asked.contains(&true) {
                 *mesh = before;
             }
@@ -467,19 +480,23 @@ fn split(
         clusters = take_clusters(mesh, &mut all, &solid_of, |n| cut || asked[n as usize]);
         // Only now can it be seen which triangles repeat others, and what is open without them.
         alive = all;
-        [d.repeated, d.doubled] = copies::drop_repeats(mesh, &mut alive);
-        shells = shells::shells(mesh, &alive, &solid_of);
+        let uses = EdgeUses::new(mesh, &alive);
+        [d.repeated, d.doubled] = copies::drop_repeats(mesh, &mut alive, &uses);
+        let dropped = d.repeated + d.doubled > 0;
+        let uses = if dropped { EdgeUses::new(mesh, &alive) } else { uses };
+        shells = shells::shells(mesh, &alive, uses, &solid_of);
+        twins = copies::twins(mesh, &shells);
     }
     if cut || has_backs {
-        copies::doubt_backs(mesh, &mut shells, cut);
+        copies::doubt_backs(mesh, &mut shells, &twins, cut);
     }
-    drop_copies(mesh, &mut shells, rounding, d);
+    drop_copies(mesh, &mut shells, &twins, rounding, d);
     (shells, clusters)
 }
 
 /// Drop the shells that repeat others or are their backs.
-fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, rounding: f64, d: &mut Diagnosis) {
-    let found = copies::redundant(mesh, shells, rounding);
+fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, twins: &Twins, rounding: f64, d: &mut Diagnosis) {
+    let found = copies::redundant(mesh, shells, twins, rounding);
     let mut redundant = found.shells.into_iter();
     shells.retain(|_| redundant.next() != Some(true));
     d.repeated += found.repeated;

@@ -1,6 +1,8 @@
 //! From triangles as they come to closed shells: welded, cut at T-junctions, oriented, split, freed of copies, capped, resolved where they cross themselves, nested.
 
 pub mod apart;
+pub mod boxes;
+pub mod clear;
 pub mod copies;
 pub mod cracks;
 pub mod crossing;

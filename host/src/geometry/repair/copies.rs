@@ -16,8 +16,12 @@ fn from_lowest(t: [u32; 3]) -> [u32; 3] {
 }
 
 /// Drop repeated triangles, by clusters that share edges, where that leaves the surface no more open than before; a repeat
-/// that closes another part stays. Returns the numbers dropped of triangles without a back, and of those of surfaces with two sides.
-pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> [usize; 2] {
+/// that closes another part stays. `edges`: those of the triangles that are `alive`. Returns the numbers dropped of triangles without a back, and of those of
+/// surfaces with two sides.
+pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool], edges: &EdgeUses) -> [usize; 2] {
+    if !edges.any_pair(|a, b| a.up == b.up && mesh.are_same(a.triangle, b.triangle)) {
+        return [0; 2];
+    }
     let mut first: HashMap<[u32; 3], u32> = HashMap::default();
     first.reserve(mesh.triangles.len());
     let mut repeats = Vec::new();
@@ -26,10 +30,6 @@ pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool]) -> [usize; 2] {
             repeats.push(n as u32);
         }
     }
-    if repeats.is_empty() {
-        return [0; 2];
-    }
-    let edges = EdgeUses::new(mesh, alive);
     let mut dropped = [0; 2];
     for cluster in clusters(mesh, &repeats) {
         let mut change: HashMap<u64, i64> = HashMap::default();
@@ -132,9 +132,8 @@ pub struct Redundant {
 ///
 /// Corners may be off by `rounding`.
 #[must_use]
-pub fn redundant(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Redundant {
+pub fn redundant(mesh: &Indexed, shells: &[Shell], owners: &Twins, rounding: f64) -> Redundant {
     let mut found = Redundant { shells: vec![false; shells.len()], ..Redundant::default() };
-    let owners = twins(mesh, shells);
     if owners.is_empty() {
         return found;
     }
@@ -190,24 +189,17 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell], rounding: f64) -> Redundant {
 
 /// Doubts what belongs together where shells share edges and some of them are backs of others. A shell alone is beyond doubt, and so are parts that all
 /// look outward, and closed shells each with its back; but in a surface that was `cut` at T-junctions only two shells that are each other's back.
-pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
-    let owners = twins(mesh, shells);
+pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], owners: &Twins, cut: bool) {
     if owners.is_empty() {
         return;
     }
-    let mut sets = Sets::new(shells.len());
-    let mut owner: HashMap<u64, usize> = HashMap::default();
-    for (s, shell) in shells.iter().enumerate() {
-        for [a, b] in shell.triangles.iter().flat_map(|&n| edges_of(mesh.triangles[n as usize])) {
-            sets.join(*owner.entry(key(a, b)).or_insert(s), s);
-        }
-    }
+    let sets = by_edges(mesh, shells);
+    let have_backs = have_backs(owners, shells.len());
     let backs_of = |n: u32| owners.get(&back(from_lowest(mesh.triangles[n as usize]))).map_or(&[][..], |o| o);
     for members in sets.groups() {
         let cluster = members[0];
-        let all = || members.iter().flat_map(|&s| shells[s].triangles.iter().map(move |&n| (s, n)));
         let outward = |s: usize| Seen::new(mesh, &shells[s], 0.0).volume > 0.0;
-        let has_backs = all().any(|(_, n)| !backs_of(n).is_empty()) && !members.iter().all(|&s| outward(s));
+        let has_backs = members.iter().any(|&s| have_backs[s]) && !members.iter().all(|&s| outward(s));
         let closed = |s: usize| shells[s].boundary.is_empty();
         let is_back_of = |s: usize, of: usize| {
             let (own, other) = (&shells[s].triangles, &shells[of].triangles);
@@ -230,6 +222,27 @@ pub fn doubt_backs(mesh: &Indexed, shells: &mut [Shell], cut: bool) {
     }
 }
 
+/// Shells in sets of those that share edges.
+fn by_edges(mesh: &Indexed, shells: &[Shell]) -> Sets {
+    // An edge of several shells has both its ends at points of several.
+    let (mut first, mut is_shared) = (vec![usize::MAX; mesh.points.len()], vec![false; mesh.points.len()]);
+    for (s, shell) in shells.iter().enumerate() {
+        for v in shell.triangles.iter().flat_map(|&n| mesh.triangles[n as usize]).map(|v| v as usize) {
+            is_shared[v] |= first[v] != s && first[v] != usize::MAX;
+            first[v] = s;
+        }
+    }
+    let mut sets = Sets::new(shells.len());
+    let mut owner: HashMap<u64, usize> = HashMap::default();
+    for (s, shell) in shells.iter().enumerate() {
+        let edges = shell.triangles.iter().flat_map(|&n| edges_of(mesh.triangles[n as usize]));
+        for [a, b] in edges.filter(|edge| edge.iter().all(|&v| is_shared[v as usize])) {
+            sets.join(*owner.entry(key(a, b)).or_insert(s), s);
+        }
+    }
+    sets
+}
+
 /// How a shell may be redundant.
 #[derive(Clone, Copy)]
 enum Kind {
@@ -239,12 +252,36 @@ enum Kind {
 }
 
 /// The shells to which triangles belong that are there more than once, whichever way round; by corners from the lowest on.
-fn twins(mesh: &Indexed, shells: &[Shell]) -> HashMap<[u32; 3], Vec<usize>> {
+pub type Twins = HashMap<[u32; 3], Vec<usize>>;
+
+/// Which shells hold a triangle of which one of them holds the back.
+fn have_backs(owners: &Twins, shells: usize) -> Vec<bool> {
+    let mut found = vec![false; shells];
+    for (_, shells) in owners.iter().filter(|&(&corners, _)| owners.contains_key(&back(corners))) {
+        shells.iter().for_each(|&s| found[s] = true);
+    }
+    found
+}
+
+/// Which shells hold a triangle and its back.
+#[must_use]
+pub fn hold_own_backs(owners: &Twins, shells: usize) -> Vec<bool> {
+    let mut found = vec![false; shells];
+    for (&corners, shells) in owners {
+        let of_back = owners.get(&back(corners)).map_or(&[][..], |o| o);
+        shells.iter().filter(|s| of_back.contains(s)).for_each(|&s| found[s] = true);
+    }
+    found
+}
+
+/// The triangles that are there more than once.
+#[must_use]
+pub fn twins(mesh: &Indexed, shells: &[Shell]) -> Twins {
     let members = || shells.iter().enumerate().flat_map(|(s, shell)| shell.triangles.iter().map(move |&n| (s, n)));
     let mut all = by_number(members().map(|(_, n)| mesh.sorted(n)), mesh.points.len(), |corners| corners[0] as usize);
     all.chunk_by_mut(|a, b| a[0] == b[0]).for_each(<[_]>::sort_unstable);
     let twice: HashSet<[u32; 3]> = all.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect();
-    let mut owners: HashMap<[u32; 3], Vec<usize>> = HashMap::default();
+    let mut owners = Twins::default();
     if !twice.is_empty() {
         for (s, n) in members().filter(|&(_, n)| twice.contains(&mesh.sorted(n))) {
             owners.entry(from_lowest(mesh.triangles[n as usize])).or_default().push(s);

@@ -7,6 +7,7 @@
 //!
 //! **Proof.** The new surface must be closed: its areas cancel and its volumes along x, y and z agree, else the shell stays as it is and is said to be in doubt.
 
+use crate::geometry::repair::clear::is_clear;
 use crate::geometry::repair::edges::key;
 use crate::geometry::repair::face::{Crossing, Face, cut, is_apart, meeting, near, push_parts, sides_on};
 use crate::geometry::repair::lines::Lines;
@@ -173,7 +174,7 @@ impl<'a> Meetings<'a> {
             let have_area = a.normal != DVec3::ZERO && b.normal != DVec3::ZERO;
             let covers = LazyCell::new(|| have_area && !inward.iter().any(|inward| is_apart(inward, on)));
             for (m, n, a, b, seen, inward) in [(m, n, a, b, &seen, &inward[0]), (n, m, b, a, &back, &inward[1])] {
-                let found = meeting(a, b, seen, on, || *covers);
+                let found = meeting(a, b, &seen.heights, on, || *covers);
                 if found != Crossing::None {
                     met.entry(m).or_default().push((n, found));
                 }
@@ -342,6 +343,9 @@ pub fn tolerance([lo, hi]: [DVec3; 2]) -> f64 {
 #[must_use]
 pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     let on = tolerance([lo, hi]);
+    if is_clear(triangles, on) {
+        return Found::Simple { walls: false };
+    }
     let shell = Meetings::new(triangles, on);
     let Some(n) = shell.met.keys().min().copied().or_else(|| shell.at_edge_of_many()) else {
         return Found::Simple { walls: false };

@@ -36,13 +36,19 @@ impl EdgeUses {
         let lower = |edge: u64| ends(edge)[0] as usize;
         let mut uses = by_number(sides, mesh.points.len(), |&(edge, _)| lower(edge));
         let runs = uses.chunk_by_mut(|a, b| lower(a.0) == lower(b.0));
-        runs.for_each(|run| run.sort_unstable_by_key(|&(edge, u)| (edge, u.triangle, u.up)));
+        // Those of one edge stay in the order of triangles, none of which has it twice.
+        runs.for_each(|run| run.sort_by_key(|&(edge, _)| edge));
         EdgeUses(uses)
     }
 
     /// The uses of each edge in turn.
     pub fn each(&self) -> impl Iterator<Item = &[(u64, Use)]> {
         self.0.chunk_by(|a, b| a.0 == b.0)
+    }
+
+    /// Is something true of any two uses of one edge?
+    pub fn any_pair(&self, is_true: impl Fn(&Use, &Use) -> bool) -> bool {
+        self.each().any(|uses| (1..uses.len()).any(|i| uses[..i].iter().any(|(_, other)| is_true(&uses[i].1, other))))
     }
 
     /// Turn all uses by some triangles.

@@ -19,7 +19,7 @@ pub struct Seen {
     /// Which of its corners are corners of the other, too.
     shared: [bool; 3],
     /// Signed distances of its corners from the plane of the other; 0 where they share it.
-    heights: [f64; 3],
+    pub heights: [f64; 3],
 }
 
 impl Face {
@@ -29,8 +29,12 @@ impl Face {
         let [a, b, c] = corners;
         // The longest two sides give the most digits.
         let normals = [(b - a).cross(c - a), (c - b).cross(a - b), (a - c).cross(b - c)];
-        let largest =
-            normals.into_iter().fold(DVec3::ZERO, |l, n| if n.length_squared() > l.length_squared() { n } else { l });
+        let (mut largest, mut most) = (DVec3::ZERO, 0.0);
+        for (normal, size) in normals.map(|n| (n, n.length_squared())) {
+            if size > most {
+                (largest, most) = (normal, size);
+            }
+        }
         let normal = largest.normalize_or_zero();
         let inward = [b - a, c - b, a - c].map(|side| normal.cross(side).normalize_or_zero());
         Face { corners, normal, inward }
@@ -41,10 +45,29 @@ impl Face {
     pub fn sees(&self, other: &Face) -> Seen {
         let mut seen = Seen { shared: [false; 3], heights: [0.0; 3] };
         for (i, &p) in other.corners.iter().enumerate() {
-            seen.shared[i] = self.corners[0] == p || self.corners[1] == p || self.corners[2] == p;
+            seen.shared[i] = self.has(p);
             seen.heights[i] = if seen.shared[i] { 0.0 } else { self.height(p) };
         }
         seen
+    }
+
+    /// Is a point one of its corners?
+    #[must_use]
+    pub fn has(&self, p: DVec3) -> bool {
+        self.corners[0] == p || self.corners[1] == p || self.corners[2] == p
+    }
+
+    /// Has it an area, as far as that was not rounded away?
+    #[must_use]
+    pub fn has_area(&self) -> bool {
+        self.normal != DVec3::ZERO
+    }
+
+    /// The number of sides that it shares with another one.
+    #[must_use]
+    pub fn shared_sides(&self, other: &Face) -> usize {
+        let [a, b, c] = other.corners.map(|p| usize::from(self.has(p)));
+        a * b + b * c + c * a
     }
 
     /// Signed distance of a point from the plane.
@@ -66,6 +89,12 @@ impl Face {
         let may_touch = |side, j| depth(side, j).abs() <= on && (0..3).all(|i| is_steep(side, i, j));
         let is_beyond = |side| is_clear(side) && (0..3).all(|j| !seen.shared[j] || may_touch(side, j));
         self.normal != DVec3::ZERO && (0..3).any(is_beyond)
+    }
+
+    /// Distance of a point inward from the line of a side, in the plane.
+    #[must_use]
+    pub fn depth(&self, side: usize, p: DVec3) -> f64 {
+        self.inward[side].dot(p - self.corners[side])
     }
 
     /// Distances of a point inward from the lines of the sides, in the plane.
@@ -103,7 +132,7 @@ impl Seen {
 }
 
 /// Beyond a side by so many tolerances a triangle is clear of another one.
-const CLEAR: f64 = 1e6;
+pub const CLEAR: f64 = 1e6;
 
 /// Sine of the angle from which on sides that begin in one corner share no more than [`TOUCH`] tolerances.
 const STEEP: f64 = 1.0 / TOUCH;
@@ -134,10 +163,10 @@ pub enum Crossing {
     Cover,
 }
 
-/// How `other` meets the inner part of `face`, which sees it so. `covers`: do they share more than their sides, if they lie in one plane?
+/// How `other`, whose corners have these heights over the plane of `face`, meets the inner part of it. `covers`: do they share more than their sides, if they
+/// lie in one plane?
 #[must_use]
-pub fn meeting(face: &Face, other: &Face, seen: &Seen, on: f64, covers: impl FnOnce() -> bool) -> Crossing {
-    let heights = seen.heights;
+pub fn meeting(face: &Face, other: &Face, heights: &[f64; 3], on: f64, covers: impl FnOnce() -> bool) -> Crossing {
     let (above, below) = (heights.iter().any(|&h| h > on), heights.iter().any(|&h| h < -on));
     if !above && !below {
         return if covers() { Crossing::Cover } else { Crossing::None };

@@ -15,9 +15,9 @@ const STRAIGHT: f64 = -1.0 + 1e-8;
 pub type EdgeCorners = HashMap<u64, Vec<u32>>;
 
 /// Cuts triangles at the corners on their edges, those within `rounding` of them. Returns how many edges had no partner for that.
-pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, rounding: f64) -> usize {
+/// `two_sided`: is a triangle the back of another?
+pub fn cut(mesh: &mut Indexed, alive: &mut Vec<bool>, uses: &EdgeUses, two_sided: bool, rounding: f64) -> usize {
     let odd: Vec<u64> = uses.each().filter(|uses| is_odd(mesh, uses)).map(|uses| uses[0].0).collect();
-    let two_sided = uses.each().any(|uses| has_back(mesh, uses));
     // Of double-sided parts most whole edges have the right partners, and cutting them would join what is apart.
     let cut = if two_sided { odd.clone() } else { beside(&odd, uses) };
     let corners = corners_on(mesh, &cut, &straight(mesh, &odd), rounding);
@@ -62,20 +62,14 @@ fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
     if balance(uses) != 0 {
         return true;
     }
-    let corners = |u: &Use| mesh.sorted(u.triangle);
     if let [(_, a), (_, b)] = uses {
-        return corners(a) == corners(b);
+        return mesh.are_same(a.triangle, b.triangle);
     }
+    let corners = |u: &Use| mesh.sorted(u.triangle);
     let mut all: Vec<[u32; 3]> = uses.iter().map(|(_, u)| corners(u)).collect();
     all.sort_unstable();
     all.dedup();
     all.len() % 2 == 1
-}
-
-/// Is one of the triangles at an edge the reverse of another?
-fn has_back(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
-    let corners = |u: &Use| mesh.sorted(u.triangle);
-    (0..uses.len()).any(|i| (0..i).any(|j| uses[i].1.up != uses[j].1.up && corners(&uses[i].1) == corners(&uses[j].1)))
 }
 
 /// EdgeCorners at which two of these edges run straight on.

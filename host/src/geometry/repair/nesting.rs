@@ -99,7 +99,10 @@ impl Closed {
     #[must_use]
     pub fn is_sheet(&self) -> bool {
         let size = (self.bounds[1] - self.bounds[0]).max_element();
-        self.volume.abs() <= 1e-12 * self.area() * size
+        // No triangle has an area above 3/2 of the size's square; 2 hold the rounding of as many as memory does.
+        let most = 2.0 * size * size * self.triangles.len() as f64;
+        let is_small = |area: f64| self.volume.abs() <= 1e-12 * area * size;
+        is_small(most) && is_small(self.area())
     }
 }
 

@@ -55,10 +55,10 @@ pub fn by_number<T: Copy>(
     (0..count).for_each(|n| next[n + 1] += next[n]);
     let Some(any) = values.clone().next() else { return Vec::new() };
     let mut sorted = vec![any; next[count]];
-    for value in values {
+    values.for_each(|value| {
         let at = &mut next[number(&value)];
         sorted[*at] = value;
         *at += 1;
-    }
+    });
     sorted
 }

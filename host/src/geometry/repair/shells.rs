@@ -7,7 +7,6 @@ use crate::geometry::repair::edges::{EdgeUses, Use, key};
 use crate::geometry::repair::join::{Joined, join};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::{Indexed, edges_of};
-use rustc_hash::FxHashMap as HashMap;
 
 /// A set of triangles connected through edges.
 #[derive(Debug, Clone, Default)]
@@ -36,46 +35,53 @@ struct Link {
 /// The two triangles of a plain edge, unless they are the same or each other's reverse.
 fn plain(mesh: &Indexed, uses: &[(u64, Use)]) -> Option<Link> {
     let [(_, p), (_, q)] = uses else { return None };
-    let corners = |u: &Use| mesh.triangles[u.triangle as usize];
-    let apart = corners(p).iter().any(|v| !corners(q).contains(v));
+    let apart = !mesh.are_same(p.triangle, q.triangle);
     apart.then_some(Link { a: p.triangle, b: q.triangle, same: p.up == q.up })
 }
 
-/// Split a mesh into shells and turn their triangles to agree with each other; `mesh` is changed where triangles turn.
+/// Split a mesh into shells and turn their triangles to agree with each other; `mesh` is changed where triangles turn. `edges`: those of the triangles that
+/// are `alive`.
 /// `solid_of` tells which named solid a triangle came from: at edges of many, a solid's triangles belong together.
-pub fn shells(mesh: &mut Indexed, alive: &[bool], solid_of: impl Fn(u32) -> usize) -> Vec<Shell> {
+pub fn shells(mesh: &mut Indexed, alive: &[bool], mut edges: EdgeUses, solid_of: impl Fn(u32) -> usize) -> Vec<Shell> {
     let count = mesh.triangles.len();
-    let mut edges = EdgeUses::new(mesh, alive);
-    let links: Vec<Link> = edges.each().filter_map(|uses| plain(mesh, uses)).collect();
+    let (mut links, mut many) = (Vec::with_capacity(3 * count / 2), Vec::new());
+    edges.each().for_each(|uses| match plain(mesh, uses) {
+        Some(link) => links.push(link),
+        None => many.push(uses[0].0),
+    });
     let mut sets = Sets::new(count);
     links.iter().for_each(|link| sets.join(link.a as usize, link.b as usize));
     let turned = orientations(count, &links);
-    for (t, _) in mesh.triangles.iter_mut().zip(&turned).filter(|&(_, &turned)| turned) {
-        t.swap(1, 2);
+    if turned.contains(&true) {
+        let all = mesh.triangles.iter_mut().zip(&turned);
+        all.filter(|&(_, &turned)| turned).for_each(|(t, _)| t.swap(1, 2));
+        edges.turn(|n| turned[n as usize]);
     }
-    edges.turn(|n| turned[n as usize]);
-    let many = edges.each().filter(|uses| plain(mesh, uses).is_none());
+    let many = many.into_iter().map(|edge| edges.of(edge));
     let Joined { lonely, guessed } = join(mesh, many, &mut sets, |n| solid_of(mesh.source(n)));
-    let mut position = HashMap::default();
+    // Of the lowest triangle of each shell.
+    let mut position = vec![usize::MAX; count];
     let mut shells: Vec<Shell> = Vec::new();
     for n in (0..count).filter(|&n| alive[n]) {
-        let at = *position.entry(sets.find(n)).or_insert_with(|| {
+        let lowest = sets.find(n);
+        if lowest == n {
+            position[n] = shells.len();
             shells.push(Shell::default());
-            shells.len() - 1
-        });
+        }
+        let at = position[lowest];
         shells[at].triangles.push(n as u32);
         shells[at].turned += usize::from(turned[n]);
     }
     for link in links.iter().filter(|l| (turned[l.a as usize] != turned[l.b as usize]) != l.same) {
-        shells[position[&sets.find(link.a as usize)]].one_sided = true;
+        shells[position[sets.find(link.a as usize)]].one_sided = true;
     }
     for (n, edge) in lonely {
         let directed = edges_of(mesh.triangles[n as usize]).into_iter().find(|&[a, b]| key(a, b) == edge);
-        shells[position[&sets.find(n as usize)]].boundary.extend(directed);
+        shells[position[sets.find(n as usize)]].boundary.extend(directed);
     }
     let mut clusters = Sets::new(shells.len());
     for [a, b] in guessed {
-        let [a, b] = [a, b].map(|n| position[&sets.find(n as usize)]);
+        let [a, b] = [a, b].map(|n| position[sets.find(n as usize)]);
         (shells[a].guessed, shells[b].guessed) = (true, true);
         clusters.join(a, b);
     }

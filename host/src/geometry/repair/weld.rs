@@ -31,6 +31,14 @@ impl Indexed {
         corners
     }
 
+    /// Have two triangles with an edge in common all corners in common?
+    #[must_use]
+    pub fn are_same(&self, a: u32, b: u32) -> bool {
+        // The third ones are equal if the sums are.
+        let [a, b] = [a, b].map(|n| self.triangles[n as usize].map(u64::from).iter().sum::<u64>());
+        a == b
+    }
+
     /// Where the corners of some triangles are.
     #[must_use]
     pub fn corners(&self, triangles: &[u32]) -> Vec<[DVec3; 3]> {
@@ -52,14 +60,15 @@ pub fn bits(p: DVec3) -> [u64; 3] {
 /// Weld points that are equal; −0 equals 0.
 #[must_use]
 pub fn weld(triangles: &[[DVec3; 3]]) -> Indexed {
-    let mut seen: HashMap<[u64; 3], u32> = HashMap::default();
+    // Numbers hash faster than a list of them.
+    let mut seen: HashMap<(u64, u64, u64), u32> = HashMap::default();
     seen.reserve(triangles.len());
     let mut points = Vec::new();
     let indexed = triangles
         .iter()
         .map(|t| {
             t.map(|p| {
-                *seen.entry(bits(p)).or_insert_with(|| {
+                *seen.entry(bits(p).into()).or_insert_with(|| {
                     points.push(p + 0.0);
                     (points.len() - 1) as u32
                 })
