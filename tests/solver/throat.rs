@@ -197,8 +197,13 @@ fn gas_of_another_density_passes_a_layer_without_noise() {
             for mach in [0.002, 0.01, 0.03] {
                 let found = slug_through_a_layer(open, density, mach);
                 let bernoulli = (1.0 / (open * open) - 1.0) * f64::max(density, 1.0);
-                println!("open {open}, density {density}, Mach {mach}: {found:.3} q, by Bernoulli's law {bernoulli:.3} q");
-                assert!(found < (1.04 + 4.0 * mach) * bernoulli, "open {open}, density {density}, Mach {mach}: {found} q");
+                println!(
+                    "open {open}, density {density}, Mach {mach}: {found:.3} q, by Bernoulli's law {bernoulli:.3} q"
+                );
+                assert!(
+                    found < (1.04 + 4.0 * mach) * bernoulli,
+                    "open {open}, density {density}, Mach {mach}: {found} q"
+                );
             }
         }
     }

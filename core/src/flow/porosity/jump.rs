@@ -258,11 +258,7 @@ fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases
 
 /// Density of the gas upstream, brought to the pressure downstream, over the density there; both as they are in the throat. 1 where one gas flows steadily.
 #[inline(always)]
-fn share_of_densities<R: Real, const D: usize>(
-    face: &JumpLane<R, D>,
-    gas: &impl FaceGases<R>,
-    from_left: bool,
-) -> R {
+fn share_of_densities<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases<R>, from_left: bool) -> R {
     let [l, r] = &face.throat;
     let (up, down) = if from_left { (l, r) } else { (r, l) };
     // (p / p₀)^(1/γ), within 0.3 % for weak waves: the quotient of two lines that has its first three derivatives at 1.
