@@ -46,15 +46,22 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     #[inline(always)]
     fn openings_of(&self, at: [usize; D]) -> [(R, R); D] {
         core::array::from_fn(|d| {
+            let fraction = |face: usize| self.porosity.faces[d].get(face).copied().unwrap_or(R::ONE);
             let [low, high] = self.mesh.faces_of(d, at);
-            (self.porosity.faces[d][low], self.porosity.faces[d][high])
+            (fraction(low), fraction(high))
         })
+    }
+
+    /// Open fraction of a cell.
+    #[inline(always)]
+    fn open_volume(&self, at: [usize; D]) -> R {
+        self.porosity.volume.get(self.mesh.index(at)).copied().unwrap_or(R::ONE)
     }
 
     /// The walls of a cell. One with all its volume open holds none: what closes its faces lies in their planes.
     #[inline(always)]
     fn walls_of(&self, at: [usize; D]) -> CellWalls<R, D> {
-        let open = self.porosity.volume[self.mesh.index(at)];
+        let open = self.open_volume(at);
         let least = rounding::<R>();
         if D == 1 || open >= R::ONE - least {
             return CellWalls::Aligned;
@@ -71,6 +78,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 
     /// Whether a cell holds the corner of a body aligned with the grid, or of the space beside one. The border of a layer of porosity 0.5 (in space 7/9)
     /// leaves the same fractions where it cuts off a corner of the cell, at any angle; but it goes on askew in the cells beside.
+    #[inline(never)]
     fn holds_corner(&self, at: [usize; D], openings: [(R, R); D], open: R) -> bool {
         let Some(corner) = corner_of(openings, open) else { return false };
         let goes_on_askew = |d: usize| {
@@ -94,7 +102,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 
     /// Has a cell walls along several axes that are not those of a box, or a part of all its faces closed and no walls?
     fn is_askew_or_medium(&self, at: [usize; D]) -> bool {
-        let (open, least) = (self.porosity.volume[self.mesh.index(at)], rounding::<R>());
+        let (open, least) = (self.open_volume(at), rounding::<R>());
         let openings = self.openings_of(at);
         let components = openings.iter().filter(|(low, high)| (*high - *low).abs() > least).count();
         match components {
@@ -109,7 +117,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     pub fn holds_inclined_wall(&self, at: [usize; D]) -> bool {
         let CellWalls::Askew(area) = self.walls_of(at) else { return false };
         // In double precision: a component of the normal may be a millionth of another.
-        let open = self.porosity.volume[self.mesh.index(at)].to_f64();
+        let open = self.open_volume(at).to_f64();
         let sum = area.iter().fold(0.0, |s, a| s + a.abs().to_f64());
         // The normal into the gas, mirrored so that the solid stands at the origin. What is no component but rounding drops out.
         let normal = area.map(|a| if a.abs() > rounding::<R>() { a.abs().to_f64() / sum } else { 0.0 });
