@@ -353,8 +353,6 @@ struct Sums<'s, 'g, 'l, R, P> {
     flux_y: &'s mut [R],
     layer: &'s mut Layer<'l, R>,
     pieces: &'s mut P,
-    /// A piece inside a cell, in the coordinates of the grid.
-    in_grid: Polygon<R>,
 }
 
 impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
@@ -373,7 +371,7 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
             sums.fill(R::ZERO);
         }
         let (x, y) = (Axis::new(grid.edges(0), i0, ni), Axis::new(grid.edges(1), j0, nj));
-        Sums { window, grid, x, y, flux_x, moment, flux_y, layer, pieces, in_grid: Polygon::default() }
+        Sums { window, grid, x, y, flux_x, moment, flux_y, layer, pieces }
     }
 
     /// Spread what a level triangle has in the planes below and above the layer, which only `pieces` sees.
@@ -477,21 +475,21 @@ impl<'s, 'g, 'l, R: Real, P: PieceSums<R>> Sums<'s, 'g, 'l, R, P> {
         if i < nx && j < ny {
             let at = j * nx + i;
             if place == Place::Inside && (self.x.origin != R::ZERO || self.y.origin != R::ZERO) {
-                self.put_in_grid(row, c, piece);
-                self.pieces.add(at, place, doubled_area, &self.in_grid);
+                self.pieces.add(at, place, doubled_area, &self.in_grid(row, c, piece));
             } else {
                 self.pieces.add(at, place, doubled_area, piece);
             }
         }
     }
 
-    /// Put a piece inside a cell into `in_grid`: what lies in the plane of a side lies exactly there, and nothing beyond.
-    fn put_in_grid(&mut self, row: isize, c: isize, piece: &Polygon<R>) {
+    /// A piece inside a cell, in the coordinates of the grid: what lies in the plane of a side lies exactly there, and nothing beyond.
+    fn in_grid(&self, row: isize, c: isize, piece: &Polygon<R>) -> Polygon<R> {
         let (along_x, along_y) = (self.x.sides(c), self.y.sides(row));
-        self.in_grid.clear();
+        let mut moved = Polygon::default();
         for &[x, y, z] in piece.corners() {
-            self.in_grid.push([self.x.in_grid(along_x, x), self.y.in_grid(along_y, y), z]);
+            moved.push([self.x.in_grid(along_x, x), self.y.in_grid(along_y, y), z]);
         }
+        moved
     }
 
     /// Add the integrals over a piece, fanned from its first corner so that only differences enter.
