@@ -235,6 +235,65 @@ fn a_crowd_has_the_same_bits_whichever_bodies_are_asked() {
     }
 }
 
+/// A prism over a triangle, from one height to another.
+fn prism(corners: [DVec3; 3], [low, high]: [f64; 2]) -> Vec<[DVec3; 3]> {
+    let [a, b, c] = corners.map(|p| p.with_z(low));
+    let [u, v, w] = corners.map(|p| p.with_z(high));
+    vec![[a, c, b], [u, v, w], [a, b, v], [a, v, u], [b, c, w], [b, w, v], [c, a, u], [c, u, w]]
+}
+
+/// Bodies around an axis are near each other in every box about it; planes through the axis tell them apart. None is missed: the bits are those of asking all.
+#[test]
+fn bodies_around_an_axis_or_a_point_have_the_same_bits_whichever_are_asked() {
+    let mut random = Random::new(17);
+    let count = 300;
+    let rim = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
+    let turn = |n: f64| std::f64::consts::TAU * n / count as f64;
+    let wedge =
+        |axis: DVec3, from: f64, to: f64, heights| prism([axis, axis + 0.4 * rim(from), axis + 0.4 * rim(to)], heights);
+    let middle = DVec3::new(0.5, 0.5, 0.0);
+    let apart = (0..count).map(|n| wedge(middle, turn(f64::from(n)), turn(f64::from(n) + 0.6), [0.1, 0.9])).collect();
+    let flush = (0..count).map(|n| wedge(middle, turn(f64::from(n)), turn(f64::from(n + 1)), [0.0, 1.0])).collect();
+    let mut any = |shift: f64| -> Vec<_> {
+        let mut one = |_| {
+            let from = random.between(0.0, 7.0);
+            let axis = middle + DVec3::new(random.between(-shift, shift), random.between(-shift, shift), 0.0);
+            wedge(axis, from, from + random.between(0.01, 0.2), [random.between(0.0, 0.3), random.between(0.6, 1.0)])
+        };
+        (0..count).map(&mut one).collect()
+    };
+    let (overlapping, shifted) = (any(0.0), any(0.02));
+    let mut spike = |_| {
+        let ahead = DVec3::from_array([0; 3].map(|_| random.between(-1.0, 1.0))).normalize();
+        let side = ahead.any_orthonormal_vector();
+        let base = [0.0, 2.0, 4.0].map(|n: f64| 0.45 * ahead + 0.02 * (n.cos() * side + n.sin() * ahead.cross(side)));
+        let [o, a, b, c] = [DVec3::ZERO, base[0], base[1], base[2]].map(|p| p + 0.5);
+        vec![[o, b, a], [o, c, b], [o, a, c], [a, b, c]]
+    };
+    let star = (0..count).map(&mut spike).collect();
+    let families: [(&str, Vec<Vec<[DVec3; 3]>>, Option<f64>); 5] = [
+        ("apart", apart, Some(0.8 * 0.08 * f64::from(count) * turn(0.6).sin())),
+        ("flush", flush, Some(0.08 * f64::from(count) * turn(1.0).sin())),
+        ("overlapping", overlapping, None),
+        ("shifted", shifted, None),
+        ("star", star, None),
+    ];
+    for (name, solids, volume) in families {
+        let bodies = scene(&solids);
+        let surfaces = surfaces(&bodies, &bodies.triangles);
+        for edges in [[edges(1), edges(1), edges(1)], [edges(3), edges(2), edges(1)]] {
+            let all = Edges(edges);
+            let grid = all.grid(None).expect("a grid");
+            let expected = fields(&grid, &surfaces, Given { near: 0, ..PLENTY });
+            assert!(expected.reports.iter().all(|r| r.max_gap < 1e-10), "{name}");
+            let found = fields(&grid, &surfaces, PLENTY);
+            assert!(found.value == expected.value && found.bounds == expected.bounds, "{name}");
+            let solid: f64 = found.reports.iter().map(|r| r.solid_volume).sum();
+            assert!(volume.is_none_or(|v| (solid - v).abs() < 1e-12), "{name}: {solid} of {volume:?}");
+        }
+    }
+}
+
 #[test]
 fn single_precision_holds_double_precision() {
     let bodies = scene(&overlapping(&mut Random::new(11)));

@@ -16,6 +16,7 @@ mod bsp;
 mod descent;
 mod octree;
 mod piece;
+mod separate;
 
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
@@ -26,6 +27,7 @@ use descent::{Descent, DescentRule};
 use octree::{Octree, OctreeSize, octree_room};
 use piece::NoProof::{Ambiguous, Full};
 use piece::{Ball, Plane};
+use separate::Bodies;
 
 pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
@@ -196,6 +198,8 @@ pub struct CellUnion<'a, R: Real> {
     frame: Frame<R>,
     /// Its planes are thicker than rounding asks for.
     blurred: bool,
+    /// Lowest and highest corner of the cells of bodies that are not marked `below`, and of those that are, in the frame.
+    cells: [[[R; 3]; 2]; 2],
     part_count: usize,
     /// So many of them have their tree.
     built: usize,
@@ -213,6 +217,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
             space,
             blurred: blur > frame.thickness,
             frame: Frame { thickness: frame.thickness.max(blur), ..frame },
+            cells: [[[R::ZERO; 3], [R::ONE; 3]]; 2],
             part_count: 0,
             built: 0,
             piece_count: 0,
@@ -234,6 +239,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
         ids: impl Iterator<Item = u32>,
     ) -> Result<(), NoProof> {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
+        self.cells[usize::from(below)] = [self.frame.framed(lo), self.frame.framed(hi)];
         let first = self.piece_count;
         let (mut filling, mut on_sides) = (R::ZERO, R::ZERO);
         let mut scratch = [Polygon::default(), Polygon::default()];
@@ -370,7 +376,8 @@ impl<'a, R: Real> CellUnion<'a, R> {
         let UnionMemory { pieces, nodes, parts, fragments, octants, near, .. } = &mut self.space;
         let (parts, thickness) = (parts.get(..self.part_count).unwrap_or_default(), self.frame.thickness);
         let mut octree = Octree { octants, near, size: &mut self.octree, nodes, parts, thickness };
-        octree.begin();
+        let bodies = Bodies { parts, pieces, nodes, cells: &self.cells, thickness };
+        octree.begin(&bodies, !self.blurred);
         (Descent { nodes, parts, fragments, octree, spare: Polygon::default(), thickness }, pieces)
     }
 }

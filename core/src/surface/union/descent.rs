@@ -67,7 +67,7 @@ impl<R: Real> Descent<'_, R> {
         let first = self.fragments.first_mut().ok_or(Full)?;
         first.polygon.assign(polygon);
         (first.ball, first.is_cut, first.to_ask) = (ball, false, ToAsk::default());
-        self.octree.locate(&mut first.to_ask, &ball, 0);
+        self.octree.locate(&mut first.to_ask, polygon, &ball, 0);
         first.enter(parts, &mut self.octree, 0, rule.own);
         let mut waiting: usize = 1;
         while let Some(top) = waiting.checked_sub(1) {
@@ -190,7 +190,7 @@ impl<R: Real> Fragment<R> {
     #[inline(never)]
     fn draw_ball(&mut self, octree: &mut Octree<R>, part: usize) {
         (self.ball, self.is_cut) = (Ball::around(&self.polygon), false);
-        octree.locate(&mut self.to_ask, &self.ball, part);
+        octree.locate(&mut self.to_ask, &self.polygon, &self.ball, part);
     }
 
     #[inline(always)]

@@ -1,19 +1,21 @@
 //! Where many bodies meet in one cell: which of them have solid near a polygon.
 //!
-//! An octree of the cell, grown where it is asked. Each octant lists the bodies that have solid in a box of [`REACH`] times its width about its centre, so
+//! An octree of the cell, or of each part of it that planes separate from the others ([`separate`](super::separate)), grown where it is asked. Each octant lists the bodies that have solid in a box of [`REACH`] times its width about its centre, so
 //! that a polygon whose ball stays within the box need not go down the trees of the others. Of bodies about one centre few reach any small octant on the
 //! surface of their union.
 
 use super::bsp::{Branch, Node, Part};
-use super::piece::{AMBIGUITY_BAND, Ball};
+use super::piece::{AMBIGUITY_BAND, Ball, Plane};
+use super::separate::Bodies;
 use crate::number::real::Real;
+use crate::surface::clip::Polygon;
 use heapless::Vec;
 
 /// Where no more bodies than this meet, lists cost more than they save.
 const MANY: usize = 64;
 
 /// Lists as short as this are not shortened further.
-const SHORT: usize = 64;
+pub(super) const SHORT: usize = 64;
 
 /// Width of the box that the list of an octant holds for, in widths of the octant.
 const REACH: f64 = 2.0;
@@ -25,16 +27,19 @@ const NONE: u32 = u32::MAX;
 /// Branches of a tree that a box may reach at the same time; beyond, it is taken to meet solid.
 const BRANCHES: usize = 32;
 
-/// A cube of the octree, in the frame of the cell.
+/// A cube of the octree, in the frame of the cell; of one that a plane divides, the sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Octant<R: Real> {
-    center: [R; 3],
+    pub(super) center: [R; 3],
     /// Half of its width.
-    half: R,
+    pub(super) half: R,
     /// Its list: numbers of bodies, rising.
-    first: u32,
-    end: u32,
-    children: [u32; 8],
+    pub(super) first: u32,
+    pub(super) end: u32,
+    pub(super) children: [u32; 8],
+    /// A plane that separates the bodies of its list, if there are octants for what is behind and before it.
+    pub(super) plane: Plane<R>,
+    pub(super) sides: Option<[u32; 2]>,
 }
 
 /// Pieces of a body in a cell, as [`Layers::union_pieces`](crate::surface::layer::Layers::union_pieces) counts them.
@@ -63,8 +68,8 @@ pub(super) struct ToAsk {
 /// How much of the memory is in use; nothing while there is no octree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct OctreeSize {
-    octants: usize,
-    near: usize,
+    pub octants: usize,
+    pub near: usize,
 }
 
 /// The octree of a cell.
@@ -79,16 +84,19 @@ pub(super) struct Octree<'a, R: Real> {
 }
 
 impl<R: Real> Octree<'_, R> {
-    /// Begin with the whole cell if many bodies meet and memory allows.
-    pub fn begin(&mut self) {
+    /// Begin with the whole cell, and what planes separate in it, if many bodies meet and memory allows.
+    pub fn begin(&mut self, bodies: &Bodies<'_, R>, separate: bool) {
         let count = self.parts.len();
         if self.size.octants == 0 && count > MANY {
             let (Some(root), Some(all)) = (self.octants.first_mut(), self.near.get_mut(..count)) else { return };
             for (number, place) in all.iter_mut().enumerate() {
                 *place = number as u32;
             }
-            *root = Octant { center: [R::HALF; 3], half: R::HALF, first: 0, end: count as u32, children: [UNKNOWN; 8] };
+            *root = Octant { center: [R::HALF; 3], half: R::HALF, end: count as u32, ..Octant::default() };
             *self.size = OctreeSize { octants: 1, near: count };
+            if separate {
+                self.separate(bodies);
+            }
         }
     }
 
@@ -106,14 +114,14 @@ impl<R: Real> Octree<'_, R> {
         self.parts.len()
     }
 
-    /// Find the smallest octant whose list holds for a ball around a polygon that has passed the bodies before `from`. Polygons shrink as they pass bodies, so
+    /// Find the smallest octant whose list holds for a polygon in a ball, which has passed the bodies before `from`. Polygons shrink as they pass bodies, so
     /// it is done as often as the number of passed bodies has doubled.
     #[inline(never)]
-    pub fn locate(&mut self, at: &mut ToAsk, ball: &Ball<R>, from: usize) {
+    pub fn locate(&mut self, at: &mut ToAsk, polygon: &Polygon<R>, ball: &Ball<R>, from: usize) {
         if self.size.octants == 0 || from < at.again as usize {
             return;
         }
-        let (mut octant, from) = (0, from as u32);
+        let (mut octant, from) = (self.beside_planes(polygon, ball.radius), from as u32);
         while let Some(child) = self.child(octant, ball) {
             octant = child;
         }
@@ -164,7 +172,7 @@ impl<R: Real> Octree<'_, R> {
             true => (u32::try_from(first).ok()?, u32::try_from(end).ok()?),
             false => (parent.first, parent.end),
         };
-        *self.octants.get_mut(number)? = Octant { center, half, first, end, children: [UNKNOWN; 8] };
+        *self.octants.get_mut(number)? = Octant { center, half, first, end, ..Octant::default() };
         self.size.octants += 1;
         if kept {
             self.size.near = end as usize;

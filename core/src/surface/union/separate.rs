@@ -1,0 +1,184 @@
+//! Where many bodies meet in one cell: planes that have some of them on one side and the others beyond.
+//!
+//! Bodies around an axis or a point, as wedges of a wheel or the cones of a star, are near each other in every box about it, but any plane of a face that
+//! passes the axis has nearly all of them wholly on one of its sides. What lies on one side of such a plane meets only bodies that reach into that side. So
+//! the bodies are listed by sides of planes, again and again, before boxes tell which of them are near ([`octree`](super::octree)).
+//!
+//! A polygon in the plane, or so little inclined to it that much of it is as near as rounding, asks all.
+
+use super::bsp::{Branch, Node, Part};
+use super::octree::{Octant, Octree, SHORT};
+use super::piece::{AMBIGUITY_BAND, Piece, Plane, span};
+use crate::number::real::Real;
+use crate::number::space::dot;
+use crate::surface::clip::Polygon;
+use core::ops::Range;
+
+/// Bodies whose faces are tried for a plane, and pieces of each that are tried.
+const TRIED: [usize; 2] = [4, 8];
+
+/// Bodies by which the planes that are tried are compared.
+const COMPARED: usize = 16;
+
+/// A plane of which this share of the bodies reaches one of its sides separates too few.
+const MOST: f64 = 0.75;
+
+/// A polygon lies on one side of a plane if it reaches farther there than this share of the radius of a ball around it: then what is as near to the plane as
+/// rounding is a sliver.
+const INCLINED: f64 = 0.01;
+
+/// What is known of the bodies of a cell.
+pub(super) struct Bodies<'a, R: Real> {
+    pub parts: &'a [Part],
+    pub pieces: &'a [Piece<R>],
+    pub nodes: &'a [Node<R>],
+    /// Lowest and highest corner of the cell, in its own frame, of bodies that are not marked `below`, and of those that are.
+    pub cells: &'a [[[R; 3]; 2]; 2],
+    pub thickness: R,
+}
+
+/// Which sides of a plane something reaches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Reach {
+    behind: bool,
+    before: bool,
+}
+
+impl<R: Real> Bodies<'_, R> {
+    /// The sides of a plane that the solid of a body in its cell reaches. Its corners are those of its pieces, and the corners of the cell that are solid.
+    fn reach(&self, body: u32, plane: &Plane<R>) -> Reach {
+        let mut reach = Reach::default();
+        let Some(part) = self.parts.get(body as usize) else { return reach };
+        let mut see = |distance: R| {
+            reach.behind |= distance < -self.thickness;
+            reach.before |= distance > self.thickness;
+        };
+        for piece in self.pieces.get(part.first..part.end).unwrap_or_default() {
+            let (least, most) = span(&piece.polygon, plane);
+            see(least);
+            see(most);
+        }
+        let cell = &self.cells[usize::from(part.below)];
+        for corner in 0..8 {
+            let at = [0, 1, 2].map(|axis| cell[corner >> axis & 1][axis]);
+            let distance = plane.distance(at);
+            if self.may_be_solid(part.root, at) {
+                see(distance);
+            }
+        }
+        reach
+    }
+
+    /// Whether a point may lie in the solid of a body; if unsure, yes.
+    fn may_be_solid(&self, root: Branch, point: [R; 3]) -> bool {
+        let clear = self.thickness * R::from_f64(AMBIGUITY_BAND);
+        let mut branch = root;
+        while let Branch::Node(n) = branch {
+            let Some(node) = self.nodes.get(n as usize) else { return true };
+            let distance = node.plane.distance(point);
+            if distance.abs() <= clear {
+                return true;
+            }
+            branch = if distance > R::ZERO { node.positive } else { node.negative };
+        }
+        branch == Branch::Solid
+    }
+
+    /// Of the planes of some faces of listed bodies, that which leaves the fewest to the side that more bodies reach.
+    fn best_plane(&self, list: &[u32]) -> Option<Plane<R>> {
+        let (mut best, mut fewest) = (None, list.len().min(COMPARED));
+        let mut last: Option<Plane<R>> = None;
+        for body in spread(list, TRIED[0]) {
+            let part = self.parts.get(body as usize)?;
+            for Piece { plane, .. } in self.pieces.get(part.first..part.end)?.iter().take(TRIED[1]) {
+                // The next triangle of a flat face.
+                let is_last = |last: Plane<R>| dot(last.normal, plane.normal) > R::ONE - R::from_f64(INCLINED);
+                if last.replace(*plane).is_some_and(is_last) {
+                    continue;
+                }
+                let mut count = [0; 2];
+                for body in spread(list, COMPARED) {
+                    let Reach { behind, before } = self.reach(body, plane);
+                    count[0] += usize::from(behind);
+                    count[1] += usize::from(before);
+                }
+                let most = count[0].max(count[1]);
+                if most < fewest {
+                    (best, fewest) = (Some(*plane), most);
+                }
+            }
+        }
+        best
+    }
+}
+
+/// So many of a list, evenly spread, or all.
+fn spread(list: &[u32], most: usize) -> impl Iterator<Item = u32> {
+    let count = list.len().min(most);
+    (0..count).filter_map(move |n| list.get((2 * n + 1) * list.len() / (2 * count)).copied())
+}
+
+impl<R: Real> Octree<'_, R> {
+    /// Separate the bodies of the cell by planes as long as that leaves fewer on each side, and memory allows.
+    pub(super) fn separate(&mut self, bodies: &Bodies<'_, R>) {
+        let mut number = 0;
+        while number < self.size.octants {
+            self.divide(number, bodies);
+            number += 1;
+        }
+    }
+
+    /// Divide the list of an octant by a plane; none if there is no plane that serves, or memory is spent.
+    fn divide(&mut self, number: usize, bodies: &Bodies<'_, R>) -> Option<()> {
+        let parent = *self.octants.get(number)?;
+        let whole = parent.first as usize..parent.end as usize;
+        if whole.len() <= SHORT {
+            return None;
+        }
+        let plane = bodies.best_plane(self.near.get(whole.clone())?)?;
+        let middle = self.list(whole.clone(), self.size.near, |body| bodies.reach(body, &plane).behind)?;
+        let end = self.list(whole.clone(), middle, |body| bodies.reach(body, &plane).before)?;
+        let longest = (middle - self.size.near).max(end - middle);
+        if R::from_usize(longest) > R::from_usize(whole.len()) * R::from_f64(MOST) {
+            return None;
+        }
+        let first = self.size.octants;
+        let lists = [self.size.near..middle, middle..end];
+        for (place, list) in self.octants.get_mut(first..first + 2)?.iter_mut().zip(lists) {
+            *place = Octant { first: u32::try_from(list.start).ok()?, end: u32::try_from(list.end).ok()?, ..parent };
+        }
+        let parent = self.octants.get_mut(number)?;
+        (parent.plane, parent.sides) = (plane, Some([first as u32, first as u32 + 1]));
+        (self.size.octants, self.size.near) = (first + 2, end);
+        Some(())
+    }
+
+    /// Write those of a list for which something is true from a place on; where they end.
+    fn list(&mut self, of: Range<usize>, at: usize, is_true: impl Fn(u32) -> bool) -> Option<usize> {
+        let mut end = at;
+        for place in of {
+            let body = *self.near.get(place)?;
+            if is_true(body) {
+                *self.near.get_mut(end)? = body;
+                end += 1;
+            }
+        }
+        Some(end)
+    }
+
+    /// The last octant to which planes lead a polygon of a radius.
+    pub(super) fn beside_planes(&self, polygon: &Polygon<R>, radius: R) -> u32 {
+        let mut number = 0;
+        while let Some(Octant { plane, sides: Some([behind, before]), .. }) = self.octants.get(number as usize) {
+            let ((least, most), inclined) = (span(polygon, plane), radius * R::from_f64(INCLINED));
+            number = if least >= -self.thickness && most > inclined {
+                *before
+            } else if most <= self.thickness && least < -inclined {
+                *behind
+            } else {
+                break;
+            };
+        }
+        number
+    }
+}
