@@ -51,8 +51,17 @@ pub enum Error {
         /// The axis of the side.
         axis: usize,
     },
-    /// A step that is negative or not finite, a CFL number that is not positive, or steps too short to advance the time.
+    /// A step that is negative or not finite, or a CFL number that is not positive.
     Step,
+    /// A stable step that is too short to advance the time.
+    Stalled,
+    /// An open fraction that is not from 0 to 1, but for rounding.
+    Fraction {
+        /// Of faces across this axis; none for the fractions of cells.
+        axis: Option<usize>,
+        /// Its place in the array.
+        index: usize,
+    },
     /// A cell outside the physical set (density or pressure not positive, or not finite; of a mixed gas a capacity out of its bounds).
     Unphysical {
         /// Its flat index.
@@ -83,9 +92,12 @@ impl fmt::Display for Error {
                 f.write_str("a reservoir has no place beside a gas of several ratios of specific heats")
             }
             Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
-            Error::Step => {
-                f.write_str("the step or the CFL number is not positive and finite, or too small to advance the time")
+            Error::Step => f.write_str("the step or the CFL number is not positive and finite"),
+            Error::Stalled => f.write_str("a stable step is too short to advance the time"),
+            Error::Fraction { axis: Some(axis), index } => {
+                write!(f, "the open fraction of face {index} across axis {axis} is not from 0 to 1")
             }
+            Error::Fraction { axis: None, index } => write!(f, "the open fraction of cell {index} is not from 0 to 1"),
             Error::WatchedOrder { number } => {
                 write!(f, "watched cell {number} has a lower index than the one before it")
             }

@@ -1,5 +1,6 @@
 //! One stable step on the way to a time: not past it, and repeated with half the time where it would need floors.
 
+use crate::flow::error::Error;
 use crate::flow::step_report::Report;
 use crate::number::real::Real;
 
@@ -33,8 +34,8 @@ pub struct StableStep<R, const D: usize> {
 /// [`Problem::step`]: crate::flow::Problem::step
 ///
 /// # Errors
-/// Those of `attempt`.
-pub fn stable_step<R: Real, const D: usize, E>(
+/// Those of `attempt`; and [`Error::Stalled`] before an attempt whose step is too short to advance `time`.
+pub fn stable_step<R: Real, const D: usize, E: From<Error>>(
     time: R,
     end: R,
     longest: R,
@@ -47,11 +48,14 @@ pub fn stable_step<R: Real, const D: usize, E>(
     };
     let mut repeated = 0;
     loop {
+        // The end itself, whatever the sum of time and step rounds to.
+        let reached = if last && repeated == 0 { end } else { time + dt };
+        if time < end && !(reached > time) {
+            return Err(Error::Stalled.into());
+        }
         let report = attempt(dt)?;
         if report.floored == 0 || repeated == REPEATS {
-            // The end itself, whatever the sum of time and step rounds to.
-            let time = if last && repeated == 0 { end } else { time + dt };
-            return Ok(StableStep { dt, time, report, repeated });
+            return Ok(StableStep { dt, time: reached, report, repeated });
         }
         repeated += 1;
         dt = R::HALF * dt;

@@ -243,12 +243,12 @@ impl<R: Real, const D: usize> State<R, D> {
     fn stable_step(&mut self, end: R, cfl: R, total: &mut StepReport<R>) -> Answer {
         let (rate, time) = (self.rate()?, self.time);
         let longest = if rate > R::ZERO { cfl / rate } else { R::INFINITY };
-        let mut tried = 0;
+        let mut tried = 0_u64;
         let done = stable_step(time, end, longest, |dt| {
             tried += 1;
-            if time + dt > time { self.attempt(dt) } else { Err(Status::Stalled.of(c"dt")) }
+            self.attempt(dt)
         });
-        total.repeated += tried - 1;
+        total.repeated += tried.saturating_sub(1);
         let done = done?;
         self.accept(done.time, done.dt, &done.report, total)
     }

@@ -25,6 +25,16 @@ fn rounding<R: Real>() -> R {
     R::larger(R::from_f64(1e-6), R::from_f64(16.0) * R::EPSILON)
 }
 
+/// Do the open fractions of two faces differ by more than rounding?
+fn differs<R: Real>(low: R, high: R) -> bool {
+    (high - low).abs() > rounding()
+}
+
+/// The number of axes along which the two faces of a cell differ: of the components of the area vector of its walls.
+fn components<R: Real, const D: usize>(openings: [(R, R); D]) -> usize {
+    openings.iter().filter(|(low, high)| differs(*low, *high)).count()
+}
+
 /// Open fractions that differ by no more than this from those that a plane leaves are those of a wall which bends within the cell: a circle
 /// of a radius of four cells or more. The border of a layer of porosity 0.8 at 45° to the grid differs by up to 0.06, one of 0.5 by more.
 const BEND: f64 = 0.03;
@@ -67,12 +77,10 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
             return CellWalls::Aligned;
         }
         let openings = self.openings_of(at);
-        let area = openings.map(|(low, high)| high - low);
-        let components = area.iter().filter(|a| a.abs() > least).count();
-        if components < 2 || self.holds_corner(at, openings, open) {
+        if components(openings) < 2 || self.holds_corner(at, openings, open) {
             CellWalls::Aligned
         } else {
-            CellWalls::Askew(area)
+            CellWalls::Askew(openings.map(|(low, high)| high - low))
         }
     }
 
@@ -83,7 +91,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         let Some(corner) = corner_of(openings, open) else { return false };
         let goes_on_askew = |d: usize| {
             let (low, high) = openings[d];
-            if (high - low).abs() <= rounding::<R>() {
+            if !differs(low, high) {
                 return false;
             }
             let mut beside = at;
@@ -104,8 +112,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     fn is_askew_or_medium(&self, at: [usize; D]) -> bool {
         let (open, least) = (self.open_volume(at), rounding::<R>());
         let openings = self.openings_of(at);
-        let components = openings.iter().filter(|(low, high)| (*high - *low).abs() > least).count();
-        match components {
+        match components(openings) {
             _ if open >= R::ONE - least => false,
             0 => openings.iter().all(|(low, _)| *low < R::ONE - least),
             1 => false,

@@ -174,7 +174,7 @@ fn strong_waves<R: Real, const D: usize>(face: &JumpLane<R, D>, f: &Flux<R, D>) 
     let normal = |s: usize| {
         let (w, t) = (&face.cell[s], &face.throat[s]);
         let at_throat = through - to * (t.density * t.velocity[0] * t.velocity[0] + t.pressure);
-        let stream = face.passing[s] * relative_impulse(w, face.references[s]);
+        let stream = face.passing[s] * relative_impulse(w, R::ONE, face.references[s]);
         at_throat + (stream + face.walls[s])
     };
     JumpFlux {
@@ -185,10 +185,10 @@ fn strong_waves<R: Real, const D: usize>(face: &JumpLane<R, D>, f: &Flux<R, D>) 
     }
 }
 
-/// ρu² + p of a state, less a reference pressure.
+/// ρu² + p of a stream that has the velocity and pressure of a state and a multiple of its density, less a reference pressure.
 #[inline(always)]
-fn relative_impulse<R: Real, const D: usize>(w: &Primitive<R, D>, reference: R) -> R {
-    w.density * w.velocity[0] * w.velocity[0] + (w.pressure - reference)
+fn relative_impulse<R: Real, const D: usize>(w: &Primitive<R, D>, densities: R, reference: R) -> R {
+    densities * (w.density * w.velocity[0] * w.velocity[0]) + (w.pressure - reference)
 }
 
 /// Up to half this strength (Mach number in the throat, or jump of its pressure as a share) waves count as weak, from all of it
@@ -242,7 +242,7 @@ fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases
         let (w, duct, share) = (&face.cell[s], face.ducts[s], share[s]);
         let (wave, change) = (wave / share, common - share * mass[s]);
         let enthalpy = (duct * gas.upwind(s == 0).enthalpy(w) + wave * change) / (duct * w.density);
-        let impulse = share * (w.density * w.velocity[0] * w.velocity[0]) + (w.pressure - face.references[s]);
+        let impulse = relative_impulse(w, share, face.references[s]);
         (duct * impulse + (w.velocity[0] + wave) * change, common * enthalpy)
     };
     let ((left, energy_l), (right, energy_r)) = (own(0, -sound[0]), own(1, sound[1]));

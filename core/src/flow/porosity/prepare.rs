@@ -26,7 +26,7 @@ impl<R: Real> Default for Treatment<R> {
 /// What [`prepare`] changed in the fractions given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tidied {
-    /// Cells whose fraction was within a few rounding errors of 0 (negative ones and NaN too) and became 0.
+    /// Cells whose fraction was within a few rounding errors of 0, or below it by rounding, and became 0.
     pub dust_cells: usize,
     /// Faces likewise.
     pub dust_faces: usize,
@@ -39,9 +39,9 @@ pub struct Tidied {
 /// Open fractions as measured, and memory for the flags of the cells. Vectors, or slices that can be written.
 #[derive(Debug)]
 pub struct Fractions<V, F, const D: usize> {
-    /// `beta_v`, one per cell, x fastest.
+    /// `beta_v`, one per cell, x fastest, 0 to 1; what is beyond that by no more than 10⁻⁶ is taken for rounding.
     pub volume: V,
-    /// `beta_x`, `beta_y`, `beta_z` of the live axes, one longer than the cells along their own axis.
+    /// `beta_x`, `beta_y`, `beta_z` of the live axes, one longer than the cells along their own axis; as `volume`.
     pub faces: [V; D],
     /// One byte per cell; what it holds does not count.
     pub flags: F,
@@ -87,7 +87,7 @@ pub struct PreparedView<'a, R, const D: usize> {
 /// enough, the faces that open it to the outside are closed and the clusters found again.
 ///
 /// # Errors
-/// An array does not fit the mesh, or the mesh has 2^31 cells or more and small ones among them.
+/// An array does not fit the mesh, an open fraction is NaN or not from 0 to 1, or the mesh has 2^31 cells or more and small ones among them.
 pub fn prepare<R, V, F, L, const D: usize>(
     mesh: &Mesh<'_, R, D>,
     periodic: [bool; D],
@@ -102,12 +102,13 @@ where
     L: AsRef<[u32]> + AsMut<[u32]>,
 {
     let Fractions { mut volume, mut faces, flags } = fractions;
-    let tidied = Tidied {
-        dust_cells: without_dust(volume.as_mut()),
-        dust_faces: faces.iter_mut().map(|f| without_dust(f.as_mut())).sum(),
-        closed_faces: 0,
-        matched_faces: (0..D).filter(|&d| periodic[d]).map(|d| match_sides(mesh, d, faces[d].as_mut())).sum(),
-    };
+    let mut tidied = Tidied { dust_cells: without_dust(volume.as_mut(), None)?, ..Tidied::default() };
+    for (d, faces) in faces.iter_mut().map(AsMut::as_mut).enumerate() {
+        tidied.dust_faces += without_dust(faces, Some(d))?;
+        if periodic[d] {
+            tidied.matched_faces += match_sides(mesh, d, faces);
+        }
+    }
     let cells = mesh.cells();
     let mut space = Prepared { volume, faces, flags, list: None, used: 0, cells, periodic, tidied };
     space.flag(mesh, treatment.jump)?;
@@ -294,13 +295,27 @@ fn match_sides<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>, d: usize, faces: 
     lowered
 }
 
-/// Sets what is within a few rounding errors of 0, or below, or NaN, to 0; returns how many were not 0 before.
-fn without_dust<R: Real>(fractions: &mut [R]) -> usize {
-    let dust = R::from_f64(16.0) * R::EPSILON;
+/// Open fractions may leave 0 to 1 by so much: rounding of single precision.
+const BEYOND: f64 = 1e-6;
+
+/// Sets fractions of cells, or of faces across an axis, that are below 0 or within a few rounding errors of it to 0, and those above 1 to 1; returns how many
+/// became 0.
+///
+/// # Errors
+/// A fraction that is NaN, or below 0 or above 1 by more than rounding.
+fn without_dust<R: Real>(fractions: &mut [R], axis: Option<usize>) -> Result<usize, Error> {
+    let (dust, beyond) = (R::from_f64(16.0) * R::EPSILON, R::from_f64(BEYOND));
     let mut count = 0;
-    for x in fractions.iter_mut().filter(|x| !(**x > dust)) {
-        count += usize::from(*x != R::ZERO);
-        *x = R::ZERO;
+    for (index, x) in fractions.iter_mut().enumerate() {
+        if !(*x >= -beyond && *x <= R::ONE + beyond) {
+            return Err(Error::Fraction { axis, index });
+        }
+        if *x <= dust {
+            count += usize::from(*x != R::ZERO);
+            *x = R::ZERO;
+        } else if *x > R::ONE {
+            *x = R::ONE;
+        }
     }
-    count
+    Ok(count)
 }
