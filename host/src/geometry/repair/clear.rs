@@ -2,8 +2,8 @@
 //!
 //! Every pair of triangles whose boxes touch is looked at (where too many do, those that no plane tells apart), with the numbers and the rules of
 //! [`near`](crate::geometry::repair::face::near) and [`meeting`], bit for bit, but in another order: the cheapest that is enough comes first. So nothing is clear
-//! here that meets there. Only which corners two triangles share is told later, of corners on the planes of both alone, as all are that they share if each triangle lies in its own plane.
-//! What is not clear here may be clear there.
+//! here that meets there. Only which corners two triangles share is told later, of corners on the planes of both alone, as all are that they share if each
+//! triangle lies in its own plane. What is not clear here may be clear there.
 
 use crate::geometry::repair::boxes::Boxes;
 use crate::geometry::repair::face::{CLEAR, Crossing, Face, meeting};
