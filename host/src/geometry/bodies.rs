@@ -418,7 +418,7 @@ fn clean(
     }
     let of_all = (alive != all).then(|| EdgeUses::new(&mesh, &all));
     let of_all = of_all.as_ref().unwrap_or(&uses);
-    let mut has_backs = of_all.any_pair(|a, b| a.up != b.up && mesh.are_same(a.triangle, b.triangle));
+    let mut has_backs = of_all.any_same(&mesh, false);
     d.t_junction_edges = junctions::cut(&mut mesh, &mut all, of_all, has_backs, rounding);
     d.boundary_edges = d.t_junction_edges;
     if d.t_junction_edges > 0 {

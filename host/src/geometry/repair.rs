@@ -15,6 +15,7 @@ pub mod lines;
 pub mod nesting;
 pub mod regions;
 pub mod rims;
+pub mod separation;
 pub mod sets;
 pub mod shells;
 pub mod tree;

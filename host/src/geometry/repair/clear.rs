@@ -1,13 +1,15 @@
 //! Shells that meet themselves nowhere, which are most: told at a fraction of what it costs to tell where a shell meets itself.
 //!
-//! Every pair of triangles whose boxes touch is looked at, with the numbers and the rules of [`near`](crate::geometry::repair::face::near) and [`meeting`],
-//! bit for bit, but in another order: the cheapest that is enough comes first. So nothing is clear here that meets there. Only which corners two triangles
-//! share is told later, of corners on the planes of both alone, as all are that they share if each triangle lies in its own plane.
-//! What is not clear here may be clear there.
+//! Every pair of triangles whose boxes touch is looked at (where too many do, those that no plane tells apart), with the numbers and the rules of
+//! [`near`](crate::geometry::repair::face::near) and [`meeting`], bit for bit, but in another order: the cheapest that is enough comes first. So nothing is clear
+//! here that meets there. Only which corners two triangles share is told later, of corners on the planes of both alone, as all are that they share if each
+//! triangle lies in its own plane. What is not clear here may be clear there.
 
 use crate::geometry::repair::boxes::Boxes;
 use crate::geometry::repair::face::{CLEAR, Crossing, Face, meeting};
+use crate::geometry::repair::separation::all_not_apart;
 use glam::DVec3;
+use std::cell::Cell;
 
 /// Is it clear that no triangle of a closed surface cuts or covers another, and none has an edge with more than one other? Points closer than `on` to a plane
 /// or line are on it.
@@ -15,23 +17,21 @@ use glam::DVec3;
 pub fn is_clear(triangles: &[[DVec3; 3]], on: f64) -> bool {
     let boxes = Boxes::new(triangles);
     let faces: Vec<Face> = boxes.order().map(|n| Face::new(triangles[n])).collect();
-    let mut shared_sides = 0;
+    if !(on.is_finite() && faces.iter().all(|face| face.holds_itself(on))) {
+        return false;
+    }
+    let shared_sides = Cell::new(0);
     let mut is_clear = |m: usize, n: usize| {
         let found = sides_of_clear(&faces[m], &faces[n], on);
-        shared_sides += found.unwrap_or(0);
+        shared_sides.set(shared_sides.get() + found.unwrap_or(0));
         found.is_some()
     };
+    let clear = boxes.all_touching(&mut is_clear).unwrap_or_else(|| {
+        shared_sides.set(0);
+        all_not_apart(&faces, on, &mut is_clear)
+    });
     // An edge of two is shared by one pair, an edge of four by six.
-    on.is_finite()
-        && faces.iter().all(|face| holds_itself(face, on))
-        && boxes.all_touching(&mut is_clear)
-        && 2 * shared_sides == 3 * faces.len()
-}
-
-/// Has it three corners, all on its plane as that was rounded? Then a corner that another shares is on its plane, too.
-fn holds_itself(face: &Face, on: f64) -> bool {
-    let [a, b, c] = face.corners;
-    a != b && b != c && c != a && face.height(b).abs() <= on && face.height(c).abs() <= on
+    clear && 2 * shared_sides.get() == 3 * faces.len()
 }
 
 /// The number of sides that two triangles share, if neither cuts or covers the other.
@@ -300,7 +300,7 @@ mod tests {
             }
             let on = 1e-13 * corners.as_flattened().iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
             let [a, b] = corners.map(Face::new);
-            if !holds_itself(&a, on) || !holds_itself(&b, on) {
+            if !a.holds_itself(on) || !b.holds_itself(on) {
                 continue;
             }
             let clear = sides_of_clear(&a, &b, on);
@@ -329,6 +329,141 @@ mod tests {
         assert!(!is_clear(&[box_of(0.0), box_of(1.0)].concat(), 1e-13));
     }
 
+    /// Turned around an axis that leans: a profile of radii and heights, in whole numbers; the ends may be poles. With a `spike` one
+    /// corner is drawn through the other side.
+    fn turned(profile: &[[f64; 2]], around: usize, spike: bool) -> (Vec<Point>, Vec<[usize; 3]>) {
+        let axes = [[0.48, 0.6, 0.64], [-0.64, 0.768, -0.024], [-0.6, -0.224, 0.768]].map(DVec3::from_array);
+        let at = |[radius, height]: [f64; 2], turn: f64, to: f64| {
+            let (y, x) = (turn / around as f64 * std::f64::consts::TAU).sin_cos();
+            let p = axes[0] * (x * radius * to) + axes[1] * (y * radius * to) + axes[2] * height;
+            (p * 1e6).to_array().map(|c| c.round() as i64)
+        };
+        let (mut points, mut rows) = (Vec::new(), Vec::new());
+        for &ring in profile {
+            let count = if ring[0] == 0.0 { 1 } else { around };
+            rows.push((points.len(), count));
+            points.extend((0..count).map(|n| at(ring, n as f64, 1.0)));
+        }
+        if spike {
+            let row = rows.iter().position(|&(_, count)| count > 1).expect("a ring");
+            points[rows[row].0] = at(profile[row], 0.5 * around as f64 + 0.37, 1.05);
+        }
+        if profile[0][0] > 0.0 {
+            rows.push(rows[0]);
+        }
+        let mut triangles = Vec::new();
+        for pair in rows.windows(2) {
+            let v = |row: usize, n: usize| pair[row].0 + n % pair[row].1;
+            for n in 0..around {
+                let both = [[v(0, n), v(0, n + 1), v(1, n + 1)], [v(0, n), v(1, n + 1), v(1, n)]];
+                triangles.extend(both.iter().filter(|[a, b, c]| a != b && b != c && c != a));
+            }
+        }
+        (points, triangles)
+    }
+
+    /// Of `around` needles each, or twice as many: cone, two cones, cylinder, tube, disc with a hole, flange.
+    const PROFILES: [&[[f64; 2]]; 6] = [
+        &[[0.0, 0.0], [0.7, 0.0], [0.0, 2.0]],
+        &[[0.0, -1.7], [0.5, 0.0], [0.0, 2.0]],
+        &[[0.0, -1.0], [0.4, -1.0], [0.4, 1.0], [0.0, 1.0]],
+        &[[0.4, -1.0], [0.4, 1.0], [0.33, 1.0], [0.33, -1.0]],
+        &[[1.0, 0.0], [1.0, 0.02], [0.05, 0.02], [0.05, 0.0]],
+        &[[0.3, 0.0], [0.9, 0.0], [0.9, 0.1], [0.5, 0.1], [0.4, 0.3], [0.4, 1.4], [0.3, 1.4]],
+    ];
+
+    /// Triangles without order, large and small, some of which share corners.
+    fn soup(chance: &mut Chance, count: usize) -> (Vec<Point>, Vec<[usize; 3]>) {
+        let mut points: Vec<Point> = (0..count).map(|_| chance.shift(1_000_000)).collect();
+        let most = [300_000, 3000, 30][chance.below(3)];
+        let mut triangles = Vec::new();
+        for _ in 0..count {
+            let first = chance.below(count);
+            let mut beside = |by: i64| {
+                points.push([0, 1, 2].map(|i| points[first][i] + chance.shift(by)[i]));
+                points.len() - 1
+            };
+            triangles.push([first, beside(300_000), beside(most)]);
+        }
+        (points, triangles)
+    }
+
+    /// Which pairs planes do not tell apart; each is asked for once.
+    fn not_apart(faces: &[Face], on: f64) -> std::collections::BTreeSet<[usize; 2]> {
+        let mut seen = std::collections::BTreeSet::new();
+        all_not_apart(faces, on, |m, n| {
+            assert!(m != n && seen.insert([m.min(n), m.max(n)]));
+            true
+        });
+        seen
+    }
+
+    #[test]
+    fn triangles_that_a_plane_tells_apart_do_not_meet() {
+        let mut chance = Chance(5);
+        let (mut apart, mut meeting) = (0, 0);
+        for n in 0..24 {
+            let profile = PROFILES[n % PROFILES.len()];
+            let (points, triangles) =
+                if n % 4 == 3 { soup(&mut chance, 200) } else { turned(profile, 20 + chance.below(80), n % 4 > 0) };
+            let all: Vec<[DVec3; 3]> =
+                triangles.iter().map(|t| t.map(|v| DVec3::from_array(points[v].map(|c| c as f64)))).collect();
+            let on = tolerance([DVec3::splat(-2e6), DVec3::splat(2e6)]);
+            let faces: Vec<Face> = all.iter().map(|&t| Face::new(t)).collect();
+            let seen = not_apart(&faces, on);
+            let corners = |n: usize| triangles[n].map(|v| points[v]);
+            let through = |m: usize, n: usize| {
+                let t = corners(m);
+                (0..3).any(|i| pierces([t[i], t[(i + 1) % 3]], corners(n)))
+            };
+            for (b, a) in (0..all.len()).flat_map(|b| (0..b).map(move |a| (b, a))) {
+                if boxes_touch(&all[a], &all[b]) {
+                    let cross = through(a, b) || through(b, a) || meet(&faces[a], &faces[b], on);
+                    let told = !seen.contains(&[a, b]);
+                    let clear = !cross && faces[a].shared_sides(&faces[b]) == 0;
+                    assert!(!told || clear, "{n}: {:?} {:?}", corners(a), corners(b));
+                    meeting += usize::from(cross);
+                    apart += usize::from(told);
+                }
+            }
+        }
+        assert!(apart > 50_000 && meeting > 500, "{apart} {meeting}");
+    }
+
+    fn boxes_touch(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+        let bounds = |t: &[DVec3; 3]| [t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2])];
+        let ([a, b], [c, d]) = (bounds(a), bounds(b));
+        a.cmple(d).all() && c.cmple(b).all()
+    }
+
+    #[test]
+    fn few_pairs_of_many_needles_are_looked_at() {
+        for (n, profile) in PROFILES.iter().enumerate() {
+            for spike in [false, true] {
+                let (points, triangles) = turned(profile, 1000, spike);
+                let all: Vec<[DVec3; 3]> =
+                    triangles.iter().map(|t| t.map(|v| DVec3::from_array(points[v].map(|c| c as f64)))).collect();
+                let faces: Vec<Face> = all.iter().map(|&t| Face::new(t)).collect();
+                let on = tolerance([DVec3::splat(-2e6), DVec3::splat(2e6)]);
+                let looked_at = not_apart(&faces, on).len();
+                assert!(looked_at < 40 * all.len(), "{n} {spike}: {looked_at} pairs of {} triangles", all.len());
+                assert_eq!(is_clear(&all, on), !spike, "{n}");
+                assert_eq!(meets(&all, on), spike, "{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_plane_divides_is_looked_at_as_a_whole() {
+        let needle = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1e-3, 0.0)];
+        for t in [needle, [DVec3::ZERO; 3], [DVec3::ZERO, DVec3::X, DVec3::splat(f64::NAN)], needle.map(|p| p * 1e200)]
+        {
+            let seen = not_apart(&vec![Face::new(t); 100], 1e-13);
+            assert!(seen.len() == 100 * 99 / 2 || t[2].is_nan());
+        }
+        assert!(not_apart(&[], 1e-13).is_empty());
+    }
+
     #[test]
     fn every_pair_whose_boxes_touch_is_seen_once() {
         let mut chance = Chance(3);
@@ -340,11 +475,12 @@ mod tests {
             let boxes = Boxes::new(&triangles);
             let order: Vec<usize> = boxes.order().collect();
             let mut seen = std::collections::BTreeSet::new();
-            boxes.all_touching(|a, b| {
+            let all = boxes.all_touching(|a, b| {
                 let (a, b) = (order[a], order[b]);
                 assert!(a != b && seen.insert([a.min(b), a.max(b)]));
                 true
             });
+            assert_eq!(all, Some(true));
             let bounds = |t: &[DVec3; 3]| [t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2])];
             for (b, [low, high]) in triangles.iter().map(bounds).enumerate() {
                 for (a, [min, max]) in triangles[..b].iter().map(bounds).enumerate() {

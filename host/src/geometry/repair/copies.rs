@@ -19,7 +19,7 @@ fn from_lowest(t: [u32; 3]) -> [u32; 3] {
 /// that closes another part stays. `edges`: those of the triangles that are `alive`. Returns the numbers dropped of triangles without a back, and of those of
 /// surfaces with two sides.
 pub fn drop_repeats(mesh: &Indexed, alive: &mut [bool], edges: &EdgeUses) -> [usize; 2] {
-    if !edges.any_pair(|a, b| a.up == b.up && mesh.are_same(a.triangle, b.triangle)) {
+    if !edges.any_same(mesh, true) {
         return [0; 2];
     }
     let mut first: HashMap<[u32; 3], u32> = HashMap::default();

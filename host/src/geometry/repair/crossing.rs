@@ -11,6 +11,7 @@ use crate::geometry::repair::clear::is_clear;
 use crate::geometry::repair::edges::key;
 use crate::geometry::repair::face::{Crossing, Face, cut, is_apart, meeting, near, push_parts, sides_on};
 use crate::geometry::repair::lines::Lines;
+use crate::geometry::repair::separation::all_not_apart;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use crate::geometry::repair::weld::bits;
@@ -29,6 +30,13 @@ const SPREAD: f64 = 1e-9;
 
 /// So many solid angles may be computed for one shell, where lines tell nothing: some seconds.
 const BUDGET: usize = 100_000_000;
+
+/// Boxes along the axes tell enough if no more than so many pairs of them touch for each triangle.
+const PAIRS: usize = 64;
+
+/// In a crowd of triangles a side lies on another if more than this share of it does: needles around one corner come closer to each other there than a
+/// tolerance, on lengths that are no part of the sides to speak of.
+const RESTING: f64 = 1e-6;
 
 /// What is found of a shell.
 #[derive(Debug)]
@@ -121,18 +129,56 @@ fn at_edge_of_many(triangles: &[[DVec3; 3]]) -> Option<u32> {
     sides(triangles).find(|&([p, q], ..)| key(p, q) == many).map(|(_, n, _)| n)
 }
 
-/// Triangles, and where they meet.
-pub struct Meetings<'a> {
-    triangles: &'a [[DVec3; 3]],
-    /// Their planes.
-    pub faces: Vec<Face>,
-    tree: Tree,
+/// What triangles have in common.
+#[derive(Default)]
+struct Contacts {
     /// For each triangle that others meet, these others.
     met: HashMap<u32, Vec<(u32, Crossing)>>,
     /// Triangles and their sides that lie on others: there the surface on both sides of an edge may be in different regions.
     resting: HashSet<(u32, usize)>,
     /// Sides that two triangles share, counted for each pair of them.
     shared_sides: usize,
+}
+
+impl Contacts {
+    /// Looks at two triangles. A side lies on another one if more than the share `least` of it does.
+    fn see(&mut self, faces: &[Face], [m, n]: [u32; 2], [on, least]: [f64; 2]) {
+        let (a, b) = (&faces[m as usize], &faces[n as usize]);
+        let seen = a.sees(b);
+        self.shared_sides += seen.shared_sides();
+        let Some(back) = near(a, b, &seen, on) else { return };
+        let inward = [(a, b), (b, a)].map(|(face, other)| LazyCell::new(move || other.corners.map(|p| face.inward(p))));
+        let have_area = a.normal != DVec3::ZERO && b.normal != DVec3::ZERO;
+        let covers = LazyCell::new(|| have_area && !inward.iter().any(|inward| is_apart(inward, on)));
+        for (m, n, a, b, seen, inward) in [(m, n, a, b, &seen, &inward[0]), (n, m, b, a, &back, &inward[1])] {
+            let found = meeting(a, b, &seen.heights, on, || *covers);
+            if found != Crossing::None {
+                self.met.entry(m).or_default().push((n, found));
+            }
+            let sides = sides_on(a, b, seen, [on, least], || **inward);
+            self.resting.extend((0..3).filter(|&side| sides[side]).map(|side| (n, side)));
+        }
+    }
+
+    /// Of all triangles that no plane tells apart, in the order of their numbers.
+    fn of_crowd(faces: &[Face], on: f64) -> Self {
+        let mut contacts = Contacts::default();
+        all_not_apart(faces, on, |m, n| {
+            contacts.see(faces, [m as u32, n as u32], [on, RESTING]);
+            true
+        });
+        contacts.met.values_mut().for_each(|met| met.sort_unstable_by_key(|(n, _)| *n));
+        contacts
+    }
+}
+
+/// Triangles, and where they meet.
+pub struct Meetings<'a> {
+    triangles: &'a [[DVec3; 3]],
+    /// Their planes.
+    pub faces: Vec<Face>,
+    tree: Tree,
+    contacts: Contacts,
     on: f64,
 }
 
@@ -160,29 +206,13 @@ impl<'a> Meetings<'a> {
     #[must_use]
     pub fn new(triangles: &'a [[DVec3; 3]], on: f64) -> Self {
         let faces: Vec<Face> = triangles.iter().map(|&t| Face::new(t)).collect();
-        let mut met: HashMap<u32, Vec<(u32, Crossing)>> = HashMap::default();
-        let mut resting = HashSet::default();
-        let mut shared_sides = 0;
         let tree = Tree::new(triangles);
-        tree.touching_pairs(|m, n| {
-            let (a, b) = (&faces[m as usize], &faces[n as usize]);
-            let seen = a.sees(b);
-            shared_sides += seen.shared_sides();
-            let Some(back) = near(a, b, &seen, on) else { return };
-            let inward =
-                [(a, b), (b, a)].map(|(face, other)| LazyCell::new(move || other.corners.map(|p| face.inward(p))));
-            let have_area = a.normal != DVec3::ZERO && b.normal != DVec3::ZERO;
-            let covers = LazyCell::new(|| have_area && !inward.iter().any(|inward| is_apart(inward, on)));
-            for (m, n, a, b, seen, inward) in [(m, n, a, b, &seen, &inward[0]), (n, m, b, a, &back, &inward[1])] {
-                let found = meeting(a, b, &seen.heights, on, || *covers);
-                if found != Crossing::None {
-                    met.entry(m).or_default().push((n, found));
-                }
-                let sides = sides_on(a, b, seen, on, || **inward);
-                resting.extend((0..3).filter(|&side| sides[side]).map(|side| (n, side)));
-            }
-        });
-        Meetings { triangles, faces, tree, met, resting, shared_sides, on }
+        let mut contacts = Contacts::default();
+        let mut see = |m, n| contacts.see(&faces, [m, n], [on, 0.0]);
+        if !tree.some_touching_pairs(PAIRS * triangles.len(), &mut see) {
+            contacts = Contacts::of_crowd(&faces, on);
+        }
+        Meetings { triangles, faces, tree, contacts, on }
     }
 
     /// Lines through the triangles.
@@ -193,7 +223,7 @@ impl<'a> Meetings<'a> {
 
     /// Pairs of triangles across edges that they alone use and that lie on no other.
     pub fn pairs(&self, edges: &[SideUse]) -> Vec<[u32; 2]> {
-        let free = |&(_, n, side): &SideUse| !self.resting.contains(&(n, side));
+        let free = |&(_, n, side): &SideUse| !self.contacts.resting.contains(&(n, side));
         let pair = |uses: &[SideUse]| match uses {
             [a, b] if free(a) && free(b) => Some([a.1, b.1]),
             _ => None,
@@ -221,18 +251,18 @@ impl<'a> Meetings<'a> {
     /// The first triangle, by the order of edges, that has an edge with more than one other; the triangles are closed.
     fn at_edge_of_many(&self) -> Option<u32> {
         // An edge of two is shared by one pair, an edge of four by six.
-        if 2 * self.shared_sides == 3 * self.triangles.len() { None } else { at_edge_of_many(self.triangles) }
+        if 2 * self.contacts.shared_sides == 3 * self.triangles.len() { None } else { at_edge_of_many(self.triangles) }
     }
 
     /// Do other triangles cut or cover this one?
     #[must_use]
     pub fn meets(&self, n: u32) -> bool {
-        self.met.contains_key(&n)
+        self.contacts.met.contains_key(&n)
     }
 
     /// The triangles that cover a part of this one.
     pub fn covering(&self, n: u32) -> impl Iterator<Item = u32> {
-        let met = self.met.get(&n).into_iter().flatten();
+        let met = self.contacts.met.get(&n).into_iter().flatten();
         met.filter(|(_, found)| *found == Crossing::Cover).map(|(m, _)| *m)
     }
 
@@ -257,7 +287,7 @@ impl<'a> Meetings<'a> {
     pub fn parts(&self, n: u32) -> Vec<Vec<DVec3>> {
         let face = &self.faces[n as usize];
         let mut parts = vec![face.corners.to_vec()];
-        for (m, meeting) in self.met.get(&n).into_iter().flatten() {
+        for (m, meeting) in self.contacts.met.get(&n).into_iter().flatten() {
             let other = &self.faces[*m as usize];
             let around = |ends: &[DVec3]| {
                 let (lo, hi) = ends.iter().fold((ends[0], ends[0]), |(a, b), p| (a.min(*p), b.max(*p)));
@@ -303,7 +333,7 @@ impl<'a> Meetings<'a> {
                 made.surface.extend(whole.map(|[a, b, c]| if turn { [a, c, b] } else { [a, b, c] }));
             }
         }
-        let mut met: Vec<u32> = self.met.keys().copied().collect();
+        let mut met: Vec<u32> = self.contacts.met.keys().copied().collect();
         met.sort_unstable();
         for n in met {
             let parts = self.parts(n);
@@ -347,7 +377,7 @@ pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
         return Found::Simple { walls: false };
     }
     let shell = Meetings::new(triangles, on);
-    let Some(n) = shell.met.keys().min().copied().or_else(|| shell.at_edge_of_many()) else {
+    let Some(n) = shell.contacts.met.keys().min().copied().or_else(|| shell.at_edge_of_many()) else {
         return Found::Simple { walls: false };
     };
     let place = triangles[n as usize][0];

@@ -46,9 +46,20 @@ impl EdgeUses {
         self.0.chunk_by(|a, b| a.0 == b.0)
     }
 
-    /// Is something true of any two uses of one edge?
-    pub fn any_pair(&self, is_true: impl Fn(&Use, &Use) -> bool) -> bool {
-        self.each().any(|uses| (1..uses.len()).any(|i| uses[..i].iter().any(|(_, other)| is_true(&uses[i].1, other))))
+    /// Have any two triangles at one edge all corners in common, and run it the same way (`alike`) or opposite ways?
+    #[must_use]
+    pub fn any_same(&self, mesh: &Indexed, alike: bool) -> bool {
+        self.each().any(|uses| match uses {
+            [_] => false,
+            [(_, a), (_, b)] => (a.up == b.up) == alike && mesh.are_same(a.triangle, b.triangle),
+            _ => {
+                let way = |(_, u): &(u64, Use)| (mesh.sum_of_corners(u.triangle), u.up);
+                let mut ways: Vec<(u64, bool)> = uses.iter().map(way).collect();
+                ways.sort_unstable();
+                // Of equal triangles those that run the edge downwards come first.
+                ways.windows(2).any(|w| w[0].0 == w[1].0 && (w[0].1 == w[1].1) == alike)
+            }
+        })
     }
 
     /// Turn all uses by some triangles.

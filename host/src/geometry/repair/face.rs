@@ -63,6 +63,13 @@ impl Face {
         self.normal != DVec3::ZERO
     }
 
+    /// Has it three corners, all on its plane as that was rounded? Then a corner that another shares is on its plane, too.
+    #[must_use]
+    pub fn holds_itself(&self, on: f64) -> bool {
+        let [a, b, c] = self.corners;
+        a != b && b != c && c != a && self.height(b).abs() <= on && self.height(c).abs() <= on
+    }
+
     /// The number of sides that it shares with another one.
     #[must_use]
     pub fn shared_sides(&self, other: &Face) -> usize {
@@ -198,10 +205,16 @@ pub fn meeting(face: &Face, other: &Face, heights: &[f64; 3], on: f64, covers: i
 /// A side that lies on another triangle for no more than so many tolerances touches it in a point.
 const TOUCH: f64 = 16.0;
 
-/// The sides of `other`, from each of its corners to the next, that lie on `face` for some length and are not sides of it; `face` sees it so. `inward`:
-/// the distances of its corners [inward](Face::inward) from the sides of `face`.
+/// The sides of `other`, from each of its corners to the next, that lie on `face` for some length, more than `least` as a share of the side, and are not sides
+/// of it; `face` sees it so. `inward`: the distances of its corners [inward](Face::inward) from the sides of `face`.
 #[must_use]
-pub fn sides_on(face: &Face, other: &Face, seen: &Seen, on: f64, inward: impl FnOnce() -> [[f64; 3]; 3]) -> [bool; 3] {
+pub fn sides_on(
+    face: &Face,
+    other: &Face,
+    seen: &Seen,
+    [on, least]: [f64; 2],
+    inward: impl FnOnce() -> [[f64; 3]; 3],
+) -> [bool; 3] {
     let in_plane = |i: usize| seen.heights[i].abs() <= on;
     let may = |i: usize, j: usize| in_plane(i) && in_plane(j) && !(seen.shared[i] && seen.shared[j]);
     let may = [may(0, 1), may(1, 2), may(2, 0)];
@@ -213,7 +226,8 @@ pub fn sides_on(face: &Face, other: &Face, seen: &Seen, on: f64, inward: impl Fn
     for i in (0..3).filter(|&i| may[i]) {
         let j = (i + 1) % 3;
         let share = share_within(&inward[i], &inward[j], -on);
-        found[i] = share.is_some_and(|share| share * other.corners[i].distance(other.corners[j]) > TOUCH * on);
+        let is_long = |share: f64| share > least && share * other.corners[i].distance(other.corners[j]) > TOUCH * on;
+        found[i] = share.is_some_and(is_long);
     }
     found
 }

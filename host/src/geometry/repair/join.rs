@@ -124,12 +124,14 @@ impl Fan {
     /// Pair what lies folded in one direction and has no better partner, but no triangle with its exact reverse.
     fn folds(&self, pairing: &mut Pairing) {
         let Pairing { pairs, alone, .. } = pairing;
-        for n in 0..self.spokes.len() {
-            let fits = |m: &usize| {
-                let (a, b) = (&self.spokes[n], &self.spokes[*m]);
-                alone[*m] && b.opens && a.direction == b.direction && a.apex != b.apex
-            };
-            if let Some(m) = (0..alone.len()).find(fits).filter(|_| alone[n] && !self.spokes[n].opens) {
+        let ends: Vec<usize> = (0..alone.len()).filter(|&n| alone[n] && !self.spokes[n].opens).collect();
+        for n in ends {
+            let a = &self.spokes[n];
+            let fits = |m: &usize| alone[*m] && self.spokes[*m].opens && a.apex != self.spokes[*m].apex;
+            // Spokes are in the order of directions.
+            let first = self.spokes.partition_point(|b| b.direction < a.direction);
+            let count = self.spokes[first..].partition_point(|b| b.direction == a.direction);
+            if let Some(m) = (first..first + count).find(fits) {
                 (alone[m], alone[n]) = (false, false);
                 pairs.push([m, n]);
             }

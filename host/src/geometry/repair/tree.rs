@@ -59,19 +59,27 @@ impl Tree {
 
     /// Visit every pair of triangles whose boxes touch, once.
     pub fn touching_pairs(&self, mut visit: impl FnMut(u32, u32)) {
+        self.some_touching_pairs(usize::MAX, &mut visit);
+    }
+
+    /// The same, but for pairs beyond `most` or a few more. Returns whether all were visited.
+    pub fn some_touching_pairs(&self, most: usize, visit: &mut impl FnMut(u32, u32)) -> bool {
+        let mut visited = 0;
         let mut pairs = vec![(0_u32, 0_u32)];
         while let Some((a, b)) = pairs.pop() {
             let (p, q) = (&self.nodes[a as usize], &self.nodes[b as usize]);
             match (p.halves, q.halves) {
                 (Some(h), Some(_)) if a == b => pairs.extend([(h, h), (h, h + 1), (h + 1, h + 1)]),
                 _ if !p.touches(q) => {}
-                (None, None) => self.leaves(p, q, a == b, &mut visit),
+                (None, None) if visited > most => return false,
+                (None, None) => visited += self.leaves(p, q, a == b, visit),
                 (Some(h), other) if other.is_none() || p.end - p.first >= q.end - q.first => {
                     pairs.extend([(h, b), (h + 1, b)]);
                 }
                 (_, h) => pairs.extend(h.into_iter().flat_map(|h| [(a, h), (a, h + 1)])),
             }
         }
+        true
     }
 
     /// Visit the triangles whose boxes touch the box `lo..hi`.
@@ -120,16 +128,20 @@ impl Tree {
         }
     }
 
-    fn leaves(&self, p: &Node, q: &Node, same: bool, visit: &mut impl FnMut(u32, u32)) {
+    /// Returns the number of pairs visited.
+    fn leaves(&self, p: &Node, q: &Node, same: bool, visit: &mut impl FnMut(u32, u32)) -> usize {
+        let mut visited = 0;
         for m in p.first..p.end {
             let (a, [a_min, a_max]) = &self.members[m as usize];
             let others = if same { m + 1 } else { q.first } as usize..q.end as usize;
             for (b, [b_min, b_max]) in &self.members[others] {
                 if a_min.cmple(*b_max).all() && a_max.cmpge(*b_min).all() {
                     visit(*a, *b);
+                    visited += 1;
                 }
             }
         }
+        visited
     }
 }
 

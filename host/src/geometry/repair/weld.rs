@@ -35,8 +35,13 @@ impl Indexed {
     #[must_use]
     pub fn are_same(&self, a: u32, b: u32) -> bool {
         // The third ones are equal if the sums are.
-        let [a, b] = [a, b].map(|n| self.triangles[n as usize].map(u64::from).iter().sum::<u64>());
-        a == b
+        self.sum_of_corners(a) == self.sum_of_corners(b)
+    }
+
+    /// The sum of the numbers of a triangle's corners: of those with an edge in common it is the same if all corners are.
+    #[must_use]
+    pub fn sum_of_corners(&self, n: u32) -> u64 {
+        self.triangles[n as usize].map(u64::from).iter().sum()
     }
 
     /// Where the corners of some triangles are.
