@@ -168,6 +168,45 @@ fn pairs_of_pipes_to_nine_digits() {
     assert!(met > 100, "{met} pairs met");
 }
 
+/// Any three pipes: bounds are as close as asked for, those of the parts of a cell hold what those of the whole do, and so do those of cones that are all
+/// but these pipes, of which sections tell.
+#[test]
+fn threes_of_pipes() {
+    let random = &mut Random::new(11);
+    let mut met = 0;
+    for case in 0..80 {
+        let pipe = |random: &mut Random| {
+            let along =
+                if random.below(3) == 0 { DVec3::AXES[random.below(3)] } else { random.vector(1.0) }.normalize();
+            let (middle, half) = (random.point(DVec3::splat(0.2), DVec3::splat(0.8)), random.between(0.1, 2.0));
+            Exact::Cylinder(middle - along * half, middle + along * half, random.between(0.05, 0.6))
+        };
+        let exact = [pipe(random), pipe(random), pipe(random)];
+        let pipes = exact.map(|solid| quadric(&solid));
+        let within = |cell: [[f64; 2]; 3], enough: f64| excess(&pipes, cell, enough).expect("three solids");
+        let [low, high] = within([[0.0, 1.0]; 3], 1e-5);
+        assert!(high - low <= 1e-5, "case {case}: {low} to {high} of {exact:?}");
+        let cut = [0, 1, 2].map(|_| random.between(0.1, 0.9));
+        let mut parts = [0.0; 2];
+        for n in 0..8 {
+            let side = |a: usize| if n >> a & 1 == 0 { [0.0, cut[a]] } else { [cut[a], 1.0] };
+            let found = within([0, 1, 2].map(side), 1e-6);
+            parts = [parts[0] + found[0], parts[1] + found[1]];
+        }
+        let same = low <= parts[1] && parts[0] <= high;
+        assert!(same, "case {case}: {low} to {high}, in parts {parts:?} of {exact:?}");
+        let cones = exact.map(|solid| {
+            let Exact::Cylinder(from, to, radius) = solid else { unreachable!("pipes") };
+            QuadricSolid::truncated_cone(from, to, [radius, radius * (1.0 + 1e-8)]).expect("a cone")
+        });
+        let [least, most] = excess(&cones, [[0.0, 1.0]; 3], 1e-5).expect("three solids");
+        let same = low - 1e-6 <= most && least <= high + 1e-6;
+        assert!(same, "case {case}: {low} to {high}, as cones {least} to {most} of {exact:?}");
+        met += usize::from(low > 0.0);
+    }
+    assert!(met > 20, "{met} threes met");
+}
+
 /// Pipes of thousands of cells in a cell, where rounding of their coordinates leaves little: bounds are within the default tolerance.
 #[test]
 fn huge_pipes_within_the_default_tolerance() {

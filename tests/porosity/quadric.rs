@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
@@ -9,7 +10,7 @@ use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
-use voidage_core::solids::quadric::{QuadricSolid, excess};
+use voidage_core::solids::quadric::{FaceBetween, FacesBetween, QuadricSolid, excess};
 use voidage_tests::quadrature::with_chords;
 use voidage_tests::quadric::{FAMILIES, Family, Kind, errors, never_panics, parts_sum_to_the_whole, shares};
 use voidage_tests::random::Random;
@@ -567,4 +568,49 @@ fn a_pipe_along_rows_but_for_rounding() {
         }
     }
     assert!(met > 500, "{met} places in which two meet");
+}
+
+/// Faces that one layer has left for the next one.
+#[derive(Default)]
+struct Kept {
+    below: HashMap<(usize, usize), FaceBetween>,
+    above: HashMap<(usize, usize), FaceBetween>,
+    used: usize,
+}
+
+impl FacesBetween for Kept {
+    fn below(&mut self, part: usize, at: usize) -> Option<FaceBetween> {
+        let found = self.below.get(&(part, at)).copied();
+        self.used += usize::from(found.is_some());
+        found
+    }
+
+    fn above(&mut self, part: usize, at: usize, face: FaceBetween) {
+        self.above.insert((part, at), face);
+    }
+}
+
+/// What a layer leaves to the next one is what that would compute itself, to the last bit.
+#[test]
+fn faces_between_layers_are_the_same_from_both_sides() {
+    let random = &mut Random::new(21);
+    let edges = voidage_tests::quadric::edges();
+    let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
+    let mut used = 0;
+    for case in 0..600 {
+        let family = FAMILIES[case % FAMILIES.len()];
+        let (solid, exact) = voidage_tests::quadric::solid(random, family);
+        let mut kept = Kept::default();
+        for k in 0..grid.cells()[2] {
+            kept.below = std::mem::take(&mut kept.above);
+            let (mut alone, mut after) = (Vec::new(), Vec::new());
+            let worst = solid.layer(&grid, k, true, &mut |kind, at, share| alone.push((kind, at, share.to_bits())));
+            let same = solid.layer_between(&grid, k, true, &mut kept, &mut |kind, at, share| {
+                after.push((kind, at, share.to_bits()));
+            });
+            assert!(alone == after && worst.to_bits() == same.to_bits(), "case {case}, layer {k} of {exact:?}");
+        }
+        used += kept.used;
+    }
+    assert!(used > 1000, "{used} faces were left");
 }

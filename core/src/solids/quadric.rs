@@ -32,8 +32,8 @@
 //! 6. `solid`: what callers use; `shapes`: the shapes that GJK knows, as such solids
 //! 7. `tangent`: planes between which a part lies in a box
 //! 8. `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
-//!    `polygon`, `moving`, `panels`: polygons in planes that rise, and the volumes that they pass through; `crossing`: what two pipes have in common of a box, by
-//!    planes along both axes; `shared`: what several solids share of a cell or face
+//!    `polygon`, `moving`, `panels`: polygons in planes that rise, and the volumes that they pass through; `third`: what an ellipse leaves of them; `sample`: what planes tell of a body; `crossing`: what
+//!    two or three pipes have in common of a box, by planes along two axes; `shared`: what several solids share of a cell or face
 
 mod aligned;
 mod arc;
@@ -47,6 +47,7 @@ mod outline;
 mod panels;
 mod part;
 mod polygon;
+mod sample;
 mod shapes;
 mod shared;
 mod slice;
@@ -54,6 +55,7 @@ mod solid;
 mod solid_angle;
 mod spread;
 mod tangent;
+mod third;
 mod twofold;
 mod wall;
 mod window;
@@ -61,3 +63,4 @@ mod window;
 pub use shapes::AsQuadric;
 pub use shared::{excess, share_of_union};
 pub use solid::QuadricSolid;
+pub use spread::{FaceBetween, FacesBetween};

@@ -1,9 +1,11 @@
 //! Solids by formula in a layer: closed forms, and bounds of the union where two of them truly meet in a cell.
 //!
 //! Shares of solids that do not meet add up, and that is exact. Which pairs meet is asked of GJK once for each pair of solids whose boxes
-//! overlap. Only in a cell or face that two such solids share is what they have in common taken off, by sections or by planes between which they lie
+//! overlap (`pairs`). Only in a cell or face that two such solids share is what they have in common taken off, by sections or by planes between which they lie
 //! (`union`). A solid that closes the cell leaves nothing to find out.
 
+mod capsule;
+mod kept;
 mod pairs;
 mod round;
 mod solid;
@@ -12,6 +14,7 @@ mod union;
 pub use pairs::find_partners;
 pub use solid::FormulaSolid;
 
+use kept::KeptFaces;
 use solid::{BELIEVED, Kind, Pair};
 use union::{box_of, concentric, ends_at, union_of};
 use voidage_core::grid::Grid;
@@ -33,6 +36,9 @@ pub struct FormulaMemory {
     /// Sums of the shares of cells and x, y, z faces that only solids have which meet no other there.
     sums: [Sums; 4],
     entries: Vec<Entry>,
+    kept: KeptFaces,
+    /// Layers are those of one grid, the faces between which may be kept.
+    pub keeps: bool,
     /// Cells so far in which solids meet.
     pub shared: usize,
 }
@@ -149,8 +155,11 @@ fn tell_shares(
     solids: &[&FormulaSolid],
     grid: &Grid<f64>,
     part: LayerPart,
-    FormulaMemory { sums, entries, .. }: &mut FormulaMemory,
+    FormulaMemory { sums, entries, kept, keeps, .. }: &mut FormulaMemory,
 ) -> Vec<usize> {
+    if let LayerPart::Layer(k, _) = part {
+        kept.begin(keeps.then_some(k));
+    }
     let mut doubtful = Vec::new();
     entries.clear();
     let rows = KINDS.map(|kind| row_length(grid, kind) as u32);
@@ -176,7 +185,7 @@ fn tell_shares(
                     }
                 };
                 match part {
-                    LayerPart::Layer(k, areas) => solid.layer(grid, k, areas, &mut visit),
+                    LayerPart::Layer(k, areas) => solid.layer_between(grid, k, areas, kept.of_body(s.body), &mut visit),
                     LayerPart::Plane(plane) => {
                         solid.plane(grid, plane, &mut visit);
                         0.0
@@ -247,7 +256,7 @@ fn add_shared(
     layer: &mut Layer<f64>,
     tol: f64,
 ) {
-    let FormulaMemory { sums, entries, shared } = memory;
+    let FormulaMemory { sums, entries, shared, .. } = memory;
     entries.sort_unstable_by_key(|e| (e.0, e.1, e.2));
     let mut shares: Vec<(usize, [f64; 2])> = Vec::new();
     let mut bodies: Vec<&FormulaSolid> = Vec::new();

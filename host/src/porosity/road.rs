@@ -260,6 +260,7 @@ impl RoadWithLists<'_, '_> {
         let mut subdivided: Vec<Convex> = Vec::new();
         let mut memory = std::mem::take(&mut self.lists.formulas);
         memory.shared = 0;
+        memory.keeps = (0..3).all(|axis| std::ptr::eq(grid.edges(axis), self.grid.edges(axis)));
         let mut tally = QueryCount::default();
         while !solids.is_empty() {
             let doubtful = formulas::add(&solids, grid, part, &mut memory, layer, self.road.rule.tol);

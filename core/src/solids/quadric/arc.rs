@@ -158,6 +158,16 @@ pub(super) fn lens([p, q]: [P2; 2], turn: f64, conic: &Conic, reach: f64) -> Mom
     }
 }
 
+/// The area of that lens alone.
+#[inline]
+pub(super) fn area_of_lens(ends: [P2; 2], turn: f64, conic: &Conic, reach: f64) -> f64 {
+    match lens_of(ends, turn, conic, reach) {
+        Lens::Nothing => 0.0,
+        Lens::Triangle(_, area) => area,
+        Lens::Bow(bow) => bow.size * bend(bow.w),
+    }
+}
+
 /// Beyond this w² a hyperbola is two lines.
 const SHARP: f64 = 1e18;
 

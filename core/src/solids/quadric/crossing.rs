@@ -1,20 +1,22 @@
-//! What two pipes have in common of a box, by planes along the axes of both.
+//! What two or three pipes have in common of a box, by planes along the axes of two.
 //!
 //! Such a plane cuts a strip out of each pipe, as long as the pipe is between its flat ends. So what both have in common of the box is a polygon there,
 //! and its sides move with the plane at speeds that are known. The square root of its area is a concave function of the plane's height (Brunn and
 //! Minkowski), of which a polygon tells the value and the slope.
 //!
 //! Between two heights at which the same lines bound it, the volume is an integral with a proved error ([`super::panels`]). Elsewhere chords bound that root
-//! from below and tangents from above, and planes are added where these are apart.
+//! from below and tangents from above, and planes are added where these are apart. So they are where a third pipe leaves only a part of the polygon
+//! ([`super::third`]).
 //!
 //! Rounding moves each side by no more than [`Crossing::noise`], as if the body were that much larger or smaller, which is added to the bounds: a polygon
 //! with sides so moved, and its slope, are those of such a body.
 
-use super::concave::{lowest, squares};
 use super::moving::{Area, Known, Moving, Range};
 use super::panels;
 use super::part::Part;
 use super::polygon::{Corner, Corners, Cut, Line, MOST_LINES, Strips, cut};
+use super::sample::{Beyond, Polygon, Sample};
+use super::third::{Apart, AtHeight, Left, Third};
 use super::wall::Wall;
 use crate::number::axis::Axis;
 use crate::number::plane::{P2, cross, dot, sub};
@@ -22,6 +24,9 @@ use crate::number::real::Real;
 use crate::number::space::{self, P3};
 use core::f64::consts::PI;
 use heapless::Vec;
+
+/// The lines of both strips, and those of the first one's ends, come first.
+const STRIPS: usize = 6;
 
 /// Axes with a smaller sine between them are left to sections.
 const LEAST_SINE: f64 = 1e-5;
@@ -35,8 +40,14 @@ const PLANES: f64 = 16.0;
 const MOST_WAITING: usize = 40;
 const MOST_TIMES: usize = 4;
 
+/// What three pipes may have in common, for what is enough, if planes alone are to tell.
+const MOST_OF_THREE: f64 = 1e7;
+
 /// Bounds between planes may be so far apart, as a share of what is enough, at first.
 const LEAST: f64 = 1.0 / 64.0;
+
+/// Bounds that are no more than so many times as far apart as they may be are made closer by planes alone: each halving leaves a quarter of that.
+const NEARLY: f64 = 16.0;
 
 /// Integrals may be off by this share of what is enough.
 const INTEGRALS: f64 = 1.0 / 32.0;
@@ -54,86 +65,20 @@ const ROUNDED_SIDES: f64 = 64.0;
 /// Areas of polygons whose sides are upright to each other are off as if their lines were off by so many times as much as they are.
 const ROUNDED_AREA: f64 = 8.0;
 
-/// What a plane has of both pipes in the box.
-#[derive(Clone, Copy, Debug)]
-enum Polygon {
-    /// Bounds of the square root of its area; by how much that grows with the height, and by how much that growth may be off: no numbers where that is
-    /// not known.
-    Some { root: P2, rise: P2 },
-    /// Nothing, and there is nothing up to another height either; none if that is not known.
-    Nothing(Option<Beyond>),
-}
-
-/// Heights at which there is nothing.
-#[derive(Clone, Copy, Debug)]
-enum Beyond {
-    Below(f64),
-    Above(f64),
-    All,
-}
-
-/// What a plane at a height tells: bounds of the square root of its area, and by how much that grows with the height and may be off; no numbers where
-/// that is not known.
-#[derive(Clone, Copy)]
-struct Sample {
-    at: f64,
-    root: P2,
-    rise: P2,
-    beyond: Option<Beyond>,
-}
-
-impl Sample {
-    fn new(at: f64, polygon: &Polygon, most: f64) -> Self {
-        let unknown = Sample { at, root: [0.0, Real::sqrt(most)], rise: [f64::NAN; 2], beyond: None };
-        match *polygon {
-            Polygon::Some { root, rise } => Sample { root, rise, ..unknown },
-            Polygon::Nothing(None) => unknown,
-            Polygon::Nothing(beyond) => Sample { root: [0.0; 2], beyond, ..unknown },
-        }
-    }
-
-    /// Its tangent's values here and so far from here; none if it is not known.
-    fn tangent(&self, far: f64) -> Option<P2> {
-        let there = self.root[1] + self.rise[0] * far + self.rise[1] * far.abs();
-        there.is_finite().then_some([self.root[1], there])
-    }
-
-    /// The line through what is certain of another sample and through this one, here and in a third place: an upper bound beyond this one.
-    fn line(&self, other: Option<&Self>, at: f64) -> Option<P2> {
-        let other = other.filter(|o| o.root[0] > 0.0)?;
-        let there = self.root[1] + (self.root[1] - other.root[0]) / (self.at - other.at) * (at - self.at);
-        there.is_finite().then_some([self.root[1], there])
-    }
-
-    /// Bounds of the volume from here to a higher plane, of areas up to `most`; samples below and above may help.
-    fn between(&self, to: &Self, [below, above]: [Option<&Self>; 2], most: f64) -> P2 {
-        let nothing = matches!(self.beyond, Some(Beyond::Above(_) | Beyond::All))
-            || matches!(to.beyond, Some(Beyond::Below(_) | Beyond::All));
-        if nothing {
-            return [0.0; 2];
-        }
-        let width = to.at - self.at;
-        let ahead = self.tangent(width).or_else(|| self.line(below, to.at));
-        let back = to.tangent(-width).or_else(|| to.line(above, self.at)).map(|[near, far]| [far, near]);
-        let high = lowest([ahead, back], Real::sqrt(most)) * width;
-        let both = self.root[0] > 0.0 && to.root[0] > 0.0;
-        [if both { squares(self.root[0], to.root[0]) * width } else { 0.0 }, high]
-    }
-}
-
 /// A sample that waits to be reached; and whether the volume between it and the one before is counted.
 struct Reached {
     sample: Sample,
     counted: bool,
 }
 
-/// The second strip at its widest: where its middle crosses the first axis, how far that moves with the place beside that axis, and half its
-/// length along that.
+/// The second strip: where its middle crosses the first axis, how far that moves with the place beside that axis, how long it is along that for its
+/// width, and its number of the side on which it begins.
 #[derive(Clone, Copy, Debug)]
 struct SecondStrip {
     middle: f64,
     lean: f64,
-    half: f64,
+    stretch: f64,
+    first: u8,
 }
 
 /// With a smaller sine between the axes rounding of where the strips meet counts.
@@ -146,10 +91,13 @@ pub(super) struct Crossing {
     /// The heights of both axes.
     axes: P2,
     lines: Vec<Line, MOST_LINES>,
-    /// How long the first strip is, at most.
+    /// How long the first strip is, at most; and whether it ends there before the second one limits it.
     along: P2,
+    limited: [bool; 2],
     /// The second strip, where it is not all but parallel to the first.
     second: Option<SecondStrip>,
+    /// A third pipe, the ends of which are lines too.
+    third: Option<Third>,
     /// Heights between which both pipes and the box lie.
     heights: P2,
     /// By how much rounding may move a side.
@@ -187,9 +135,8 @@ impl Pipe {
 }
 
 impl Crossing {
-    /// Of two parts in a box; none if they are no pipes, or nearly parallel.
-    fn new(parts: [&Part; 2], extent: &[P2; 3]) -> Option<Self> {
-        let [one, other] = [Pipe::new(parts[0], extent)?, Pipe::new(parts[1], extent)?];
+    /// Of two pipes in a box, and perhaps a third one; none if the two are nearly parallel, or the third runs nearly along both.
+    fn new([one, other]: [&Pipe; 2], third: Option<&Pipe>, extent: &[P2; 3]) -> Option<Self> {
         let across = space::cross(one.axis, other.axis);
         let sine = space::length(across);
         if !(sine > LEAST_SINE) {
@@ -217,7 +164,18 @@ impl Crossing {
             (-one.radius).max(axes[1] - other.radius).max(middle - tall),
             one.radius.min(axes[1] + other.radius).min(middle + tall),
         ];
-        let mut found = Crossing { radii, axes, lines: Vec::new(), along: [0.0; 2], second: None, heights, noise, far };
+        let mut found = Crossing {
+            radii,
+            axes,
+            lines: Vec::new(),
+            along: [0.0; 2],
+            limited: [true; 2],
+            second: None,
+            third: None,
+            heights,
+            noise,
+            far,
+        };
         // The second strip, which limits the first one along its axis; so do its ends, and the box.
         let normal = in_plane(across);
         let place = dot(normal, in_plane(apart));
@@ -226,8 +184,11 @@ impl Crossing {
         let along = within(-space::dot(one.foot, one.axis), size, one.ends);
         found.along = within(place / normal[0], long + noise / sine, along);
         let [one_over, lean] = [1.0 / normal[0], -normal[1] / normal[0]];
-        let second = SecondStrip { middle: place * one_over, lean, half: radii[1] * one_over.abs() };
-        found.second = (normal[0].abs() > WELL_CROSSED).then_some(second);
+        if normal[0].abs() > WELL_CROSSED {
+            let first = if normal[0] > 0.0 { 4 } else { 5 };
+            found.second = Some(SecondStrip { middle: place * one_over, lean, stretch: one_over.abs(), first });
+            found.limited = [found.along[0] == along[0], found.along[1] == along[1]];
+        }
         found.add_first();
         for sign in [1.0, -1.0] {
             found.add(normal.map(|x| x * sign), -place * sign, 0.0, Some(1));
@@ -235,6 +196,11 @@ impl Crossing {
         let (normal, from) = (in_plane(other.axis), space::dot(apart, other.axis));
         found.add(normal, -from - other.ends[0], 0.0, None);
         found.add(normal.map(|x| -x), from + other.ends[1], 0.0, None);
+        if let Some(third) = third {
+            let apart = space::sub(third.foot, one.foot);
+            let in_space = |v: P3| [space::dot(v, one.axis), space::dot(v, aside), space::dot(v, up)];
+            found.add_third(third, in_space(third.axis), in_space(apart))?;
+        }
         for n in Axis::ALL {
             let normal = [one.axis[n], aside[n]];
             found.add(normal, half[n] + one.foot[n], up[n], None);
@@ -244,15 +210,25 @@ impl Crossing {
         finite.then_some(found)
     }
 
-    /// Bounds of the volume that two parts have in common in a box, about `enough` apart, or more where that takes too many planes or rounding does not
-    /// allow it; none if they are no pipes, or nearly parallel. Not inlined: what it needs of the stack others need not carry.
+    /// Bounds of the volume that two or three parts have in common in a box, about `enough` apart, or more where that takes too many planes or rounding does
+    /// not allow it; none if they are no pipes, or lie nearly along each other. Not inlined: what it needs of the stack others need not carry.
     #[inline(never)]
     pub fn volume<'a>(mut parts: impl Iterator<Item = &'a Part>, extent: &[P2; 3], enough: f64) -> Option<P2> {
-        let mut crossing = Self::new([parts.next()?, parts.next()?], extent)?;
+        let mut pipe = || parts.next().map(|part| Pipe::new(part, extent));
+        let (one, other, third) = (pipe()??, pipe()??, pipe());
+        let mut crossing = match (third, pipe()) {
+            (None, _) => Self::new([&one, &other], None, extent),
+            (Some(third), None) => Self::of_three(&[one, other, third?], extent),
+            _ => None,
+        }?;
         if !crossing.narrow(0.25 * enough)? {
             return Some([0.0, 0.25 * enough]);
         }
+        crossing.drop_lines();
         let (long, [most, outline]) = (crossing.heights[1] - crossing.heights[0], crossing.most());
+        if crossing.third.is_some() && most * long > MOST_OF_THREE * enough {
+            return None;
+        }
         let rounded = 4.0 * crossing.noise * (outline * long + 2.0 * most);
         let close = (enough - 2.0 * rounded).max(0.5 * enough);
         let planes = (PLANES * Real::sqrt(most * long / close)).clamp(512.0, MOST_PLANES) as usize;
@@ -268,10 +244,34 @@ impl Crossing {
         found
     }
 
+    /// Of three pipes, by planes along the two with which rounding counts least.
+    fn of_three(pipes: &[Pipe; 3], extent: &[P2; 3]) -> Option<Self> {
+        let [a, b, c] = pipes;
+        let across = |p: &Pipe, q: &Pipe| space::cross(p.axis, q.axis);
+        let product = space::dot(across(a, b), c.axis).abs();
+        let room = |p: &Pipe, q: &Pipe| {
+            let sine = space::length(across(p, q));
+            sine.min(product / sine)
+        };
+        let rooms = [room(a, b), room(b, c), room(c, a)];
+        let (two, third) = if rooms[0] >= rooms[1] && rooms[0] >= rooms[2] {
+            ([a, b], c)
+        } else if rooms[1] >= rooms[2] {
+            ([b, c], a)
+        } else {
+            ([c, a], b)
+        };
+        Self::new(two, Some(third), extent)
+    }
+
     /// What is certain between two heights of a polygon at a third one.
     fn moving(&self, between: P2, height: f64, corners: &Corners, strips: &Strips) -> Option<Moving> {
         let half = between.map(|at| self.strips(at).half);
-        Moving::new(&Known { lines: &self.lines, corners, height, strips }, &Range { between, half, noise: self.noise })
+        let idle = u32::from(!self.limited[1]) << 1 | u32::from(!self.limited[0]) << 3;
+        Moving::new(
+            &Known { lines: &self.lines, idle, corners, height, strips },
+            &Range { between, half, noise: self.noise },
+        )
     }
 
     /// The same by planes such that the bounds between two of them are apart by no more than the share of the heights and the `least` share of
@@ -286,7 +286,8 @@ impl Crossing {
             let above = waiting.len().checked_sub(2).and_then(|n| waiting.get(n)).map(|next| &next.sample);
             let [low, high] = if counted { [0.0; 2] } else { a.between(&b, [below.as_ref(), above], most) };
             let width = b.at - a.at;
-            let far = high - low > enough * (0.5 * (width / (last - first)) + least);
+            let allowed = enough * (0.5 * (width / (last - first)) + least);
+            let far = high - low > allowed;
             let middle = a.at + 0.5 * width;
             let more = far && steps < planes && waiting.len() + 3 <= MOST_WAITING && a.at < middle && middle < b.at;
             if !more {
@@ -296,6 +297,10 @@ impl Crossing {
                 continue;
             }
             steps += 1;
+            if high - low <= NEARLY * allowed {
+                let _ = waiting.push(Reached { sample: self.sample(middle, most), counted: false });
+                continue;
+            }
             let (sample, moving) = self.sample_and_moving(middle, most, [a.at, b.at]);
             let integral = moving.as_ref().and_then(|moving| self.integral(moving, enough));
             let (Some(moving), Some([low, high])) = (moving, integral) else {
@@ -361,19 +366,25 @@ impl Crossing {
         self.lines.extend(sides);
     }
 
+    /// A third pipe by its axis and a point of it in the coordinates of planes, the last one the height.
+    fn add_third(&mut self, pipe: &Pipe, axis: P3, point: P3) -> Option<()> {
+        let third = Third::new(pipe.radius, axis, point)?;
+        self.noise = (self.noise + ROUNDING * pipe.reach) / third.rise;
+        let (normal, from) = ([axis[0], axis[1]], space::dot(axis, point));
+        self.add(normal, -from - pipe.ends[0], axis[2], None);
+        self.add(normal.map(|x| -x), from + pipe.ends[1], -axis[2], None);
+        self.third = Some(third);
+        Some(())
+    }
+
     /// Adds a line, unless all that both strips have in common is inside; one that is the same all along a plane limits the heights.
     fn add(&mut self, normal: P2, offset: f64, rise: f64, strip: Option<usize>) {
         let [low, high] = self.heights;
         let far = self.along[0].abs().max(self.along[1].abs());
         let wide = normal[0].abs() * far + normal[1].abs() * self.radii[0];
+        let line = Line { normal, offset, rise, size: Real::sqrt(dot(normal, normal)), strip };
         if strip.is_none() {
-            let along = (normal[0] * self.along[0]).min(normal[0] * self.along[1]) - normal[1].abs() * self.radii[0];
-            let both = self.second.map_or(along, |second| {
-                let beside = normal[1] + normal[0] * second.lean;
-                normal[0] * second.middle - normal[0].abs() * second.half - beside.abs() * self.radii[0]
-            });
-            let least = offset + (rise * low).min(rise * high) + along.max(both);
-            if least >= -self.noise {
+            if self.is_inside(&line, self.radii) {
                 return;
             }
             if wide <= self.noise && rise != 0.0 {
@@ -382,14 +393,43 @@ impl Crossing {
                 return;
             }
         }
-        let _ = self.lines.push(Line { normal, offset, rise, size: Real::sqrt(dot(normal, normal)), strip });
+        let _ = self.lines.push(line);
+    }
+
+    /// Is all that both strips have in common between the heights inside a line, if these are nowhere wider than half a width tells?
+    fn is_inside(&self, &Line { normal, offset, rise, .. }: &Line, half: P2) -> bool {
+        let [low, high] = self.heights;
+        let along = (normal[0] * self.along[0]).min(normal[0] * self.along[1]) - normal[1].abs() * half[0];
+        let both = self.second.map_or(along, |second| {
+            let beside = normal[1] + normal[0] * second.lean;
+            normal[0] * second.middle - normal[0].abs() * half[1] * second.stretch - beside.abs() * half[0]
+        });
+        offset + (rise * low).min(rise * high) + along.max(both) >= -self.noise
+    }
+
+    /// Drops lines inside of which all lies now that the heights are narrower.
+    fn drop_lines(&mut self) {
+        let [low, high] = self.heights;
+        let near = [0, 1].map(|n| self.strips(self.axes[n].limited(low, high)).half[n]);
+        let mut number = STRIPS;
+        while let Some(line) = self.lines.get(number) {
+            if self.is_inside(line, near) {
+                let Some(last) = self.lines.pop() else { break };
+                if let Some(line) = self.lines.get_mut(number) {
+                    *line = last;
+                }
+            } else {
+                number += 1;
+            }
+        }
     }
 
     /// Of all heights, the largest area that there can be, and the longest outline: of a rectangle, and of a disc as wide as the box.
     fn most(&self) -> P2 {
         let [long, wide] = [(self.along[1] - self.along[0]).max(0.0), 2.0 * self.radii[0]];
         let (disc, outline) = (PI * self.far * self.far, 2.0 * PI * self.far);
-        [disc.min(long * wide), outline.min(2.0 * (long + wide))]
+        let ellipse = self.third.map_or(f64::INFINITY, |third| third.area);
+        [disc.min(long * wide).min(ellipse), outline.min(2.0 * (long + wide))]
     }
 
     fn strips(&self, height: f64) -> Strips {
@@ -402,19 +442,23 @@ impl Crossing {
         Strips { half, growth }
     }
 
-    /// By how much a line moves outward as the height grows, in units of its normal.
-    fn growth(line: &Line, strips: &Strips) -> f64 {
-        line.rise + line.strip.map_or(0.0, |n| strips.growth[n & 1])
-    }
-
-    /// What a plane has of the first strip between its ends.
-    fn first(&self, half: f64) -> Corners {
-        let [from, to] = self.along;
+    /// What a plane has of both strips, or of the first one between its ends; and which lines may cut that.
+    fn first(&self, [half, other]: P2) -> (Corners, impl Iterator<Item = usize>) {
         let mut corners = Corners::new();
-        for (at, line) in [([from, -half], 0), ([to, -half], 1), ([to, half], 2), ([from, half], 3)] {
-            let _ = corners.push(Corner { at, line });
-        }
-        corners
+        let mut add = |at: P2, line: u8| corners.push(Corner { at, line });
+        let ([from, to], [low, high]) = (self.along, self.limited);
+        let ends = if let Some(SecondStrip { middle, lean, stretch, first }) = self.second {
+            let (shift, long) = (lean * half, stretch * other);
+            let (below, above) = (middle - shift, middle + shift);
+            let _ = (add([below - long, -half], 0), add([below + long, -half], 9 - first));
+            let _ = (add([above + long, half], 2), add([above - long, half], first));
+            [low.then_some(3), high.then_some(1)]
+        } else {
+            let _ = (add([from, -half], 0), add([to, -half], 1));
+            let _ = (add([to, half], 2), add([from, half], 3));
+            [Some(4), Some(5)]
+        };
+        (corners, ends.into_iter().flatten().chain(STRIPS..self.lines.len()))
     }
 
     /// What both have in common in the plane at a height; and, if asked, what is certain of that between two others.
@@ -423,14 +467,18 @@ impl Crossing {
         if !(strips.half[0] > 0.0 && strips.half[1] > 0.0 && self.along[0] < self.along[1]) {
             return (Polygon::Nothing(None), None);
         }
-        let (mut corners, mut kept) = (&mut self.first(strips.half[0]), &mut Corners::new());
-        for (number, line) in self.lines.iter().enumerate().skip(4) {
-            let offset = line.offset + line.rise * height + line.strip.map_or(0.0, |n| strips.half[n & 1]);
-            match cut(corners, line.normal, offset, number as u8, kept) {
+        let (mut first, numbers) = self.first(strips.half);
+        let (mut corners, mut kept) = (&mut first, &mut Corners::new());
+        for number in numbers {
+            let Some(line) = self.lines.get(number) else { break };
+            match cut(corners, line.normal, line.place(height, &strips), number as u8, kept) {
                 Cut::All => {}
                 Cut::Part => core::mem::swap(&mut corners, &mut kept),
                 Cut::None(nearest) => return (Polygon::Nothing(self.beyond(height, &strips, number, nearest)), None),
             }
+        }
+        if let Some(third) = &self.third {
+            return (self.left_by(third, &AtHeight { corners, lines: &self.lines, height, strips: &strips }), None);
         }
         let moving = between.and_then(|between| self.moving(between, height, corners, &strips));
         (self.measured(corners, &strips), moving)
@@ -446,7 +494,7 @@ impl Crossing {
             let side = sub(next.at, corner.at);
             area += 0.5 * cross(sub(corner.at, base.at), side);
             let Some(line) = self.lines.get(usize::from(corner.line)) else { break };
-            let growth = Self::growth(line, strips);
+            let growth = line.growth(strips);
             let length = Real::sqrt(dot(side, side));
             outline += length;
             if growth != 0.0 {
@@ -456,6 +504,17 @@ impl Crossing {
             }
         }
         self.rooted(&Area { value: area, rise, speed }, outline)
+    }
+
+    /// What a third pipe leaves of a polygon.
+    fn left_by(&self, third: &Third, polygon: &AtHeight) -> Polygon {
+        match third.of(polygon) {
+            None => Polygon::Nothing(None),
+            Some(Left::Area([value, rise, speed])) => self.rooted(&Area { value, rise, speed }, self.most()[1]),
+            Some(Left::Nothing(Apart { missing, growth, weight })) => {
+                Polygon::Nothing(Beyond::new(polygon.height, missing - self.noise * weight, growth))
+            }
+        }
     }
 
     /// The square root of an area of at most such an outline.
@@ -482,17 +541,10 @@ impl Crossing {
         if !shares.iter().all(|s| s.is_finite() && *s >= -1e-12) {
             return None;
         }
-        let offset = |l: &Line| l.offset + l.rise * height + l.strip.map_or(0.0, |n| strips.half[n & 1]);
         let sum = |of: &dyn Fn(&Line) -> f64| of(line) + shares[0] * of(one) + shares[1] * of(other);
-        let missing = -sum(&offset) - self.noise * (1.0 + shares[0].abs() + shares[1].abs());
-        let growth = sum(&|l| Self::growth(l, strips));
-        match missing / growth {
-            _ if !(missing > 0.0) => None,
-            _ if growth == 0.0 => Some(Beyond::All),
-            way if way > 0.0 => Some(Beyond::Below(height + way)),
-            way if way < 0.0 => Some(Beyond::Above(height + way)),
-            _ => None,
-        }
+        let missing = -sum(&|l| l.place(height, strips)) - self.noise * (1.0 + shares[0].abs() + shares[1].abs());
+        let growth = sum(&|l| l.growth(strips));
+        Beyond::new(height, missing, growth)
     }
 
     /// Narrows the heights to where there may be something, until there is; false if there is nothing but for a volume that does not count.

@@ -13,8 +13,6 @@ pub(super) struct EndLine {
     pub slope: P2,
     /// The end's centre in the plane, from the part's origin.
     pub shift: P2,
-    /// What the end's disc has of the line, by its ends; none if the disc does not reach it.
-    pub chord: Option<[P2; 2]>,
 }
 
 impl EndLine {

@@ -36,24 +36,33 @@ impl End {
         let a = self.inward;
         let height = difference(coordinate, self.center[n]);
         let (slope, shift) = ([a[u], a[v]], [self.shift[u], self.shift[v]]);
-        let across = beside(a[n], [a[u], a[v]]);
-        let mut constant = a[n] * height.value;
-        if !(across > 0.0) {
+        let constant = a[n] * height.value;
+        if a[u] == 0.0 && a[v] == 0.0 {
             // The end lies in planes like this one: all of it is inside or outside.
             let inside = constant > 0.0 || (constant == 0.0 && self.closed);
-            constant = if inside { 1.0 } else { -1.0 };
-            return EndLine { constant, slope: [0.0; 2], shift, chord: None };
+            return EndLine { constant: if inside { 1.0 } else { -1.0 }, slope: [0.0; 2], shift };
+        }
+        EndLine { constant, slope, shift }
+    }
+
+    /// What its disc has of that line, by its ends; none if the disc does not reach the plane, or lies along it.
+    pub fn chord(&self, n: Axis, coordinate: f64) -> Option<[P2; 2]> {
+        let [u, v] = n.others();
+        let a = self.inward;
+        let height = difference(coordinate, self.center[n]);
+        let across = beside(a[n], [a[u], a[v]]);
+        if !(across > 0.0) {
+            return None;
         }
         let scaled = Twofold { value: height.value / across, rest: height.rest / across };
         let square = difference_of_squares(self.radius, scaled);
-        let chord = (square > 0.0).then(|| {
+        (square > 0.0).then(|| {
             let half = Real::sqrt(square);
             let along = [-a[v] / across, a[u] / across];
             let foot = -a[n] * (height.value / across);
-            let middle = [shift[0] + foot * (a[u] / across), shift[1] + foot * (a[v] / across)];
+            let middle = [self.shift[u] + foot * (a[u] / across), self.shift[v] + foot * (a[v] / across)];
             [-half, half].map(|t| [middle[0] + t * along[0], middle[1] + t * along[1]])
-        });
-        EndLine { constant, slope, shift, chord }
+        })
     }
 
     /// What a line along axis `m` has inside, by its other two coordinates from the part's origin.

@@ -77,6 +77,8 @@ fn meet([p, q]: [&Line; 2], [o, r]: [Sum; 2]) -> Option<(MovingCorner, f64)> {
 /// A plane at which a polygon is known: its height, and what the strips have there.
 pub(super) struct Known<'a> {
     pub lines: &'a [Line],
+    /// The lines, as bits of their numbers, inside of which all is at any height.
+    pub idle: u32,
     pub corners: &'a Corners,
     pub height: f64,
     pub strips: &'a Strips,
@@ -163,14 +165,16 @@ impl Moving {
         let place = |line: &Line| offset(line, known.height, half);
         let mut corners: Vec<MovingCorner, MOST_CORNERS> = Vec::new();
         let mut before = known.line(known.corners.last()?)?;
-        let (mut used, mut least) = (0_u32, 1.0);
+        let mut place_before = place(before);
+        let (mut used, mut least) = (known.idle, 1.0);
         for corner in known.corners {
             let after = known.line(corner)?;
+            let own = place(after);
             used |= 1 << u32::from(corner.line);
-            let (met, sine) = meet([before, after], [place(before), place(after)])?;
+            let (met, sine) = meet([before, after], [place_before, own])?;
             corners.push(met).ok()?;
             least = if sine < least { sine } else { least };
-            before = after;
+            (before, place_before) = (after, own);
         }
         let mut proof = Proof::new(known, range);
         let mut moving = Moving {

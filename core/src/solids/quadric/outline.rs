@@ -1,6 +1,6 @@
 //! What a convex solid has of a rectangle in a grid plane: straight pieces along the rectangle's sides and along flat ends, arcs between.
 
-use super::arc::{Conic, Moments, lens};
+use super::arc::{Conic, Moments, area_of_lens, lens};
 use super::end_line::EndLine;
 use super::wall::{Ellipse, Span};
 use crate::number::plane::{P2, cross, on_way, sub};
@@ -31,6 +31,12 @@ impl Rectangle {
     #[inline(always)]
     pub fn middle(&self) -> P2 {
         [(self.u[0] + self.u[1]) * 0.5, (self.v[0] + self.v[1]) * 0.5]
+    }
+
+    /// Does a point lie inside?
+    #[inline(always)]
+    pub fn is_about(&self, [u, v]: P2) -> bool {
+        self.u[0] < u && u < self.u[1] && self.v[0] < v && v < self.v[1]
     }
 
     /// Counter-clockwise, from the lowest corner.
@@ -212,21 +218,38 @@ pub(super) struct Section {
     pub ellipse: Option<Ellipse>,
 }
 
+/// Do spans miss all sides of a rectangle, in the order of its corners?
+#[inline(always)]
+fn apart(rectangle: &Rectangle, spans: &[Span; 4]) -> bool {
+    let misses = |s: &Span, [lo, hi]: P2| !(s.lo < hi && s.hi > lo);
+    misses(&spans[0], rectangle.u)
+        && misses(&spans[2], rectangle.u)
+        && misses(&spans[1], rectangle.v)
+        && misses(&spans[3], rectangle.v)
+}
+
 impl Section {
+    /// Is it certain that nothing lies in a rectangle, by the spans as in [`Section::region`]?
+    #[inline(always)]
+    pub fn misses(&self, rectangle: &Rectangle, spans: &[Span; 4]) -> bool {
+        apart(rectangle, spans) && !self.ellipse.is_some_and(|e| rectangle.is_about(e.center))
+    }
+
     /// What lies in a rectangle and inside all ends. `spans` are those of the lines along its sides, in the order of [`Rectangle::corners`];
-    /// `ends` are lines of flat ends with the chord that the end's disc has on each; `pieces` is memory that holds nothing yet.
+    /// `ends` are lines of flat ends, with what tells of the number of one which chord the end's disc has on it; `pieces` is memory that holds nothing
+    /// yet.
     #[inline]
     pub fn region<'p>(
         &self,
         rectangle: &Rectangle,
         spans: &[Span; 4],
-        ends: &[Option<EndLine>; 2],
+        (ends, chord_of): (&[Option<EndLine>; 2], impl Fn(usize) -> Option<[P2; 2]>),
         pieces: &'p mut Pieces,
     ) -> Region<'p> {
         let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
         let mut corners = None;
         let mut chords = [None; 2];
-        for ((number, end), chord) in (4..).zip(ends).zip(&mut chords) {
+        for ((number, end), chord) in ends.iter().enumerate().zip(&mut chords) {
             let Some(line) = end else { continue };
             let values = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|p| line.at(p));
             if values.iter().all(|&l| l >= 0.0) {
@@ -236,8 +259,8 @@ impl Section {
                 return Region::Empty;
             }
             let before = corners.take().unwrap_or_else(|| rectangle.corners());
-            corners = Some(cut(&before, line, number));
-            *chord = line.chord;
+            corners = Some(cut(&before, line, 4 + number as u8));
+            *chord = chord_of(number);
         }
         if corners.is_none() {
             let whole = spans[0].covers(u0, u1)
@@ -247,12 +270,7 @@ impl Section {
             if whole {
                 return Region::Whole;
             }
-            let apart = |s: &Span, lo: f64, hi: f64| !(s.lo < hi && s.hi > lo);
-            if apart(&spans[0], u0, u1)
-                && apart(&spans[2], u0, u1)
-                && apart(&spans[1], v0, v1)
-                && apart(&spans[3], v0, v1)
-            {
+            if apart(rectangle, spans) {
                 return self.ellipse_in(rectangle);
             }
         }
@@ -309,10 +327,12 @@ impl Section {
     /// The whole conic, if it is an ellipse about a point of a rectangle.
     fn ellipse_in(&self, rectangle: &Rectangle) -> Region<'static> {
         let Some(ellipse) = self.ellipse else { return Region::Empty };
-        let [u, v] = ellipse.center;
         let [[u0, u1], [v0, v1]] = [rectangle.u, rectangle.v];
-        let about = u0 < u && u < u1 && v0 < v && v < v1;
-        if about && self.fits([u1 - u0, v1 - v0]) { Region::Ellipse(ellipse) } else { Region::Empty }
+        if rectangle.is_about(ellipse.center) && self.fits([u1 - u0, v1 - v0]) {
+            Region::Ellipse(ellipse)
+        } else {
+            Region::Empty
+        }
     }
 
     /// The whole conic, if it is an ellipse about a point of a polygon.
@@ -347,12 +367,55 @@ impl Section {
         }
     }
 
+    /// Area of a region alone.
+    #[inline]
+    pub fn area(&self, region: &Region, rectangle: &Rectangle) -> f64 {
+        let [du, dv] = [rectangle.u, rectangle.v].map(|[lo, hi]| hi - lo);
+        match region {
+            Region::Empty => 0.0,
+            Region::Whole => du * dv,
+            Region::Ellipse(ellipse) => ellipse.area,
+            Region::Pieces(pieces, size) => self.area_of(pieces, *size, du + dv),
+        }
+    }
+
+    /// As [`Section::moments_of`].
+    fn area_of(&self, pieces: &[Piece], size: P2, reach: f64) -> f64 {
+        let (Some((first, others)), Some(last)) = (pieces.split_first(), pieces.last()) else { return 0.0 };
+        let arc = |p: P2, q: P2| {
+            let turn = self.conic.turn(p, q);
+            match self.ellipse {
+                Some(ellipse) if self.is_major_if(turn, size) => {
+                    ellipse.area - area_of_lens([q, p], self.conic.turn(q, p), &self.conic, reach)
+                }
+                _ => area_of_lens([p, q], turn, &self.conic, reach),
+            }
+        };
+        let mut total = if first.joined { 0.0 } else { arc(last.to, first.from) };
+        let mut before = first.to;
+        for piece in others {
+            if !piece.joined {
+                total += arc(before, piece.from);
+                total += cross(sub(before, first.from), sub(piece.from, first.from)) * 0.5;
+            }
+            total += cross(sub(piece.from, first.from), sub(piece.to, first.from)) * 0.5;
+            before = piece.to;
+        }
+        total
+    }
+
     /// `size` is that of the polygon around the pieces.
     fn moments_of(&self, pieces: &[Piece], size: P2, middle: P2, reach: f64) -> Moments {
-        let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return Moments::default() };
-        let mut fan = Fan { base: first.from, last: [0.0; 2], total: Moments::default() };
-        let mut before = last.to;
-        for piece in pieces {
+        let (Some((first, others)), Some(last)) = (pieces.split_first(), pieces.last()) else {
+            return Moments::default();
+        };
+        // The first piece makes no triangle with its own beginning.
+        let mut fan = Fan { base: first.from, last: sub(first.to, first.from), total: Moments::default() };
+        if !first.joined {
+            fan.add_lens(last.to, &self.arc(last.to, first.from, size, reach));
+        }
+        let mut before = first.to;
+        for piece in others {
             // A piece that is joined begins where the one before ended.
             if !piece.joined {
                 fan.add_lens(before, &self.arc(before, piece.from, size, reach));

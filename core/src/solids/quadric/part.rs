@@ -31,7 +31,8 @@ pub(super) struct Part {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     n: Axis,
-    /// Coordinate from the part's origin.
+    /// Its coordinate, and the same from the part's origin.
+    coordinate: f64,
     pub h: Twofold,
     section: Section,
     lines: [Option<EndLine>; 2],
@@ -75,8 +76,12 @@ impl Part {
             }
             least > FAR_END * size
         };
-        let ends = self.ends.map(|end| end.filter(|end| !far(end)));
-        (ends.iter().flatten().count() < self.ends.iter().flatten().count()).then_some(Part { ends, ..*self })
+        let [one, other] = self.ends.each_ref().map(|end| end.as_ref().is_some_and(far));
+        if !(one || other) {
+            return None;
+        }
+        let [first, second] = self.ends;
+        Some(Part { ends: [first.filter(|_| !one), second.filter(|_| !other)], ..*self })
     }
 
     /// A plane across axis `n`.
@@ -85,7 +90,7 @@ impl Part {
         let h = difference(coordinate, self.origin[n]);
         let section = Section { conic: self.curved.conic(n, h), ellipse: self.curved.ellipse(n, h) };
         let lines = self.ends.each_ref().map(|end| end.as_ref().map(|end| end.line(n, coordinate)));
-        Plane { n, h, section, lines }
+        Plane { n, coordinate, h, section, lines }
     }
 
     /// What the line where two planes meet has inside the curved surface; it runs along axis `m`, the planes in the order of [`Axis::others`].
@@ -101,21 +106,32 @@ impl Part {
     }
 
     /// Area and flux of a face, `spans` those of its sides in the order of [`Rectangle::corners`].
-    #[inline]
+    #[inline(always)]
     pub fn face(&self, plane: &Plane, rectangle: &Rectangle, spans: &[Span; 4]) -> FaceFlux {
+        if plane.section.misses(rectangle, spans) {
+            return FaceFlux::default();
+        }
+        self.face_of(plane, rectangle, spans)
+    }
+
+    /// The same of a face that the curved surface may reach.
+    fn face_of(&self, plane: &Plane, rectangle: &Rectangle, spans: &[Span; 4]) -> FaceFlux {
         let mut pieces = Pieces::new();
-        let region = plane.section.region(rectangle, spans, &plane.lines, &mut pieces);
+        let chord = |end: usize| self.ends.get(end)?.as_ref()?.chord(plane.n, plane.coordinate);
+        let region = plane.section.region(rectangle, spans, (&plane.lines, chord), &mut pieces);
         if matches!(region, Region::Empty) {
             return FaceFlux::default();
         }
-        let moments = plane.section.moments(&region, rectangle);
-        let (n, h) = (plane.n, plane.h.value);
+        let (n, h, whole) = (plane.n, plane.h.value, matches!(region, Region::Whole));
+        if matches!(self.curved.wall, Wall::Cylinder { .. }) && n != self.xi {
+            let moments = plane.section.moments(&region, rectangle);
+            let along = usize::from(n.others()[0] != self.xi);
+            let flux = moments.first[along] * (self.curved.axis[n] / self.curved.axis[self.xi]);
+            return FaceFlux { area: moments.area, flux, whole };
+        }
+        let area = plane.section.area(&region, rectangle);
         let flux = match &self.curved.wall {
-            Wall::Cylinder { .. } if n == self.xi => 0.0,
-            Wall::Cylinder { .. } => {
-                let along = usize::from(n.others()[0] != self.xi);
-                moments.first[along] * (self.curved.axis[n] / self.curved.axis[self.xi])
-            }
+            Wall::Cylinder { .. } => 0.0,
             Wall::Cone { radius, slope } => {
                 let plane_of = PlaneOfCone { curved: &self.curved, radius: *radius, slope: *slope, n, h };
                 plane_of.flux(&plane.section, &region, rectangle)
@@ -124,10 +140,10 @@ impl Part {
             Wall::Ball { .. } | Wall::Ellipsoid(_) if h == 0.0 => 0.0,
             Wall::Ball { .. } | Wall::Ellipsoid(_) => {
                 let angle = self.solid_angle(plane, &region, rectangle);
-                (moments.area * h - angle.copysign(h)) / 3.0
+                (area * h - angle.copysign(h)) / 3.0
             }
         };
-        FaceFlux { area: moments.area, flux, whole: matches!(region, Region::Whole) }
+        FaceFlux { area, flux, whole }
     }
 
     /// Solid angle of a region seen from the centre, where the ball is the unit ball, times the volume's scale.
@@ -266,6 +282,9 @@ impl Part {
 
     /// Tells of each flat end in a cell what its inward normal has along ξ, and the integral of ξ − ξₘ over the end as seen along ξ.
     fn moments_of_ends(&self, sides: &Sides, mut tell: impl FnMut(f64, f64)) {
+        if self.ends.iter().all(Option::is_none) {
+            return;
+        }
         let [u, v] = self.xi.others();
         for (end, rectangle, disc) in self.discs(sides) {
             let (inward, middle) = (end.inward[self.xi], rectangle.middle());

@@ -3,8 +3,8 @@
 use crate::number::plane::{P2, dot, on_way};
 use heapless::Vec;
 
-/// Sides of the first strip between its ends, of the second one, its ends, and the sides of the box.
-pub(super) const MOST_LINES: usize = 14;
+/// Sides of the first strip between its ends, of the second one, its ends, those of a third pipe, and the sides of the box.
+pub(super) const MOST_LINES: usize = 16;
 
 /// Each line cuts off a corner and adds two, at most.
 pub(super) const MOST_CORNERS: usize = MOST_LINES;
@@ -19,6 +19,20 @@ pub(super) struct Line {
     pub size: f64,
     /// The strip that it is a side of, if of any.
     pub strip: Option<usize>,
+}
+
+impl Line {
+    /// What is added to `normal · x` at a height.
+    #[inline(always)]
+    pub fn place(&self, height: f64, strips: &Strips) -> f64 {
+        self.offset + self.rise * height + self.strip.map_or(0.0, |n| strips.half[n & 1])
+    }
+
+    /// By how much it moves outward as the height grows, in units of its normal.
+    #[inline(always)]
+    pub fn growth(&self, strips: &Strips) -> f64 {
+        self.rise + self.strip.map_or(0.0, |n| strips.growth[n & 1])
+    }
 }
 
 /// A corner of a polygon, and the line of the side after it.
@@ -46,37 +60,46 @@ pub(super) enum Cut {
 
 /// The part of a polygon where `normal · x + offset` is not negative, where that is neither all nor nothing; its side along that line gets a number.
 pub(super) fn cut(corners: &Corners, normal: P2, offset: f64, number: u8, kept: &mut Corners) -> Cut {
-    let (mut all, mut nearest) = (true, (f64::NEG_INFINITY, 0));
-    let mut values = [0.0; MOST_CORNERS];
-    for ((n, corner), place) in corners.iter().enumerate().zip(&mut values) {
-        let value = dot(normal, corner.at) + offset;
-        *place = value;
-        all &= value >= 0.0;
-        if value > nearest.0 {
-            nearest = (value, n);
-        }
+    let value = |corner: &Corner| dot(normal, corner.at) + offset;
+    let (mut all, mut none) = (true, true);
+    for corner in corners {
+        let inside = value(corner) >= 0.0;
+        (all, none) = (all & inside, none & !inside);
     }
     if all {
         return Cut::All;
     }
-    if !(nearest.0 >= 0.0) {
-        let line = |n: usize| corners.get(n).map_or(0, |c| c.line);
-        let last = corners.len().saturating_sub(1);
-        return Cut::None([line(nearest.1.checked_sub(1).unwrap_or(last)), line(nearest.1)]);
+    if none {
+        return Cut::None(nearest(corners, value));
     }
     kept.clear();
-    let followers = corners.iter().skip(1).chain(corners.first());
-    let mut here = values[0];
-    let after = values.iter().take(corners.len()).skip(1).chain(&values[..1]);
-    for ((corner, to), &there) in corners.iter().zip(followers).zip(after) {
+    let Some(mut before) = corners.last() else { return Cut::All };
+    let mut there = value(before);
+    for corner in corners {
+        let here = value(corner);
+        if (here >= 0.0) != (there >= 0.0) {
+            let line = if there >= 0.0 { number } else { before.line };
+            let _ = kept.push(Corner { at: on_way(before.at, corner.at, there / (there - here)), line });
+        }
         if here >= 0.0 {
             let _ = kept.push(*corner);
         }
-        if (here >= 0.0) != (there >= 0.0) {
-            let line = if here >= 0.0 { number } else { corner.line };
-            let _ = kept.push(Corner { at: on_way(corner.at, to.at, here / (here - there)), line });
-        }
-        here = there;
+        (before, there) = (corner, here);
     }
     Cut::Part
+}
+
+/// The lines before and after the corner of which a value is greatest.
+#[inline(never)]
+fn nearest(corners: &Corners, value: impl Fn(&Corner) -> f64) -> [u8; 2] {
+    let (mut lines, mut greatest) = ([0; 2], f64::NEG_INFINITY);
+    let mut before = corners.last().map_or(0, |c| c.line);
+    for corner in corners {
+        let value = value(corner);
+        if value > greatest {
+            (lines, greatest) = ([before, corner.line], value);
+        }
+        before = corner.line;
+    }
+    lines
 }

@@ -76,7 +76,7 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
     let mut parts: Vec<OnePart, MOST_AT_HAND> = Vec::new();
     for (solid, body) in solids.into_iter().enumerate() {
         for part in body.parts() {
-            let extent = meet(&cell, &Axis::ALL.map(|n| part.extent(n)));
+            let extent = meet(&cell, &part.extents());
             if reaches(&extent, flat) {
                 parts.push(OnePart { solid, part, extent }).ok()?;
             }
@@ -211,8 +211,8 @@ fn common<'a, const N: usize>(
         if all <= 0.25 * enough {
             return [0.0, all];
         }
-        let of_two = || if N == 2 { Crossing::volume(parts.clone(), extent, enough) } else { None };
-        let found = prism::<N>(parts.clone(), extent, enough).or_else(of_two);
+        let of_pipes = || Crossing::volume(parts.clone(), extent, enough);
+        let found = prism::<N>(parts.clone(), extent, enough).or_else(of_pipes);
         return match found {
             Some([low, high]) if high - low <= enough => [low, high],
             Some(found) => narrower(found, volume::<N>(parts, extent, enough)),

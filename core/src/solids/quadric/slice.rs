@@ -8,7 +8,7 @@
 //! trapezoid of the two lengths a lower one. Where one wall is proved to be the innermost on its side all the way (its tangents stay
 //! within the chords of the others), the integral over it is the area itself, in closed form: a trapezoid and the lens of an arc.
 
-use super::arc::{Conic, Lens, bend, lens_of};
+use super::arc::{Conic, area_of_lens};
 use super::end_line::EndLine;
 use super::part::Part;
 use super::twofold::{Twofold, difference};
@@ -554,15 +554,8 @@ impl<'a, const N: usize> Slice<'a, N> {
         let Boundary::Wall(n) = boundary else { return trapezoid };
         let Some(wall) = self.walls.get(usize::from(n)) else { return trapezoid };
         let (from, to) = ([p - wall.origin[0], a.v - wall.origin[1]], [q - wall.origin[0], b.v - wall.origin[1]]);
-        let lens = match side {
-            Side::High => lens_of([from, to], wall.conic.turn(from, to), &wall.conic, ANY_REACH),
-            Side::Low => lens_of([to, from], wall.conic.turn(to, from), &wall.conic, ANY_REACH),
-        };
-        let area = match lens {
-            Lens::Nothing => 0.0,
-            Lens::Triangle(_, area) => area,
-            Lens::Bow(bow) => bow.size * bend(bow.w),
-        };
+        let ends = if side == Side::High { [from, to] } else { [to, from] };
+        let area = area_of_lens(ends, wall.conic.turn(ends[0], ends[1]), &wall.conic, ANY_REACH);
         if side == Side::High { trapezoid + area } else { trapezoid - area }
     }
 }

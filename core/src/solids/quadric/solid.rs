@@ -2,7 +2,7 @@
 
 use super::ends::End;
 use super::part::Part;
-use super::spread;
+use super::spread::{self, FacesBetween, NumberedPart};
 use super::wall::{Curved, UnitMap, Wall};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
@@ -149,8 +149,23 @@ impl QuadricSolid {
         areas: bool,
         visit: &mut impl FnMut(RangeKind, usize, f64),
     ) -> f64 {
-        let worst = |part| spread::layer(part, grid, k, areas, visit);
-        self.parts.iter().map(worst).fold(0.0, f64::max)
+        self.layer_between(grid, k, areas, &mut (), visit)
+    }
+
+    /// The same with faces in the planes below and above, as layers leave them to each other.
+    pub fn layer_between<R: Real>(
+        &self,
+        grid: &Grid<R>,
+        k: usize,
+        areas: bool,
+        between: &mut impl FacesBetween,
+        visit: &mut impl FnMut(RangeKind, usize, f64),
+    ) -> f64 {
+        let mut worst = 0.0;
+        for (number, part) in self.parts.iter().enumerate() {
+            worst = f64::max(worst, spread::layer(NumberedPart { part, number, between }, grid, k, areas, visit));
+        }
+        worst
     }
 
     /// Tells its shares in the z faces of plane `plane`, likewise.

@@ -4,7 +4,7 @@ use super::aligned::{AlignedPipe, Shares};
 use super::outline::Rectangle;
 use super::part::{FaceFlux, Part, Plane};
 use super::wall::Span;
-use super::window::reached;
+use super::window::{EVERYWHERE, reached, reached_of};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
@@ -93,15 +93,18 @@ impl<'a> Row<'a> {
         for j in 0..2 {
             for k in 0..2 {
                 let line = self.x_lines[j][k];
+                if !(line.lo < line.hi) {
+                    return Span::EMPTY;
+                }
                 run = run.intersection(self.part.span_between_ends(Axis::X, [self.y[j], self.z[k]], line));
             }
         }
         run
     }
 
-    /// `low_y`: the low face along y, if it is known.
+    /// `known`: the low faces along y and z, as far as they are known.
     #[inline]
-    fn cell(&self, low: &Column, high: &Column, low_y: Option<FaceFlux>) -> CellShares {
+    fn cell(&self, low: &Column, high: &Column, known: [Option<FaceFlux>; 2]) -> CellShares {
         let (part, [y0, y1], [z0, z1]) = (self.part, self.y, self.z);
         let (x, x_lines) = ([&low.plane, &high.plane], &self.x_lines);
         let across_y = |j: usize| {
@@ -112,8 +115,9 @@ impl<'a> Row<'a> {
             let spans = [x_lines[0][k], high.y_lines[k], x_lines[1][k], low.y_lines[k]];
             part.face(self.z[k], &rectangle(x, [y0, y1]), &spans)
         };
-        let faces =
-            [[low.face, high.face], [low_y.unwrap_or_else(|| across_y(0)), across_y(1)], [across_z(0), across_z(1)]];
+        let [low_y, low_z] = known;
+        let (low_y, low_z) = (low_y.unwrap_or_else(|| across_y(0)), low_z.unwrap_or_else(|| across_z(0)));
+        let faces = [[low.face, high.face], [low_y, across_y(1)], [low_z, across_z(1)]];
         let volume = part.volume(&[x, [y0, y1], [z0, z1]], &faces);
         CellShares { volume, faces }
     }
@@ -144,6 +148,36 @@ impl HighFaces {
     }
 }
 
+/// What a part has of a face in a plane between two layers.
+#[derive(Clone, Copy, Debug)]
+pub struct FaceBetween(FaceFlux);
+
+/// Faces in a plane between two layers of one grid, as one layer leaves them to the next, so that they are computed once. They are told by the number of a
+/// solid's part and their position, in ascending order of both.
+pub trait FacesBetween {
+    /// A face below the layer, if the layer below has left it here.
+    fn below(&mut self, part: usize, at: usize) -> Option<FaceBetween>;
+
+    /// A face above the layer.
+    fn above(&mut self, part: usize, at: usize, face: FaceBetween);
+}
+
+/// Nothing is left.
+impl FacesBetween for () {
+    fn below(&mut self, _: usize, _: usize) -> Option<FaceBetween> {
+        None
+    }
+
+    fn above(&mut self, _: usize, _: usize, _: FaceBetween) {}
+}
+
+/// A part of a solid by its number, and what layers leave to each other.
+pub(super) struct NumberedPart<'a, B> {
+    pub part: &'a Part,
+    pub number: usize,
+    pub between: &'a mut B,
+}
+
 /// What rows of a layer have of each other: columns, the high faces of the row below, and those of the row itself.
 struct AtHand<'a> {
     columns: &'a mut Columns,
@@ -158,8 +192,8 @@ fn fraction(face: &FaceFlux, area: f64) -> f64 {
 
 /// Tells the shares of a part in layer `k`: of cells, and with `areas` of x and y faces and of the z faces below. Each is told once, by
 /// its position in the fields of a layer. Returns by how much the worst share left 0 to 1 before it was cut.
-pub(super) fn layer<R: Real>(
-    part: &Part,
+pub(super) fn layer<R: Real, B: FacesBetween>(
+    NumberedPart { part, number, between }: NumberedPart<B>,
     grid: &Grid<R>,
     k: usize,
     areas: bool,
@@ -172,21 +206,21 @@ pub(super) fn layer<R: Real>(
     if lowest > zs[1] || highest < zs[0] {
         return 0.0;
     }
-    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, visit };
+    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, number, between, visit };
     if let Some(pipe) = AlignedPipe::new(part) {
         let cells = [reached(xs, part.extent(Axis::X)), reached(ys, part.extent(Axis::Y)), k..k + 1];
         return pipe.tell([xs, ys, grid.edges(2)], &cells, &mut |[i, j, _], [last, last_row, _], shares| {
             told.tell_cell(i, (j, last_row), last, shares);
         });
     }
-    let all = [f64::NEG_INFINITY, f64::INFINITY];
-    let within = part.extent_within([all, all, zs]);
-    let (columns, rows) = (reached(xs, within[0]), reached(ys, within[1]));
+    let within = part.extent_within([EVERYWHERE, EVERYWHERE, zs]);
+    let runs = part.runs(zs);
+    let (across, rows) = (reached(xs, within[0]), reached(ys, within[1]));
     let around = |edges: &[R], cells: &Range<usize>| {
         let edge = |n: usize| edges.get(n).map_or(f64::NAN, |e| e.to_f64());
         [edge(cells.start), edge(cells.end)]
     };
-    let without = part.without_far_ends([around(xs, &columns), around(ys, &rows), zs]);
+    let without = part.without_far_ends([around(xs, &across), around(ys, &rows), zs]);
     let near = without.as_ref().unwrap_or(part);
     let z = zs.map(|z| near.plane(Axis::Z, z));
     // Planes between rows by the parity of their numbers, and the row that stands below the next one.
@@ -197,7 +231,7 @@ pub(super) fn layer<R: Real>(
     for j in rows.clone() {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
         let last_row = j + 1 == rows.end;
-        let Some(run) = part.run([y0.to_f64(), y1.to_f64()], zs) else { continue };
+        let Some(run) = runs.between([y0.to_f64(), y1.to_f64()]) else { continue };
         let known = below.filter(|(row, _)| *row + 1 == j).map(|(_, lines)| lines);
         let [even_plane, odd_plane] = &mut planes;
         let (low, high) = if j % 2 == 0 { (even_plane, odd_plane) } else { (odd_plane, even_plane) };
@@ -209,20 +243,23 @@ pub(super) fn layer<R: Real>(
         let row = Row::new(near, j, [[low, high], z.each_ref()], known);
         let (own, other) = if j % 2 == 0 { (&mut even, &odd) } else { (&mut odd, &even) };
         let at_hand = AtHand { columns: &mut columns, below: other, own };
-        told.row(xs, &row, last_row, reached(xs, run), at_hand);
+        told.row(xs, &row, last_row, reached_of(xs, &across, run), at_hand);
         below = Some((j, row.x_lines[1]));
     }
     told.worst
 }
 
-struct Teller<'v, F> {
+struct Teller<'v, F, B> {
     cells: [usize; 2],
     areas: bool,
     worst: f64,
+    /// The part's number, and what layers leave to each other.
+    number: usize,
+    between: &'v mut B,
     visit: &'v mut F,
 }
 
-impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
+impl<F: FnMut(RangeKind, usize, f64), B: FacesBetween> Teller<'_, F, B> {
     fn tell(&mut self, kind: RangeKind, at: usize, share: f64) {
         if share > 0.0 {
             (self.visit)(kind, at, share);
@@ -246,7 +283,10 @@ impl<F: FnMut(RangeKind, usize, f64)> Teller<'_, F> {
                 columns.find(row, i, x0.to_f64());
                 columns.find(row, i + 1, x1.to_f64());
                 let (Some(low), Some(high)) = (columns.get(i), columns.get(i + 1)) else { break };
-                let found = row.cell(low, high, below.below(j, i));
+                let at = j * self.cells[0] + i;
+                let low_z = self.between.below(self.number, at).map(|face| face.0);
+                let found = row.cell(low, high, [below.below(j, i), low_z]);
+                self.between.above(self.number, at, FaceBetween(found.faces[2][1]));
                 let shares = self.shares(row, [low, high], &found);
                 (shares, Some(found.faces[1][1]))
             };
@@ -299,12 +339,12 @@ pub(super) fn plane<R: Real>(part: &Part, grid: &Grid<R>, plane: usize, visit: &
         return;
     }
     let nx = grid.cells()[0];
-    let level = part.plane(Axis::Z, z);
+    let (level, runs) = (part.plane(Axis::Z, z), part.runs([z, z]));
     for j in reached(ys, part.extent(Axis::Y)) {
         let (Some(y0), Some(y1)) = (ys.get(j), ys.get(j + 1)) else { break };
         let ys = [y0.to_f64(), y1.to_f64()];
         let y = ys.map(|y| part.plane(Axis::Y, y));
-        let Some(run) = part.run(ys, [z, z]) else { continue };
+        let Some(run) = runs.between(ys) else { continue };
         let x_lines = y.each_ref().map(|y| part.span(Axis::X, [y, &level]));
         for i in reached(xs, run) {
             let (Some(x0), Some(x1)) = (xs.get(i), xs.get(i + 1)) else { break };

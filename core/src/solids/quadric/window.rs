@@ -1,8 +1,10 @@
 //! Which cells a part may reach: boxes and runs along x, a little too large rather than too small.
 
+use super::ends::End;
 use super::part::Part;
 use super::wall::Wall;
 use crate::number::axis::Axis;
+use crate::number::plane::P2;
 use crate::number::real::Real;
 use core::ops::Range;
 
@@ -11,6 +13,9 @@ pub(super) type Extent = [f64; 2];
 
 /// Margin for rounding, as a share of coordinates and sizes.
 const MARGIN: f64 = 1e-12;
+
+/// All along an axis.
+pub(super) const EVERYWHERE: Extent = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// A box that holds nothing.
 const NOWHERE: [Extent; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
@@ -26,6 +31,12 @@ pub(super) fn reached<R: Real>(edges: &[R], [lo, hi]: Extent) -> Range<usize> {
     first..edges.partition_point(|e| e.to_f64() <= hi).min(edges.len().saturating_sub(1))
 }
 
+/// The same among some cells, which hold all that it reaches.
+pub(super) fn reached_of<R: Real>(edges: &[R], cells: &Range<usize>, extent: Extent) -> Range<usize> {
+    let found = reached(edges.get(cells.start..=cells.end).unwrap_or_default(), extent);
+    cells.start + found.start..cells.start + found.end
+}
+
 /// A part of the axis of a cylinder or cone, by shares of the way between its ends, and the largest radius.
 struct Stretch {
     ends: [[f64; 3]; 2],
@@ -34,17 +45,65 @@ struct Stretch {
 }
 
 impl Stretch {
-    /// How far along an axis of the grid the part's surface may be from here.
+    /// All of the axis.
+    fn of(part: &Part) -> Self {
+        let (ends, radius) = part.segment();
+        Stretch { ends, radius, shares: [0.0, 1.0] }
+    }
+
+    /// The shares from which the part may reach between two planes across an axis too; limits in the wrong order if it reaches nothing there.
     #[inline]
-    fn extent(&self, part: &Part, axis: Axis) -> Extent {
+    fn within(&self, part: &Part, axis: Axis, limits: Extent) -> P2 {
+        let ([a, b], reach) = (self.ends, self.radius * part.curved.across[axis]);
+        let ([lo, hi], [first, last]) = (widened([limits[0] - reach, limits[1] + reach]), self.shares);
+        let along = b[axis] - a[axis];
+        if along != 0.0 {
+            let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
+            [first.max(s.min(t)), last.min(s.max(t))]
+        } else if a[axis] < lo || a[axis] > hi {
+            [f64::INFINITY, f64::NEG_INFINITY]
+        } else {
+            [first, last]
+        }
+    }
+
+    /// How far along an axis of the grid the part's surface may be from between two shares of the axis; none if these are in the wrong order.
+    #[inline]
+    fn extent(&self, part: &Part, axis: Axis, [first, last]: P2) -> Option<Extent> {
+        let margin = MARGIN * (1.0 + first.abs() + last.abs());
+        if !(first <= last + margin) {
+            return None;
+        }
         let [a, b] = self.ends;
-        let [s, t] = self.shares.map(|share| a[axis] + share.clamp(0.0, 1.0) * (b[axis] - a[axis]));
+        let shares = [first - margin, last + margin];
+        let [s, t] = shares.map(|share| a[axis] + share.clamp(0.0, 1.0) * (b[axis] - a[axis]));
         let reach = self.radius * part.curved.across[axis];
-        widened([s.min(t) - reach, s.max(t) + reach])
+        Some(widened([s.min(t) - reach, s.max(t) + reach]))
     }
 }
 
+/// Where along x a part may be, row by row, between two planes across z.
+pub(super) struct Runs<'a> {
+    part: &'a Part,
+    z: Extent,
+    stretch: Option<Stretch>,
+}
+
 impl Part {
+    /// Along all axes.
+    pub fn extents(&self) -> [Extent; 3] {
+        match &self.curved.wall {
+            Wall::Ball { .. } | Wall::Ellipsoid(_) => Axis::ALL.map(|axis| self.extent(axis)),
+            Wall::Cylinder { .. } | Wall::Cone { .. } => {
+                let ([a, b], radius) = self.segment();
+                Axis::ALL.map(|axis| {
+                    let reach = radius * self.curved.across[axis];
+                    widened([a[axis].min(b[axis]) - reach, a[axis].max(b[axis]) + reach])
+                })
+            }
+        }
+    }
+
     /// Along an axis.
     pub fn extent(&self, axis: Axis) -> Extent {
         let around = |reach: f64| widened([self.origin[axis] - reach, self.origin[axis] + reach]);
@@ -61,30 +120,10 @@ impl Part {
 
     /// The axis between the ends, and the largest radius.
     fn segment(&self) -> ([[f64; 3]; 2], f64) {
-        let [one, other] = self.ends;
-        let center = |end: Option<super::ends::End>| end.map_or(self.origin, |e| e.center);
-        let radius = |end: Option<super::ends::End>| end.map_or(0.0, |e| e.radius);
+        let [one, other] = &self.ends;
+        let center = |end: &Option<End>| end.as_ref().map_or(self.origin, |e| e.center);
+        let radius = |end: &Option<End>| end.as_ref().map_or(0.0, |e| e.radius);
         ([center(one), center(other)], radius(one).max(radius(other)))
-    }
-
-    /// The stretch of the axis from which it may reach between planes across some axes; none if it reaches nothing there.
-    #[inline]
-    fn stretch(&self, limits: impl Iterator<Item = (Axis, Extent)>) -> Option<Stretch> {
-        let ([a, b], radius) = self.segment();
-        let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        for (axis, limits) in limits {
-            let reach = radius * self.curved.across[axis];
-            let [lo, hi] = widened([limits[0] - reach, limits[1] + reach]);
-            let along = b[axis] - a[axis];
-            if along != 0.0 {
-                let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
-                (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
-            } else if a[axis] < lo || a[axis] > hi {
-                return None;
-            }
-        }
-        let margin = MARGIN * (1.0 + first.abs() + last.abs());
-        (first <= last + margin).then_some(Stretch { ends: [a, b], radius, shares: [first - margin, last + margin] })
     }
 
     /// Where it may be in a box, which it reaches; limits in the wrong order if it does not.
@@ -107,31 +146,47 @@ impl Part {
                 })
             }
             Wall::Cylinder { .. } | Wall::Cone { .. } => {
-                let Some(stretch) = self.stretch(Axis::ALL.into_iter().zip(place)) else { return NOWHERE };
-                Axis::ALL.map(|n| stretch.extent(self, n))
+                let mut stretch = Stretch::of(self);
+                for n in Axis::ALL {
+                    if place[n] != EVERYWHERE {
+                        stretch.shares = stretch.within(self, n, place[n]);
+                    }
+                }
+                Axis::ALL.map(|n| stretch.extent(self, n, stretch.shares).unwrap_or(NOWHERE[0]))
             }
         };
         Axis::ALL.map(|n| [place[n][0].max(around[n][0]), place[n][1].min(around[n][1])])
     }
 
-    /// Along x, of what lies between two planes across y and two across z; none if nothing does.
-    pub fn run(&self, y: Extent, z: Extent) -> Option<Extent> {
-        match &self.curved.wall {
-            Wall::Ellipsoid(_) => Some(self.extent(Axis::X)),
-            Wall::Ball { radius } => {
+    /// Rows between two planes across z.
+    pub fn runs(&self, z: Extent) -> Runs<'_> {
+        let axial = matches!(self.curved.wall, Wall::Cylinder { .. } | Wall::Cone { .. });
+        let stretch = axial.then(|| {
+            let mut stretch = Stretch::of(self);
+            stretch.shares = stretch.within(self, Axis::Z, z);
+            stretch
+        });
+        Runs { part: self, z, stretch }
+    }
+}
+
+impl Runs<'_> {
+    /// Along x, of what lies between two planes across y too; none if nothing does.
+    pub fn between(&self, y: Extent) -> Option<Extent> {
+        let (part, z) = (self.part, self.z);
+        match (&part.curved.wall, &self.stretch) {
+            (_, Some(stretch)) => stretch.extent(part, Axis::X, stretch.within(part, Axis::Y, y)),
+            (Wall::Ball { radius }, None) => {
                 let off = |axis: Axis, [lo, hi]: Extent| {
-                    let [lo, hi] = widened([lo - self.origin[axis], hi - self.origin[axis]]);
+                    let [lo, hi] = widened([lo - part.origin[axis], hi - part.origin[axis]]);
                     if lo > 0.0 { lo } else { hi.min(0.0) }
                 };
                 let (a, b) = (off(Axis::Y, y), off(Axis::Z, z));
                 let square = radius * radius * (1.0 + MARGIN) - a * a - b * b;
                 let reach = Real::sqrt(square.max(0.0));
-                (square >= 0.0).then(|| widened([self.origin[0] - reach, self.origin[0] + reach]))
+                (square >= 0.0).then(|| widened([part.origin[0] - reach, part.origin[0] + reach]))
             }
-            Wall::Cylinder { .. } | Wall::Cone { .. } => {
-                let stretch = self.stretch([(Axis::Y, y), (Axis::Z, z)].into_iter())?;
-                Some(stretch.extent(self, Axis::X))
-            }
+            _ => Some(part.extent(Axis::X)),
         }
     }
 }

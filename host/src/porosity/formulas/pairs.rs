@@ -1,5 +1,6 @@
-//! Which solids by formula meet: asked of GJK once for each two whose boxes overlap.
+//! Which solids by formula meet: asked of GJK once for each two whose boxes overlap, unless capsules around them are apart.
 
+use super::capsule::are_apart;
 use super::round::Round;
 use super::solid::{FormulaSolid, Kind, Pair, Partner};
 use glam::DVec3;
@@ -60,6 +61,7 @@ fn pair_of_solids(a: &Kind, b: &Kind) -> Option<Pair> {
         (None, None) => None,
     };
     match (a, b) {
+        (Kind::Quadric(_, a), Kind::Quadric(_, b)) if are_apart(a, b) => None,
         (Kind::Quadric(_, a), Kind::Quadric(_, b)) => pair(Round(a), Round(b)),
         (Kind::Quadric(_, a), Kind::Torus(_, pieces)) | (Kind::Torus(_, pieces), Kind::Quadric(_, a)) => {
             pieces.iter().map(|piece| pair(Round(a), Hull(piece))).fold(None, worse)
