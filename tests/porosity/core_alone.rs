@@ -235,6 +235,8 @@ fn a_crowd_has_the_same_bits_whichever_bodies_are_asked() {
     }
 }
 
+type Solids = Vec<Vec<[DVec3; 3]>>;
+
 /// A prism over a triangle, from one height to another.
 fn prism(corners: [DVec3; 3], [low, high]: [f64; 2]) -> Vec<[DVec3; 3]> {
     let [a, b, c] = corners.map(|p| p.with_z(low));
@@ -254,7 +256,7 @@ fn bodies_around_an_axis_or_a_point_have_the_same_bits_whichever_are_asked() {
     let middle = DVec3::new(0.5, 0.5, 0.0);
     let apart = (0..count).map(|n| wedge(middle, turn(f64::from(n)), turn(f64::from(n) + 0.6), [0.1, 0.9])).collect();
     let flush = (0..count).map(|n| wedge(middle, turn(f64::from(n)), turn(f64::from(n + 1)), [0.0, 1.0])).collect();
-    let mut any = |shift: f64| -> Vec<_> {
+    let mut any = |shift: f64| -> Solids {
         let mut one = |_| {
             let from = random.between(0.0, 7.0);
             let axis = middle + DVec3::new(random.between(-shift, shift), random.between(-shift, shift), 0.0);
@@ -271,7 +273,7 @@ fn bodies_around_an_axis_or_a_point_have_the_same_bits_whichever_are_asked() {
         vec![[o, b, a], [o, c, b], [o, a, c], [a, b, c]]
     };
     let star = (0..count).map(&mut spike).collect();
-    let families: [(&str, Vec<Vec<[DVec3; 3]>>, Option<f64>); 5] = [
+    let families: [(&str, Solids, Option<f64>); 5] = [
         ("apart", apart, Some(0.8 * 0.08 * f64::from(count) * turn(0.6).sin())),
         ("flush", flush, Some(0.08 * f64::from(count) * turn(1.0).sin())),
         ("overlapping", overlapping, None),

@@ -16,15 +16,12 @@ mod faces;
 mod sweep;
 
 use crate::number::real::Real;
-use edge::{cancelled, joined};
+use edge::{cancelled, joined, thickness};
 use sweep::Sweep;
 
 pub use edge::ShadowEdge;
 pub(super) use faces::CellFaces;
 pub use faces::ShadowFace;
-
-/// Places closer than this, in ε, are one place.
-const THICKNESS_IN_EPSILONS: f64 = 64.0;
 
 /// A section of which this share is solid at most, or open at most, has no boundary but rounding.
 const NO_SECTION: f64 = 1e-12;
@@ -190,9 +187,4 @@ impl<R: Real> Outline<'_, R> {
         }
         Some(())
     }
-}
-
-/// Places closer than this are one place.
-fn thickness<R: Real>() -> R {
-    R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS)
 }

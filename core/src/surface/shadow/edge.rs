@@ -2,6 +2,9 @@
 
 use crate::number::real::Real;
 
+/// Places closer than this, in ε, are one place.
+const THICKNESS_IN_EPSILONS: f64 = 64.0;
+
 /// An edge seen along the axis of a sweep. The default serves as memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShadowEdge<R> {
@@ -155,4 +158,9 @@ fn sort<R: Real>(edges: &mut [ShadowEdge<R>]) {
         }
         gap = if gap == 2 { 1 } else { gap * 5 / 11 };
     }
+}
+
+/// Places closer than this are one place.
+pub(super) fn thickness<R: Real>() -> R {
+    R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS)
 }

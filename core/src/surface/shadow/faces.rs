@@ -1,6 +1,6 @@
 //! The faces of what is in a cell, and whether lines along an axis enter it once at most.
 
-use super::thickness;
+use super::edge::thickness;
 use crate::number::real::Real;
 use crate::number::space::{cross, dot, sub};
 use crate::surface::clip::Polygon;

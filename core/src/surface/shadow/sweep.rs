@@ -1,7 +1,6 @@
 //! A line that sweeps over the edges of outlines, and counts what lies between them.
 
-use super::edge::ShadowEdge;
-use super::thickness;
+use super::edge::{ShadowEdge, thickness};
 use crate::number::real::Real;
 
 /// A sweep that takes more steps than this, each once an edge that it passes, is given up.

@@ -6,19 +6,23 @@
 
 use super::bsp::{Branch, Node, Part};
 use super::piece::{AMBIGUITY_BAND, Ball, Plane};
-use super::separate::Bodies;
+use super::separate::{Bodies, is_before};
 use crate::number::real::Real;
 use crate::surface::clip::Polygon;
+use core::ops::Range;
 use heapless::Vec;
 
 /// Where no more bodies than this meet, lists cost more than they save.
 const MANY: usize = 64;
 
 /// Lists as short as this are not shortened further.
-pub(super) const SHORT: usize = 64;
+const SHORT: usize = 64;
 
 /// Width of the box that the list of an octant holds for, in widths of the octant.
 const REACH: f64 = 2.0;
+
+/// A plane of which this share of the bodies reaches one of its sides separates too few.
+const MOST: f64 = 0.75;
 
 /// A child that is not made yet, and one that memory does not allow.
 const UNKNOWN: u32 = 0;
@@ -30,16 +34,16 @@ const BRANCHES: usize = 32;
 /// A cube of the octree, in the frame of the cell; of one that a plane divides, the sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Octant<R: Real> {
-    pub(super) center: [R; 3],
+    center: [R; 3],
     /// Half of its width.
-    pub(super) half: R,
+    half: R,
     /// Its list: numbers of bodies, rising.
-    pub(super) first: u32,
-    pub(super) end: u32,
-    pub(super) children: [u32; 8],
+    first: u32,
+    end: u32,
+    children: [u32; 8],
     /// A plane that separates the bodies of its list, if there are octants for what is behind and before it.
-    pub(super) plane: Plane<R>,
-    pub(super) sides: Option<[u32; 2]>,
+    plane: Plane<R>,
+    sides: Option<[u32; 2]>,
 }
 
 /// Pieces of a body in a cell, as [`Layers::union_pieces`](crate::surface::layer::Layers::union_pieces) counts them.
@@ -68,8 +72,8 @@ pub(super) struct ToAsk {
 /// How much of the memory is in use; nothing while there is no octree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct OctreeSize {
-    pub octants: usize,
-    pub near: usize,
+    octants: usize,
+    near: usize,
 }
 
 /// The octree of a cell.
@@ -98,6 +102,64 @@ impl<R: Real> Octree<'_, R> {
                 self.separate(bodies);
             }
         }
+    }
+
+    /// Separate the bodies of the cell by planes as long as that leaves fewer on each side, and memory allows.
+    fn separate(&mut self, bodies: &Bodies<'_, R>) {
+        let mut number = 0;
+        while number < self.size.octants {
+            self.divide(number, bodies);
+            number += 1;
+        }
+    }
+
+    /// Divide the list of an octant by a plane; none if there is no plane that serves, or memory is spent.
+    fn divide(&mut self, number: usize, bodies: &Bodies<'_, R>) -> Option<()> {
+        let parent = *self.octants.get(number)?;
+        let whole = parent.first as usize..parent.end as usize;
+        if whole.len() <= SHORT {
+            return None;
+        }
+        let plane = bodies.best_plane(self.near.get(whole.clone())?)?;
+        let middle = self.list(whole.clone(), self.size.near, |body| bodies.reach(body, &plane).behind)?;
+        let end = self.list(whole.clone(), middle, |body| bodies.reach(body, &plane).before)?;
+        let longest = (middle - self.size.near).max(end - middle);
+        if R::from_usize(longest) > R::from_usize(whole.len()) * R::from_f64(MOST) {
+            return None;
+        }
+        let first = self.size.octants;
+        let lists = [self.size.near..middle, middle..end];
+        for (place, list) in self.octants.get_mut(first..first + 2)?.iter_mut().zip(lists) {
+            *place = Octant { first: u32::try_from(list.start).ok()?, end: u32::try_from(list.end).ok()?, ..parent };
+        }
+        let parent = self.octants.get_mut(number)?;
+        (parent.plane, parent.sides) = (plane, Some([first as u32, first as u32 + 1]));
+        (self.size.octants, self.size.near) = (first + 2, end);
+        Some(())
+    }
+
+    /// Write those of a list for which something is true from a place on; where they end.
+    fn list(&mut self, of: Range<usize>, at: usize, is_true: impl Fn(u32) -> bool) -> Option<usize> {
+        let mut end = at;
+        for place in of {
+            let body = *self.near.get(place)?;
+            if is_true(body) {
+                *self.near.get_mut(end)? = body;
+                end += 1;
+            }
+        }
+        Some(end)
+    }
+
+    /// The last octant to which planes lead a polygon of a radius.
+    fn beside_planes(&self, polygon: &Polygon<R>, radius: R) -> u32 {
+        let mut number = 0;
+        while let Some(Octant { plane, sides: Some([behind, before]), .. }) = self.octants.get(number as usize)
+            && let Some(is_before) = is_before(polygon, radius, plane, self.thickness)
+        {
+            number = if is_before { *before } else { *behind };
+        }
+        number
     }
 
     /// The first body from `from` on, but `own`, that may meet a polygon that has been located; one beyond the last if there is none.

@@ -1,27 +1,21 @@
 //! Where many bodies meet in one cell: planes that have some of them on one side and the others beyond.
 //!
 //! Bodies around an axis or a point, as wedges of a wheel or the cones of a star, are near each other in every box about it, but any plane of a face that
-//! passes the axis has nearly all of them wholly on one of its sides. What lies on one side of such a plane meets only bodies that reach into that side. So
-//! the bodies are listed by sides of planes, again and again, before boxes tell which of them are near ([`octree`](super::octree)).
+//! passes the axis has nearly all of them wholly on one of its sides. What lies on one side of such a plane meets only bodies that reach into that side.
 //!
 //! A polygon in the plane, or so little inclined to it that much of it is as near as rounding, asks all.
 
 use super::bsp::{Branch, Node, Part};
-use super::octree::{Octant, Octree, SHORT};
 use super::piece::{AMBIGUITY_BAND, Piece, Plane, span};
 use crate::number::real::Real;
 use crate::number::space::dot;
 use crate::surface::clip::Polygon;
-use core::ops::Range;
 
 /// Bodies whose faces are tried for a plane, and pieces of each that are tried.
 const TRIED: [usize; 2] = [4, 8];
 
 /// Bodies by which the planes that are tried are compared.
 const COMPARED: usize = 16;
-
-/// A plane of which this share of the bodies reaches one of its sides separates too few.
-const MOST: f64 = 0.75;
 
 /// A polygon lies on one side of a plane if it reaches farther there than this share of the radius of a ball around it: then what is as near to the plane as
 /// rounding is a sliver.
@@ -39,14 +33,14 @@ pub(super) struct Bodies<'a, R: Real> {
 
 /// Which sides of a plane something reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Reach {
-    behind: bool,
-    before: bool,
+pub(super) struct Reach {
+    pub behind: bool,
+    pub before: bool,
 }
 
 impl<R: Real> Bodies<'_, R> {
     /// The sides of a plane that the solid of a body in its cell reaches. Its corners are those of its pieces, and the corners of the cell that are solid.
-    fn reach(&self, body: u32, plane: &Plane<R>) -> Reach {
+    pub fn reach(&self, body: u32, plane: &Plane<R>) -> Reach {
         let mut reach = Reach::default();
         let Some(part) = self.parts.get(body as usize) else { return reach };
         let mut see = |distance: R| {
@@ -85,7 +79,7 @@ impl<R: Real> Bodies<'_, R> {
     }
 
     /// Of the planes of some faces of listed bodies, that which leaves the fewest to the side that more bodies reach.
-    fn best_plane(&self, list: &[u32]) -> Option<Plane<R>> {
+    pub fn best_plane(&self, list: &[u32]) -> Option<Plane<R>> {
         let (mut best, mut fewest) = (None, list.len().min(COMPARED));
         let mut last: Option<Plane<R>> = None;
         for body in spread(list, TRIED[0]) {
@@ -118,67 +112,10 @@ fn spread(list: &[u32], most: usize) -> impl Iterator<Item = u32> {
     (0..count).filter_map(move |n| list.get((2 * n + 1) * list.len() / (2 * count)).copied())
 }
 
-impl<R: Real> Octree<'_, R> {
-    /// Separate the bodies of the cell by planes as long as that leaves fewer on each side, and memory allows.
-    pub(super) fn separate(&mut self, bodies: &Bodies<'_, R>) {
-        let mut number = 0;
-        while number < self.size.octants {
-            self.divide(number, bodies);
-            number += 1;
-        }
-    }
-
-    /// Divide the list of an octant by a plane; none if there is no plane that serves, or memory is spent.
-    fn divide(&mut self, number: usize, bodies: &Bodies<'_, R>) -> Option<()> {
-        let parent = *self.octants.get(number)?;
-        let whole = parent.first as usize..parent.end as usize;
-        if whole.len() <= SHORT {
-            return None;
-        }
-        let plane = bodies.best_plane(self.near.get(whole.clone())?)?;
-        let middle = self.list(whole.clone(), self.size.near, |body| bodies.reach(body, &plane).behind)?;
-        let end = self.list(whole.clone(), middle, |body| bodies.reach(body, &plane).before)?;
-        let longest = (middle - self.size.near).max(end - middle);
-        if R::from_usize(longest) > R::from_usize(whole.len()) * R::from_f64(MOST) {
-            return None;
-        }
-        let first = self.size.octants;
-        let lists = [self.size.near..middle, middle..end];
-        for (place, list) in self.octants.get_mut(first..first + 2)?.iter_mut().zip(lists) {
-            *place = Octant { first: u32::try_from(list.start).ok()?, end: u32::try_from(list.end).ok()?, ..parent };
-        }
-        let parent = self.octants.get_mut(number)?;
-        (parent.plane, parent.sides) = (plane, Some([first as u32, first as u32 + 1]));
-        (self.size.octants, self.size.near) = (first + 2, end);
-        Some(())
-    }
-
-    /// Write those of a list for which something is true from a place on; where they end.
-    fn list(&mut self, of: Range<usize>, at: usize, is_true: impl Fn(u32) -> bool) -> Option<usize> {
-        let mut end = at;
-        for place in of {
-            let body = *self.near.get(place)?;
-            if is_true(body) {
-                *self.near.get_mut(end)? = body;
-                end += 1;
-            }
-        }
-        Some(end)
-    }
-
-    /// The last octant to which planes lead a polygon of a radius.
-    pub(super) fn beside_planes(&self, polygon: &Polygon<R>, radius: R) -> u32 {
-        let mut number = 0;
-        while let Some(Octant { plane, sides: Some([behind, before]), .. }) = self.octants.get(number as usize) {
-            let ((least, most), inclined) = (span(polygon, plane), radius * R::from_f64(INCLINED));
-            number = if least >= -self.thickness && most > inclined {
-                *before
-            } else if most <= self.thickness && least < -inclined {
-                *behind
-            } else {
-                break;
-            };
-        }
-        number
-    }
+/// Where a polygon in a ball of a radius lies: before a plane (true), behind it, or, if it may meet what is on both of its sides, neither.
+pub(super) fn is_before<R: Real>(polygon: &Polygon<R>, radius: R, plane: &Plane<R>, thickness: R) -> Option<bool> {
+    let ((least, most), inclined) = (span(polygon, plane), radius * R::from_f64(INCLINED));
+    let is_before = least >= -thickness && most > inclined;
+    let is_behind = most <= thickness && least < -inclined;
+    (is_before || is_behind).then_some(is_before)
 }

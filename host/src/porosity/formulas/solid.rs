@@ -83,11 +83,6 @@ impl FormulaSolid {
         }
     }
 
-    /// Is it a cylinder?
-    pub(super) fn is_pipe(&self) -> bool {
-        matches!(self.kind, Kind::Quadric(_, Convex::Cylinder(_)))
-    }
-
     /// May it reach a box, if it is not convex? Of a convex one GJK tells.
     #[must_use]
     pub fn torus_may_reach(&self, cell: Aabb<DVec3>) -> bool {

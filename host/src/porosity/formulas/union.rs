@@ -14,10 +14,8 @@ use voidage_core::solids::quadric::{QuadricSolid, share_of_union};
 const FIRST: usize = 1 << 15;
 const MOST: usize = 1 << 21;
 
-/// Up to so many solids have few enough sets that sections tell what each of these has in common sooner than planes do; and of pipes, three of which
-/// need no sections.
+/// Up to so many solids have few enough sets that sections tell what each of these has in common sooner than planes do.
 const FEW: usize = 4;
-const FEW_PIPES: usize = 6;
 
 /// Bounds of the union of some solids in one cell or face, from what is known of it and the sum of their shares; about `tol` apart. Sections of
 /// faces are exact, and best for what few solids have in common; planes for more solids, and for tori.
@@ -30,8 +28,7 @@ pub(super) fn union_of(
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
     let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most }));
     let by_sections = || by_sections(solids, sum, cell, tol);
-    let few = if solids.iter().all(|s| s.is_pipe()) { FEW_PIPES } else { FEW };
-    let sections_first = solids.len() <= few || cell.size().min_element() == 0.0;
+    let sections_first = solids.len() <= FEW || cell.size().min_element() == 0.0;
     let ways: [&dyn Fn() -> Option<Bounds<f64>>; 3] = if sections_first {
         [&by_sections, &|| by_planes(FIRST), &|| by_planes(MOST)]
     } else {
