@@ -205,11 +205,10 @@ fn any_fractions_are_made_ready_and_stepped_without_panic() {
         };
         let cells = mesh.len();
         let (volume, faces) = (fractions(cells), [0, 1].map(|d| fractions(mesh.faces(d))));
-        let place = |of: &[f64], axis: Option<usize>| {
-            let index = of.iter().position(|b| !(-1e-6..=1.0 + 1e-6).contains(b))?;
-            Some(Error::Fraction { axis, index })
-        };
-        let wrong = place(&volume, None).or_else(|| (0..2).find_map(|d| place(&faces[d], Some(d))));
+        let place = |of: &[f64]| of.iter().position(|b| !(-1e-6..=1.0 + 1e-6).contains(b));
+        let of_face = |axis: usize| place(&faces[axis]).map(|face| Error::FaceFraction { axis, face });
+        let of_cell = place(&volume).map(|cell| Error::CellFraction { cell });
+        let wrong = of_cell.or_else(|| (0..2).find_map(of_face));
         let of = Fractions { volume, faces, flags: vec![255; cells] };
         let merging = |cells| Merging {
             list: vec![7; cells],

@@ -55,12 +55,17 @@ pub enum Error {
     Step,
     /// A stable step that is too short to advance the time.
     Stalled,
-    /// An open fraction that is not from 0 to 1, but for rounding.
-    Fraction {
-        /// Of faces across this axis; none for the fractions of cells.
-        axis: Option<usize>,
-        /// Its place in the array.
-        index: usize,
+    /// An open fraction of a cell that is not from 0 to 1, but for rounding.
+    CellFraction {
+        /// The flat index of the cell.
+        cell: usize,
+    },
+    /// An open fraction of a face that is not from 0 to 1, but for rounding.
+    FaceFraction {
+        /// The axis that the face is across.
+        axis: usize,
+        /// Its flat index among the faces across that axis.
+        face: usize,
     },
     /// A cell outside the physical set (density or pressure not positive, or not finite; of a mixed gas a capacity out of its bounds).
     Unphysical {
@@ -94,10 +99,10 @@ impl fmt::Display for Error {
             Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
             Error::Step => f.write_str("the step or the CFL number is not positive and finite"),
             Error::Stalled => f.write_str("a stable step is too short to advance the time"),
-            Error::Fraction { axis: Some(axis), index } => {
-                write!(f, "the open fraction of face {index} across axis {axis} is not from 0 to 1")
+            Error::CellFraction { cell } => write!(f, "the open fraction of cell {cell} is not from 0 to 1"),
+            Error::FaceFraction { axis, face } => {
+                write!(f, "the open fraction of face {face} across axis {axis} is not from 0 to 1")
             }
-            Error::Fraction { axis: None, index } => write!(f, "the open fraction of cell {index} is not from 0 to 1"),
             Error::WatchedOrder { number } => {
                 write!(f, "watched cell {number} has a lower index than the one before it")
             }

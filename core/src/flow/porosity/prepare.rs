@@ -102,11 +102,13 @@ where
     L: AsRef<[u32]> + AsMut<[u32]>,
 {
     let Fractions { mut volume, mut faces, flags } = fractions;
-    let mut tidied = Tidied { dust_cells: without_dust(volume.as_mut(), None)?, ..Tidied::default() };
-    for (d, faces) in faces.iter_mut().map(AsMut::as_mut).enumerate() {
-        tidied.dust_faces += without_dust(faces, Some(d))?;
-        if periodic[d] {
-            tidied.matched_faces += match_sides(mesh, d, faces);
+    let dust_cells = without_dust(volume.as_mut()).map_err(|cell| Error::CellFraction { cell })?;
+    let mut tidied = Tidied { dust_cells, ..Tidied::default() };
+    for ((axis, faces), periodic) in faces.iter_mut().enumerate().zip(periodic) {
+        let faces = faces.as_mut();
+        tidied.dust_faces += without_dust(faces).map_err(|face| Error::FaceFraction { axis, face })?;
+        if periodic {
+            tidied.matched_faces += match_sides(mesh, axis, faces);
         }
     }
     let cells = mesh.cells();
@@ -298,17 +300,17 @@ fn match_sides<R: Real, const D: usize>(mesh: &Mesh<'_, R, D>, d: usize, faces: 
 /// Open fractions may leave 0 to 1 by so much: rounding of single precision.
 const BEYOND: f64 = 1e-6;
 
-/// Sets fractions of cells, or of faces across an axis, that are below 0 or within a few rounding errors of it to 0, and those above 1 to 1; returns how many
+/// Sets fractions that are below 0 or within a few rounding errors of it to 0, and those above 1 to 1; returns how many
 /// became 0.
 ///
 /// # Errors
-/// A fraction that is NaN, or below 0 or above 1 by more than rounding.
-fn without_dust<R: Real>(fractions: &mut [R], axis: Option<usize>) -> Result<usize, Error> {
+/// The place of a fraction that is NaN, or below 0 or above 1 by more than rounding.
+fn without_dust<R: Real>(fractions: &mut [R]) -> Result<usize, usize> {
     let (dust, beyond) = (R::from_f64(16.0) * R::EPSILON, R::from_f64(BEYOND));
     let mut count = 0;
     for (index, x) in fractions.iter_mut().enumerate() {
         if !(*x >= -beyond && *x <= R::ONE + beyond) {
-            return Err(Error::Fraction { axis, index });
+            return Err(index);
         }
         if *x <= dust {
             count += usize::from(*x != R::ZERO);
