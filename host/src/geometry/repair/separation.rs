@@ -7,7 +7,7 @@
 //! in the plane within a tolerance; those of the lower one are as deep. Heights are good to a small part of a tolerance. So they share no side. If one of them
 //! has no corner in the plane, they are far apart. If both have the same corner there, the one has no other point as low as that, the other none as high:
 //! the corner is all that they have in common. If they have different corners there, what of each is within a tolerance of the plane is but a tip around its
-//! corner, smaller than the triangle by [`CLEAR`]; the corners are farther apart than that ([`FAR`]).
+//! corner, smaller than the triangle by [`CLEAR`]; the corners are farther apart than that (`FAR`).
 //!
 //! The rules of [`near`](crate::geometry::repair::face::near) and [`meeting`](crate::geometry::repair::face::meeting) say the same. A cut is found where a part
 //! of a straight line in the one triangle lies within all sides of the other, seen along its normal, and within tolerances of its plane. Both triangles would come
