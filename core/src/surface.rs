@@ -41,21 +41,27 @@
 //! 1. [`clip`]: convex polygons cut by planes
 //! 2. [`bins`]: which triangles of which bodies reach which layer
 //! 3. [`surface_area`]: frontal and wetted area of what others cut; [`shadow`]: what surface in a cell covers, seen along an axis
-//! 4. [`cells`]: cells, x and y faces of a layer, from sums along rows
+//! 4. [`error`]; [`cells`]: cells, x and y faces of a layer, from sums along rows; `window`: which of them a body reaches
 //! 5. [`z_faces`]: its z faces, from the section with their plane
 //! 6. [`union`]: the exact union of bodies in a cell, from BSP trees of their surfaces
-//! 7. `cell_unions`: cells that several bodies share; `walls`: faces in whose plane surface lies
+//! 7. `other_bodies`; `refined`: bounds of a cell; `division`: cells divided; `cell_unions`: cells that several bodies share; `walls`: faces in whose plane
+//!    surface lies
 //! 8. [`layer`]: what callers use: porosity of the layers of a grid, and the surface in them
 
 pub mod bins;
 mod cell_unions;
 pub mod cells;
 pub mod clip;
+mod division;
+pub mod error;
 pub mod layer;
+mod other_bodies;
+mod refined;
 pub mod shadow;
 pub mod surface_area;
 pub mod union;
 mod walls;
+mod window;
 pub mod z_faces;
 
-pub use cell_unions::OtherBodies;
+pub use other_bodies::OtherBodies;

@@ -295,7 +295,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         }
     }
 
-    /// Sets one cell. A mixed gas has its lowest ratio of specific heats there.
+    /// Sets one cell; where there is none, nothing. A mixed gas has its lowest ratio of specific heats there.
     pub fn set(&mut self, cell: usize, w: &Primitive<R, D>) {
         self.set_mixed(cell, w, self.gas.gamma());
     }
@@ -312,6 +312,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// One cell.
+    ///
+    /// # Panics
+    /// If there is no such cell, as an index does.
     pub fn get(&self, cell: usize) -> Primitive<R, D> {
         self.gas_at(cell).primitive(&self.state.view().get(cell).expect("a cell of the mesh"))
     }

@@ -8,7 +8,8 @@ use voidage_core::grid::fields::{Fields, Layer, ShapeMismatch};
 use voidage_core::grid::{Grid, GridError};
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{BinsError, BinsNeeded, Group, Surface};
-use voidage_core::surface::cells::{Scratch, SurfaceError, add_body};
+use voidage_core::surface::cells::{Scratch, add_body};
+use voidage_core::surface::error::SurfaceError;
 use voidage_core::surface::layer::{
     LayerError, LayerMemory, LayerOptions, LayerReport, LayerSlices, Layers, MemoryNeeded,
 };

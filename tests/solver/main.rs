@@ -3,6 +3,7 @@
 mod askew;
 mod balance;
 mod blast;
+mod choking;
 mod clusters;
 mod contracts;
 mod convergence;

@@ -200,31 +200,93 @@ fn outlet<R: Real, const D: usize>(w: Primitive<R, D>, pressure: R, gas: Gas<R>)
     Primitive { density, velocity, pressure }
 }
 
-/// The state of the stream from a reservoir that keeps the invariant v + 2c/(gamma − 1) of the wave leaving `w`.
+/// Where the stream from a reservoir meets the gas inside: it enters at the speed s at which both have one pressure and one velocity. The stream has come to
+/// that pressure from rest at constant entropy and total enthalpy, the gas inside by the wave that runs into the domain. At most it enters at its speed of sound.
 fn reservoir<R: Real, const D: usize>(w: Primitive<R, D>, density0: R, pressure0: R, gas: Gas<R>) -> Primitive<R, D> {
-    let c = gas.sound_speed(&w);
-    let v = w.velocity[0];
-    let gamma = gas.gamma();
-    let c0_sq = gamma * pressure0 / density0;
-    let (entering, t_power, t) = if let Gas::Isothermal { .. } = gas {
-        // c ln(rho0/rho) = s²/2c and -s + c ln rho = v + c ln rho_in, s the speed of entry.
-        let j = v / c + (w.density / density0).ln();
-        let s = c * ((R::ONE - R::TWO * j).sqrt() - R::ONE);
-        (s, (-(R::HALF * s * s) / c0_sq).exp(), R::ONE)
-    } else {
-        let m = gamma - R::ONE;
-        let j = v + R::TWO * c / m;
-        // c² + m/2 (2c/m − j)² = c0², the larger root.
-        let b = R::ONE + R::TWO / m;
-        let root = j * j - b * (R::HALF * m * j * j - c0_sq);
-        let c = (j + root.sqrt()) / b;
-        let t = c * c / c0_sq;
-        (R::TWO * c / m - j, t.pow(R::ONE / m), t)
+    let stream = Stream { density0, pressure0, gas };
+    // By how much the stream enters faster than the gas inside retreats from it, and how fast that grows with s.
+    let excess = |s: R| {
+        let [density, pressure] = stream.at(s);
+        let [rise, slope] = rise_of_velocity(&w, pressure, gas);
+        [s + w.velocity[0] - rise, R::ONE + slope * density * s]
     };
-    if !(entering > R::ZERO) {
+    if !(excess(R::ZERO)[0] < R::ZERO) {
         return outlet(w, pressure0, gas);
     }
+    let (mut low, mut high) = (R::ZERO, stream.sonic());
+    let mut entering = high;
+    if excess(high)[0] > R::ZERO {
+        // The excess rises with s: Newton's steps, or halves where one leads out of what is left.
+        for _ in 0..MOST_STEPS {
+            let [value, slope] = excess(entering);
+            if value > R::ZERO {
+                high = entering;
+            } else {
+                low = entering;
+            }
+            let next = entering - value / slope;
+            let next = if low <= next && next <= high { next } else { R::HALF * (low + high) };
+            let is_known = (next - entering).abs() <= R::TWO * R::EPSILON * stream.sonic();
+            entering = next;
+            if is_known {
+                break;
+            }
+        }
+    }
+    let [density, pressure] = stream.at(entering);
     let mut velocity = [R::ZERO; D];
     velocity[0] = -entering;
-    Primitive { density: density0 * t_power, velocity, pressure: pressure0 * (t_power * t) }
+    Primitive { density, velocity, pressure }
+}
+
+/// Far more steps than the speed of entry takes.
+const MOST_STEPS: usize = 64;
+
+/// Gas from rest, at constant entropy and total enthalpy.
+struct Stream<R> {
+    density0: R,
+    pressure0: R,
+    gas: Gas<R>,
+}
+
+impl<R: Real> Stream<R> {
+    /// The speed at which the stream is as fast as its sound.
+    fn sonic(&self) -> R {
+        match self.gas {
+            Gas::Isothermal { sound_speed } => sound_speed,
+            gas => (R::TWO * gas.gamma() / (gas.gamma() + R::ONE) * self.pressure0 / self.density0).sqrt(),
+        }
+    }
+
+    /// Density and pressure at a speed, up to the sonic one.
+    fn at(&self, speed: R) -> [R; 2] {
+        let kinetic = R::HALF * speed * speed * self.density0 / self.pressure0;
+        if let Gas::Isothermal { .. } = self.gas {
+            let share = (-kinetic).exp();
+            return [self.density0 * share, self.pressure0 * share];
+        }
+        let m = self.gas.gamma() - R::ONE;
+        let t = R::ONE - m / self.gas.gamma() * kinetic;
+        let share = t.pow(R::ONE / m);
+        [self.density0 * share, self.pressure0 * (share * t)]
+    }
+}
+
+/// By how much a wave that runs into the gas lowers its velocity in the opposite direction when it brings it to a pressure, and how fast that grows with
+/// the pressure: of a shock or a rarefaction (Toro sec. 4.2), of gases without energy that of a simple wave.
+fn rise_of_velocity<R: Real, const D: usize>(w: &Primitive<R, D>, pressure: R, gas: Gas<R>) -> [R; 2] {
+    let c = gas.sound_speed(w);
+    if let Gas::Isothermal { .. } = gas {
+        return [c * (pressure / w.pressure).ln(), c / pressure];
+    }
+    let gamma = gas.gamma();
+    let m = gamma - R::ONE;
+    if gas.has_energy() && pressure > w.pressure {
+        let sum = pressure + m / (gamma + R::ONE) * w.pressure;
+        let root = (R::TWO / ((gamma + R::ONE) * w.density * sum)).sqrt();
+        let step = pressure - w.pressure;
+        return [step * root, root * (R::ONE - R::HALF * step / sum)];
+    }
+    let share = (pressure / w.pressure).pow(R::HALF * m / gamma);
+    [R::TWO * c / m * (share - R::ONE), c * share / (gamma * pressure)]
 }

@@ -12,8 +12,8 @@
 //! ```
 //!
 //! with s = |u| while the flow slows down and s = |u'| (implicit) while it speeds up. It is exact at any dt for decay
-//! (F = 0), keeps every steady state (F = rho (a + ½ CR |u|) u) whatever the step, never turns the sign, and does not swing
-//! when a resting, nearly rigid cell is pushed.
+//! (F = 0) by linear drag alone, and by quadratic drag alone that is alike along all axes; else of first order. It keeps every steady
+//! state (F = rho (a + ½ CR |u|) u) whatever the step, never turns the sign, and does not swing when a resting, nearly rigid cell is pushed.
 
 use crate::flow::state::sum;
 use crate::number::real::Real;

@@ -97,7 +97,7 @@ impl fmt::Display for Error {
                 f.write_str("a reservoir has no place beside a gas of several ratios of specific heats")
             }
             Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
-            Error::Step => f.write_str("the step or the CFL number is not positive and finite"),
+            Error::Step => f.write_str("the step is negative or not finite, or the CFL number is not positive"),
             Error::Stalled => f.write_str("a stable step is too short to advance the time"),
             Error::CellFraction { cell } => write!(f, "the open fraction of cell {cell} is not from 0 to 1"),
             Error::FaceFraction { axis, face } => {

@@ -375,9 +375,9 @@ impl<'a, R: Real> CellUnion<'a, R> {
     fn descent(&mut self) -> (Descent<'_, R>, &[Piece<R>]) {
         let UnionMemory { pieces, nodes, parts, fragments, octants, near, .. } = &mut self.space;
         let (parts, thickness) = (parts.get(..self.part_count).unwrap_or_default(), self.frame.thickness);
-        let mut octree = Octree { octants, near, size: &mut self.octree, nodes, parts, thickness };
         let bodies = Bodies { parts, pieces, nodes, cells: &self.cells, thickness };
-        octree.begin(&bodies, !self.blurred);
+        let mut octree = Octree { octants, near, size: &mut self.octree, bodies };
+        octree.begin(!self.blurred);
         (Descent { nodes, parts, fragments, octree, spare: Polygon::default(), thickness }, pieces)
     }
 }

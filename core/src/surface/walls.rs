@@ -6,9 +6,10 @@ use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group};
-use crate::surface::cell_unions::{
-    OtherBodies, Shared, Site, SpareMemory, find_parts, known, narrow, rounding, with_least_blur,
-};
+use crate::surface::cell_unions::with_least_blur;
+use crate::surface::division::{Shared, Site, SpareMemory, find_parts};
+use crate::surface::other_bodies::OtherBodies;
+use crate::surface::refined::{known, narrow, rounding};
 use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory};
 
 /// Narrow the bounds of the shared faces of a layer that lie in walls: its x and y faces and the z faces below.

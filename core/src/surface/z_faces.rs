@@ -13,8 +13,10 @@
 use crate::grid::Grid;
 use crate::grid::fields::{Layer, accumulate_face};
 use crate::number::real::{Real, Vector};
-use crate::surface::cells::{Axis, Scratch, SurfaceError, Window, add_at, mark, part, part_mut, width, widths};
+use crate::surface::cells::Scratch;
 use crate::surface::clip::{Polygon, crossing, split};
+use crate::surface::error::SurfaceError;
+use crate::surface::window::{Axis, Window, add_at, mark, part, part_mut, width, widths};
 
 /// The side of a plane on which its section is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,5 +34,6 @@ pub mod solids;
 pub mod space;
 pub mod state;
 pub mod stepping;
+mod strong_drag;
 pub mod table;
 pub mod units;

@@ -251,7 +251,7 @@ impl Worker {
         let mut memory = sums.memory(grid, layers.bodies_in(k) > usize::from(road.is_empty()));
         let mut others = road.with(grid, lists);
         let mut leaks = Vec::new();
-        let note_leak = |body, defects: voidage_core::surface::cells::Defects<f64>| {
+        let note_leak = |body, defects: voidage_core::surface::error::Defects<f64>| {
             if !(defects.leak <= LEAK) {
                 leaks.push((body, defects.leak));
             }

@@ -13,6 +13,7 @@ use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, carried_through, jump_fluxes, mixed_jump_fluxes};
+use crate::flow::porosity::throat::throat_area;
 use crate::flow::problem::PressureForm;
 use crate::flow::riemann::Slowness;
 use crate::flow::state::Primitive;
@@ -295,13 +296,13 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
         velocity: core::array::from_fn(|c| gather(s, 1 + c)),
         pressure: gather(s, D + 1),
     };
-    let (mut face, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
+    let (mut throat, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
     for l in 0..LANES {
-        face[l] = row.ducts.face(group[l]);
-        let (left, right) = row.ducts.beside(group[l], false);
-        let contraction = row.contraction(group[l]);
-        areas[0][l] = share(face[l], left, contraction);
-        areas[1][l] = share(face[l], right, contraction);
+        let (face, contraction) = (row.ducts.face(group[l]), row.contraction(group[l]));
+        let (left, right, pinched) = row.ducts.beside_jump(group[l]);
+        areas[0][l] = share(face, left, contraction);
+        areas[1][l] = share(face, right, contraction);
+        throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched);
     }
     let mut acoustic_weight = [R::ONE; LANES];
     if let Some(asked) = slab.first_order {
@@ -311,7 +312,7 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     let faces = JumpFaces {
         states: [side(0), side(1)],
         ducts: areas,
-        face,
+        throat,
         references: [gather(0, D + 2), gather(1, D + 2)],
         acoustic_weight,
     };

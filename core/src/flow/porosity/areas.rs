@@ -3,7 +3,7 @@
 //! The row runs along axis 0; the faces may belong to any axis.
 
 use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low, is};
-use crate::flow::porosity::fractions::Medium;
+use crate::flow::porosity::fractions::{Medium, rounding};
 use crate::flow::porosity::throat::throat_area;
 use crate::number::real::Real;
 
@@ -93,6 +93,26 @@ impl<'a, R: Real> Ducts<'a, R> {
         (duct(below), duct(above))
     }
 
+    /// Duct areas of the two cells before the low face of a cell and of the two after it, in their order. Beyond the domain as for [`Ducts::beside`].
+    fn around(&self, i: usize) -> [R; 4] {
+        let (s, n, k) = (self.stride, self.cells as isize, self.place + self.step * i);
+        let first = (self.low + i).saturating_sub(k * s);
+        [-2, -1, 0, 1].map(|steps: isize| {
+            let at = k as isize + steps;
+            let cell = if self.periodic { at.checked_rem_euclid(n).unwrap_or(0) } else { at.max(0).min(n - 1) };
+            let low = first + cell as usize * s;
+            let open = |face: usize| self.open.get(face).copied().unwrap_or(R::ZERO);
+            R::larger(open(low), open(low + s))
+        })
+    }
+
+    /// Duct areas at the low face of a cell, and whether the narrower of the two cells is narrower, by more than rounding, than those on both sides of it.
+    pub fn beside_jump(&self, i: usize) -> (R, R, bool) {
+        let [before, left, right, after] = self.around(i);
+        let (narrow, beyond) = if left < right { (left, before) } else { (right, after) };
+        (left, right, R::smaller(R::larger(left, right), beyond) > narrow + rounding::<R>() * narrow)
+    }
+
     /// Width of the gas in a cell: its duct area, or its open volume if that is larger, as in a cell between two closed faces. A closed face
     /// is a wall of this area.
     pub fn width(&self, i: usize) -> R {
@@ -146,12 +166,12 @@ impl<'a, R: Real> Ducts<'a, R> {
         (section(false), section(true))
     }
 
-    /// Areas that the flux acts on at the low and high face of a cell: at a jump that of the throat.
+    /// The largest areas that the flux may act on at the low and high face of a cell: at a jump that of a throat that is not pinched.
     #[inline(always)]
     pub fn passages(&self, i: usize) -> (R, R) {
         let throat = |high: bool| {
             let (left, right) = self.beside(i, high);
-            move |open: R| throat_area(left, open, right)
+            move |open: R| throat_area(left, open, right, false)
         };
         (self.area(i, false, throat(false)), self.area(i, true, throat(true)))
     }

@@ -5,7 +5,7 @@
 //! its own side of the stationary wave, so the two cells lose different normal momentum.
 
 use crate::flow::face_gas::{FaceGas, FaceGases, MixedFace};
-use crate::flow::porosity::throat::{AtThroat, ThroatGas, throat_area};
+use crate::flow::porosity::throat::{AtThroat, ThroatGas};
 use crate::flow::riemann::Flux;
 use crate::flow::state::{Gas, Primitive, each};
 use crate::number::real::Real;
@@ -19,8 +19,8 @@ pub(in crate::flow) struct JumpFaces<R, const D: usize, const L: usize> {
     pub states: [Primitive<[R; L], D>; 2],
     /// Duct areas.
     pub ducts: [[R; L]; 2],
-    /// Open area of the face.
-    pub face: [R; L],
+    /// Area of the throat.
+    pub throat: [R; L],
     /// Pressures that act on the walls inside each cell at this face.
     pub references: [[R; L]; 2],
     /// Weight of the flux of weak waves: 1, or 0 beside a cell where a step went wrong. There the Riemann problem in the throat is solved,
@@ -60,9 +60,8 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
     throat: [&ThroatGas<R>; 2],
     solve: ThroatCall<R, D>,
 ) -> JumpFlux<[R; L], D> {
-    let [left, right] = &faces.ducts;
-    let to: [R; L] = each(|i| throat_area(left[i], faces.face[i], right[i]));
-    let side = |s: usize| throat[s].carry_all(&faces.states[s], &faces.ducts[s], &to);
+    let ([left, right], to) = (&faces.ducts, &faces.throat);
+    let side = |s: usize| throat[s].carry_all(&faces.states[s], &faces.ducts[s], to);
     let at = [side(0), side(1)];
     let (walls, acoustic_weight) = chokes(faces, &at, throat);
     let gases = [*gas.left(), *gas.right()];
@@ -110,7 +109,7 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize
         let face = JumpFaces {
             states: faces.states.each_ref().map(state),
             ducts: faces.ducts.each_ref().map(one),
-            face: one(&faces.face),
+            throat: one(&faces.throat),
             references: faces.references.each_ref().map(one),
             acoustic_weight: one(&faces.acoustic_weight),
         };

@@ -299,14 +299,17 @@ fn newton<R: Real>(start: R, bound: R, size: impl Fn(R) -> R, f: impl Fn(R) -> (
 }
 
 /// Area of the throat at a jump face: of a plain jump the mean of both ducts, at most twice the narrower one (so that the
-/// narrow cell's time step shrinks by two at most); of a true orifice, narrower than both by more than rounding, its own.
-pub fn throat_area<R: Real>(area_left: R, face: R, area_right: R) -> R {
+/// narrow cell's time step shrinks by two at most), and the narrower one itself if its cell is narrower than those on both sides of it
+/// (`pinched`), since no other face there would choke a stream; of a true orifice, narrower than both by more than rounding, its own.
+pub fn throat_area<R: Real>(area_left: R, face: R, area_right: R, pinched: bool) -> R {
     let least = R::smaller(area_left, area_right);
     if !(face > R::ZERO) {
         R::ZERO
-    } else if face >= least - rounding::<R>() * least {
-        R::smaller(R::HALF * (area_left + area_right), R::TWO * least)
-    } else {
+    } else if face < least - rounding::<R>() * least {
         face
+    } else if pinched {
+        least
+    } else {
+        R::smaller(R::HALF * (area_left + area_right), R::TWO * least)
     }
 }

@@ -104,14 +104,10 @@ impl Third {
     /// What its section has of a polygon.
     pub fn of(&self, polygon: &AtHeight) -> Option<Left> {
         let center = [0, 1].map(|n| self.center[n] + self.drift[n] * polygon.height);
-        let place = |corner: &Corner| {
-            let from = sub(corner.at, center);
-            self.rows.map(|row| dot(row, from))
-        };
         let (mut twice, mut grown, mut speed) = (0.0, 0.0, 0.0);
         let (mut meets, mut about) = (false, true);
         for (corner, next) in polygon.sides() {
-            let (p, q) = (place(corner), place(next));
+            let (p, q) = (self.place(corner.at, center), self.place(next.at, center));
             let way = sub(q, p);
             let turned = cross(p, way);
             about &= turned >= 0.0;
@@ -135,6 +131,12 @@ impl Third {
         Some(Left::Area([twice * (0.5 / PI) * self.area, grown, speed]))
     }
 
+    /// Where a point lies as seen from a section's centre, the section being the unit circle.
+    fn place(&self, at: P2, center: P2) -> P2 {
+        let from = sub(at, center);
+        self.rows.map(|row| dot(row, from))
+    }
+
     /// How far the ellipse reaches from its centre along a normal, times that one's length.
     fn reach(&self, normal: P2) -> f64 {
         let [s, t] = self.rows.map(|row| dot(normal, row) / dot(row, row));
@@ -143,14 +145,10 @@ impl Third {
 
     /// The line between them across the way from the ellipse's centre to the polygon's nearest point, where the ellipse is a circle.
     fn apart(&self, polygon: &AtHeight, center: P2) -> Option<Apart> {
-        let place = |corner: &Corner| {
-            let from = sub(corner.at, center);
-            self.rows.map(|row| dot(row, from))
-        };
         let mut before = polygon.corners.last()?;
         let (mut nearest, mut least) = (None, f64::INFINITY);
         for (corner, next) in polygon.sides() {
-            let (p, q) = (place(corner), place(next));
+            let (p, q) = (self.place(corner.at, center), self.place(next.at, center));
             let way = sub(q, p);
             let share = -dot(p, way) / dot(way, way);
             let inner = share > 0.0;

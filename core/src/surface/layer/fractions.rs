@@ -4,7 +4,7 @@ use super::report::LayerReport;
 use super::slices::LayerSlices;
 use crate::grid::fields::Layer;
 use crate::number::real::{Real, Vector};
-use crate::surface::cell_unions::Site;
+use crate::surface::division::Site;
 
 /// So many cells are looked at at once, whether they are open.
 const BLOCK: usize = 8;

@@ -7,8 +7,10 @@ use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Fields, Layer};
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::Bins;
-use crate::surface::cell_unions::{OtherBodies, Parts, Shared, Site, SpareMemory};
 use crate::surface::cells::Scratch;
+use crate::surface::division::{Shared, Site, SpareMemory};
+use crate::surface::other_bodies::OtherBodies;
+use crate::surface::refined::Parts;
 use core::ops::Range;
 
 /// Scalars and flags that a level of division takes: a layer of 2 × 2 cells, and the sums of one body.

@@ -1,6 +1,6 @@
 //! What is told about a layer.
 
-use crate::surface::cells::Defects;
+use crate::surface::error::Defects;
 
 /// Cells of a layer by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

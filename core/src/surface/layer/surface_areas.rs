@@ -12,11 +12,12 @@ use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Fields, exactly};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::cell_unions::{
-    OtherBodies, Refined, Shared, Site, SpareMemory, UnionSums, divide, known, side_areas, with_effort,
-};
-use crate::surface::cells::Defects;
+use crate::surface::cell_unions::{UnionSums, side_areas};
 use crate::surface::clip::Polygon;
+use crate::surface::division::{Shared, Site, SpareMemory, divide, with_effort};
+use crate::surface::error::Defects;
+use crate::surface::other_bodies::OtherBodies;
+use crate::surface::refined::{Refined, known};
 use crate::surface::surface_area::{
     Bodies, CellPieces, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea,
     UnionSurface, gather_weighted,

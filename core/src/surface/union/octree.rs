@@ -4,13 +4,11 @@
 //! that a polygon whose ball stays within the box need not go down the trees of the others. Of bodies about one centre few reach any small octant on the
 //! surface of their union.
 
-use super::bsp::{Branch, Node, Part};
-use super::piece::{AMBIGUITY_BAND, Ball, Plane};
+use super::piece::{Ball, Plane};
 use super::separate::{Bodies, is_before};
 use crate::number::real::Real;
 use crate::surface::clip::Polygon;
 use core::ops::Range;
-use heapless::Vec;
 
 /// Where no more bodies than this meet, lists cost more than they save.
 const MANY: usize = 64;
@@ -27,9 +25,6 @@ const MOST: f64 = 0.75;
 /// A child that is not made yet, and one that memory does not allow.
 const UNKNOWN: u32 = 0;
 const NONE: u32 = u32::MAX;
-
-/// Branches of a tree that a box may reach at the same time; beyond, it is taken to meet solid.
-const BRANCHES: usize = 32;
 
 /// A cube of the octree, in the frame of the cell; of one that a plane divides, the sides.
 #[derive(Clone, Copy, Debug, Default)]
@@ -82,15 +77,13 @@ pub(super) struct Octree<'a, R: Real> {
     /// All lists.
     pub near: &'a mut [u32],
     pub size: &'a mut OctreeSize,
-    pub nodes: &'a [Node<R>],
-    pub parts: &'a [Part],
-    pub thickness: R,
+    pub bodies: Bodies<'a, R>,
 }
 
 impl<R: Real> Octree<'_, R> {
     /// Begin with the whole cell, and what planes separate in it, if many bodies meet and memory allows.
-    pub fn begin(&mut self, bodies: &Bodies<'_, R>, separate: bool) {
-        let count = self.parts.len();
+    pub fn begin(&mut self, separate: bool) {
+        let count = self.bodies.parts.len();
         if self.size.octants == 0 && count > MANY {
             let (Some(root), Some(all)) = (self.octants.first_mut(), self.near.get_mut(..count)) else { return };
             for (number, place) in all.iter_mut().enumerate() {
@@ -99,36 +92,37 @@ impl<R: Real> Octree<'_, R> {
             *root = Octant { center: [R::HALF; 3], half: R::HALF, end: count as u32, ..Octant::default() };
             *self.size = OctreeSize { octants: 1, near: count };
             if separate {
-                self.separate(bodies);
+                self.separate();
             }
         }
     }
 
     /// Separate the bodies of the cell by planes as long as that leaves fewer on each side, and memory allows.
-    fn separate(&mut self, bodies: &Bodies<'_, R>) {
+    fn separate(&mut self) {
         let mut number = 0;
         while number < self.size.octants {
-            self.divide(number, bodies);
+            self.divide(number);
             number += 1;
         }
     }
 
     /// Divide the list of an octant by a plane; none if there is no plane that serves, or memory is spent.
-    fn divide(&mut self, number: usize, bodies: &Bodies<'_, R>) -> Option<()> {
+    fn divide(&mut self, number: usize) -> Option<()> {
         let parent = *self.octants.get(number)?;
         let whole = parent.first as usize..parent.end as usize;
         if whole.len() <= SHORT {
             return None;
         }
-        let plane = bodies.best_plane(self.near.get(whole.clone())?)?;
-        let middle = self.list(whole.clone(), self.size.near, |body| bodies.reach(body, &plane).behind)?;
+        let plane = self.bodies.best_plane(self.near.get(whole.clone())?)?;
+        let (bodies, near) = (self.bodies, self.size.near);
+        let middle = self.list(whole.clone(), near, |body| bodies.reach(body, &plane).behind)?;
         let end = self.list(whole.clone(), middle, |body| bodies.reach(body, &plane).before)?;
-        let longest = (middle - self.size.near).max(end - middle);
+        let longest = (middle - near).max(end - middle);
         if R::from_usize(longest) > R::from_usize(whole.len()) * R::from_f64(MOST) {
             return None;
         }
         let first = self.size.octants;
-        let lists = [self.size.near..middle, middle..end];
+        let lists = [near..middle, middle..end];
         for (place, list) in self.octants.get_mut(first..first + 2)?.iter_mut().zip(lists) {
             *place = Octant { first: u32::try_from(list.start).ok()?, end: u32::try_from(list.end).ok()?, ..parent };
         }
@@ -155,7 +149,7 @@ impl<R: Real> Octree<'_, R> {
     fn beside_planes(&self, polygon: &Polygon<R>, radius: R) -> u32 {
         let mut number = 0;
         while let Some(Octant { plane, sides: Some([behind, before]), .. }) = self.octants.get(number as usize)
-            && let Some(is_before) = is_before(polygon, radius, plane, self.thickness)
+            && let Some(is_before) = is_before(polygon, radius, plane, self.bodies.thickness)
         {
             number = if is_before { *before } else { *behind };
         }
@@ -173,7 +167,7 @@ impl<R: Real> Octree<'_, R> {
             }
             at.next += 1;
         }
-        self.parts.len()
+        self.bodies.parts.len()
     }
 
     /// Find the smallest octant whose list holds for a polygon in a ball, which has passed the bodies before `from`. Polygons shrink as they pass bodies, so
@@ -218,18 +212,11 @@ impl<R: Real> Octree<'_, R> {
 
     /// Make a child, if memory allows.
     fn make(&mut self, parent: &Octant<R>, center: [R; 3], half: R) -> Option<u32> {
-        let (first, number) = (self.size.near, self.size.octants);
-        let mut end = first;
-        for place in parent.first as usize..parent.end as usize {
-            let body = *self.near.get(place)?;
-            if self.has_solid(self.parts.get(body as usize)?.root, center, half * R::from_f64(REACH)) {
-                *self.near.get_mut(end)? = body;
-                end += 1;
-            }
-        }
-        let whole = (parent.end - parent.first) as usize;
+        let (first, number, bodies) = (self.size.near, self.size.octants, self.bodies);
+        let (whole, reach) = (parent.first as usize..parent.end as usize, half * R::from_f64(REACH));
+        let end = self.list(whole.clone(), first, |body| bodies.has_solid(body, center, reach))?;
         // A list that saves little is not kept.
-        let kept = (end - first) * 4 <= whole * 3;
+        let kept = (end - first) * 4 <= whole.len() * 3;
         let (first, end) = match kept {
             true => (u32::try_from(first).ok()?, u32::try_from(end).ok()?),
             false => (parent.first, parent.end),
@@ -240,32 +227,5 @@ impl<R: Real> Octree<'_, R> {
             self.size.near = end as usize;
         }
         Some(number as u32)
-    }
-
-    /// Whether a body may have solid in the cube of a centre and half a width; if unsure, yes.
-    fn has_solid(&self, root: Branch, center: [R; 3], half: R) -> bool {
-        let clear = self.thickness * R::from_f64(AMBIGUITY_BAND);
-        let mut waiting: Vec<Branch, BRANCHES> = Vec::new();
-        let mut next = Some(root);
-        while let Some(branch) = next {
-            next = match branch {
-                Branch::Solid => return true,
-                Branch::Open => waiting.pop(),
-                Branch::Node(n) => {
-                    let Some(node) = self.nodes.get(n as usize) else { return true };
-                    let [x, y, z] = node.plane.normal.map(R::abs);
-                    let (distance, reach) = (node.plane.distance(center), half * (x + y + z) + clear);
-                    if distance > reach {
-                        Some(node.positive)
-                    } else {
-                        if !(distance < -reach) && waiting.push(node.positive).is_err() {
-                            return true;
-                        }
-                        Some(node.negative)
-                    }
-                }
-            };
-        }
-        false
     }
 }

@@ -10,6 +10,10 @@ use super::piece::{AMBIGUITY_BAND, Piece, Plane, span};
 use crate::number::real::Real;
 use crate::number::space::dot;
 use crate::surface::clip::Polygon;
+use heapless::Vec;
+
+/// Branches of a tree that a cube may reach at the same time; beyond, it is taken to meet solid.
+const BRANCHES: usize = 32;
 
 /// Bodies whose faces are tried for a plane, and pieces of each that are tried.
 const TRIED: [usize; 2] = [4, 8];
@@ -22,6 +26,7 @@ const COMPARED: usize = 16;
 const INCLINED: f64 = 0.01;
 
 /// What is known of the bodies of a cell.
+#[derive(Clone, Copy)]
 pub(super) struct Bodies<'a, R: Real> {
     pub parts: &'a [Part],
     pub pieces: &'a [Piece<R>],
@@ -56,26 +61,39 @@ impl<R: Real> Bodies<'_, R> {
         for corner in 0..8 {
             let at = [0, 1, 2].map(|axis| cell[corner >> axis & 1][axis]);
             let distance = plane.distance(at);
-            if self.may_be_solid(part.root, at) {
+            if self.has_solid(body, at, R::ZERO) {
                 see(distance);
             }
         }
         reach
     }
 
-    /// Whether a point may lie in the solid of a body; if unsure, yes.
-    fn may_be_solid(&self, root: Branch, point: [R; 3]) -> bool {
+    /// Whether a body may have solid in the cube of a centre and half a width; if unsure, yes.
+    pub fn has_solid(&self, body: u32, center: [R; 3], half: R) -> bool {
+        let Some(part) = self.parts.get(body as usize) else { return false };
         let clear = self.thickness * R::from_f64(AMBIGUITY_BAND);
-        let mut branch = root;
-        while let Branch::Node(n) = branch {
-            let Some(node) = self.nodes.get(n as usize) else { return true };
-            let distance = node.plane.distance(point);
-            if distance.abs() <= clear {
-                return true;
-            }
-            branch = if distance > R::ZERO { node.positive } else { node.negative };
+        let mut waiting: Vec<Branch, BRANCHES> = Vec::new();
+        let mut next = Some(part.root);
+        while let Some(branch) = next {
+            next = match branch {
+                Branch::Solid => return true,
+                Branch::Open => waiting.pop(),
+                Branch::Node(n) => {
+                    let Some(node) = self.nodes.get(n as usize) else { return true };
+                    let [x, y, z] = node.plane.normal.map(R::abs);
+                    let (distance, reach) = (node.plane.distance(center), half * (x + y + z) + clear);
+                    if distance > reach {
+                        Some(node.positive)
+                    } else {
+                        if !(distance < -reach) && waiting.push(node.positive).is_err() {
+                            return true;
+                        }
+                        Some(node.negative)
+                    }
+                }
+            };
         }
-        branch == Branch::Solid
+        false
     }
 
     /// Of the planes of some faces of listed bodies, that which leaves the fewest to the side that more bodies reach.

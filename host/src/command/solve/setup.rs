@@ -11,6 +11,7 @@ use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
 use super::space::{self, Space};
 use super::state::{Beginning, States};
+use super::strong_drag;
 use super::units;
 use crate::command::progress::Progress;
 use crate::error::{Error, Result};
@@ -130,6 +131,7 @@ pub fn setup<const D: usize>(
     }
 
     set_states(&mut flow, &cells, &gammas);
+    strong_drag::warn(&flow, live, edges, progress);
     if let Some(report) = &mut report {
         report.step_share = step_share(&mut flow);
     }

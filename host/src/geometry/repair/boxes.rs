@@ -1,5 +1,6 @@
 //! Triangles whose boxes touch, in pairs: a tree of boxes in whole numbers, made in one sort and compared in a few instructions.
 
+use crate::geometry::repair::face::bounds;
 use glam::DVec3;
 
 /// Bits of a coordinate.
@@ -87,7 +88,6 @@ impl Boxes {
     /// Of some triangles, fewer than 2³².
     #[must_use]
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
-        let bounds = |[a, b, c]: &[DVec3; 3]| [a.min(*b).min(*c), a.max(*b).max(*c)];
         let all = triangles
             .iter()
             .map(bounds)

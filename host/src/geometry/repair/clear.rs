@@ -138,7 +138,7 @@ impl Heights {
 mod tests {
     use super::*;
     use crate::geometry::repair::crossing::{Meetings, tolerance};
-    use crate::geometry::repair::face::{is_apart, near};
+    use crate::geometry::repair::face::{bounds, is_apart, near};
 
     /// Numbers below `n`, by chance.
     struct Chance(u64);
@@ -431,7 +431,6 @@ mod tests {
     }
 
     fn boxes_touch(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
-        let bounds = |t: &[DVec3; 3]| [t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2])];
         let ([a, b], [c, d]) = (bounds(a), bounds(b));
         a.cmple(d).all() && c.cmple(b).all()
     }
@@ -481,7 +480,6 @@ mod tests {
                 true
             });
             assert_eq!(all, Some(true));
-            let bounds = |t: &[DVec3; 3]| [t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2])];
             for (b, [low, high]) in triangles.iter().map(bounds).enumerate() {
                 for (a, [min, max]) in triangles[..b].iter().map(bounds).enumerate() {
                     assert!(low.cmpgt(max).any() || high.cmplt(min).any() || seen.contains(&[a, b]));

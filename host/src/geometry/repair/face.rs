@@ -13,6 +13,12 @@ pub struct Face {
     inward: [DVec3; 3],
 }
 
+/// The lowest and highest coordinates of a triangle.
+#[must_use]
+pub fn bounds([a, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
+    [a.min(*b).min(*c), a.max(*b).max(*c)]
+}
+
 /// A triangle as another one sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {

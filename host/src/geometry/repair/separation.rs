@@ -15,7 +15,7 @@
 //! sides at that corner is a cone with its tip there, which holds the end of the line if it holds any of it; but the cone lies on one side of the plane and
 //! the end on the other. In one plane, two triangles without common inner points are beyond a side of one of them.
 
-use crate::geometry::repair::face::{CLEAR, Face};
+use crate::geometry::repair::face::{CLEAR, Face, bounds};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -107,10 +107,7 @@ struct Division<'a> {
 
 impl<'a> Division<'a> {
     fn new(faces: &'a [Face], on: f64) -> Self {
-        let bounds = |f: &Face| {
-            [f.corners[0].min(f.corners[1]).min(f.corners[2]), f.corners[0].max(f.corners[1]).max(f.corners[2])]
-        };
-        let boxes: Vec<[DVec3; 2]> = faces.iter().map(bounds).collect();
+        let boxes: Vec<[DVec3; 2]> = faces.iter().map(|face| bounds(&face.corners)).collect();
         let [lo, hi] = around(boxes.iter());
         Division { faces, boxes, order: (0..faces.len() as u32).collect(), on, far: FAR * lo.distance(hi) }
     }

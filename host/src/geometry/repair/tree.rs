@@ -1,5 +1,6 @@
 //! Triangles whose boxes touch, in pairs, near a box or along a line: a tree of boxes over the triangles.
 
+use crate::geometry::repair::face::bounds;
 use glam::DVec3;
 
 /// Triangles in a leaf, at most.
@@ -34,7 +35,6 @@ impl Tree {
     /// Of some triangles.
     #[must_use]
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
-        let bounds = |t: &[DVec3; 3]| [t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2])];
         let mut members: Vec<_> = triangles.iter().enumerate().map(|(n, t)| (n as u32, bounds(t))).collect();
         let mut nodes = vec![node(&members, 0)];
         let mut next = 0;
