@@ -350,8 +350,11 @@ fn whole<T: TryFrom<u32>>(text: &str, [low, high]: [u32; 2]) -> Result<T, String
     number.and_then(|n| T::try_from(n).ok()).ok_or_else(|| format!("needs a whole number from {low} to {high}"))
 }
 
+/// The largest depth that may be asked for.
+pub const DEEPEST: u32 = 10;
+
 fn parse_depth(text: &str) -> Result<u32, String> {
-    whole(text, [0, 10])
+    whole(text, [0, DEEPEST])
 }
 
 fn parse_threads(text: &str) -> Result<u16, String> {

@@ -8,6 +8,9 @@ use std::time::{Duration, Instant};
 static WATCHED: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
+/// A run that can go on has been watched and is not any more.
+static STEPPED: AtomicBool = AtomicBool::new(false);
+
 /// While it lives, an interrupt only asks the run to stop: see [`asked`].
 #[derive(Debug)]
 pub struct Watch(());
@@ -25,6 +28,7 @@ impl Watch {
 impl Drop for Watch {
     fn drop(&mut self) {
         WATCHED.store(false, Ordering::SeqCst);
+        STEPPED.store(true, Ordering::SeqCst);
     }
 }
 
@@ -43,11 +47,13 @@ pub fn asked() -> bool {
 /// What a run that ends at once leaves.
 #[must_use]
 pub fn cut_off() -> String {
-    match written() {
+    let advice = if STEPPED.load(Ordering::SeqCst) { "; with --resume the run is finished" } else { "" };
+    let left = match written() {
         (1, Some(file)) => format!("interrupted: {} was written, and nothing else", file.display()),
         (_, Some(last)) => format!("interrupted: files were written, each whole; the last is {}", last.display()),
         _ => "interrupted: no file was written".to_owned(),
-    }
+    };
+    left + advice
 }
 
 /// For the signal handler: asks the run to stop, and returns whether it will do so by itself. False, so that the program ends at once, if the run was

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -74,6 +74,25 @@ pub fn all_said() -> Result<()> {
 /// Time between lines about how far a run has come, where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(10);
 
+/// A stage that prints nothing by itself is looked at as often.
+const TICK: Duration = Duration::from_millis(500);
+
+/// When the last line about how far a run has come was printed.
+#[derive(Clone, Debug)]
+struct LastLine(Arc<Mutex<Instant>>);
+
+impl LastLine {
+    /// Whether so much time has passed since; then another line is due, and counts as printed.
+    fn is_older(&self, pause: Duration) -> bool {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let due = last.elapsed() >= pause;
+        if due {
+            *last = Instant::now();
+        }
+        due
+    }
+}
+
 /// How far something has come.
 #[derive(Debug)]
 pub struct Meter {
@@ -81,20 +100,14 @@ pub struct Meter {
     steps: usize,
     done: AtomicUsize,
     bar: ProgressBar,
-    /// When the last line was printed, where there is no terminal and the run is not quiet.
-    plain: Option<Mutex<Instant>>,
+    /// Lines are printed: there is no terminal, and the run is not quiet.
+    plain: Option<LastLine>,
 }
 
 impl Meter {
     /// Whether a line may be printed now: on a terminal always, else when ten seconds have passed since the last one.
     pub fn is_due(&self) -> bool {
-        let Some(last) = &self.plain else { return !self.bar.is_hidden() };
-        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
-        let due = last.elapsed() >= PAUSE;
-        if due {
-            *last = Instant::now();
-        }
-        due
+        self.plain.as_ref().map_or(!self.bar.is_hidden(), |last| last.is_older(PAUSE))
     }
 
     /// Shows how far it is: beside the bar on a terminal, else as a line.
@@ -154,6 +167,7 @@ pub struct Progress {
     /// Seconds by stage.
     pub seconds: BTreeMap<&'static str, f64>,
     begun: Instant,
+    last_line: LastLine,
 }
 
 impl Progress {
@@ -167,6 +181,7 @@ impl Progress {
             warnings: Vec::new(),
             seconds: BTreeMap::new(),
             begun: Instant::now(),
+            last_line: LastLine(Arc::new(Mutex::new(Instant::now()))),
         }
     }
 
@@ -238,14 +253,27 @@ impl Progress {
         };
         bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
         let bar = bar.with_finish(indicatif::ProgressFinish::AndClear);
-        let plain = (!self.quiet && !terminal).then(|| Mutex::new(Instant::now()));
+        let plain = (!self.quiet && !terminal).then(|| self.last_line.clone());
         Meter { name, steps, done: AtomicUsize::new(0), bar, plain }
+    }
+
+    /// Tells that a stage goes on, as long as what is returned lives, when no other line has been printed for a while.
+    fn watched(&self, name: &'static str) -> Option<Heartbeat> {
+        let last = self.last_line.clone();
+        let tell = move |time: Duration| {
+            if last.is_older(PAUSE + TICK) {
+                print_aside(&format!("{name}: {:.0} s so far", time.as_secs_f64()));
+            }
+        };
+        (!self.quiet && !std::io::stderr().is_terminal()).then(|| Heartbeat::new(TICK, tell))
     }
 
     /// Run a stage and keep its time.
     pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let begin = Instant::now();
+        let watched = self.watched(name);
         let result = work(self);
+        drop(watched);
         let seconds = begin.elapsed().as_secs_f64();
         *self.seconds.entry(name).or_default() += seconds;
         if self.verbose {

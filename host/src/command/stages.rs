@@ -1,6 +1,6 @@
 //! The stages that the commands share: scene → bodies, bodies and grid → porosity, each with its warnings.
 
-use crate::command::cli::SceneArgs;
+use crate::command::cli::{DEEPEST, SceneArgs};
 use crate::command::progress::Progress;
 use crate::command::streams::{INPUT, is_stream, read_input};
 use crate::error::{Error, Result};
@@ -95,7 +95,7 @@ fn warn_if_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
     let size = hi - lo;
     if size.max_element() >= LARGEST_PLANT && size.max_element() < LARGEST_PLANT * 1e4 {
         progress.warn(format!(
-            "{}: its size, {:.6} × {:.6} × {:.6}, would be in metres; if these are millimetres, give --unit mm",
+            "{}: its size, {:.6} × {:.6} × {:.6}, would be in metres; if these are millimetres, give --unit mm, in a case porosity.unit = \"mm\"",
             path.display(),
             size.x,
             size.y,
@@ -160,12 +160,12 @@ pub fn measure(
             .warn(format!("{count} of {all} {why}: measured by {} surface{exactly}", either(count, "its", "their")));
     }
     if options.leaf == Leaf::Plane && result.max_gap > options.tol.max(ROUNDING) {
-        let deeper = result.subdivided + result.divided > 0;
+        let deeper = result.subdivided + result.divided > 0 && options.depth < DEEPEST;
         progress.warn(format!(
             "the bounds of some values remain {:.1e} apart, more than tol, {:.1e}{}",
             result.max_gap,
             options.tol,
-            if deeper { "; a larger depth narrows them" } else { "" }
+            if deeper { "; a larger depth may narrow them" } else { "" }
         ));
     }
     Ok(result)

@@ -14,6 +14,7 @@ use crate::files::csv::needs_quotes;
 use crate::geometry::bodies::{Bodies, Body, OwnDrag};
 use crate::geometry::scene::is_scene;
 use crate::grid::{AXES, Edges};
+use crate::keys::reader::nearest;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::Faces;
 use crate::porosity::{FieldSet, Options};
@@ -159,7 +160,11 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
         let more: Vec<&str> = match &name[..] {
             "*" => all.iter().map(|[_, solid]| *solid).filter(|name| !name.is_empty()).collect(),
             name if known(name) => vec![name],
-            name => return Err(file.wrong(&format!("output.forces[{n}]"), format!("no solid is called \"{name}\""))),
+            name => {
+                let names: Vec<&str> = all.iter().flatten().copied().filter(|name| !name.is_empty()).collect();
+                let near = nearest(name, &names).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                return Err(file.wrong(&format!("output.forces[{n}]"), format!("no solid is called \"{name}\"{near}")));
+            }
         };
         for name in more {
             if needs_quotes(name) || name == OTHERS {

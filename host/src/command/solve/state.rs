@@ -117,7 +117,7 @@ impl<const D: usize> States<'_, D> {
     pub fn initial(&self, edges: &Edges) -> Result<Beginning<D>> {
         let keys = &self.file.case.initial;
         let count: usize = edges.cells().iter().product();
-        stages::room_for(count.saturating_mul(BYTES_A_CELL))?;
+        stages::room_for(count.saturating_mul(BYTES_A_CELL)).map_err(|e| self.file.wrong("grid", e.reason))?;
         let whole = |state, gamma| Some(Filled { state, gamma, share: 1.0 });
         let mut cells = match (&keys.uniform, &keys.from) {
             (Some(_), Some(_)) => return Err(self.file.wrong("initial", "takes uniform or from, not both")),
