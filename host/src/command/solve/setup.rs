@@ -140,7 +140,8 @@ pub fn setup<const D: usize>(
     let (edges, cfl) = (edges.clone(), case.scheme.cfl.unwrap_or(USUAL_CFL));
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
     let pushed = pushed_cells(&flow);
-    let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed));
+    let solids =
+        (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed, !space::given_otherwise(file)));
     let regions = region_report::report(file, (&flow, &parts), &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress);
     Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, pushed, solids, skipped })

@@ -188,7 +188,7 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
 }
 
 /// Is there a resistance that needs no law?
-fn given_otherwise(file: &CaseFile) -> bool {
+pub fn given_otherwise(file: &CaseFile) -> bool {
     let keys = &file.case.drag;
     keys.cr.is_some() || keys.from.is_some()
 }
