@@ -329,6 +329,42 @@ fn largest_forces_over_the_run() {
     assert_eq!(run(60, 1, "resumed", &["-q", "--resume"]), whole);
 }
 
+/// A block in a ring of moving gas, open in part or altogether, and another with a resistance of its own in the same cells: each takes what its
+/// resistance does, and both together what the gas loses.
+#[test]
+fn a_resistance_of_its_own_is_a_force_on_the_solid() {
+    let at = Scratch::new();
+    let block = |name: &str, [from, to]: [f64; 2], more: &str| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = \"box\"\nmin = [{from}, -1, -1]\nmax = [{to}, 2, 2]\n{more}\n")
+    };
+    let case = "[grid]\nx = { points = [0, 3], cells = [30] }\ny = { points = [0, 1], cells = [2] }\n[porosity]\nscene = \"scene.toml\"\n\
+         [gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = { rho = 1.2, p = 1e5, u = 30 }\n[boundary]\nx_min = \"periodic\"\n\
+         x_max = \"periodic\"\ny_min = \"wall\"\ny_max = \"wall\"\n[time]\nend = 0.01\n[output]\nformats = []\nforces = [\"g\", \"h\"]\n";
+    let forces = |scene: &str, dir: &str| {
+        fs::write(at.file("scene.toml"), scene).expect("written");
+        let output = solve(&at, case, dir, &["-q"]);
+        assert!(output.status.success() && !stderr(&output).contains("without a part"), "{}", stderr(&output));
+        let log = log(&at, dir);
+        ["force_x", "g force_x", "h force_x", "others force_x"].map(|name| log[name].clone())
+    };
+    let sum = |of: &[f64]| of.iter().sum::<f64>();
+    for (n, porosity) in [0.999, 1.0].into_iter().enumerate() {
+        let more = |cr: f64| format!("porosity = {porosity}\ncr = {cr}");
+        // Half a cell of each in the cell from 1.5 to 1.6.
+        let scene = block("g", [1.0, 1.55], &more(20.0)) + &block("h", [1.55, 2.0], &more(5.0));
+        let [all, g, h, others] = forces(&scene, &format!("out{n}"));
+        assert!(sum(&all) > 100.0 && sum(&others).abs() < 1e-9 * sum(&all), "{} {}", sum(&all), sum(&others));
+        assert!((sum(&g) + sum(&h) - sum(&all)).abs() < 1e-9 * sum(&all));
+        let ratio = sum(&g) / sum(&h);
+        // 0.55 · 20 against 0.45 · 5, and the gas comes slower to the second.
+        assert!(ratio > 4.0 && ratio < 8.0, "porosity {porosity}: {ratio}");
+    }
+    // In the same cells the forces are as the resistances.
+    let scene = block("g", [1.0, 2.0], "porosity = 1\ncr = 20") + &block("h", [1.0, 2.0], "porosity = 1\ncr = 5");
+    let [all, g, h, _] = forces(&scene, "same");
+    assert!((g[3] / h[3] - 4.0).abs() < 1e-9 && (g[3] + h[3] - all[3]).abs() < 1e-9 * all[3], "{} {}", g[3], h[3]);
+}
+
 #[test]
 fn a_solid_that_is_not_there_is_told() {
     let at = Scratch::new();

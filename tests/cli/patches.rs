@@ -64,6 +64,8 @@ fn patches_that_cannot_be_are_told() {
         let patch = format!("[[boundary.patch]]\n{patch}\n");
         let output = solve(&at, &chamber(&patch, "rho = 1.2, p = 1e5", "[time]\nmax_steps = 1\n"), "out", &[]);
         assert!(stderr(&output).contains(words), "{patch}: {}", stderr(&output));
+        let report = fs::read_to_string(at.file("out/report.json")).unwrap_or_default();
+        assert!(!report.contains("\"area\": -0"), "{patch}: {report}");
         output.status.code()
     };
     assert_eq!(says("type = \"wall\"", "boundary.patch[0]: needs a side: x_min, x_max"), Some(1));

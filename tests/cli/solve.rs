@@ -305,6 +305,26 @@ formats = []
     }
 }
 
+/// An inlet faster than sound keeps its pressure, also where it has to set gas at rest in motion.
+#[test]
+fn a_supersonic_inlet_keeps_its_pressure() {
+    let at = Scratch::new();
+    for (speed, relax, end) in [(400, "", 0.2), (700, ", relax = 1e-3", 0.04)] {
+        let case = format!(
+            "[grid]\nx = {{ points = [0, 1], cells = [25] }}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\ngas_constant = 287\n[initial]\n\
+             uniform = {{ T = 288, p = 101325 }}\n[boundary]\nx_min = {{ type = \"inlet\", T = 288, u = {speed}, p = 101325{relax} }}\n\
+             x_max = {{ type = \"outlet\", p = 101325 }}\n[time]\nend = {end}\n[output]\nformats = []\n"
+        );
+        let dir = format!("out{speed}");
+        solved(&at, &case, &dir, &["-q"]);
+        let [u, p] = ["u", "p"].map(|f| array(&at.file(&format!("{dir}/final/{f}.npy"))));
+        for cell in [0, 12, 24] {
+            let off = [u[cell] / f64::from(speed) - 1.0, p[cell] / 101_325.0 - 1.0];
+            assert!(off.iter().all(|x| x.abs() < 1e-3), "{speed} m/s, cell {cell}: {} m/s, {} Pa", u[cell], p[cell]);
+        }
+    }
+}
+
 #[test]
 fn small_cells_and_dust_are_counted() {
     let at = Scratch::new();

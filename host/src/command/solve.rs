@@ -1,7 +1,7 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
-//! In reading order: [`output_keys`], [`case`], [`places`] and [`case_file`], the file as typed; `arrays`, [`regions`], [`state`], [`mixture`], [`space`],
-//! [`inlet`], [`sides`], [`units`] and [`setup`], from the case to a flow; [`charges`], where its blast begins; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`],
+//! In reading order: [`output_keys`], [`case`], [`places`] and [`case_file`], the file as typed; `arrays`, [`regions`], [`mixture`], [`space`],
+//! [`open_parts`], [`state`], [`inlet`], [`sides`], [`region_report`], [`units`] and [`setup`], from the case to a flow; [`charges`], where its blast begins; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`],
 //! [`force_peaks`], [`table`], [`series`], [`checkpoint`], [`lock`], [`report`], what it writes; [`limits`] and [`stepping`], how far it goes and
 //! each step; [`refine`], the same case on half the cells; [`run`].
 
@@ -19,11 +19,13 @@ pub mod lock;
 pub mod maxima;
 pub mod mixture;
 pub mod monitors;
+pub mod open_parts;
 pub mod output_keys;
 pub mod pictures;
 pub mod places;
 pub mod ranges;
 pub mod refine;
+pub mod region_report;
 pub mod regions;
 pub mod report;
 pub mod run;

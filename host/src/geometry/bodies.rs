@@ -132,6 +132,18 @@ impl Bodies {
         all.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
     }
 
+    /// Some of the bodies, chosen by their numbers, with their triangles.
+    #[must_use]
+    pub fn some(&self, wanted: impl Fn(usize) -> bool) -> Bodies {
+        let mut some = Bodies::default();
+        for (_, body) in self.bodies.iter().enumerate().filter(|(n, _)| wanted(*n)) {
+            let first = some.triangles.len();
+            some.triangles.extend_from_slice(&self.triangles[body.triangles.clone()]);
+            some.bodies.push(Body { triangles: first..some.triangles.len(), ..body.clone() });
+        }
+        some
+    }
+
     /// The files that they came from, for messages.
     #[must_use]
     pub fn files(&self) -> String {

@@ -114,7 +114,10 @@ pub fn drag(
             found.ct[axis].push(parts[0] * TURBULENCE[0] + parts[1] * TURBULENCE[1]);
         }
     }
-    add_own_resistance(grid, bodies, options, &mut found);
+    let own = own_resistance(grid, bodies, options);
+    for axis in &mut found.cr {
+        axis.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own);
+    }
     found
 }
 
@@ -167,21 +170,21 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Add the resistance that solids are given as a whole, by the share of each cell that they fill.
-fn add_own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut ObstacleDrag) {
+/// The resistance in 1/m that solids are given as a whole, along all axes, by the share of each cell that they fill; all 0 where none is given one.
+#[must_use]
+pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Vec<f64> {
+    let mut sums = vec![0.0; grid.cell_count()];
     let mut given: Vec<f64> = bodies.bodies.iter().filter_map(|b| b.drag.cr).collect();
     given.sort_by(f64::total_cmp);
     given.dedup();
     for cr in given.into_iter().filter(|cr| *cr > 0.0) {
-        let mut own = bodies.clone();
-        own.bodies.retain(|b| b.drag.cr == Some(cr));
+        let mut own = bodies.some(|body| bodies.bodies[body].drag.cr == Some(cr));
         own.bodies.iter_mut().for_each(|b| b.porosity = 0.0);
         debug_assert!(levels(&own) == [0.0], "all of them solid");
         let filled = porosity(grid, &own, Options { bounds: false, areas: false, ..options });
-        for axis in &mut found.cr {
-            axis.iter_mut().zip(filled.beta.v.iter()).for_each(|(sum, open)| *sum += cr * (1.0 - open));
-        }
+        sums.iter_mut().zip(filled.beta.v.iter()).for_each(|(sum, open)| *sum += cr * (1.0 - open));
     }
+    sums
 }
 
 /// Edges that turn by less than this belong to a curved surface.

@@ -45,8 +45,8 @@ pub(super) fn taken_volume<const D: usize>(flow: &Flow<f64, D>, cell: usize) -> 
 pub(super) struct Weights<const D: usize> {
     /// For each axis the area, in m², on which the pressure on the walls at the low and at the high side acts.
     pub sides: [[f64; 2]; D],
-    /// Volume, in m³, on which the drag acts.
-    pub drag: f64,
+    /// For each axis the volume, in m³, on which the drag acts.
+    pub drag: [f64; D],
     /// Volume of gas displaced, in m³.
     pub displaced: f64,
 }
@@ -57,7 +57,7 @@ impl<const D: usize> Weights<D> {
         let at = flow.coordinates(cell);
         Weights {
             sides: std::array::from_fn(|d| [flow.area(d, at); 2]),
-            drag: flow.volume(at),
+            drag: [flow.volume(at); D],
             displaced: taken_volume(flow, cell),
         }
     }
@@ -68,7 +68,7 @@ impl<const D: usize> Weights<D> {
             let [low, high] = [0, 1].map(|side| push.sides[d][side] * self.sides[d][side]);
             let g = flow.gravity[d];
             let weight = if g == 0.0 { 0.0 } else { g * flow.get(cell).density * self.displaced };
-            high - low + push.drag[d] * self.drag - weight
+            high - low + push.drag[d] * self.drag[d] - weight
         })
     }
 }

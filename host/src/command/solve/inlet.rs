@@ -2,7 +2,8 @@
 //!
 //! Fixing velocity, density and pressure would reflect every wave. Instead the pressure outside rises while the gas just
 //! inside is too slow and falls while it is too fast, within a relaxation time; waves leave, and the velocity is met
-//! in the end. In a barotropic gas, or where the temperature is given, the density follows the pressure.
+//! in the end. In a barotropic gas, or where the temperature is given, the density follows the pressure. An inlet faster than its own sound keeps its
+//! first pressure: no wave from inside can change it, and none would lead it back.
 
 use super::case::StateKeys;
 use super::state::States;
@@ -18,7 +19,7 @@ pub struct Inlet<const D: usize> {
     pub at: (usize, usize),
     /// The patch on that side, if it is not the rest of it.
     pub patch: Option<usize>,
-    /// Time in which the pressure follows.
+    /// Time in which the pressure follows; infinite where it does not.
     pub relax: f64,
     /// +1 if the gas enters along the axis, −1 if against it.
     sign: f64,
@@ -54,8 +55,10 @@ impl<const D: usize> Inlet<D> {
         }
         let axis = &edges.0[states.live[at.0]];
         let gas = states.gas_of(states.gamma(keys, None));
-        let crossing = (axis[axis.len() - 1] - axis[0]) / gas.sound_speed(&state);
-        let relax = keys.relax.unwrap_or(crossing);
+        let sound_speed = gas.sound_speed(&state);
+        let crossing = (axis[axis.len() - 1] - axis[0]) / sound_speed;
+        let is_supersonic = sign * state.velocity[at.0] > sound_speed;
+        let relax = if is_supersonic { f64::INFINITY } else { keys.relax.unwrap_or(crossing) };
         let inlet = Inlet { at, patch: None, relax, sign, gas, per_pressure, shares: Vec::new() };
         inlet.follow(&mut state);
         Ok((inlet, state))

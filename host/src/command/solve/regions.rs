@@ -1,15 +1,12 @@
 //! Regions of a case, boxes and balls, and the share of each cell that they take: what a region holds does not depend on the grid.
 
-use super::arrays::index;
 use super::case::StateKeys;
 use super::case_file::CaseFile;
-use crate::command::progress::Progress;
 use crate::error::Result;
-use crate::flow::Flow;
+use crate::geometry::scene::shape::{Round, Shape};
 use crate::grid::{AXES, Edges};
 use crate::words::written;
 use glam::DVec3;
-use serde::Serialize;
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::solids::quadric::QuadricSolid;
@@ -22,20 +19,6 @@ pub enum Region {
     /// Centre and radius, in m. Axes whose centre is NaN do not count: a cylinder, or a layer.
     Ball([f64; 3], f64),
 }
-
-/// How well the grid resolves a region.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct RegionReport {
-    /// Radius, or half the smallest extent of a box, in the widest cells that it meets; none if it is not bounded.
-    pub cells_per_radius: Option<f64>,
-    /// Volume of the region within the grid, in m³.
-    pub volume: f64,
-    /// What of it is no solid, in m³.
-    pub open_volume: f64,
-}
-
-/// Of a region that is less open than this, it is said how much is.
-const MOSTLY_SOLID: f64 = 0.5;
 
 /// A share this close to none or all is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -60,6 +43,15 @@ impl Region {
             (None, Some(_), None) => Err(file.wrong(key, "a ball needs a center beside its radius")),
             (Some(_), None, None) => Err(file.wrong(key, "a ball needs a radius beside its center")),
         }
+    }
+
+    /// All regions of a case, in their order.
+    ///
+    /// # Errors
+    /// As [`Region::new`].
+    pub fn all(file: &CaseFile) -> Result<Vec<Region>> {
+        let tables = file.case.initial.regions.iter().enumerate();
+        tables.map(|(n, keys)| Region::new(file, &format!("initial.regions[{n}]"), keys)).collect()
     }
 
     /// A box between two corners; axes that these leave out reach to infinity.
@@ -131,6 +123,28 @@ impl Region {
         Some((solid, seen))
     }
 
+    /// The region as a solid, as far as it reaches into a box and a little beyond it; none where it does not.
+    #[must_use]
+    pub fn shape(&self, [lo, hi]: [DVec3; 2]) -> Option<Shape> {
+        let ends = [0, 1].map(|end| DVec3::from_array([0, 1, 2].map(|a| self.extent(a)[end])));
+        if !(ends[0].cmplt(hi).all() && ends[1].cmpgt(lo).all() && ends[0].cmplt(ends[1]).all()) {
+            return None;
+        }
+        let beyond = [lo - (hi - lo), hi + (hi - lo)];
+        let whole = Shape::Box { min: ends[0].max(beyond[0]), max: ends[1].min(beyond[1]) };
+        let Region::Ball(center, radius) = *self else { return Some(whole) };
+        let flat: Vec<usize> = (0..3).filter(|&a| center[a].is_nan()).collect();
+        Some(match flat[..] {
+            [] => Shape::Sphere { center: DVec3::from_array(center), radius },
+            [along] => {
+                let [from, to] =
+                    beyond.map(|end| DVec3::from_array([0, 1, 2].map(|a| if a == along { end[a] } else { center[a] })));
+                Shape::Round { kind: Round::Cylinder, from, to, radius, top_radius: radius }
+            }
+            _ => whole,
+        })
+    }
+
     /// Shares of what has plane sides along the axes.
     fn box_shares(&self, edges: &Edges) -> Vec<(usize, f64)> {
         let along = [0, 1, 2].map(|a| {
@@ -149,28 +163,6 @@ impl Region {
         }
         all
     }
-
-    /// How well a grid, of which the axes `live` flow and the cells are as `open` as this, resolves the region that takes these `shares` of
-    /// its cells.
-    fn report(&self, edges: &Edges, live: &[usize], open: Option<&[f64]>, shares: &[(usize, f64)]) -> RegionReport {
-        let mut per_radius = f64::INFINITY;
-        for &a in live {
-            let [from, to] = self.extent(a);
-            let met = edges.0[a].windows(2).filter(|e| e[1] > from && e[0] < to);
-            let widest = met.map(|e| e[1] - e[0]).fold(0.0, f64::max);
-            per_radius = per_radius.min(0.5 * (to - from) / widest);
-        }
-        let widths = [0, 1, 2].map(|a| edges.widths(a));
-        let volume = |cell: usize| {
-            let [i, j, k] = index(cell, edges.cells());
-            widths[0][i] * widths[1][j] * widths[2][k]
-        };
-        RegionReport {
-            cells_per_radius: per_radius.is_finite().then_some(per_radius),
-            volume: shares.iter().map(|&(cell, share)| share * volume(cell)).sum(),
-            open_volume: shares.iter().map(|&(cell, share)| share * volume(cell) * open.map_or(1.0, |b| b[cell])).sum(),
-        }
-    }
 }
 
 /// A point of one to three numbers; the others are `missing`.
@@ -180,45 +172,6 @@ fn point(file: &CaseFile, key: &str, p: &Option<Vec<f64>>, missing: f64) -> Resu
         Some(p) if (1..=3).contains(&p.len()) => Ok([0, 1, 2].map(|a| p.get(a).copied().unwrap_or(missing))),
         Some(p) => Err(file.wrong(key, format!("needs one to three numbers, not {}", p.len()))),
     }
-}
-
-/// What the regions of a case came to in a flow; those that change nothing, or less than they say, are told.
-///
-/// # Errors
-/// As [`Region::shares`].
-pub fn report<const D: usize>(
-    file: &CaseFile,
-    flow: &Flow<f64, D>,
-    edges: &Edges,
-    live: [usize; D],
-    progress: &mut Progress,
-) -> Result<Vec<RegionReport>> {
-    let mut all = Vec::new();
-    for (n, keys) in file.case.initial.regions.iter().enumerate() {
-        let key = format!("initial.regions[{n}]");
-        let region = Region::new(file, &key, keys)?;
-        let shares = region.shares(edges).map_err(|reason| file.wrong(&key, reason))?;
-        let report = region.report(edges, &live, flow.beta_v(), &shares);
-        let open = report.open_volume / report.volume;
-        let trouble = match report.cells_per_radius {
-            _ if region.is_outside(edges) => "lies outside the grid: it has no effect".to_owned(),
-            _ if shares.is_empty() => "holds nothing of any cell: it has no effect".to_owned(),
-            _ if report.open_volume == 0.0 => "lies wholly in solid: it has no effect".to_owned(),
-            _ if open < MOSTLY_SOLID => {
-                let percent = 100.0 * open;
-                format!("is {percent:.2} % open, the rest is solid: its mass and energy are those of the open part")
-            }
-            Some(cells) if cells < 0.5 => {
-                "is smaller than a cell: its mass and energy are spread over the cells that hold it".to_owned()
-            }
-            _ => String::new(),
-        };
-        if !trouble.is_empty() {
-            progress.warn(file.remark(&key, trouble));
-        }
-        all.push(report);
-    }
-    Ok(all)
 }
 
 /// Shares of a round solid.

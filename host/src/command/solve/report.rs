@@ -8,7 +8,7 @@ use super::maxima::{Maxima, Peaks};
 use super::monitors::MonitorReport;
 use super::pictures::Colours;
 use super::refine::{Compared, RefineCheck};
-use super::regions::RegionReport;
+use super::region_report::RegionReport;
 use super::setup::{Setup, SpaceReport};
 use super::sides::PatchReport;
 use super::solids::{OTHERS, SolidForce};

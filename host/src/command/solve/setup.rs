@@ -5,8 +5,10 @@ use super::case_file::CaseFile;
 use super::force::pushed_cells;
 use super::inlet::Inlet;
 use super::mixture::mixture;
+use super::open_parts::{OpenParts, Standing};
 use super::ranges::NOT_NEGATIVE;
-use super::regions::{self, RegionReport};
+use super::region_report::{self, RegionReport};
+use super::regions::Region;
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
 use super::space::{self, Space};
@@ -93,12 +95,12 @@ pub fn setup<const D: usize>(
     let mut skipped: Vec<String> =
         (0..3).filter(|a| !live.contains(a)).map(|a| format!("axis {}: it has one cell", AXES[a])).collect();
     let states = States { file, gas, gas_constant: case.gas.gas_constant, live };
-    let Beginning { cells, gammas } = progress.stage("initial", |_| states.initial(edges))?;
+    let mut beginning = progress.stage("initial", |_| states.initial(edges))?;
 
-    let pressures = cells.iter().map(|w| w.pressure);
+    let pressures = beginning.cells.iter().map(|w| w.pressure);
     let ends = pressures.fold([f64::INFINITY, 0.0], |[low, high], p| [low.min(p), high.max(p)]);
     let widths = live.map(|d| edges.widths(d));
-    let Sides { boundaries, patches, feed, mut inlets } = sides::sides(file, &states, edges, &cells)?;
+    let Sides { boundaries, patches, feed, mut inlets } = sides::sides(file, &states, edges, &beginning.cells)?;
     // After keys that are refused: of these nothing else is said.
     units::doubts(file, ends).into_iter().for_each(|doubt| progress.warn(doubt));
     let mut flow = Flow::new(widths, gas, boundaries);
@@ -111,10 +113,12 @@ pub fn setup<const D: usize>(
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
     let (mut report, mut by_law) = (None, None);
     let (space, measured) = space::load(file, edges, live, progress)?;
+    let parts = open_parts(file, edges, &beginning, space.as_ref(), progress)?;
+    states.settle(&mut beginning, &parts, edges)?;
     match space {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
-            let Space { volume, faces, drag } = space;
+            let Space { volume, faces, drag, .. } = space;
             by_law = drag;
             report = Some(fill(file, &mut flow, (volume, faces), treatment, progress)?);
         }
@@ -130,7 +134,7 @@ pub fn setup<const D: usize>(
         skipped.push("energy equation: the gas is barotropic".into());
     }
 
-    set_states(&mut flow, &cells, &gammas);
+    set_states(&mut flow, &beginning);
     strong_drag::warn(&flow, live, edges, progress);
     if let Some(report) = &mut report {
         report.step_share = step_share(&mut flow);
@@ -138,10 +142,25 @@ pub fn setup<const D: usize>(
     let (edges, cfl) = (edges.clone(), case.scheme.cfl.unwrap_or(USUAL_CFL));
     inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
     let pushed = pushed_cells(&flow);
-    let solids = (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed));
-    let regions = regions::report(file, &flow, &edges, live, progress)?;
+    let solids =
+        (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed, !space::given_otherwise(file)));
+    let regions = region_report::report(file, (&flow, &parts), &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress);
     Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, pushed, solids, skipped })
+}
+
+/// What the regions of the beginning keep of the cells that they hold in part.
+fn open_parts<const D: usize>(
+    file: &CaseFile,
+    edges: &Edges,
+    beginning: &Beginning<D>,
+    space: Option<&Space<D>>,
+    progress: &mut Progress,
+) -> Result<OpenParts> {
+    let regions = Region::all(file)?;
+    let (scene, beta_v) = (space.and_then(|s| s.scene.as_ref()), space.map(|s| &s.volume[..]));
+    let standing = Standing { edges, regions: &regions, scene, beta_v };
+    OpenParts::measure(&standing, beginning.holds(), progress)
 }
 
 /// Gives a flow its porosity, and tells what the solver makes of it.
@@ -173,7 +192,7 @@ fn fill<const D: usize>(
 }
 
 /// Gives all cells their states, and those of a mixed gas their ratios of specific heats; nothing flows in solid.
-fn set_states<const D: usize>(flow: &mut Flow<f64, D>, cells: &[Primitive<f64, D>], gammas: &[f64]) {
+fn set_states<const D: usize>(flow: &mut Flow<f64, D>, Beginning { cells, gammas, .. }: &Beginning<D>) {
     for (cell, w) in cells.iter().enumerate() {
         let closed = flow.beta_v().is_some_and(|b| b[cell] == 0.0);
         let velocity = if closed { [0.0; D] } else { w.velocity };

@@ -214,7 +214,8 @@ pub fn report<const D: usize>(
     let mut all = Vec::new();
     for (n, (patch, keys)) in flow.patches.iter().zip(&file.case.boundary.patch).enumerate() {
         let faces = flow.side(patch.axis, usize::from(patch.high), Some(n));
-        let area = across * faces.iter().map(|(_, area)| area).sum::<f64>();
+        // A sum of nothing would be −0.
+        let area = across * faces.iter().fold(0.0, |sum, (_, area)| sum + area);
         let trouble = match (faces.is_empty(), area > 0.0) {
             (true, _) if n + 1 == flow.patches.len() => "covers the middle of no face of its side: it has no effect",
             (true, _) => "covers the middle of no face of its side, or later patches cover the same: it has no effect",

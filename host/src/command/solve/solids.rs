@@ -2,7 +2,8 @@
 //!
 //! Each solid is measured alone, on the cells that it reaches, as all of them are measured together: with faces lowered to a throat, if theirs are. What
 //! it closes of a face is its wall on both sides of the face. What the walls of all together have besides (where solids share a cell or hide each
-//! other) goes, face by face, by how much of the two cells and their faces each takes, and the drag by how much of the cell. So the forces on all solids add up to
+//! other) goes, face by face, by how much of the two cells and their faces each takes, and the drag by how much of the cell, but for that of a
+//! resistance given for a solid, which is its own. So the forces on all solids add up to
 //! the force on all, and gas of one pressure all around pushes none of them that it surrounds.
 //!
 //! What acts on the walls of a cell comes from the step, side by side (`CellPush`); a solid feels of each side the share of what is closed there that is its own.
@@ -13,6 +14,7 @@ use crate::error::Result;
 use crate::flow::Flow;
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
+use crate::porosity::drag::own_resistance;
 use crate::porosity::resistance::shadows;
 use crate::porosity::shadows::{cells, faces_of_cell};
 use crate::porosity::throat::{self, Faces};
@@ -50,6 +52,8 @@ struct Part<const D: usize> {
     volume: f64,
     /// What is taken of the cell and of its faces.
     taken: f64,
+    /// Resistance in 1/m that is given for the solids themselves, along all axes.
+    own_cr: f64,
 }
 
 /// Force on the solids of a name.
@@ -87,23 +91,10 @@ pub fn measure<const D: usize>(
     let groups: Vec<usize> = names(bodies).iter().map(group).collect();
     let all = wanted.iter().map(String::as_str).chain([OTHERS]).enumerate();
     all.map(|(n, name)| {
-        let some = part_of(bodies, &groups, n);
+        let some = bodies.some(|body| groups[body] == n);
         Ok(Measured { name: name.to_owned(), cells: alone(&some, edges, live, (options, faces))? })
     })
     .collect()
-}
-
-/// The bodies of the `n`-th group.
-fn part_of(bodies: &Bodies, groups: &[usize], n: usize) -> Bodies {
-    let mut part = Bodies::default();
-    for (body, _) in bodies.bodies.iter().zip(groups).filter(|(_, group)| **group == n) {
-        let first = part.triangles.len();
-        part.triangles.extend_from_slice(&bodies.triangles[body.triangles.clone()]);
-        let mut body = body.clone();
-        body.triangles = first..part.triangles.len();
-        part.bodies.push(body);
-    }
-    part
 }
 
 /// What bodies alone have in the cells that they reach.
@@ -130,15 +121,15 @@ fn alone<const D: usize>(
         let first = ranges.each_ref().map(|range| range.start);
         throat::lower_within(&grid, &mut found, &shadows, (first, shape));
     }
-    let found = found.beta;
+    let (found, own_cr) = (found.beta, own_resistance(&grid, bodies, options));
     let mut parts = Vec::new();
-    for (at, open) in cells(&grid).zip(&found.v) {
+    for ((at, open), own_cr) in cells(&grid).zip(&found.v).zip(own_cr) {
         let faces = live.map(|axis| faces_of_cell(&grid, axis, at).map(|face| found.faces(axis)[face]));
         let volume = 1.0 - open;
         let taken = volume + faces.iter().flatten().map(|b| 1.0 - b).sum::<f64>();
-        if taken > 0.0 {
+        if taken > 0.0 || own_cr > 0.0 {
             let [i, j, k]: [usize; 3] = std::array::from_fn(|a| ranges[a].start + at[a]);
-            parts.push(Part { cell: position([i, j, k], shape), faces, volume, taken });
+            parts.push(Part { cell: position([i, j, k], shape), faces, volume, taken, own_cr });
         }
     }
     Ok(parts)
@@ -150,6 +141,8 @@ struct Parts<'a, const D: usize> {
     by_cell: BTreeMap<usize, Vec<(usize, Part<D>)>>,
     /// The group of what belongs to nobody.
     others: usize,
+    /// Whether resistances given for solids act.
+    own_counts: bool,
 }
 
 /// Weights of what acts in a cell on each group.
@@ -158,7 +151,7 @@ struct Shares<const D: usize>(BTreeMap<usize, Weights<D>>);
 
 impl<const D: usize> Shares<D> {
     fn of(&mut self, group: usize) -> &mut Weights<D> {
-        self.0.entry(group).or_insert(Weights { sides: [[0.0; 2]; D], drag: 0.0, displaced: 0.0 })
+        self.0.entry(group).or_insert(Weights { sides: [[0.0; 2]; D], drag: [0.0; D], displaced: 0.0 })
     }
 }
 
@@ -174,7 +167,20 @@ impl<const D: usize> Parts<'_, D> {
         found.unwrap_or_else(|| vec![(self.others, 1.0)])
     }
 
-    /// Shares of the drag and of the weight of the gas displaced in a cell, by the volumes of the solids in it.
+    /// Shares of the drag of a cell along an axis: that of the resistances given for solids goes to them, the rest by the volumes of all.
+    fn drag_shares(&self, cell: usize, d: usize, by_volume: &[(usize, f64)]) -> Vec<(usize, f64)> {
+        let given: f64 = self.of(cell).iter().map(|(_, part)| part.own_cr).sum();
+        let all: f64 = self.flow.drag().nth(d).and_then(|cr| cr.get(cell).copied()).unwrap_or(0.0);
+        // Where the case gives another resistance those of solids do not count.
+        if !self.own_counts || !(given > 0.0) || !(all > 0.0) {
+            return by_volume.to_vec();
+        }
+        let all = all.max(given);
+        let own = self.of(cell).iter().map(|(group, part)| (*group, part.own_cr / all));
+        own.chain(by_volume.iter().map(|(group, share)| (*group, share * (1.0 - given / all)))).collect()
+    }
+
+    /// Shares of the weight of the gas displaced in a cell, and of what is not given for solids of its drag, by the volumes of the solids in it.
     fn volume_shares(&self, cell: usize) -> Vec<(usize, f64)> {
         self.shares_of(&[cell], |part| part.volume).unwrap_or_else(|| self.shares(&[cell]))
     }
@@ -205,7 +211,8 @@ impl<const D: usize> Parts<'_, D> {
                     for (cell, side) in ends {
                         let parts = self.by_cell.entry(cell).or_default();
                         let at = parts.iter().position(|(other, _)| *other == group).unwrap_or_else(|| {
-                            parts.push((group, Part { cell, faces: [[1.0; 2]; D], volume: 0.0, taken: 0.0 }));
+                            let open = Part { cell, faces: [[1.0; 2]; D], volume: 0.0, taken: 0.0, own_cr: 0.0 };
+                            parts.push((group, open));
                             parts.len() - 1
                         });
                         let part = &mut parts[at].1;
@@ -248,10 +255,14 @@ impl<const D: usize> Parts<'_, D> {
                 }
             }
         }
-        let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
-        for (group, share) in by_volume.into_iter().filter(|_| weighs) {
-            let weights = found.of(group);
-            (weights.drag, weights.displaced) = (share * volume, share * displaced);
+        if weighs {
+            let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
+            for d in 0..D {
+                for (group, share) in self.drag_shares(cell, d, &by_volume) {
+                    found.of(group).drag[d] += share * volume;
+                }
+            }
+            by_volume.iter().for_each(|(group, share)| found.of(*group).displaced = share * displaced);
         }
         found
     }
@@ -267,9 +278,9 @@ pub struct SolidShares<const D: usize> {
 }
 
 impl<const D: usize> SolidShares<D> {
-    /// From what solids have alone, in a flow around all of them that pushes something in some cells.
+    /// From what solids have alone, in a flow around all of them that pushes something in some cells; resistances given for them may count or not.
     #[must_use]
-    pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>, pushed: &[usize]) -> Self {
+    pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>, pushed: &[usize], own_counts: bool) -> Self {
         let names: Vec<String> = measured.iter().map(|m| m.name.clone()).collect();
         let mut shares = vec![Vec::new(); names.len()];
         let mut by_cell: BTreeMap<usize, Vec<(usize, Part<D>)>> = BTreeMap::new();
@@ -277,7 +288,7 @@ impl<const D: usize> SolidShares<D> {
             m.cells.iter().for_each(|part| by_cell.entry(part.cell).or_default().push((group, *part)));
         }
         let Some(others) = names.len().checked_sub(1) else { return SolidShares { names, shares } };
-        let mut parts = Parts { flow, by_cell, others };
+        let mut parts = Parts { flow, by_cell, others, own_counts };
         parts.match_ends();
         let faces: Vec<&[f64]> = flow.faces().collect();
         for &cell in pushed {

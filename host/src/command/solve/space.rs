@@ -29,6 +29,17 @@ pub struct Space<const D: usize> {
     pub faces: [Vec<f64>; D],
     /// `cr` of the axes that flow, by the law of the case.
     pub drag: Option<[Vec<f64>; D]>,
+    /// The solids; none where the open fractions come from files.
+    pub scene: Option<SceneBodies>,
+}
+
+/// The solids of a scene, and how they are measured.
+#[derive(Debug, Clone)]
+pub struct SceneBodies {
+    /// The solids.
+    pub bodies: Bodies,
+    /// How their volumes are found.
+    pub options: Options,
 }
 
 /// The open fractions of a case, none where all of the space is open; and what the solids whose forces are asked for have alone.
@@ -57,7 +68,7 @@ pub fn load<const D: usize>(
                 .collect::<Result<_>>()?;
             let mut faces = faces.into_iter();
             let faces = std::array::from_fn(|_| faces.next().unwrap_or_default());
-            (Space { volume: read("v", cells)?, faces, drag: None }, Vec::new())
+            (Space { volume: read("v", cells)?, faces, drag: None, scene: None }, Vec::new())
         }
         (None, None) => return Ok((None, Vec::new())),
         (Some(_), Some(_)) => return Err(file.wrong("porosity", "takes scene or from, not both")),
@@ -147,7 +158,8 @@ fn from_scene<const D: usize>(
     let drag = found.drag.map(|drag| live.map(|d| drag.cr[d].clone()));
     let FieldSet { v, x, y, z } = result.beta;
     let faces = [x, y, z];
-    Ok((Space { volume: v.to_vec(), faces: live.map(|d| faces[d].to_vec()), drag }, solids))
+    let faces = live.map(|d| faces[d].to_vec());
+    Ok((Space { volume: v.to_vec(), faces, drag, scene: Some(SceneBodies { bodies, options }) }, solids))
 }
 
 /// Names of the solids whose forces are asked for; `*` stands for all.
@@ -181,7 +193,7 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
 }
 
 /// Is there a resistance that needs no law?
-fn given_otherwise(file: &CaseFile) -> bool {
+pub fn given_otherwise(file: &CaseFile) -> bool {
     let keys = &file.case.drag;
     keys.cr.is_some() || keys.from.is_some()
 }

@@ -4,13 +4,15 @@ use super::arrays;
 use super::case::{StateKeys, VELOCITIES};
 use super::case_file::CaseFile;
 use super::mixture;
+use super::open_parts::{Hold, OpenParts};
 use super::places::STATE;
 use super::ranges::{GAMMA, QUANTITY, SIGNED};
 use super::regions::Region;
 use crate::command::stages;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::grid::{AXES, Edges};
 use crate::words::written;
+use std::collections::BTreeMap;
 use std::path::Path;
 use voidage_core::flow::{Conserved, Gas, Primitive};
 
@@ -40,6 +42,24 @@ pub struct Beginning<const D: usize> {
     pub cells: Vec<Primitive<f64, D>>,
     /// The ratio of specific heats of each cell of a mixed gas; else empty.
     pub gammas: Vec<f64>,
+    /// The cells that regions hold in part.
+    shared: BTreeMap<usize, SharedCell<D>>,
+}
+
+impl<const D: usize> Beginning<D> {
+    /// The cells that regions hold in part, each with these regions in their order.
+    pub fn holds(&self) -> impl Iterator<Item = (usize, &[Hold])> {
+        self.shared.iter().map(|(&cell, shared)| (cell, &shared.holds[..]))
+    }
+}
+
+/// A cell that regions hold in part.
+#[derive(Debug, Clone)]
+struct SharedCell<const D: usize> {
+    /// What is there before them, if that is known.
+    under: Option<Filled<D>>,
+    /// They, in their order, with those of them that hold all of it.
+    holds: Vec<Hold>,
 }
 
 impl<const D: usize> States<'_, D> {
@@ -134,26 +154,28 @@ impl<const D: usize> States<'_, D> {
             }
             (None, None) => vec![None; count],
         };
-        (0..keys.regions.len()).try_for_each(|n| self.fill(n, edges, &mut cells))?;
-        // Regions that fill half of a cell or more speak for all of it.
-        let missing = |c: &Option<Filled<D>>| c.is_none_or(|c| c.share < 0.5 - 1e-9);
-        match cells.iter().position(missing) {
-            None => {
-                let cells: Vec<Filled<D>> = cells.into_iter().flatten().collect();
-                let gammas = if self.gas.is_mixed() { cells.iter().map(|c| c.gamma).collect() } else { Vec::new() };
-                Ok(Beginning { cells: cells.iter().map(|c| c.state).collect(), gammas })
-            }
-            Some(cell) => {
-                let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
-                Err(self
-                    .file
-                    .wrong("initial", format!("cell {at:?} at {x:?} is in no region, and there is no uniform state")))
-            }
+        let mut shared = BTreeMap::new();
+        (0..keys.regions.len()).try_for_each(|n| self.fill(n, edges, &mut cells, &mut shared))?;
+        let parts = OpenParts::default();
+        for (&cell, own) in &shared {
+            cells[cell] = self.settled(cell, own, &parts)?;
         }
+        if let Some(cell) = cells.iter().position(|c| !is_known(c)) {
+            return Err(self.in_no_region(cell, edges));
+        }
+        let cells: Vec<Filled<D>> = cells.into_iter().flatten().collect();
+        let gammas = if self.gas.is_mixed() { cells.iter().map(|c| c.gamma).collect() } else { Vec::new() };
+        Ok(Beginning { cells: cells.iter().map(|c| c.state).collect(), gammas, shared })
     }
 
-    /// Gives the cells of the `n`-th region its state, each as far as the region holds it.
-    fn fill(&self, n: usize, edges: &Edges, cells: &mut [Option<Filled<D>>]) -> Result<()> {
+    /// Gives the cells that the `n`-th region holds wholly its state, and lists it in those that it holds in part.
+    fn fill(
+        &self,
+        n: usize,
+        edges: &Edges,
+        cells: &mut [Option<Filled<D>>],
+        shared: &mut BTreeMap<usize, SharedCell<D>>,
+    ) -> Result<()> {
         let (key, keys) = (format!("initial.regions[{n}]"), &self.file.case.initial.regions[n]);
         if !keys.given().iter().any(|k| STATE.contains(k)) {
             let all = STATE.join(", ");
@@ -161,11 +183,93 @@ impl<const D: usize> States<'_, D> {
         }
         let region = Region::new(self.file, &key, keys)?;
         for (cell, share) in region.shares(edges).map_err(|reason| self.file.wrong(&key, reason))? {
-            let state = self.state(&key, keys, cells[cell].map(|c| c.state))?;
-            let gamma = self.gamma(keys, cells[cell].map(|c| c.gamma));
-            cells[cell] = Some(Filled { state, gamma, share }.over(cells[cell], self));
+            if share < 1.0 || shared.contains_key(&cell) {
+                let new = || SharedCell { under: cells[cell], holds: Vec::new() };
+                shared.entry(cell).or_insert_with(new).holds.push(Hold { region: n, share });
+            } else {
+                cells[cell] = Some(self.region_over(n, cells[cell])?);
+            }
         }
         Ok(())
+    }
+
+    /// The state of the `n`-th region over another, all of a cell.
+    fn region_over(&self, n: usize, before: Option<Filled<D>>) -> Result<Filled<D>> {
+        let (key, keys) = (format!("initial.regions[{n}]"), &self.file.case.initial.regions[n]);
+        let state = self.state(&key, keys, before.map(|b| b.state))?;
+        Ok(Filled { state, gamma: self.gamma(keys, before.map(|b| b.gamma)), share: 1.0 })
+    }
+
+    /// Gives the cells that regions hold in part what is in their open parts.
+    ///
+    /// # Errors
+    /// As [`States::initial`].
+    pub fn settle(&self, beginning: &mut Beginning<D>, parts: &OpenParts, edges: &Edges) -> Result<()> {
+        let Beginning { cells, gammas, shared } = beginning;
+        for (&cell, own) in shared.iter().filter(|_| !parts.is_empty()) {
+            let found = self.settled(cell, own, parts)?;
+            let Some(found) = found.filter(|c| is_known(&Some(*c))) else {
+                return Err(self.in_no_region(cell, edges));
+            };
+            cells[cell] = found.state;
+            if let Some(gamma) = gammas.get_mut(cell) {
+                *gamma = found.gamma;
+            }
+        }
+        Ok(())
+    }
+
+    /// What is in a cell that regions hold in part: of each what the later ones leave of it. What a region does not say is taken from what was where it
+    /// lies.
+    fn settled(&self, cell: usize, shared: &SharedCell<D>, parts: &OpenParts) -> Result<Option<Filled<D>>> {
+        let SharedCell { under, holds } = shared;
+        // What was there at first, and the regions so far, each with the share of the open part that it has.
+        let mut layers = vec![*under];
+        for (k, hold) in holds.iter().enumerate() {
+            let left = |j: usize| parts.left(cell, &holds[j..=k]);
+            let (mut replaced, mut before) = (Vec::new(), Vec::new());
+            for (j, layer) in layers.iter_mut().enumerate() {
+                let Some(layer) = layer else { continue };
+                before.push(*layer);
+                let share = if j == 0 { left(0) } else { left(j) - left(j - 1) };
+                let share = share.clamp(0.0, layer.share);
+                replaced.push(Filled { share: layer.share - share, ..*layer });
+                layer.share = share;
+            }
+            let base = self.mixed(&replaced).or_else(|| self.mixed(&before));
+            layers.push(Some(Filled { share: parts.held(cell, *hold), ..self.region_over(hold.region, base)? }));
+        }
+        let layers: Vec<Filled<D>> = layers.into_iter().flatten().collect();
+        Ok(self.mixed(&layers))
+    }
+
+    /// Gases in one cell: mass, momentum and energy of all. Gases of one pressure keep it: of 1/(γ − 1), the energy per volume and pressure, the cell has
+    /// the mean. None where there is no gas.
+    fn mixed(&self, layers: &[Filled<D>]) -> Option<Filled<D>> {
+        let layers: Vec<&Filled<D>> = layers.iter().filter(|layer| layer.share > 0.0).collect();
+        let [first, _, ..] = layers[..] else { return layers.first().copied().copied() };
+        let share: f64 = layers.iter().map(|layer| layer.share).sum();
+        let mean = |of: &dyn Fn(&Filled<D>) -> f64| layers.iter().map(|c| c.share * of(c)).sum::<f64>() / share;
+        let conserved = |c: &Filled<D>| self.gas_of(c.gamma).conserved(&c.state);
+        let gamma = match layers.iter().all(|c| c.gamma == first.gamma) || !self.gas.is_mixed() {
+            true => layers.last().map_or(first.gamma, |last| last.gamma),
+            false => 1.0 + 1.0 / mean(&|c| self.gas_of(c.gamma).capacity()),
+        };
+        // A mean lies between the least and the largest, whatever the rounding.
+        let [least, most] = [f64::min, f64::max].map(|end| layers.iter().map(|c| c.gamma).fold(first.gamma, end));
+        let gamma = gamma.max(least).min(most);
+        let state = self.gas_of(gamma).primitive(&Conserved {
+            density: mean(&|c| conserved(c).density),
+            momentum: std::array::from_fn(|d| mean(&|c| conserved(c).momentum[d])),
+            energy: mean(&|c| conserved(c).energy),
+        });
+        Some(Filled { state, gamma, share })
+    }
+
+    fn in_no_region(&self, cell: usize, edges: &Edges) -> Error {
+        let (at, x) = (arrays::index(cell, edges.cells()), centre(edges, cell));
+        let reason = format!("cell {at:?} at {x:?} is in no region, and there is no uniform state");
+        self.file.wrong("initial", reason)
     }
 
     /// `rho.npy`, `u.npy`, … of a directory. Velocities along axes of one cell may be missing, else must be 0; a
@@ -207,29 +311,9 @@ struct Filled<const D: usize> {
     share: f64,
 }
 
-impl<const D: usize> Filled<D> {
-    /// The cell once this state has taken its share of what it held before: mass, momentum and energy of both. Gases of one pressure keep it: of
-    /// 1/(γ − 1), the energy per volume and pressure, the cell has the mean.
-    fn over(self, before: Option<Self>, states: &States<'_, D>) -> Self {
-        let Some(before) = before.filter(|_| self.share < 1.0) else { return self };
-        let kept = before.share.min(1.0 - self.share);
-        let share = kept + self.share;
-        let gases = [before.gamma, self.gamma].map(|gamma| states.gas_of(gamma));
-        let (a, b) = (gases[0].conserved(&before.state), gases[1].conserved(&self.state));
-        let mean = |a: f64, b: f64| (kept * a + self.share * b) / share;
-        let gamma = match before.gamma == self.gamma || !states.gas.is_mixed() {
-            true => self.gamma,
-            false => 1.0 + 1.0 / mean(gases[0].capacity(), gases[1].capacity()),
-        };
-        // A mean of two lies between them, whatever the rounding.
-        let gamma = gamma.max(before.gamma.min(self.gamma)).min(before.gamma.max(self.gamma));
-        let state = states.gas_of(gamma).primitive(&Conserved {
-            density: mean(a.density, b.density),
-            momentum: std::array::from_fn(|c| mean(a.momentum[c], b.momentum[c])),
-            energy: mean(a.energy, b.energy),
-        });
-        Filled { state, gamma, share }
-    }
+/// Is it known what is in a cell? What fills half of it or more speaks for all of it.
+fn is_known<const D: usize>(cell: &Option<Filled<D>>) -> bool {
+    cell.is_some_and(|c| c.share >= 0.5 - 1e-9)
 }
 
 /// Centre of a cell.

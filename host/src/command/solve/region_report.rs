@@ -1,0 +1,95 @@
+//! What the regions of a case came to: how well the grid resolves each, and how much of it is gas.
+
+use super::arrays::index;
+use super::case_file::CaseFile;
+use super::open_parts::{Hold, OpenParts};
+use super::regions::Region;
+use crate::command::progress::Progress;
+use crate::error::Result;
+use crate::flow::Flow;
+use crate::grid::Edges;
+use serde::Serialize;
+
+/// How well the grid resolves a region.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RegionReport {
+    /// Radius, or half the smallest extent of a box, in the widest cells that it meets; none if it is not bounded.
+    pub cells_per_radius: Option<f64>,
+    /// Volume of the region within the grid, in m³.
+    pub volume: f64,
+    /// What of it is no solid, in m³.
+    pub open_volume: f64,
+}
+
+/// Of a region that is less open than this, it is said how much is.
+const MOSTLY_SOLID: f64 = 0.5;
+
+/// What the regions of a case came to in a flow; those that change nothing, or less than they say, are told.
+///
+/// # Errors
+/// As [`Region::shares`].
+pub fn report<const D: usize>(
+    file: &CaseFile,
+    (flow, parts): (&Flow<f64, D>, &OpenParts),
+    edges: &Edges,
+    live: [usize; D],
+    progress: &mut Progress,
+) -> Result<Vec<RegionReport>> {
+    let mut all = Vec::new();
+    for (n, region) in Region::all(file)?.into_iter().enumerate() {
+        let key = format!("initial.regions[{n}]");
+        let shares = region.shares(edges).map_err(|reason| file.wrong(&key, reason))?;
+        let holds = shares.iter().map(|&(cell, share)| (cell, Hold { region: n, share }));
+        let [volume, open_volume] = volumes(edges, flow.beta_v(), parts, holds);
+        let report = RegionReport { cells_per_radius: cells_per_radius(&region, edges, &live), volume, open_volume };
+        let open = open_volume / volume;
+        let trouble = match report.cells_per_radius {
+            _ if region.is_outside(edges) => "lies outside the grid: it has no effect".to_owned(),
+            _ if shares.is_empty() => "holds nothing of any cell: it has no effect".to_owned(),
+            _ if open_volume == 0.0 => "lies wholly in solid: it has no effect".to_owned(),
+            _ if open < MOSTLY_SOLID => {
+                let percent = 100.0 * open;
+                format!("is {percent:.2} % open, the rest is solid: its mass and energy are those of the open part")
+            }
+            Some(cells) if cells < 0.5 => {
+                "is smaller than a cell: its mass and energy are spread over the cells that hold it".to_owned()
+            }
+            _ => String::new(),
+        };
+        if !trouble.is_empty() {
+            progress.warn(file.remark(&key, trouble));
+        }
+        all.push(report);
+    }
+    Ok(all)
+}
+
+/// Radius of a region, or half its smallest extent, in the widest cells that it meets along the axes `live`.
+fn cells_per_radius(region: &Region, edges: &Edges, live: &[usize]) -> Option<f64> {
+    let mut per_radius = f64::INFINITY;
+    for &a in live {
+        let [from, to] = region.extent(a);
+        let met = edges.0[a].windows(2).filter(|e| e[1] > from && e[0] < to);
+        let widest = met.map(|e| e[1] - e[0]).fold(0.0, f64::max);
+        per_radius = per_radius.min(0.5 * (to - from) / widest);
+    }
+    per_radius.is_finite().then_some(per_radius)
+}
+
+/// Volume of what a region holds of cells as open as `beta_v`, and the open part of it.
+fn volumes(
+    edges: &Edges,
+    beta_v: Option<&[f64]>,
+    parts: &OpenParts,
+    holds: impl Iterator<Item = (usize, Hold)>,
+) -> [f64; 2] {
+    let widths = [0, 1, 2].map(|a| edges.widths(a));
+    let mut sums = [0.0; 2];
+    for (cell, hold) in holds {
+        let [i, j, k] = index(cell, edges.cells());
+        let volume = widths[0][i] * widths[1][j] * widths[2][k];
+        sums[0] += hold.share * volume;
+        sums[1] += parts.held(cell, hold) * beta_v.map_or(1.0, |beta| beta[cell]) * volume;
+    }
+    sums
+}
