@@ -61,9 +61,9 @@ fn bend(shape: &TorusShape<DVec3>) -> Vec<[DVec3; 3]> {
     let along = ((shape.angle / 360.0 * AROUND as f64).ceil() as usize).max(1);
     let place = |i: usize, j: usize| {
         let i = if whole { i % along } else { i };
-        let (turn, around) =
-            (shape.angle.to_radians() * i as f64 / along as f64, TAU * (j % AROUND) as f64 / AROUND as f64);
-        let out = start * turn.cos() + axis.cross(start) * turn.sin();
+        let around = TAU * (j % AROUND) as f64 / AROUND as f64;
+        let (sin, cos) = sin_cos_of_degrees(shape.angle * i as f64 / along as f64);
+        let out = start * cos + axis.cross(start) * sin;
         // The way around the ring is that of the true one only in the middle of its tube.
         let tube = shape.tube * widened();
         shape.center + out * (shape.radius + tube * around.cos()) + axis * (tube * around.sin())
@@ -71,19 +71,28 @@ fn bend(shape: &TorusShape<DVec3>) -> Vec<[DVec3; 3]> {
     let mut triangles = Vec::new();
     for (i, j) in (0..along).flat_map(|i| (0..AROUND).map(move |j| (i, j))) {
         let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
-        triangles.extend([[a, c, b], [a, d, c]]);
+        triangles.extend([[a, b, c], [a, c, d]]);
     }
     if !whole {
+        // Turned as the tube is: the end closes what the tube leaves open.
         for j in 1..AROUND - 1 {
             triangles.push([place(0, 0), place(0, j), place(0, j + 1)]);
             triangles.push([place(along, 0), place(along, j + 1), place(along, j)]);
         }
     }
-    let volume: f64 = triangles.iter().map(|[a, b, c]| (*a - shape.center).dot((*b - *a).cross(*c - *a))).sum();
-    if volume < 0.0 {
-        triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    }
     triangles
+}
+
+/// Sine and cosine of degrees, exact of quarter turns: ends of bends lie in planes of grids.
+fn sin_cos_of_degrees(degrees: f64) -> (f64, f64) {
+    let quarters = (degrees / 90.0).round();
+    let (sin, cos) = (degrees - quarters * 90.0).to_radians().sin_cos();
+    match quarters.rem_euclid(4.0) as u32 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
 }
 
 /// Half a circle of radius 1 about the origin, from the lower pole: distance from the axis, and height.

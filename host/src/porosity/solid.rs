@@ -70,8 +70,13 @@ fn with_layers_of<T>(
     work: impl FnOnce(&SolidLayers) -> T,
 ) -> T {
     let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
-    let curved: Vec<Vec<[DVec3; 3]>> =
-        bodies.bodies.par_iter().map(|body| facets::of_body(body).unwrap_or_default()).collect();
+    // Ends of pipes and bends, too, lie in the planes that they miss by rounding.
+    let planes = snap::ToPlanes::new(grid);
+    let in_planes = |body: &Body| {
+        let facets = facets::of_body(body).unwrap_or_default();
+        facets.into_iter().map(|triangle| planes.moved(triangle, body)).collect()
+    };
+    let curved: Vec<Vec<[DVec3; 3]>> = bodies.bodies.par_iter().map(in_planes).collect();
     let own_triangles = |n: usize, body: &Body| match &curved[n][..] {
         _ if !solid(body) => &[],
         [] => &triangles[body.triangles.clone()],

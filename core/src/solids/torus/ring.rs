@@ -11,6 +11,9 @@ use crate::number::real::Real;
 use crate::number::space::{P3, dot};
 use heapless::Vec;
 
+/// What rounding leaves of a component that is zero, of vectors of length 1.
+pub(super) const NOISE: f64 = 4.0 * f64::EPSILON;
+
 /// Length of a vector; exact if one component is zero.
 #[inline(always)]
 pub(super) fn length2(a: P2) -> f64 {
@@ -95,7 +98,13 @@ impl Ring {
     #[inline(always)]
     fn square(&self, line: &Line, t: f64) -> f64 {
         let [x, y, z] = line.point(t);
-        let off = Real::sqrt(x * x + y * y) - self.radius;
+        let rho = Real::sqrt(x * x + y * y);
+        if rho < self.radius * 0.5 {
+            // The hole of a horn is as narrow as ρ is there.
+            let hole = (self.radius - self.tube) * (self.radius + self.tube);
+            return rho * (rho - 2.0 * self.radius) + z * z + hole;
+        }
+        let off = rho - self.radius;
         off * off + (z - self.tube) * (z + self.tube)
     }
 
@@ -167,7 +176,10 @@ impl Ring {
         let [start, end] = ends.toward;
         let forms = [[-start[1], start[0]], [end[1], -end[0]]].map(|normal| {
             let of = |p: P3| normal[0] * p[0] + normal[1] * p[1];
-            [of(line.at), of(line.along)]
+            let (at, along) = (of(line.at), of(line.along));
+            let (far, slope) = (at.abs() > NOISE * (self.radius + self.tube), along.abs() > NOISE);
+            // A line in the plane of an end is in it, whatever rounding says.
+            [if far || slope { at } else { 0.0 }, if slope { along } else { 0.0 }]
         });
         let mut kept = Runs::new();
         let mut keep = |lo: f64, hi: f64| {

@@ -10,7 +10,7 @@
 
 use super::disc::{self, Polygon};
 use super::ring::{Ring, ahead, length2};
-use super::touching::{Events, Lines, azimuths, chord};
+use super::touching::{Events, Lines, chord};
 use crate::number::axis::Axis;
 use crate::number::kronrod::{panel, plus};
 use crate::number::plane::{self, P2};
@@ -86,12 +86,21 @@ const MEASURED: f64 = 1e-10;
 /// Kronrod's, which is used, is far smaller.
 const ERROR: f64 = 1e-12;
 
+/// An event this near beside a panel, as a share of its width, splits it; one nearer than the second takes less than rounding.
+const BESIDE: f64 = 2e-3;
+const NEAREST: f64 = 1e-9;
+
+/// By how much panels beside such an event grow, and up to which distance from it, as a share of all.
+const GROWTH: f64 = 4.0;
+const SEEN: f64 = 0.05;
+
 /// Length of the runs of a line, their moment and their flux.
 type Sums = [f64; 3];
 
 impl Ring {
     /// What the solid has of a rectangle; the azimuth of the flux counts from the rectangle's middle, or from a reference.
-    pub fn section(&self, face: &Rectangle, reference: Option<Reference>) -> Section {
+    /// `Careful` sections are measured in shorter panels.
+    pub fn section(&self, face: &Rectangle, reference: Option<Reference>, careful: bool) -> Section {
         let [du, dv] = face.sizes();
         let half = length2([du, dv]) * 0.5;
         let outside = self.outside(face.middle());
@@ -110,7 +119,8 @@ impl Ring {
         let reference = reference.unwrap_or(Reference { toward: [middle[0], middle[1]], cut: false });
         let lines = LinesOfFace { ring: self, face, reference, axis: self.axis_across(face.n) };
         let whole = held && outside < -half * (1.0 + 1e-9);
-        let mut section = lines.integral(&if whole && !reference.cut { Events::new() } else { lines.events() });
+        let mut section =
+            lines.integral(&if whole && !reference.cut { Events::new() } else { lines.events() }, careful);
         if whole {
             section.area = du * dv;
         }
@@ -209,7 +219,7 @@ struct LinesOfFace<'a> {
 }
 
 impl LinesOfFace<'_> {
-    /// Where along v the runs of the lines change their kind.
+    /// Where along v the runs of the lines change their kind, some of them beside the rectangle.
     fn events(&self) -> Events {
         let Rectangle { n, h, u: [u0, u1], v: [v0, v1] } = *self.face;
         let (ring, [iu, iv]) = (self.ring, n.others());
@@ -221,16 +231,19 @@ impl LinesOfFace<'_> {
                 let _ = found.push(run[1]);
             }
         }
-        let middle = ring.local(self.face.middle());
-        let half = length2(self.face.sizes()) * 0.5;
-        let lines = Lines { n: ring.axis(n), u: ring.axis(iu), v: ring.axis(iv), h };
-        lines.touched(ring, azimuths([middle[0], middle[1]], half), &mut found);
+        let sides = [self.face.u, self.face.v];
+        Lines { n: ring.axis(n), u: ring.axis(iu), v: ring.axis(iv), h, sides }.touched(ring, &mut found);
+        let axis = ring.frame[2];
+        if ring.tube > ring.radius * 0.5 && axis[n].abs() > 1e-6 {
+            // The azimuth turns fast beside the axis.
+            let _ = found.push(h * axis[iv] / axis[n]);
+        }
         if let Some(ends) = &ring.ends {
             ends.toward.iter().for_each(|toward| self.events_of_disc(*toward, &mut found));
         } else if self.reference.cut {
             self.events_of_disc(self.reference.toward.map(|x| -x), &mut found);
         }
-        ascending(found.iter().copied().filter(|v| *v > v0 && *v < v1))
+        ascending(found.iter().copied())
     }
 
     /// Where the disc of an end meets the plane: the ends of the chord, and where it crosses the rectangle's sides.
@@ -255,21 +268,23 @@ impl LinesOfFace<'_> {
         }
     }
 
-    /// Over the panels between events.
-    fn integral(&self, events: &[f64]) -> Section {
+    /// Over the panels between events; `careful` ones are short.
+    fn integral(&self, events: &[f64], careful: bool) -> Section {
         let [v0, v1] = self.face.v;
         let [du, dv] = self.face.sizes();
         let (mut total, mut error) = ([0.0; 3], 0.0);
         let mut before = v0;
-        for &next in events.iter().chain([&v1]) {
+        for next in events.iter().copied().filter(|v| *v > v0 && *v < v1).chain([v1]) {
             // Slivers that rounding makes of one event have no area.
             if next - before > 4.0 * f64::EPSILON * (v1 - v0) {
                 let mut from = before;
-                for to in self.overlooked(before, next).iter().copied().chain([next]) {
-                    let (sums, worst) = self.panel(from, to);
-                    total = plus(total, sums, 1.0);
-                    error += worst;
-                    from = to;
+                for to in self.splits(events, [before, next], careful).iter().copied().chain([next]) {
+                    if to > from {
+                        let (sums, worst) = self.panel(from, to);
+                        total = plus(total, sums, 1.0);
+                        error += worst;
+                        from = to;
+                    }
                 }
                 before = next;
             }
@@ -277,6 +292,28 @@ impl LinesOfFace<'_> {
         let reach = 1.0 + length2([v0.abs().max(v1.abs()), self.face.h]) / du.min(dv);
         let error = error / (du * dv) + ROUNDING * reach + MEASURED;
         Section { area: total[0], moment: total[1], flux: total[2], error, whole: false }
+    }
+
+    /// Where a panel between events is split. An event beside its end is the branch of a square root there, which the rules do not see if it is much
+    /// nearer than their nodes: panels grow with their distance from it.
+    fn splits(&self, events: &[f64], [from, to]: [f64; 2], careful: bool) -> Events {
+        let width = to - from;
+        let mut places = Events::new();
+        self.overlooked(from, to).iter().for_each(|place| _ = places.push(*place));
+        let distant = |way: &f64| *way > width * NEAREST;
+        let below = events.iter().map(|event| from - event).filter(distant).fold(width, f64::min);
+        let above = events.iter().map(|event| event - to).filter(distant).fold(width, f64::min);
+        for (end, sign, beside) in [(from, 1.0, below), (to, -1.0, above)] {
+            let mut way = if beside < width * BESIDE { beside * GROWTH } else { width };
+            while way < width * SEEN {
+                let _ = places.push(end + sign * way);
+                way *= GROWTH;
+            }
+        }
+        if careful {
+            (1..8).for_each(|n| _ = places.push(from + width * f64::from(n) / 8.0));
+        }
+        ascending(places.iter().copied())
     }
 
     /// What changes so near the ends of a panel that no node of the rules sees it: found by halving.

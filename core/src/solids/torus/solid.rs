@@ -1,6 +1,6 @@
 //! The public interface of this module: a torus or a pipe bend, and what it tells of a layer.
 
-use super::ring::{Ends, Ring, ahead, length2};
+use super::ring::{Ends, NOISE, Ring, ahead, length2};
 use super::section::{Rectangle, Reference, Section};
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
@@ -48,6 +48,11 @@ fn direction(v: P3) -> Option<P3> {
     let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let unit = if SIZES.contains(&largest) { unit(v) } else { None };
     Some(unit?.map(|x| if x.abs() < 1e-120 { 0.0 } else { x }))
+}
+
+/// A vector of about length 1 without components that are rounding: an end that lies in a plane of a grid lies there exactly.
+fn without_noise(v: P3) -> P3 {
+    v.map(|x| if x.abs() <= NOISE { 0.0 } else { x })
 }
 
 /// Cosine and sine of degrees, quarter turns exactly.
@@ -98,13 +103,13 @@ impl TorusSolid {
         if !(dot(across, across) > 1e-12) {
             return None;
         }
-        let across = direction(across)?;
+        let across = direction(without_noise(across))?;
         let beside = cross(axis, across);
         let frame = [across, beside, axis];
         let ends = (shape.angle < 360.0).then(|| {
             let [c, s] = turned(shape.angle);
             let global = |p: P2| Axis::ALL.map(|n| p[0] * across[n] + p[1] * beside[n]);
-            let inward = [global([0.0, 1.0]), global([s, -c])];
+            let inward = [global([0.0, 1.0]), global([s, -c])].map(without_noise);
             let toward = [[1.0, 0.0], [c, s]];
             Ends { inward, toward, wide: shape.angle > 180.0, middle: turned(shape.angle * 0.5) }
         });
@@ -124,7 +129,7 @@ impl TorusSolid {
         let (share, error) = if let RangeKind::Faces(axis) = kind {
             let axis = Axis::new(axis).unwrap_or(Axis::Z);
             let rectangle = rectangle(axis, sides[axis][0], &sides);
-            let section = ring.section(&rectangle, None);
+            let section = ring.section(&rectangle, None, false);
             let area = (rectangle.u[1] - rectangle.u[0]) * (rectangle.v[1] - rectangle.v[0]);
             (fraction(&section, area), section.error)
         } else {
@@ -271,7 +276,7 @@ impl TorusSolid {
             let Some(v) = side(ys, j, self.ring.center[1]) else { break };
             for i in reached(xs, self.extent_along(Axis::X)) {
                 let Some(u) = side(xs, i, self.ring.center[0]) else { break };
-                let section = self.ring.section(&Rectangle { n: Axis::Z, h, u, v }, None);
+                let section = self.ring.section(&Rectangle { n: Axis::Z, h, u, v }, None, false);
                 let share = fraction(&section, (u[1] - u[0]) * (v[1] - v[0]));
                 if share > 0.0 {
                     visit(RangeKind::Faces(2), j * grid.cells()[0] + i, share, section.error);
@@ -380,26 +385,67 @@ impl Ring {
         if held && outside < -half * (1.0 + 1e-9) {
             return Cell::Closed;
         }
-        let face = |n: Axis, h: f64| self.face(&rectangle(n, h, sides));
-        let [[x0, x1], y, z] = *sides;
-        let first = low.unwrap_or_else(|| face(Axis::X, x0));
-        let faces = [[first, face(Axis::X, x1)], y.map(|h| face(Axis::Y, h)), z.map(|h| face(Axis::Z, h))];
+        let mut faces = self.faces(sides, low, false);
         let (mut share, mut error) = (0.0, 0.0);
         if !missed {
-            (share, error) = self.volume(sides, &faces);
-            share /= size[0] * size[1] * size[2];
+            let mut lost = self.lost(sides, &faces);
+            let careful = lost > 0.0;
+            if careful {
+                faces = self.faces(sides, None, true);
+                lost = self.lost(sides, &faces);
+            }
+            (share, error) = self.volume(sides, &faces, careful);
+            let all = size[0] * size[1] * size[2];
+            share /= all;
+            error += lost * PI / all;
         }
         Cell::Cut { share, error, faces }
     }
 
-    /// A side of a cell.
-    fn face(&self, rectangle: &Rectangle) -> Face {
-        let [x, y, _] = self.local(rectangle.middle());
-        Face { section: self.section(rectangle, None), toward: [x, y] }
+    /// The sides of a cell; the low one across x may be known.
+    fn faces(&self, sides: &Sides, low: Option<Face>, careful: bool) -> [[Face; 2]; 3] {
+        let face = |n: Axis, h: f64| {
+            let rectangle = rectangle(n, h, sides);
+            let [x, y, _] = self.local(rectangle.middle());
+            Face { section: self.section(&rectangle, None, careful), toward: [x, y] }
+        };
+        let [[x0, x1], y, z] = *sides;
+        let first = low.unwrap_or_else(|| face(Axis::X, x0));
+        [[first, face(Axis::X, x1)], y.map(|h| face(Axis::Y, h)), z.map(|h| face(Axis::Z, h))]
+    }
+
+    /// By how much the flux of the field ρ e_φ through the sides of a cell and the ends in it is not zero, beyond what errors of the sections tell. The field
+    /// has no divergence and is tangent to the torus: what is left is that of sections that have not been found.
+    fn lost(&self, sides: &Sides, faces: &[[Face; 2]; 3]) -> f64 {
+        let (mut sum, mut room) = (0.0, 0.0);
+        for n in Axis::ALL {
+            let [u, v] = n.others().map(|m| sides[m][1] - sides[m][0]);
+            for (face, sign) in faces[n].iter().zip([-1.0, 1.0]) {
+                sum += sign * face.section.moment;
+                room += face.section.error * u * v;
+            }
+        }
+        for (_, sign, moment) in self.ends_within(sides) {
+            sum += sign * moment;
+        }
+        let reach = self.radius + self.tube;
+        (sum.abs() - (room + ROUNDING * self.tube * self.tube) * reach).max(0.0)
+    }
+
+    /// Of the ends in a cell: their directions, on which side of them the solid lies, ∫ ρ dA.
+    fn ends_within(&self, sides: &Sides) -> impl Iterator<Item = (P2, f64, f64)> {
+        let within = move |((inward, toward), sign): ((P3, P2), f64)| {
+            let heights = corners(sides).map(|p| dot(inward, p));
+            // A cell before the end: if its side lies in the end's plane, the section there has been counted.
+            let before = heights.fold(f64::INFINITY, f64::min) < 0.0;
+            before.then(|| (toward, sign, self.moment_of_disc(toward, sides)))
+        };
+        let ends = self.ends.iter();
+        ends.flat_map(|ends| ends.inward.into_iter().zip(ends.toward).zip([-1.0, 1.0])).filter_map(within)
     }
 
     /// Volume in a cell from the fluxes through its sides and the ends in it, and what its share may be off by.
-    fn volume(&self, sides: &Sides, faces: &[[Face; 2]; 3]) -> (f64, f64) {
+    fn volume(&self, sides: &Sides, faces: &[[Face; 2]; 3], careful: bool) -> (f64, f64) {
         let width = |n: Axis| sides[n][1] - sides[n][0];
         let around_axis = self.axis_meets(sides);
         let reference = if around_axis {
@@ -422,7 +468,7 @@ impl Ring {
                     continue;
                 }
                 if around_axis {
-                    section = self.section(&rectangle(n, h, sides), Some(reference));
+                    section = self.section(&rectangle(n, h, sides), Some(reference), careful);
                 } else {
                     section.flux += ahead(face.toward, reference.toward) * section.moment;
                 }
@@ -433,14 +479,8 @@ impl Ring {
         if reference.cut {
             volume += 2.0 * PI * self.moment_of_disc(reference.toward.map(|x| -x), sides);
         }
-        if let Some(ends) = &self.ends {
-            for ((inward, toward), sign) in ends.inward.into_iter().zip(ends.toward).zip([-1.0, 1.0]) {
-                let heights = corners(sides).map(|p| dot(inward, p));
-                // A cell before the end: if its side lies in the end's plane, the section there has been counted.
-                if heights.fold(f64::INFINITY, f64::min) < 0.0 {
-                    volume += sign * ahead(toward, reference.toward) * self.moment_of_disc(toward, sides);
-                }
-            }
+        for (toward, sign, moment) in self.ends_within(sides) {
+            volume += sign * ahead(toward, reference.toward) * moment;
         }
         let least = width(Axis::X).min(width(Axis::Y)).min(width(Axis::Z));
         (volume, error + ROUNDING * (1.0 + (self.radius + self.tube) / least))

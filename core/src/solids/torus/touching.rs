@@ -1,192 +1,198 @@
 //! Where lines of a plane touch a torus: between these the runs of the lines along it change smoothly.
 //!
-//! On a torus the points whose normal is across a direction e_u form two curves: for each azimuth φ two opposite angles θ around the tube. Along
-//! them the height over the plane is followed in small steps, and its roots are what is wanted. Where θ turns at one azimuth, as it
-//! does if e_u is across the axis, θ is followed instead.
+//! The normals across a direction e_u form a circle, N(t) = a cos t + b sin t, a across the axis. Each is the normal at two points, ± R d(ψ) + r N(t), d the
+//! direction of what N has across the axis: tan ψ = w tan t, w what e_u has along the axis. So these points form two closed curves. Where w is small, ψ
+//! turns fast where t rests and rests where t turns: the outermost of parallels and meridians. Along s = (t + ψ) / 2 neither turns faster than twice
+//! s, for sin (t − ψ) = (1 − w) / (1 + w) sin 2 s. So pieces of the curves that cannot reach a part of the plane are known by their middles; the others are halved.
 
-use super::ring::{Ring, ahead, length2};
+use super::ring::{Ring, length2};
 use super::roots::root;
 use crate::number::plane::P2;
 use crate::number::real::Real;
 use crate::number::space::{P3, dot};
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::PI;
 use heapless::Vec;
 
 /// Coordinates in a plane where something changes.
 pub(super) type Events = Vec<f64, 64>;
 
-/// A plane across axis `n` at height `h`, its lines along `u`.
+/// A rectangle of a plane across axis `n` at height `h`, its lines along `u`; the axes in the ring's frame.
 pub(super) struct Lines {
     pub n: P3,
     pub u: P3,
     pub v: P3,
     pub h: f64,
+    /// Along u and v.
+    pub sides: [P2; 2],
 }
 
-/// A point of the torus on one of the two curves.
+/// One of the two curves.
+struct Curve<'a> {
+    ring: &'a Ring,
+    lines: &'a Lines,
+    /// Of R.
+    sign: f64,
+    /// Directions across the axis, those of a and of what b has.
+    across: [P2; 2],
+    /// What e_u has along and across the axis.
+    slant: P2,
+}
+
+/// A point of it.
 #[derive(Clone, Copy)]
 struct Spot {
-    /// Azimuth.
-    phi: f64,
-    /// Cosine and sine of θ.
-    turn: P2,
+    s: f64,
+    at: P3,
+    /// Above the plane, and how it grows with s.
     height: f64,
+    rate: f64,
+    /// How far along the curve it bends sharply, if that is near.
+    bend: f64,
 }
 
-/// The longest step, in radians.
-const STEP: f64 = PI / 24.0;
+/// Pieces of a curve at first.
+const PIECES: u32 = 16;
 
-/// Where a step along φ would have to be shorter than this, in radians, θ is followed.
-const STEEP: f64 = 1e-3;
+/// Pieces that wait; each halving adds one.
+const WAITING: usize = 64;
 
-/// More steps than any plane needs.
-const MOST_STEPS: usize = 600;
+/// Half the longest piece in which the height has no more than one turn, in radians, and half the shortest that is halved.
+const LONGEST: f64 = PI / 64.0;
+const SHORTEST: f64 = 1e-7;
 
-/// Largest square of the way that (cos θ, sin θ) may go in one step along φ; a longer step is shortened.
-const TURN: f64 = 0.09;
+/// The same beside a bend, as a share of [`Spot::bend`].
+const BESIDE_BEND: f64 = 0.05;
+
+/// More pieces than any plane needs but those that nearly touch along a circle.
+const MOST_PIECES: u32 = 3000;
+
+/// What rounding makes of a height of zero, as a share of R.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Beside the plane the runs change fast if a curve comes nearer than this share of its height around.
+const NEAR: f64 = 0.3;
+
+/// How far beside a rectangle, as a share of its sizes, points are told, too: square roots that begin there are felt inside.
+const BESIDE: f64 = 1.0 / 16.0;
 
 impl Lines {
-    fn at(&self, ring: &Ring, phi: f64, turn: P2) -> P3 {
-        let rho = ring.radius + ring.tube * turn[0];
-        [rho * libm::cos(phi), rho * libm::sin(phi), ring.tube * turn[1]]
-    }
-
-    /// On the curve of a sign.
-    fn spot(&self, ring: &Ring, sign: f64, phi: f64) -> Spot {
-        let c = self.u[0] * libm::cos(phi) + self.u[1] * libm::sin(phi);
-        let length = length2([self.u[2], c]);
-        let scale = if length > 0.0 { sign / length } else { 0.0 };
-        let turn = if length > 0.0 { [self.u[2] * scale, -c * scale] } else { [1.0, 0.0] };
-        Spot { phi, turn, height: dot(self.n, self.at(ring, phi, turn)) - self.h }
-    }
-
-    /// The coordinates along v of the points where lines along u touch the torus, in a range of azimuths.
-    pub fn touched(&self, ring: &Ring, range: [f64; 2], events: &mut Events) {
+    /// The coordinates along v of the points in the rectangle, or beside it, where lines along u touch the torus.
+    pub fn touched(&self, ring: &Ring, events: &mut Events) {
+        let [x, y, z] = self.u;
+        let size = length2([x, y]);
+        let a = if size > 0.0 { [-y / size, x / size] } else { [1.0, 0.0] };
+        let turn = if z < 0.0 { -1.0 } else { 1.0 };
+        let across = [a, [-a[1] * turn, a[0] * turn]];
         for sign in [1.0, -1.0] {
-            self.follow(ring, sign, range, events);
-        }
-    }
-
-    fn follow(&self, ring: &Ring, sign: f64, [from, to]: [f64; 2], events: &mut Events) {
-        let longest = STEP.min((to - from) / 6.0);
-        let (mut last, mut step) = (self.spot(ring, sign, from), longest);
-        let mut before: Option<Spot> = None;
-        for _ in 0..MOST_STEPS {
-            if last.phi >= to {
-                break;
-            }
-            let next = self.spot(ring, sign, (last.phi + step).min(to));
-            let chord = [next.turn[0] - last.turn[0], next.turn[1] - last.turn[1]];
-            if chord[0] * chord[0] + chord[1] * chord[1] > TURN {
-                if step > STEEP {
-                    step *= 0.25;
-                    continue;
-                }
-                self.around(ring, sign, &last, &next, events);
-                before = None;
-            } else {
-                let f = |phi: f64| self.spot(ring, sign, phi).height;
-                self.between(ring, &f, &last, &next, |phi| self.spot(ring, sign, phi), events);
-                if let Some(before) = before {
-                    self.lowest(ring, sign, [&before, &last, &next], events);
-                }
-                before = Some(last);
-            }
-            last = next;
-            step = (step * 2.0).min(longest);
-        }
-    }
-
-    fn tell(&self, ring: &Ring, spot: &Spot, events: &mut Events) {
-        let _ = events.push(dot(self.v, self.at(ring, spot.phi, spot.turn)));
-    }
-
-    /// A root between two spots.
-    fn between(
-        &self,
-        ring: &Ring,
-        f: &impl Fn(f64) -> f64,
-        a: &Spot,
-        b: &Spot,
-        spot: impl Fn(f64) -> Spot,
-        events: &mut Events,
-    ) {
-        if (a.height > 0.0) != (b.height > 0.0) {
-            let found = root(f, [a.phi, b.phi], [a.height, b.height]);
-            self.tell(ring, &spot(found), events);
-        }
-    }
-
-    /// The least height between three spots of one sign, if it may reach the plane.
-    fn lowest(&self, ring: &Ring, sign: f64, [a, b, c]: [&Spot; 3], events: &mut Events) {
-        let side = if b.height > 0.0 { 1.0 } else { -1.0 };
-        let [x, y, z] = [a, b, c].map(|s| s.height * side);
-        if !(x > 0.0 && y > 0.0 && z > 0.0 && y <= x && y <= z) || y > 0.5 * (x - y).max(z - y) {
-            return;
-        }
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let f = |phi: f64| self.spot(ring, sign, phi).height * side;
-        let (mut lo, mut hi) = (a.phi, c.phi);
-        let (mut s, mut t) = (hi - (hi - lo) * GOLDEN, lo + (hi - lo) * GOLDEN);
-        let (mut fs, mut ft) = (f(s), f(t));
-        for _ in 0..48 {
-            if fs < ft {
-                (hi, t, ft) = (t, s, fs);
-                s = hi - (hi - lo) * GOLDEN;
-                fs = f(s);
-            } else {
-                (lo, s, fs) = (s, t, ft);
-                t = lo + (hi - lo) * GOLDEN;
-                ft = f(t);
-            }
-        }
-        let lowest = self.spot(ring, sign, if fs < ft { s } else { t });
-        if lowest.height * side > 0.0 {
-            // Beside the plane: the runs change fast here, if it is close.
-            self.tell(ring, &lowest, events);
-        } else {
-            let f = |phi: f64| self.spot(ring, sign, phi).height;
-            self.between(ring, &f, a, &lowest, |phi| self.spot(ring, sign, phi), events);
-            self.between(ring, &f, &lowest, c, |phi| self.spot(ring, sign, phi), events);
-        }
-    }
-
-    /// The same from spot to spot, by steps of θ: its cosine has one sign on all of a curve.
-    fn around(&self, ring: &Ring, sign: f64, from: &Spot, to: &Spot, events: &mut Events) {
-        let [ux, uy, uz] = self.u;
-        let outer = sign * if uz < 0.0 { -1.0 } else { 1.0 };
-        let (first, last) = (ahead(from.turn, [outer, 0.0]), ahead(to.turn, [outer, 0.0]));
-        let (across, toward) = (length2([ux, uy]), libm::atan2(uy, ux));
-        let side = if libm::sin(from.phi - toward) < 0.0 { -1.0 } else { 1.0 };
-        let spot = |theta: f64| {
-            let (sine, cosine) = (libm::sin(theta), libm::cos(theta));
-            let slant = if uz == 0.0 { 0.0 } else { (-uz * (sine / cosine) / across).clamp(-1.0, 1.0) };
-            let (phi, turn) = (toward + side * (FRAC_PI_2 - libm::asin(slant)), [cosine * outer, sine * outer]);
-            (theta, Spot { phi, turn, height: dot(self.n, self.at(ring, phi, turn)) - self.h })
-        };
-        let f = |theta: f64| spot(theta).1.height;
-        let count = 24;
-        let mut before = spot(first);
-        for n in 1..=count {
-            let next = spot(first + (last - first) * f64::from(n) / f64::from(count));
-            if (before.1.height > 0.0) != (next.1.height > 0.0) {
-                let found = root(f, [before.0, next.0], [before.1.height, next.1.height]);
-                self.tell(ring, &spot(found).1, events);
-            }
-            before = next;
+            Curve { ring, lines: self, sign, across, slant: [z.abs(), size] }.follow(events);
         }
     }
 }
 
-/// The azimuths that a rectangle may have of a torus: about its middle, or all.
-pub(super) fn azimuths(middle: P2, half: f64) -> [f64; 2] {
-    let distance = length2(middle);
-    if half >= distance * 0.95 {
-        return [0.0, 2.0 * PI];
+impl Curve<'_> {
+    fn spot(&self, s: f64) -> Spot {
+        let ([w, up], radius, tube) = (self.slant, self.sign * self.ring.radius, self.ring.tube);
+        let k = (1.0 - w) / (1.0 + w);
+        let (sine, cosine) = (k * libm::sin(2.0 * s), k * libm::cos(2.0 * s));
+        let bend = length2([2.0 * Real::sqrt(w) / (1.0 + w), cosine]);
+        let apart = libm::atan2(sine, bend) * 0.5;
+        let faster = if bend > 0.0 { cosine / bend } else { 0.0 };
+        let (t, psi) = (s + apart, s - apart);
+        let (of_t, of_psi) = ([libm::cos(t), libm::sin(t)], [libm::cos(psi), libm::sin(psi)]);
+        let place = |[ct, st]: P2, [cp, sp]: P2, [tube, radius]: P2| {
+            let (x, y) = (radius * cp + tube * ct, radius * sp + tube * w * st);
+            let [a, b] = self.across;
+            [x * a[0] + y * b[0], x * a[1] + y * b[1], tube * up * st]
+        };
+        let at = place(of_t, of_psi, [tube, radius]);
+        let turned = |[c, s]: P2| [-s, c];
+        let along = place(turned(of_t), turned(of_psi), [tube * (1.0 + faster), radius * (1.0 - faster)]);
+        let n = self.lines.n;
+        Spot { s, at, height: dot(n, at) - self.lines.h, rate: dot(n, along), bend }
     }
-    let phi = libm::atan2(middle[1], middle[0]);
-    let margin = libm::asin(half / distance).min(FRAC_PI_2) * 1.05 + 1e-9;
-    [phi - margin, phi + margin]
+
+    fn follow(&self, events: &mut Events) {
+        let mut waiting: Vec<P2, WAITING> = Vec::new();
+        let half = PI / f64::from(PIECES);
+        for n in 0..PIECES {
+            let _ = waiting.push([(2.0 * f64::from(n) + 1.0) * half, half]);
+        }
+        let mut pieces = 0;
+        while let Some([s, half]) = waiting.pop() {
+            let middle = self.spot(s);
+            if !self.may_reach(&middle, half) {
+                continue;
+            }
+            pieces += 1;
+            let short = half <= LONGEST.min((middle.bend * BESIDE_BEND).max(SHORTEST));
+            if short || pieces > MOST_PIECES || waiting.len() + 2 > WAITING {
+                self.piece(&[self.spot(s - half), self.spot(s + half)], events);
+            } else {
+                let quarter = half * 0.5;
+                let _ = waiting.push([s - quarter, quarter]);
+                let _ = waiting.push([s + quarter, quarter]);
+            }
+        }
+    }
+
+    /// May a piece of the curve reach the rectangle? No point of it is farther from its middle than twice R times half of s.
+    fn may_reach(&self, middle: &Spot, half: f64) -> bool {
+        let Lines { u, v, sides: [on_u, on_v], .. } = self.lines;
+        let reach = 2.0 * self.ring.radius * (half * (1.0 + 1e-9) + 1e-14);
+        let near = |axis: &P3, [lo, hi]: &P2| {
+            let (x, room) = (dot(*axis, middle.at), reach + (hi - lo) * BESIDE);
+            x >= lo - room && x <= hi + room
+        };
+        middle.height.abs() <= reach && near(u, on_u) && near(v, on_v)
+    }
+
+    /// Where the plane meets a piece in which the height turns once at most.
+    fn piece(&self, [a, b]: &[Spot; 2], events: &mut Events) {
+        if (a.rate > 0.0) == (b.rate > 0.0) {
+            self.between(a, b, events);
+            return;
+        }
+        let turn = self.spot(root(|s| self.spot(s).rate, [a.s, b.s], [a.rate, b.rate]));
+        if self.between(a, &turn, events) | self.between(&turn, b, events) {
+            return;
+        }
+        let higher = if a.height.abs() > b.height.abs() { a } else { b };
+        let share = turn.height / (higher.height - turn.height);
+        if share < NEAR {
+            // The curve misses the plane; of imaginary s it meets it, and there square roots have their branches.
+            let (v, [lo, hi]) = (dot(self.lines.v, turn.at), self.lines.sides[1]);
+            let aside = (dot(self.lines.v, higher.at) - v).abs() * Real::sqrt(share);
+            self.tell(v, events);
+            if aside < (hi - lo) * BESIDE {
+                self.tell(v - aside, events);
+                self.tell(v + aside, events);
+            }
+        }
+    }
+
+    /// A root between two spots, or at one of them but for rounding; is there one?
+    fn between(&self, a: &Spot, b: &Spot, events: &mut Events) -> bool {
+        let mut on_end = false;
+        for end in [a, b].into_iter().filter(|end| end.height.abs() <= ROUNDING * self.ring.radius) {
+            self.tell(dot(self.lines.v, end.at), events);
+            on_end = true;
+        }
+        let differ = (a.height > 0.0) != (b.height > 0.0);
+        if differ {
+            let s = root(|s| self.spot(s).height, [a.s, b.s], [a.height, b.height]);
+            self.tell(dot(self.lines.v, self.spot(s).at), events);
+        }
+        differ || on_end
+    }
+
+    /// Once for all spots at one place.
+    fn tell(&self, v: f64, events: &mut Events) {
+        let [lo, hi] = self.lines.sides[1];
+        let (size, room) = (hi - lo, (hi - lo) * BESIDE);
+        if v > lo - room && v < hi + room && events.iter().all(|other| (v - other).abs() > 4.0 * f64::EPSILON * size) {
+            let _ = events.push(v);
+        }
+    }
 }
 
 /// Where a chord of a disc about `center` of radius `tube` ends: the line `slope · p = constant`, p from the disc's centre.
