@@ -246,26 +246,19 @@ pub fn errors(random: &mut Random, family: Family, kinds: Kind, samples: usize) 
                 let [x, y, z] = [side(0, i), side(1, j), side(2, k)];
                 let (lo, hi) = (DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]));
                 let size = (hi - lo).element_product();
-                let truth = exact.volume(lo, hi) / size;
-                // Rarely a kink hides from the nodes of the quadrature; from those of the cell's parts it does not.
-                let hidden = family != Family::Huge && (field[at] - truth).abs() > 3e-13;
-                (if hidden { volume_of_parts(&exact, lo, hi) / size } else { truth }, &mut cell)
+                let volume = if family == Family::Huge {
+                    exact.volume(lo, hi)
+                } else {
+                    true_volume(&exact, [lo, hi], field[at])
+                };
+                (volume / size, &mut cell)
             } else {
                 let n = kind - 1;
                 let (u, v) = ((n + 1) % 3, (n + 2) % 3);
                 let index = [i, j, k];
                 let (u, v) = (side(u, index[u]), side(v, index[v]));
-                let (at_n, size) = (edges[n][index[n]], (u[1] - u[0]) * (v[1] - v[0]));
-                let truth = closed_area(&exact, n, at_n, |at| exact.area(n, at, u, v)) / size;
-                // Chords are rounded, which weighs the more the larger a solid is and the flatter its surface cuts the face.
-                let off = |truth: f64| (field[at] - truth).abs() > 3e-13;
-                let precise = |m: usize| {
-                    let area = |at: f64| area_by_chords(chord, &[exact], (n, m), at, [u, v], 1e-15);
-                    closed_area(&exact, n, at_n, area) / size
-                };
-                let truth = if off(truth) { precise((n + 1) % 3) } else { truth };
-                // A kink that hides from the nodes of one order of the axes does not from those of the other.
-                (if off(truth) { precise((n + 2) % 3) } else { truth }, &mut face)
+                let area = true_area(&exact, n, edges[n][index[n]], [u, v], field[at]);
+                (area / ((u[1] - u[0]) * (v[1] - v[0])), &mut face)
             };
             let error = (field[at] - truth).abs();
             if !(error <= *worst) {
@@ -275,6 +268,31 @@ pub fn errors(random: &mut Random, family: Family, kinds: Kind, samples: usize) 
         }
     }
     (cell, face, place)
+}
+
+/// The volume of a solid in a box, the more carefully if its share is not what was `found`.
+#[must_use]
+pub fn true_volume(exact: &Exact, [lo, hi]: [DVec3; 2], found: f64) -> f64 {
+    let truth = exact.volume(lo, hi);
+    // Rarely a kink hides from the nodes of the quadrature; from those of the cell's parts it does not.
+    let hidden = (found - truth / (hi - lo).element_product()).abs() > 3e-13;
+    if hidden { volume_of_parts(exact, lo, hi) } else { truth }
+}
+
+/// The area that a solid has of a rectangle across axis `n` at a coordinate, the more carefully if its share is not what was `found`.
+#[must_use]
+pub fn true_area(exact: &Exact, n: usize, at: f64, [u, v]: [[f64; 2]; 2], found: f64) -> f64 {
+    let size = (u[1] - u[0]) * (v[1] - v[0]);
+    let truth = closed_area(exact, n, at, |at| exact.area(n, at, u, v));
+    // Chords are rounded, which weighs the more the larger a solid is and the flatter its surface cuts the face.
+    let off = |truth: f64| (found - truth / size).abs() > 3e-13;
+    let precise = |m: usize| {
+        let area = |at: f64| area_by_chords(chord, &[*exact], (n, m), at, [u, v], 1e-15);
+        closed_area(exact, n, at, area)
+    };
+    let truth = if off(truth) { precise((n + 1) % 3) } else { truth };
+    // A kink that hides from the nodes of one order of the axes does not from those of the other.
+    if off(truth) { precise((n + 2) % 3) } else { truth }
 }
 
 /// The volume of a solid in a box, from 4 × 4 × 4 uneven parts.

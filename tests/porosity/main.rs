@@ -14,6 +14,7 @@ mod invariance;
 mod known;
 mod meshes;
 mod obstacles;
+mod on_planes;
 mod overlap;
 mod quadric;
 mod scenes;

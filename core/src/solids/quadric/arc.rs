@@ -115,6 +115,9 @@ pub(super) fn lens_of([p, q]: [P2; 2], turn: f64, conic: &Conic, reach: f64) -> 
     let (chord, gradient) = (sub(q, p), conic.gradient(p));
     let tangent = [-gradient[1], gradient[0]];
     let (kappa, tau, turn) = (conic.form(chord), conic.tau, turn.abs());
+    let (determinant, most) = (conic.size * conic.factor, 4.0 * tau);
+    // No chord of an ellipse is longer than the one through its centre; where a plane touches a solid rounding may tell of longer ones.
+    let kappa = if kappa * determinant > most { most / determinant } else { kappa };
     if !(kappa > 0.0) {
         return Lens::Nothing;
     }
@@ -130,8 +133,9 @@ pub(super) fn lens_of([p, q]: [P2; 2], turn: f64, conic: &Conic, reach: f64) -> 
     }
     let ratio = Real::sqrt(kappa / tau);
     let w = turn * ratio / kappa;
-    // What is no ellipse bends no more than a parabola, whatever rounding says.
-    let w = if conic.factor > 0.0 { w } else { w.max(1.0) };
+    // With the determinant D, 4 τ (1 − w²) is κ D. What is no ellipse bends no more than that, whatever rounding says: of an arc along a line of a cone
+    // `turn` is nothing else.
+    let w = if conic.factor > 0.0 { w } else { w.max(Real::sqrt(1.0 - kappa * determinant / most)) };
     let (size, most) = (kappa * ratio * 0.125, 3.0 * reach * w.max(1.0));
     if !(size * size <= dot(chord, chord) * (most * most)) {
         return Lens::Nothing;

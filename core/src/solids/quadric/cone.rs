@@ -118,8 +118,8 @@ impl RegionOfCone<'_> {
         let sum = match region {
             Region::Empty => 0.0,
             Region::Ellipse(ellipse) => return self.through_ellipse(ellipse),
-            Region::Pieces(pieces, size) => self.of_pieces(pieces, *size),
-            Region::Whole => self.of_pieces(&rectangle.sides(), [0.0; 2]),
+            Region::Pieces(pieces, about) => self.of_pieces(pieces, *about),
+            Region::Whole => self.of_pieces(&rectangle.sides(), false),
         };
         sum * self.plane.through() / self.reference.radius
     }
@@ -135,9 +135,9 @@ impl RegionOfCone<'_> {
         ellipse.area / (3.0 * through) * less * (1.0 + ratio * (1.0 + ratio)) / (1.0 + ratio)
     }
 
-    /// Sum over fans of triangles and lenses, in units of [`PlaneOfCone::through`] in radii of the reference. `size` is that of the polygon around the
-    /// pieces.
-    fn of_pieces(&self, pieces: &[Piece], size: P2) -> f64 {
+    /// Sum over fans of triangles and lenses, in units of [`PlaneOfCone::through`] in radii of the reference. `about` as that of
+    /// [`Region::Pieces`].
+    fn of_pieces(&self, pieces: &[Piece], about: bool) -> f64 {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return 0.0 };
         let base = first.from;
         let low = self.sigma(base);
@@ -145,7 +145,7 @@ impl RegionOfCone<'_> {
         let (mut before, mut corner) = (last.to, base);
         for piece in pieces {
             if !piece.joined {
-                let major = self.section.is_major(before, piece.from, size);
+                let major = about && self.section.is_major(before, piece.from);
                 total += self.arc(before, piece.from, major);
             }
             for next in [piece.from, piece.to] {

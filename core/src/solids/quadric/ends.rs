@@ -94,7 +94,8 @@ impl End {
         }
         let section = self.seen_along(xi);
         let mut pieces = Pieces::new();
-        let region = section.pieces(&corners, &mut pieces, |corner, to| self.piece(xi, corner.at, to));
+        let region = section
+            .pieces((&corners, rectangle, lines.iter()), &mut pieces, |corner, to| self.piece(xi, corner.at, to));
         section.moments(&region, rectangle)
     }
 

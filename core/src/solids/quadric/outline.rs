@@ -100,6 +100,10 @@ fn crossing(from: P2, to: P2, line: &EndLine, part: f64) -> P2 {
 /// By how much boxes around polygons are enlarged.
 const MARGIN: f64 = 1.001;
 
+/// A chord that rounding may have made, where the ellipse is the unit circle: as long as √ε, which a line has inside that touches it but for ε. Less
+/// than its square, the share of the ellipse beyond such a chord, is lost.
+const SHORT: f64 = 1.5e-8;
+
 /// Width and height of a polygon.
 fn size(corners: &Corners) -> P2 {
     let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -132,8 +136,8 @@ pub(super) enum Region<'p> {
     Whole,
     /// An ellipse inside it.
     Ellipse(Ellipse),
-    /// A polygon with arcs between some of its corners, and the width and height of the polygon around it.
-    Pieces(&'p [Piece], P2),
+    /// A polygon with arcs between some of its corners, and whether one of these may go more than half around an ellipse.
+    Pieces(&'p [Piece], bool),
 }
 
 /// Straight pieces of an outline, side by side.
@@ -275,7 +279,8 @@ impl Section {
             }
         }
         let Some(corners) = corners else { return self.pieces_of_rectangle(rectangle, spans, pieces) };
-        self.pieces(&corners, pieces, |corner, to| match corner.side {
+        let lines = ends.iter().flatten();
+        self.pieces((&corners, rectangle, lines), pieces, |corner, to| match corner.side {
             0 => clip::<0, true>(corner.at, to, spans[0]),
             1 => clip::<1, true>(corner.at, to, spans[1]),
             2 => clip::<0, false>(corner.at, to, spans[2]),
@@ -293,16 +298,15 @@ impl Section {
         outline.add(1, clip::<1, true>([u1, v0], [u1, v1], spans[1]));
         outline.add(2, clip::<0, false>([u1, v1], [u0, v1], spans[2]));
         outline.add(3, clip::<1, false>([u0, v1], [u0, v0], spans[3]));
-        if outline.pieces.is_empty() {
-            return self.ellipse_within(&rectangle.corners());
-        }
-        Region::Pieces(outline.close(), [u1 - u0, v1 - v0])
+        let ellipse = self.ellipse.filter(|e| rectangle.is_about(e.center));
+        self.bounded_by(outline, ellipse, || [u1 - u0, v1 - v0])
     }
 
-    /// The straight pieces of a polygon inside the conic, of each side what `inside` tells; or the whole conic.
-    pub fn pieces<'p>(
+    /// The straight pieces of a polygon inside the conic, of each side what `inside` tells; or the whole conic. The polygon is what `lines` leave of a
+    /// rectangle.
+    pub fn pieces<'p, 'l>(
         &self,
-        corners: &Corners,
+        (corners, rectangle, mut lines): (&Corners, &Rectangle, impl Iterator<Item = &'l EndLine>),
         pieces: &'p mut Pieces,
         inside: impl Fn(&Corner, P2) -> Option<Side>,
     ) -> Region<'p> {
@@ -311,11 +315,39 @@ impl Section {
             let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
             outline.add(corner.side, inside(corner, next));
         }
-        if outline.pieces.is_empty() {
-            self.ellipse_within(corners)
-        } else {
-            Region::Pieces(outline.close(), size(corners))
+        // By the lines: the sides of the polygon between corners that all but coincide have no direction.
+        let ellipse =
+            self.ellipse.filter(|e| rectangle.is_about(e.center) && lines.all(|line| line.at(e.center) > 0.0));
+        self.bounded_by(outline, ellipse, || size(corners))
+    }
+
+    /// What lies inside an outline along a polygon of this width and height, which is about the centre of `ellipse`, if of any.
+    ///
+    /// An arc of more than half an ellipse and its chord have the centre between them, so it lies in the polygon. Where all pieces are so short that only
+    /// rounding makes them, the polygon is about all of the ellipse and touches it.
+    #[inline(always)]
+    fn bounded_by<'p>(&self, outline: Outline<'p>, ellipse: Option<Ellipse>, size: impl Fn() -> P2) -> Region<'p> {
+        let Some(ellipse) = ellipse else {
+            return if outline.pieces.is_empty() { Region::Empty } else { Region::Pieces(outline.close(), false) };
+        };
+        let (pieces, size) = (outline.close(), size());
+        if self.is_point(pieces) {
+            return if self.fits(size) { Region::Ellipse(ellipse) } else { Region::Empty };
         }
+        Region::Pieces(pieces, self.half_fits(size))
+    }
+
+    /// Do all pieces lie in what is a point, but for rounding?
+    fn is_point(&self, pieces: &[Piece]) -> bool {
+        let Some(first) = pieces.first() else { return true };
+        pieces.iter().all(|piece| [piece.from, piece.to].iter().all(|&p| self.is_short(sub(p, first.from), 2.0)))
+    }
+
+    /// Is a chord of an ellipse at most some [`SHORT`] long, where the ellipse is the unit circle?
+    #[inline(always)]
+    fn is_short(&self, chord: P2, some: f64) -> bool {
+        let Conic { size, factor, tau, .. } = self.conic;
+        self.conic.form(chord) * (size * factor) <= tau * (SHORT * SHORT * some * some)
     }
 
     /// Does half of the ellipse fit a polygon of this width and height? Not if the conic is none.
@@ -335,17 +367,6 @@ impl Section {
         }
     }
 
-    /// The whole conic, if it is an ellipse about a point of a polygon.
-    fn ellipse_within(&self, corners: &Corners) -> Region<'static> {
-        let Some(ellipse) = self.ellipse else { return Region::Empty };
-        let mut inside = corners.len() > 2;
-        for (n, corner) in corners.iter().enumerate() {
-            let next = corners.get(n + 1).or(corners.first()).map_or(corner.at, |c| c.at);
-            inside &= cross(sub(next, corner.at), sub(ellipse.center, corner.at)) > 0.0;
-        }
-        if inside && self.fits(size(corners)) { Region::Ellipse(ellipse) } else { Region::Empty }
-    }
-
     /// Is an ellipse no larger than a box of this size, but for rounding? Of a plane that touches a cone along a line rounding may make an ellipse of
     /// any size.
     fn fits(&self, size: P2) -> bool {
@@ -363,7 +384,7 @@ impl Section {
             Region::Ellipse(ellipse) => {
                 Moments { area: ellipse.area, first: sub(ellipse.center, middle).map(|c| c * ellipse.area) }
             }
-            Region::Pieces(pieces, size) => self.moments_of(pieces, *size, middle, (u1 - u0) + (v1 - v0)),
+            Region::Pieces(pieces, about) => self.moments_of(pieces, *about, middle, (u1 - u0) + (v1 - v0)),
         }
     }
 
@@ -375,17 +396,17 @@ impl Section {
             Region::Empty => 0.0,
             Region::Whole => du * dv,
             Region::Ellipse(ellipse) => ellipse.area,
-            Region::Pieces(pieces, size) => self.area_of(pieces, *size, du + dv),
+            Region::Pieces(pieces, about) => self.area_of(pieces, *about, du + dv),
         }
     }
 
     /// As [`Section::moments_of`].
-    fn area_of(&self, pieces: &[Piece], size: P2, reach: f64) -> f64 {
+    fn area_of(&self, pieces: &[Piece], about: bool, reach: f64) -> f64 {
         let (Some((first, others)), Some(last)) = (pieces.split_first(), pieces.last()) else { return 0.0 };
         let arc = |p: P2, q: P2| {
             let turn = self.conic.turn(p, q);
             match self.ellipse {
-                Some(ellipse) if self.is_major_if(turn, size) => {
+                Some(ellipse) if about && self.is_major_if(turn, p, q) => {
                     ellipse.area - area_of_lens([q, p], self.conic.turn(q, p), &self.conic, reach)
                 }
                 _ => area_of_lens([p, q], turn, &self.conic, reach),
@@ -404,21 +425,21 @@ impl Section {
         total
     }
 
-    /// `size` is that of the polygon around the pieces.
-    fn moments_of(&self, pieces: &[Piece], size: P2, middle: P2, reach: f64) -> Moments {
+    /// `about` as that of [`Region::Pieces`].
+    fn moments_of(&self, pieces: &[Piece], about: bool, middle: P2, reach: f64) -> Moments {
         let (Some((first, others)), Some(last)) = (pieces.split_first(), pieces.last()) else {
             return Moments::default();
         };
         // The first piece makes no triangle with its own beginning.
         let mut fan = Fan { base: first.from, last: sub(first.to, first.from), total: Moments::default() };
         if !first.joined {
-            fan.add_lens(last.to, &self.arc(last.to, first.from, size, reach));
+            fan.add_lens(last.to, &self.arc(last.to, first.from, about, reach));
         }
         let mut before = first.to;
         for piece in others {
             // A piece that is joined begins where the one before ended.
             if !piece.joined {
-                fan.add_lens(before, &self.arc(before, piece.from, size, reach));
+                fan.add_lens(before, &self.arc(before, piece.from, about, reach));
                 fan.add(piece.from);
             }
             fan.add(piece.to);
@@ -431,22 +452,23 @@ impl Section {
         total
     }
 
-    /// Does the arc from `p` to `q` go more than half around an ellipse? Only if half the area of the ellipse fits a polygon of this width and height.
+    /// Does the arc from `p` to `q` go more than half around an ellipse, where one may?
     #[inline(always)]
-    pub fn is_major(&self, p: P2, q: P2, size: P2) -> bool {
-        self.is_major_if(self.conic.turn(p, q), size)
+    pub fn is_major(&self, p: P2, q: P2) -> bool {
+        self.is_major_if(self.conic.turn(p, q), p, q)
     }
 
-    /// The same, by what [`Conic::turn`] tells.
+    /// The same, by what [`Conic::turn`] tells. Of a short chord rounding decides which way it turns, as at a corner on the surface; and of an outline
+    /// that is more than a point no arc is long that has a short chord, since the chord cuts off all the rest.
     #[inline(always)]
-    fn is_major_if(&self, turn: f64, size: P2) -> bool {
-        self.conic.factor > 0.0 && turn < 0.0 && self.half_fits(size)
+    fn is_major_if(&self, turn: f64, p: P2, q: P2) -> bool {
+        turn < 0.0 && self.conic.factor > 0.0 && !self.is_short(sub(q, p), 1.0)
     }
 
-    /// What lies between the arc from `p` to `q` and its chord, moments about `p`. `size` is that of the polygon around.
-    fn arc(&self, p: P2, q: P2, size: P2, reach: f64) -> Moments {
+    /// What lies between the arc from `p` to `q` and its chord, moments about `p`. `about` as that of [`Region::Pieces`].
+    fn arc(&self, p: P2, q: P2, about: bool, reach: f64) -> Moments {
         let turn = self.conic.turn(p, q);
-        if self.is_major_if(turn, size) {
+        if about && self.is_major_if(turn, p, q) {
             let Some(ellipse) = self.ellipse else { return Moments::default() };
             let rest = lens([q, p], self.conic.turn(q, p), &self.conic, reach);
             let first =

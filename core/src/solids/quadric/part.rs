@@ -191,7 +191,8 @@ impl Part {
         }
     }
 
-    /// Volume in a cell between planes, from the fluxes through its faces: low and high along each axis.
+    /// Volume in a cell between planes, from the fluxes through its faces: low and high along each axis. Not a number where the faces contradict each
+    /// other.
     pub fn volume(&self, sides: &Sides, faces: &[[FaceFlux; 2]; 3]) -> f64 {
         let through = |n: Axis| faces[n][1].flux - faces[n][0].flux;
         let fluxes = through(Axis::X) + through(Axis::Y) + through(Axis::Z);
@@ -199,7 +200,12 @@ impl Part {
         match &self.curved.wall {
             Wall::Cylinder { .. } => {
                 let along = width(self.xi) * 0.5 * (faces[self.xi][0].area + faces[self.xi][1].area);
-                along + fluxes + self.flux_through_ends(sides)
+                let (flux, carried) = self.flux_through_ends(sides);
+                let [dx, dy, dz] = Axis::ALL.map(width);
+                let [x, y, z] = Axis::ALL.map(|n| self.curved.axis[n] * (faces[n][1].area - faces[n][0].area));
+                // Along the axis nothing passes through the wall: what enters through faces and ends leaves through others.
+                let closed = (x + y + z + carried).abs() <= CLOSED * (dx * dy + dy * dz + dz * dx);
+                if closed { along + fluxes + flux } else { f64::NAN }
             }
             Wall::Cone { radius, slope } => self.volume_of_cone(*radius, *slope, sides, faces),
             Wall::Ball { radius } if self.ends[0].is_some() && ball_holds(*radius, sides) => {
@@ -264,24 +270,26 @@ impl Part {
         })
     }
 
-    /// Flux of the field through what a cell has of the flat ends of a cylinder.
-    fn flux_through_ends(&self, sides: &Sides) -> f64 {
-        let mut flux = 0.0;
-        self.moments_of_ends(sides, |inward, moment| {
-            flux -= moment * inward / (inward.abs() * inward.abs() * inward.abs())
+    /// Flux of the field through what a cell has of the flat ends of a cylinder, and of the unit vector along the axis.
+    fn flux_through_ends(&self, sides: &Sides) -> (f64, f64) {
+        let (mut flux, mut carried) = (0.0, 0.0);
+        let axis = self.curved.axis[self.xi];
+        self.moments_of_ends(sides, |inward, moment, area| {
+            flux -= moment * inward / (inward.abs() * inward.abs() * inward.abs());
+            carried -= area / if axis * inward > 0.0 { inward.abs() } else { -inward.abs() };
         });
-        flux
+        (flux, carried)
     }
 
     /// Flux of (ξ − ξₘ) along ξ through what a cell has of the flat ends.
     fn flux_along_through_ends(&self, sides: &Sides) -> f64 {
         let mut flux = 0.0;
-        self.moments_of_ends(sides, |inward, moment| flux -= if inward > 0.0 { moment } else { -moment });
+        self.moments_of_ends(sides, |inward, moment, _| flux -= if inward > 0.0 { moment } else { -moment });
         flux
     }
 
-    /// Tells of each flat end in a cell what its inward normal has along ξ, and the integral of ξ − ξₘ over the end as seen along ξ.
-    fn moments_of_ends(&self, sides: &Sides, mut tell: impl FnMut(f64, f64)) {
+    /// Tells of each flat end in a cell what its inward normal has along ξ, the integral of ξ − ξₘ over the end as seen along ξ, and its area so.
+    fn moments_of_ends(&self, sides: &Sides, mut tell: impl FnMut(f64, f64, f64)) {
         if self.ends.iter().all(Option::is_none) {
             return;
         }
@@ -293,7 +301,7 @@ impl Part {
             let at_middle = end.shift[self.xi] - (sides[self.xi][0].h.value + sides[self.xi][1].h.value) * 0.5
                 + slope[0] * (middle[0] - end.shift[u])
                 + slope[1] * (middle[1] - end.shift[v]);
-            tell(inward, at_middle * disc.area + slope[0] * disc.first[0] + slope[1] * disc.first[1]);
+            tell(inward, at_middle * disc.area + slope[0] * disc.first[0] + slope[1] * disc.first[1], disc.area);
         }
     }
 
@@ -345,6 +353,9 @@ impl Part {
         }
     }
 }
+
+/// By how much of its faces a pipe in a cell may fail to close: rounding is far below, and a section more or less is beyond.
+const CLOSED: f64 = 1e-9;
 
 /// Does a ball hold all of a cell?
 fn ball_holds(radius: f64, sides: &Sides) -> bool {

@@ -55,13 +55,13 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
         match region {
             Region::Empty => 0.0,
             Region::Ellipse(_) => 2.0 * PI * self.square / (1.0 + self.height.abs()),
-            Region::Pieces(pieces, size) => self.of_pieces(section, pieces, *size),
-            Region::Whole => self.of_pieces(section, &rectangle.sides(), [0.0; 2]),
+            Region::Pieces(pieces, about) => self.of_pieces(section, pieces, *about),
+            Region::Whole => self.of_pieces(section, &rectangle.sides(), false),
         }
     }
 
-    /// `polygon` is the size of the polygon around the pieces.
-    fn of_pieces(&self, section: &Section, pieces: &[Piece], polygon: P2) -> f64 {
+    /// `about` as that of [`Region::Pieces`].
+    fn of_pieces(&self, section: &Section, pieces: &[Piece], about: bool) -> f64 {
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { return 0.0 };
         let mut fan = Fan::new(self, self.mapped(first.from));
         let mut rest = 0.0;
@@ -71,7 +71,7 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
             let from = if piece.joined { before } else { self.mapped(piece.from) };
             let to = self.mapped(piece.to);
             if !piece.joined {
-                let major = section.is_major(before.plane, piece.from, polygon);
+                let major = about && section.is_major(before.plane, piece.from);
                 rest += if self.far { self.lens(before, from, major) } else { self.sector(before, from, major) };
             }
             if self.far {
@@ -127,12 +127,9 @@ impl<M: Fn(P2, f64) -> [f64; 3]> PlaneOfUnitBall<M> {
     fn sector(&self, p: Mapped, q: Mapped, major: bool) -> f64 {
         let (area, cosine) = self.about_foot(p, q);
         let angle = libm::atan2(area, cosine);
-        // Near nothing, half a turn and a whole one rounding may take the other side.
-        let angle = match (major, angle < -1.0, angle > 1.0) {
-            (false, true, _) | (true, _, false) if angle < 0.0 => angle + 2.0 * PI,
-            (true, _, false) => 2.0 * PI,
-            _ => angle.max(0.0),
-        };
+        // Near half a turn and a whole one rounding may take the other side. Near nothing it may too, and what lies between the points has that sign
+        // then in the triangles beside.
+        let angle = if if major { angle <= 1.0 } else { angle < -1.0 } { angle + 2.0 * PI } else { angle };
         angle * self.square / (1.0 + self.height.abs())
     }
 

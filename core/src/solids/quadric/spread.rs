@@ -301,13 +301,16 @@ impl<F: FnMut(RangeKind, usize, f64), B: FacesBetween> Teller<'_, F, B> {
         let [dy, dz] = [row.y, row.z].map(|[lo, hi]| hi.h.value - lo.h.value);
         let dx = high.plane.h.value - low.plane.h.value;
         let share = found.volume / (dx * dy * dz);
-        self.worst = self.worst.max(share - 1.0).max(-share);
+        let [x, y, z] = &found.faces;
+        let sizes = [dy * dz, dz * dx, dx * dy];
+        let beyond = |face: &FaceFlux, size: f64| (face.area - size).max(-face.area) / size;
+        let faces = beyond(&x[0], sizes[0]).max(beyond(&y[0], sizes[1])).max(beyond(&z[0], sizes[2]));
+        self.worst = self.worst.max(share - 1.0).max(-share).max(faces);
         if share.is_nan() {
             self.worst = f64::INFINITY;
         }
-        let [x, y, z] = &found.faces;
-        let low = [fraction(&x[0], dy * dz), fraction(&y[0], dz * dx), fraction(&z[0], dx * dy)];
-        Shares { cell: share.min(1.0), low, high: [fraction(&x[1], dy * dz), fraction(&y[1], dz * dx)] }
+        let low = [fraction(&x[0], sizes[0]), fraction(&y[0], sizes[1]), fraction(&z[0], sizes[2])];
+        Shares { cell: share.min(1.0), low, high: [fraction(&x[1], sizes[0]), fraction(&y[1], sizes[1])] }
     }
 
     /// Tells what is known of cell `i` of a row, the high faces of the last cell and the last row.
