@@ -1,6 +1,7 @@
 //! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
 
 mod architecture;
+mod bends;
 mod boxes;
 mod common;
 mod core_alone;
@@ -17,8 +18,10 @@ mod obstacles;
 mod on_planes;
 mod overlap;
 mod quadric;
+mod rings;
 mod scenes;
 mod shadows;
 mod subdivide;
 mod torus;
+mod torus_points;
 mod truth;

@@ -15,9 +15,9 @@ use voidage_tests::random::Random;
 use voidage_tests::solids::{cuboid, formulas, scene};
 
 /// Shares and what they may be off by: cells, x, y, z faces.
-type Shares = [Vec<[f64; 2]>; 4];
+pub(super) type Shares = [Vec<[f64; 2]>; 4];
 
-fn shares(solid: &TorusSolid, edges: &[Vec<f64>; 3]) -> Shares {
+pub(super) fn shares(solid: &TorusSolid, edges: &[Vec<f64>; 3]) -> Shares {
     let grid = Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid");
     let [nx, ny, nz] = grid.cells();
     let lengths = [nx * ny * nz, (nx + 1) * ny * nz, nx * (ny + 1) * nz, nx * ny * (nz + 1)];

@@ -40,6 +40,13 @@ impl Rectangle {
         self.place((self.u[0] + self.u[1]) * 0.5, (self.v[0] + self.v[1]) * 0.5)
     }
 
+    fn sides(&self) -> [P2; 3] {
+        let mut sides = [[self.h; 2]; 3];
+        let [iu, iv] = self.n.others();
+        (sides[iu], sides[iv]) = (self.u, self.v);
+        sides
+    }
+
     fn sizes(&self) -> P2 {
         [self.u[1] - self.u[0], self.v[1] - self.v[0]]
     }
@@ -99,7 +106,7 @@ type Sums = [f64; 3];
 
 impl Ring {
     /// What the solid has of a rectangle; the azimuth of the flux counts from the rectangle's middle, or from a reference.
-    /// `Careful` sections are measured in shorter panels.
+    /// Without a reference there is no flux through a rectangle that the axis meets. `Careful` sections are measured in shorter panels.
     pub fn section(&self, face: &Rectangle, reference: Option<Reference>, careful: bool) -> Section {
         let [du, dv] = face.sizes();
         let half = length2([du, dv]) * 0.5;
@@ -116,8 +123,10 @@ impl Ring {
             return Section::default();
         }
         let middle = self.local(face.middle());
+        // Where the axis meets a rectangle, azimuths from its middle leap in it.
+        let flux = reference.is_some() || !self.axis_meets(&face.sides());
         let reference = reference.unwrap_or(Reference { toward: [middle[0], middle[1]], cut: false });
-        let lines = LinesOfFace { ring: self, face, reference, axis: self.axis_across(face.n) };
+        let lines = LinesOfFace { ring: self, face, reference, axis: self.axis_across(face.n), flux };
         let whole = held && outside < -half * (1.0 + 1e-9);
         let mut section =
             lines.integral(&if whole && !reference.cut { Events::new() } else { lines.events() }, careful);
@@ -216,6 +225,8 @@ struct LinesOfFace<'a> {
     face: &'a Rectangle,
     reference: Reference,
     axis: P2,
+    /// Is the flux wanted?
+    flux: bool,
 }
 
 impl LinesOfFace<'_> {
@@ -414,7 +425,7 @@ impl LinesOfFace<'_> {
 
     /// ∫ ψ (constant + slope u) du over m ± w: by the series where the run is short beside its distance from the axis, else in closed form.
     fn flux(&self, alpha: P2, beta: P2, [constant, slope]: P2, [m, w]: P2) -> f64 {
-        if self.axis == [0.0, 0.0] {
+        if !self.flux || self.axis == [0.0, 0.0] {
             return 0.0;
         }
         let near = |t: f64| length2([alpha[0] + t * beta[0], alpha[1] + t * beta[1]]);

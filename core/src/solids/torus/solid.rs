@@ -486,8 +486,8 @@ impl Ring {
         (volume, error + ROUNDING * (1.0 + (self.radius + self.tube) / least))
     }
 
-    /// Does the axis meet a cell, or nearly?
-    fn axis_meets(&self, sides: &Sides) -> bool {
+    /// Does the axis meet a cell or a rectangle, or nearly?
+    pub(super) fn axis_meets(&self, sides: &Sides) -> bool {
         let axis = self.frame[2];
         let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
         for (&[lo, hi], along) in sides.iter().zip(axis) {
