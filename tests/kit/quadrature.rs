@@ -102,7 +102,8 @@ impl Exact {
                 let (at, _, length) = along(from, to, 0.0);
                 let (unit, [q, lost]) = (direction(to - from), apart(p, from));
                 let [radius, rest] = grown(one, (other - one) * (at / length));
-                let off = beyond([unit.cross(q), unit.cross(lost)], radius.max(0.0)) - rest;
+                // Beyond the apex it grows on, or a search that comes from there would not find the way.
+                let off = beyond([unit.cross(q), unit.cross(lost)], radius.max(0.0)) - radius.min(0.0) - rest;
                 off.max(-at).max(at - length)
             }
         }

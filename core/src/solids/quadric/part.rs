@@ -194,6 +194,54 @@ impl Part {
     /// Volume in a cell between planes, from the fluxes through its faces: low and high along each axis. Not a number where the faces contradict each
     /// other.
     pub fn volume(&self, sides: &Sides, faces: &[[FaceFlux; 2]; 3]) -> f64 {
+        let widths = sides.map(|[low, high]| high.h.value - low.h.value);
+        let size = widths[0] + widths[1] + widths[2];
+        if widths.iter().any(|width| *width < THIN * size)
+            && let Some(volume) = self.volume_of_slice(sides, faces)
+        {
+            return volume;
+        }
+        self.volume_by_fluxes(sides, faces, size)
+    }
+
+    /// The same of a cell that is thin along one axis, where the fluxes through its large faces all but cancel: by the areas beside these and of the section
+    /// in its middle, if that is closer. The root of the area of a convex solid's section is concave along the axis (Brunn and Minkowski), so it is off what it
+    /// is linearly between the three by less than its own second difference, and their mean by Simpson's rule is off by less than half that of the area.
+    #[cold]
+    fn volume_of_slice(&self, sides: &Sides, faces: &[[FaceFlux; 2]; 3]) -> Option<f64> {
+        let widths = sides.map(|[low, high]| high.h.value - low.h.value);
+        let thinner = |a: Axis, b: Axis| if widths[b] < widths[a] { b } else { a };
+        let n = thinner(thinner(Axis::X, Axis::Y), Axis::Z);
+        let [u, v] = n.others();
+        let [z0, z1] = sides[n].map(|plane| plane.coordinate);
+        // Beside the faces themselves, in which ends may lie.
+        let [low, area, high] =
+            [z0.next_up(), (z0 + z1) * 0.5, z1.next_down()].map(|z| self.area_across(n, z, [sides[u], sides[v]]));
+        if low == 0.0 && area == 0.0 && high == 0.0 {
+            // It begins beyond a face in which an end lies.
+            return faces[n].iter().any(|face| face.area > 0.0).then_some(0.0);
+        }
+        if !(low > 0.0 && high > 0.0) {
+            return None;
+        }
+        let bend = (low - 2.0 * area + high).abs() / (widths[u] * widths[v]);
+        let rounding = f64::EPSILON * widths[u].max(widths[v]) / widths[n];
+        (bend <= (ROUNDING * rounding).max(STRAIGHT)).then_some(widths[n] * (low + 4.0 * area + high) / 6.0)
+    }
+
+    /// Its area in the plane across axis `n` at a coordinate, between planes along the two axes after that one.
+    fn area_across(&self, n: Axis, coordinate: f64, [[left, right], [front, back]]: [[&Plane; 2]; 2]) -> f64 {
+        let ([u, v], plane) = (n.others(), self.plane(n, coordinate));
+        let rectangle = Rectangle { u: [left, right].map(|p| p.h.value), v: [front, back].map(|p| p.h.value) };
+        // Planes in the order of the axes after the line's.
+        let u_line = |side: &Plane| self.span(u, [side, &plane]);
+        let v_line = |side: &Plane| self.span(v, [&plane, side]);
+        self.face(&plane, &rectangle, &[u_line(front), v_line(right), u_line(back), v_line(left)]).area
+    }
+
+    /// The same by the fluxes alone; `size` is the sum of the cell's widths.
+    #[inline(always)]
+    fn volume_by_fluxes(&self, sides: &Sides, faces: &[[FaceFlux; 2]; 3], size: f64) -> f64 {
         let through = |n: Axis| faces[n][1].flux - faces[n][0].flux;
         let fluxes = through(Axis::X) + through(Axis::Y) + through(Axis::Z);
         let width = |n: Axis| sides[n][1].h.value - sides[n][0].h.value;
@@ -201,10 +249,9 @@ impl Part {
             Wall::Cylinder { .. } => {
                 let along = width(self.xi) * 0.5 * (faces[self.xi][0].area + faces[self.xi][1].area);
                 let (flux, carried) = self.flux_through_ends(sides);
-                let [dx, dy, dz] = Axis::ALL.map(width);
                 let [x, y, z] = Axis::ALL.map(|n| self.curved.axis[n] * (faces[n][1].area - faces[n][0].area));
                 // Along the axis nothing passes through the wall: what enters through faces and ends leaves through others.
-                let closed = (x + y + z + carried).abs() <= CLOSED * (dx * dy + dy * dz + dz * dx);
+                let closed = (x + y + z + carried).abs() <= CLOSED * (size * size);
                 if closed { along + fluxes + flux } else { f64::NAN }
             }
             Wall::Cone { radius, slope } => self.volume_of_cone(*radius, *slope, sides, faces),
@@ -354,8 +401,17 @@ impl Part {
     }
 }
 
-/// By how much of its faces a pipe in a cell may fail to close: rounding is far below, and a section more or less is beyond.
+/// By how much of the square of a cell's size a pipe in it may fail to close: rounding is far below, and a section more or less is beyond.
 const CLOSED: f64 = 1e-9;
+
+/// A cell is thin if its least width is less than this share of all three together.
+const THIN: f64 = 1e-4;
+
+/// By how many roundings of coordinates, in widths, fluxes through the large faces of a thin cell may be off.
+const ROUNDING: f64 = 8.0;
+
+/// Sections bend by so little of a face that the mean of three is as good as rounding.
+const STRAIGHT: f64 = 1e-13;
 
 /// Does a ball hold all of a cell?
 fn ball_holds(radius: f64, sides: &Sides) -> bool {
