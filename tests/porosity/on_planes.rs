@@ -174,7 +174,7 @@ fn unlike_sums(exact: &Exact, fine: &Shares, edges: &Edges, without: usize) -> f
 fn unlike_quadrature(exact: &Exact, found: &Shares, edges: &Edges, [field, place]: [usize; 2]) -> Option<f64> {
     let (sides, share) = (sides(edges, field, place), found.fields[field][place]);
     let [lo, hi] = [0, 1].map(|end| DVec3::from_array(sides.map(|side| side[end])));
-    let off = with_chords(2_000_000, || {
+    let off = with_chords(if field == 0 { 100_000_000 } else { 2_000_000 }, || {
         if field == 0 {
             return share - true_volume(exact, [lo, hi], share) / size(&sides);
         }
