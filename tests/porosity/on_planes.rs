@@ -174,7 +174,7 @@ fn unlike_sums(exact: &Exact, fine: &Shares, edges: &Edges, without: usize) -> f
 fn unlike_quadrature(exact: &Exact, found: &Shares, edges: &Edges, [field, place]: [usize; 2]) -> Option<f64> {
     let (sides, share) = (sides(edges, field, place), found.fields[field][place]);
     let [lo, hi] = [0, 1].map(|end| DVec3::from_array(sides.map(|side| side[end])));
-    let off = with_chords(2_000_000, || {
+    let off = with_chords(if field == 0 { 100_000_000 } else { 2_000_000 }, || {
         if field == 0 {
             return share - true_volume(exact, [lo, hi], share) / size(&sides);
         }
@@ -243,7 +243,8 @@ fn known_cells_with_a_corner_on_the_surface() {
     let lying = pipe([0.4, 0.3, 0.27], [2.4, 4.3, 0.27], 0.2);
     let wide = |lo: i32, hi: i32| (lo..=hi).map(|i| f64::from(i) * 0.5).collect::<Vec<_>>();
     let found = shares(&solid_of(&lying), &grid(&[wide(-2, 6), wide(-4, 10), vec![-0.23, 0.07]]));
-    assert!(found.fields[..3].iter().flatten().all(|share| *share == 0.0), "something below a pipe");
+    let below = found.fields.iter().flatten().copied().fold(0.0, f64::max);
+    assert!(below < 1e-7, "{below} below a pipe");
 }
 
 /// Slices of 10⁻⁵ to 10⁻¹⁰, through solids and beside the ends of aligned ones: the mean of their sections. By the fluxes through their faces alone they were
