@@ -243,7 +243,8 @@ fn known_cells_with_a_corner_on_the_surface() {
     let lying = pipe([0.4, 0.3, 0.27], [2.4, 4.3, 0.27], 0.2);
     let wide = |lo: i32, hi: i32| (lo..=hi).map(|i| f64::from(i) * 0.5).collect::<Vec<_>>();
     let found = shares(&solid_of(&lying), &grid(&[wide(-2, 6), wide(-4, 10), vec![-0.23, 0.07]]));
-    assert!(found.fields[..3].iter().flatten().all(|share| *share == 0.0), "something below a pipe");
+    let below = found.fields.iter().flatten().copied().fold(0.0, f64::max);
+    assert!(below < 1e-7, "{below} below a pipe");
 }
 
 /// Slices of 10⁻⁵ to 10⁻¹⁰, through solids and beside the ends of aligned ones: the mean of their sections. By the fluxes through their faces alone they were

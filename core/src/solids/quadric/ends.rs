@@ -65,11 +65,12 @@ impl End {
         })
     }
 
-    /// What a line along axis `m` has inside, by its other two coordinates from the part's origin.
+    /// What a line along axis `m` has inside, as coordinates from the part's origin, by its own other two coordinates: from the origin rounding might
+    /// take a line beside the end into its plane.
     pub fn span(&self, m: Axis, q: P2) -> Span {
         let [u, v] = m.others();
         let a = self.inward;
-        let aside = a[u] * (q[0] - self.shift[u]) + a[v] * (q[1] - self.shift[v]);
+        let aside = a[u] * (q[0] - self.center[u]) + a[v] * (q[1] - self.center[v]);
         let all = Span::ALL;
         if a[m] == 0.0 {
             return if aside > 0.0 || (aside == 0.0 && self.closed) { all } else { Span::EMPTY };

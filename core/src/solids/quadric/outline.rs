@@ -331,10 +331,10 @@ impl Section {
             return if outline.pieces.is_empty() { Region::Empty } else { Region::Pieces(outline.close(), false) };
         };
         let (pieces, size) = (outline.close(), size());
-        if self.is_point(pieces) {
-            return if self.fits(size) { Region::Ellipse(ellipse) } else { Region::Empty };
+        if self.is_point(pieces) && self.fits(size) {
+            return Region::Ellipse(ellipse);
         }
-        Region::Pieces(pieces, self.half_fits(size))
+        if pieces.is_empty() { Region::Empty } else { Region::Pieces(pieces, self.half_fits(size)) }
     }
 
     /// Do all pieces lie in what is a point, but for rounding?

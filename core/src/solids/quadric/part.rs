@@ -101,7 +101,7 @@ impl Part {
 
     /// The same inside the ends too, by what it has inside the curved surface.
     pub fn span_between_ends(&self, m: Axis, planes: [&Plane; 2], span: Span) -> Span {
-        let inside = |end: &End| end.span(m, planes.map(|p| p.h.value));
+        let inside = |end: &End| end.span(m, planes.map(|p| p.coordinate));
         self.ends.iter().flatten().map(inside).fold(span, Span::intersection)
     }
 
