@@ -174,12 +174,14 @@ impl Ring {
     fn between_ends(&self, ends: &Ends, line: &Line, runs: &Runs) -> Runs {
         // Signed distances from the planes of both ends, along the line.
         let [start, end] = ends.toward;
-        let forms = [[-start[1], start[0]], [end[1], -end[0]]].map(|normal| {
+        let [of_start, of_end] = ends.inward;
+        let forms = [([-start[1], start[0]], of_start), ([end[1], -end[0]], of_end)].map(|(normal, inward)| {
             let of = |p: P3| normal[0] * p[0] + normal[1] * p[1];
             let (at, along) = (of(line.at), of(line.along));
-            let (far, slope) = (at.abs() > NOISE * (self.radius + self.tube), along.abs() > NOISE);
-            // A line in the plane of an end is in it, whatever rounding says.
-            [if far || slope { at } else { 0.0 }, if slope { along } else { 0.0 }]
+            // A line in the plane of an end across an axis is in it, whatever rounding says.
+            let flat = inward.iter().filter(|x| **x == 0.0).count() == 2;
+            let far = !flat || at.abs() > NOISE * (self.radius + self.tube);
+            [if far { at } else { 0.0 }, if flat && along.abs() <= NOISE { 0.0 } else { along }]
         });
         let mut kept = Runs::new();
         let mut keep = |lo: f64, hi: f64| {

@@ -50,9 +50,10 @@ fn direction(v: P3) -> Option<P3> {
     Some(unit?.map(|x| if x.abs() < 1e-120 { 0.0 } else { x }))
 }
 
-/// A vector of about length 1 without components that are rounding: an end that lies in a plane of a grid lies there exactly.
+/// A vector of about length 1; along an axis if no other component is more than rounding: an end that lies in a plane of a grid lies there exactly.
 fn without_noise(v: P3) -> P3 {
-    v.map(|x| if x.abs() <= NOISE { 0.0 } else { x })
+    let noise = |x: &f64| x.abs() <= NOISE;
+    if v.iter().filter(|x| noise(x)).count() == 2 { v.map(|x| if noise(&x) { 0.0 } else { x }) } else { v }
 }
 
 /// Cosine and sine of degrees, quarter turns exactly.
