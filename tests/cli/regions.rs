@@ -224,7 +224,7 @@ fn open_fractions_of_files_are_even_in_each_cell() {
     let at = Scratch::new();
     fs::write(at.file("scene.toml"), "[[solid]]\nshape = \"box\"\nmin = [0, -1, -1]\nmax = [0.35, 2, 2]\n")
         .expect("written");
-    let line = "[grid]\nx = { points = [0, 1], cells = [5] }\n";
+    let line = "x = { points = [0, 1], cells = [5] }\n";
     fs::write(
         at.file("grid.toml"),
         line.to_owned() + "y = { points = [0, 1], cells = [1] }\nz = { points = [0, 1], cells = [1] }\n",
@@ -235,14 +235,14 @@ fn open_fractions_of_files_are_even_in_each_cell() {
         &at.file("scene.toml"),
         &"--grid",
         &at.file("grid.toml"),
-        &"-o",
+        &"--npy",
         &at.file("beta"),
         &"-q",
     ]);
     assert!(made.status.success(), "{}", stderr(&made));
-    let mut begin = |porosity: &str, dir: &str| {
+    let begin = |porosity: &str, dir: &str| {
         let case = format!(
-            "{line}[porosity]\n{porosity}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = {{ rho = 1, p = 1 }}\n\
+            "[grid]\n{line}[porosity]\n{porosity}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = {{ rho = 1, p = 1 }}\n\
              regions = [{{ max = [0.38], rho = 3 }}]\n[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n[time]\nmax_steps = 1\n"
         );
         solved(&at, &case, dir, &["-q"]);
