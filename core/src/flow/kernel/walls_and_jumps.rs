@@ -296,27 +296,31 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
         velocity: core::array::from_fn(|c| gather(s, 1 + c)),
         pressure: gather(s, D + 1),
     };
+    let states = [side(0), side(1)];
+    let capacities = [0, 1].map(|s| if MIXED { gather(s, D + 3) } else { [R::ZERO; LANES] });
     let (mut throat, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
     for l in 0..LANES {
         let (face, contraction) = (row.ducts.face(group[l]), row.contraction(group[l]));
         let (left, right, pinched) = row.ducts.beside_jump(group[l]);
         areas[0][l] = share(face, left, contraction);
         areas[1][l] = share(face, right, contraction);
-        throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched);
+        let chokes = || {
+            let gas = |s: usize| if MIXED { FaceGas::of_capacity(capacities[s][l]) } else { slab.face_gas };
+            let machs = [0, 1].map(|s| {
+                let w = states[s].lane(l);
+                w.velocity[0] / gas(s).sound_speed(&w)
+            });
+            nearly_chokes(machs, [areas[0][l], areas[1][l]])
+        };
+        throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched && chokes());
     }
     let mut acoustic_weight = [R::ONE; LANES];
     if let Some(asked) = slab.first_order {
         let troubled = |i: usize| row.beside(i).iter().flatten().any(|&c| asked[slab.problem.mesh.index(c)] != 0);
         acoustic_weight = group.map(|i| if troubled(i) { R::ZERO } else { R::ONE });
     }
-    let faces = JumpFaces {
-        states: [side(0), side(1)],
-        ducts: areas,
-        throat,
-        references: [gather(0, D + 2), gather(1, D + 2)],
-        acoustic_weight,
-    };
-    let capacities = [0, 1].map(|s| if MIXED { gather(s, D + 3) } else { [R::ZERO; LANES] });
+    let faces =
+        JumpFaces { states, ducts: areas, throat, references: [gather(0, D + 2), gather(1, D + 2)], acoustic_weight };
     let f = if MIXED {
         mixed_jump_fluxes(&faces, &capacities, slab.solver.throat)
     } else {
@@ -339,6 +343,18 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
         let carried = carried_through(&faces.states, &capacities, &f.mass);
         (0..2).for_each(|n| scatter(D + 3 + n, &carried[n]));
     }
+}
+
+/// Of what chokes in a duct, the share from which on a stream is led through its true area: below that a wider throat passes as much.
+const NEARLY: f64 = 0.8;
+
+/// Does the stream at a face carry nearly what chokes in the narrower of two ducts? By the Mach numbers beside it, positive to the right.
+fn nearly_chokes<R: Real>(machs: [R; 2], ducts: [R; 2]) -> bool {
+    let upstream = usize::from(machs[0] + machs[1] < R::ZERO);
+    let mach = machs[upstream].abs();
+    // What passes a duct at a Mach number over what chokes in it, for any gas within a few per cent.
+    let share = mach * (R::from_f64(1.65) - R::from_f64(0.65) * mach * mach);
+    mach >= R::ONE || ducts[upstream] * share > R::from_f64(NEARLY) * R::smaller(ducts[0], ducts[1])
 }
 
 /// Flux at the closed face `i` of a row: nothing passes, and each side is pushed by its mirror image.

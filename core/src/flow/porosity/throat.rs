@@ -300,7 +300,7 @@ fn newton<R: Real>(start: R, bound: R, size: impl Fn(R) -> R, f: impl Fn(R) -> (
 
 /// Area of the throat at a jump face: of a plain jump the mean of both ducts, at most twice the narrower one (so that the
 /// narrow cell's time step shrinks by two at most), and the narrower one itself if its cell is narrower than those on both sides of it
-/// (`pinched`), since no other face there would choke a stream; of a true orifice, narrower than both by more than rounding, its own.
+/// and a stream nearly chokes there (`pinched`), since no other face would choke it; of a true orifice, narrower than both by more than rounding, its own.
 pub fn throat_area<R: Real>(area_left: R, face: R, area_right: R, pinched: bool) -> R {
     let least = R::smaller(area_left, area_right);
     if !(face > R::ZERO) {

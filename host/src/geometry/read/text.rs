@@ -273,7 +273,8 @@ pub fn quote(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * SHOWN)]);
     let more = if text.chars().nth(SHOWN).is_some() { "…" } else { "" };
-    let shown: String = text.chars().take(SHOWN).map(|c| if c.is_control() { '·' } else { c }).collect();
+    let visible = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
+    let shown: String = text.chars().take(SHOWN).map(visible).collect();
     format!("`{shown}{more}`")
 }
 
