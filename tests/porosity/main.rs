@@ -9,6 +9,7 @@ mod curved;
 mod dirty;
 mod divided;
 mod drag;
+mod formulas;
 mod holes;
 mod hulls;
 mod invariance;

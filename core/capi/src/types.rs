@@ -216,6 +216,7 @@ pub enum Side {
     /// A given state `rho`, `u`, `p`; waves leave.
     FarField = 3,
     /// Gas enters with `rho` and `u`. The pressure starts at `p` and follows the flow within the time `relax`, so that waves still leave.
+    /// An inlet faster than its own sound keeps its pressure.
     Inlet = 4,
     /// Gas leaves against the pressure `p`.
     Outlet = 5,

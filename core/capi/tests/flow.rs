@@ -171,6 +171,32 @@ fn an_inlet_is_met() {
     }
 }
 
+/// A stream faster than sound into slower gas keeps its state, from either side; so does one that a call sets later.
+#[test]
+fn an_inlet_faster_than_sound_keeps_its_state() {
+    for (number, u) in [(0_usize, 2.4), (1, -2.4)] {
+        let lists = edges::<f64>([40, 1, 1]);
+        let inlet = Boundary { kind: 4, rho: 1.0, u: [u, 0.0, 0.0], p: 1.0, ..zeroed::<Boundary<f64>>() };
+        for later in [false, true] {
+            let mut case = Case { grid: grid(&lists), gamma: 1.4, ..zeroed() };
+            case.side[1 - number] = Boundary { kind: 2, ..zeroed() };
+            case.side[number] = if later { Boundary { kind: 0, ..zeroed() } } else { inlet };
+            let mut flow = Owned::new(&case);
+            let [one, zero] = [1.0, 0.0].map(|x| vec![x; 40]);
+            flow.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+            if later {
+                assert_eq!(unsafe { f64::flow_set_side(flow.flow, number as i32, &inlet, null_mut()) }, Status::Ok);
+            }
+            flow.advance(4.0, u64::MAX);
+            let [rho, along, .., p] = flow.get();
+            let off =
+                |values: &[f64], wanted: f64| values.iter().fold(0.0, |most: f64, v| most.max((v - wanted).abs()));
+            let worst = [off(&rho, 1.0), off(&along, u), off(&p, 1.0)];
+            assert!(worst.iter().all(|&w| w < 1e-6), "side {number}, later {later}: {worst:?}");
+        }
+    }
+}
+
 #[test]
 fn sides_change_between_steps() {
     let lists = edges::<f64>([1, 1, 20]);

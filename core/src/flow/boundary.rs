@@ -202,6 +202,8 @@ fn outlet<R: Real, const D: usize>(w: Primitive<R, D>, pressure: R, gas: Gas<R>)
 
 /// Where the stream from a reservoir meets the gas inside: it enters at the speed s at which both have one pressure and one velocity. The stream has come to
 /// that pressure from rest at constant entropy and total enthalpy, the gas inside by the wave that runs into the domain. At most it enters at its speed of sound.
+// Called, not inlined: it would lie in the frame of every row's ghosts.
+#[inline(never)]
 fn reservoir<R: Real, const D: usize>(w: Primitive<R, D>, density0: R, pressure0: R, gas: Gas<R>) -> Primitive<R, D> {
     let stream = Stream { density0, pressure0, gas };
     // By how much the stream enters faster than the gas inside retreats from it, and how fast that grows with s.

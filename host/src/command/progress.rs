@@ -221,13 +221,16 @@ impl Progress {
         }
     }
 
-    /// Tells that `work` goes on, unless the run is quiet, as long as what is returned lives.
+    /// Tells that `work` goes on, unless the run is quiet, when no other line has been printed for a while, as long as what is returned lives.
     #[must_use]
     pub fn goes_on(&self, work: String) -> Option<Heartbeat> {
+        let last = self.last_line.clone();
         let tell = move |time: Duration| {
-            print_aside(&format!("{}: {:.0} s so far", visible(&work), time.as_secs_f64()));
+            if last.is_older(PAUSE + TICK) {
+                print_aside(&format!("{}: {:.0} s so far", visible(&work), time.as_secs_f64()));
+            }
         };
-        (!self.quiet).then(|| Heartbeat::new(PAUSE, tell))
+        (!self.quiet).then(|| Heartbeat::new(TICK, tell))
     }
 
     /// A bar of `steps` steps on a terminal, else a line from time to time.
@@ -257,21 +260,11 @@ impl Progress {
         Meter { name, steps, done: AtomicUsize::new(0), bar, plain }
     }
 
-    /// Tells that a stage goes on, as long as what is returned lives, when no other line has been printed for a while.
-    fn watched(&self, name: &'static str) -> Option<Heartbeat> {
-        let last = self.last_line.clone();
-        let tell = move |time: Duration| {
-            if last.is_older(PAUSE + TICK) {
-                print_aside(&format!("{name}: {:.0} s so far", time.as_secs_f64()));
-            }
-        };
-        (!self.quiet && !std::io::stderr().is_terminal()).then(|| Heartbeat::new(TICK, tell))
-    }
-
     /// Run a stage and keep its time.
     pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let begin = Instant::now();
-        let watched = self.watched(name);
+        // On a terminal bars tell how far it is.
+        let watched = if std::io::stderr().is_terminal() { None } else { self.goes_on(name.to_owned()) };
         let result = work(self);
         drop(watched);
         let seconds = begin.elapsed().as_secs_f64();

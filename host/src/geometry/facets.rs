@@ -83,15 +83,15 @@ fn bend(shape: &TorusShape<DVec3>) -> Vec<[DVec3; 3]> {
     triangles
 }
 
-/// Sine and cosine of degrees, exact of quarter turns: ends of bends lie in planes of grids.
-fn sin_cos_of_degrees(degrees: f64) -> (f64, f64) {
-    let quarters = (degrees / 90.0).round();
-    let (sin, cos) = (degrees - quarters * 90.0).to_radians().sin_cos();
-    match quarters.rem_euclid(4.0) as u32 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
+/// Sine and cosine of degrees, of quarter turns exactly: ends of bends and turned boxes lie in planes of grids.
+#[must_use]
+pub fn sin_cos_of_degrees(degrees: f64) -> (f64, f64) {
+    match degrees.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        other => other.to_radians().sin_cos(),
     }
 }
 

@@ -151,9 +151,11 @@ fn scheme<R>(case: &Case<R>) -> Answer<Scheme> {
     })
 }
 
-/// A side of the axes that flow, and the time in which its pressure follows the flow: 0 if the side does not say.
+/// The low or high side of an axis, and the time in which its pressure follows the flow: 0 if the side does not say, infinite for an inlet faster than its
+/// own sound, whose pressure no wave from inside can change.
 pub fn boundary<R: Real, const D: usize>(
     side: &types::Boundary<R>,
+    axis: usize,
     gas: Gas<R>,
     live: [usize; D],
 ) -> Answer<(Boundary<R, D>, R)> {
@@ -191,5 +193,10 @@ pub fn boundary<R: Real, const D: usize>(
         }
         _ => return Err(Status::Kind.of(c"side.kind")),
     };
-    Ok((found, if side.kind == 4 { side.relax } else { R::ZERO }))
+    let relax = match &found {
+        Boundary::Inlet(w) if side.u.get(axis).is_some_and(|u| u.abs() > gas.sound_speed(w)) => R::INFINITY,
+        Boundary::Inlet(_) => side.relax,
+        _ => R::ZERO,
+    };
+    Ok((found, relax))
 }

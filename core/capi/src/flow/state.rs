@@ -261,7 +261,8 @@ impl<R: Real, const D: usize> State<R, D> {
 
     /// Changes a side; that of a dead axis does not count.
     pub fn set_side(&mut self, number: usize, side: &types::Boundary<R>) -> Answer {
-        let (found, time) = boundary(side, self.setup.gas, self.setup.live).map_err(|refusal| refusal.index(number))?;
+        let (found, time) =
+            boundary(side, number / 2, self.setup.gas, self.setup.live).map_err(|refusal| refusal.index(number))?;
         let Some(d) = self.setup.live.iter().position(|&axis| axis == number / 2) else { return Ok(()) };
         let slot = &mut self.setup.boundaries[d][number % 2];
         if found.is_periodic() != slot.is_periodic() {
@@ -283,7 +284,7 @@ fn sides<R: Real, const D: usize>(
     for (d, axis) in live.into_iter().enumerate() {
         for side in 0..2 {
             let number = 2 * axis + side;
-            let found = boundary(&case.side[number], case.gas, live).map_err(|refusal| refusal.index(number))?;
+            let found = boundary(&case.side[number], axis, case.gas, live).map_err(|refusal| refusal.index(number))?;
             (boundaries[d][side], relax[d][side]) = found;
         }
         let [low, high] = boundaries[d];

@@ -301,18 +301,16 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     let (mut throat, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
     for l in 0..LANES {
         let (face, contraction) = (row.ducts.face(group[l]), row.contraction(group[l]));
-        let (left, right, pinched) = row.ducts.beside_jump(group[l]);
+        let (left, right) = row.ducts.beside(group[l], false);
         areas[0][l] = share(face, left, contraction);
         areas[1][l] = share(face, right, contraction);
-        let chokes = || {
-            let gas = |s: usize| if MIXED { FaceGas::of_capacity(capacities[s][l]) } else { slab.face_gas };
-            let machs = [0, 1].map(|s| {
-                let w = states[s].lane(l);
-                w.velocity[0] / gas(s).sound_speed(&w)
-            });
-            nearly_chokes(machs, [areas[0][l], areas[1][l]])
-        };
-        throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched && chokes());
+        let machs = [0, 1].map(|s| {
+            let gas = if MIXED { FaceGas::of_capacity(capacities[s][l]) } else { slab.face_gas };
+            let w = states[s].lane(l);
+            w.velocity[0] / gas.sound_speed(&w)
+        });
+        let pinched = nearly_chokes(machs, [areas[0][l], areas[1][l]]) && row.ducts.pinched(group[l]);
+        throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched);
     }
     let mut acoustic_weight = [R::ONE; LANES];
     if let Some(asked) = slab.first_order {
@@ -348,13 +346,15 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
 /// Of what chokes in a duct, the share from which on a stream is led through its true area: below that a wider throat passes as much.
 const NEARLY: f64 = 0.8;
 
-/// Does the stream at a face carry nearly what chokes in the narrower of two ducts? By the Mach numbers beside it, positive to the right.
+/// Does a stream that enters the narrower of two ducts carry nearly what chokes there? By the Mach numbers beside the face, positive to the right. A stream
+/// that leaves it has been choked where it entered, and may go on faster than sound.
 fn nearly_chokes<R: Real>(machs: [R; 2], ducts: [R; 2]) -> bool {
     let upstream = usize::from(machs[0] + machs[1] < R::ZERO);
     let mach = machs[upstream].abs();
     // What passes a duct at a Mach number over what chokes in it, for any gas within a few per cent.
     let share = mach * (R::from_f64(1.65) - R::from_f64(0.65) * mach * mach);
-    mach >= R::ONE || ducts[upstream] * share > R::from_f64(NEARLY) * R::smaller(ducts[0], ducts[1])
+    let [wide, narrow] = [ducts[upstream], ducts[1 - upstream]];
+    wide > narrow && (mach >= R::ONE || wide * share > R::from_f64(NEARLY) * narrow)
 }
 
 /// Flux at the closed face `i` of a row: nothing passes, and each side is pushed by its mirror image.

@@ -93,24 +93,18 @@ impl<'a, R: Real> Ducts<'a, R> {
         (duct(below), duct(above))
     }
 
-    /// Duct areas of the two cells before the low face of a cell and of the two after it, in their order. Beyond the domain as for [`Ducts::beside`].
-    fn around(&self, i: usize) -> [R; 4] {
-        let (s, n, k) = (self.stride, self.cells as isize, self.place + self.step * i);
-        let first = (self.low + i).saturating_sub(k * s);
-        [-2, -1, 0, 1].map(|steps: isize| {
-            let at = k as isize + steps;
-            let cell = if self.periodic { at.checked_rem_euclid(n).unwrap_or(0) } else { at.max(0).min(n - 1) };
-            let low = first + cell as usize * s;
-            let open = |face: usize| self.open.get(face).copied().unwrap_or(R::ZERO);
-            R::larger(open(low), open(low + s))
-        })
-    }
-
-    /// Duct areas at the low face of a cell, and whether the narrower of the two cells is narrower, by more than rounding, than those on both sides of it.
-    pub fn beside_jump(&self, i: usize) -> (R, R, bool) {
-        let [before, left, right, after] = self.around(i);
-        let (narrow, beyond) = if left < right { (left, before) } else { (right, after) };
-        (left, right, R::smaller(R::larger(left, right), beyond) > narrow + rounding::<R>() * narrow)
+    /// Whether the narrower of the two cells at the low face of a cell is narrower, by more than rounding, than the cells on both sides of it. Beyond the
+    /// domain stand cells as for [`Ducts::beside`].
+    pub fn pinched(&self, i: usize) -> bool {
+        let (left, right) = self.beside(i, false);
+        let (narrow, wide, steps) = if left < right { (left, right, -2) } else { (right, left, 1) };
+        let (k, n) = ((self.place + self.step * i) as isize + steps, self.cells as isize);
+        let cell = if self.periodic { k.checked_rem_euclid(n).unwrap_or(0) } else { k.max(0).min(n - 1) };
+        let first = (self.low + i).saturating_sub((self.place + self.step * i) * self.stride);
+        let open = |face: usize| self.open.get(face).copied().unwrap_or(R::ZERO);
+        let low = first + cell as usize * self.stride;
+        let beyond = R::larger(open(low), open(low + self.stride));
+        R::smaller(wide, beyond) > narrow + rounding::<R>() * narrow
     }
 
     /// Width of the gas in a cell: its duct area, or its open volume if that is larger, as in a cell between two closed faces. A closed face

@@ -69,6 +69,7 @@ impl<R: Real> Bodies<'_, R> {
     }
 
     /// Whether a body may have solid in the cube of a centre and half a width; if unsure, yes.
+    #[inline(never)]
     pub fn has_solid(&self, body: u32, center: [R; 3], half: R) -> bool {
         let Some(part) = self.parts.get(body as usize) else { return false };
         let clear = self.thickness * R::from_f64(AMBIGUITY_BAND);

@@ -2,6 +2,7 @@
 
 use super::table::{self, StrictTable};
 use crate::error::Result;
+use crate::geometry::facets::sin_cos_of_degrees;
 use glam::{DMat3, DVec3};
 use toml::de::DeValue;
 
@@ -141,14 +142,7 @@ fn array(keys: &mut StrictTable) -> Result<([usize; 3], DVec3)> {
 
 /// The rotation by `degrees` about a unit vector, counter-clockwise seen from its tip. Quarter turns about coordinate axes are exact.
 fn matrix(axis: DVec3, degrees: f64) -> DMat3 {
-    let turned = degrees.rem_euclid(360.0);
-    let (sin, cos) = match turned {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        other => other.to_radians().sin_cos(),
-    };
+    let (sin, cos) = sin_cos_of_degrees(degrees);
     // Rodrigues: R = cos I + (1 − cos) a aᵀ + sin [a]×
     let outer = |column: f64| axis * column * (1.0 - cos);
     let cross = |unit: DVec3| axis.cross(unit) * sin + unit * cos;
