@@ -7,6 +7,7 @@ mod choking;
 mod clusters;
 mod contracts;
 mod convergence;
+mod drift;
 mod edges;
 mod extremes;
 mod inclined;

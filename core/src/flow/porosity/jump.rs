@@ -213,8 +213,13 @@ fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2]
 /// would grow between two of them.
 ///
 /// Both sides have the mass flux Q in common and differ from their cells by the outgoing wave: the pressure by ∓c (Q − Q_K)/a, the
-/// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the pressures in the
-/// throat meet; the waves change them there as they do in the ducts, which is so in slow flow, and does not matter in a steady one.
+/// momentum flux by (u ∓ c)(Q − Q_K), the total enthalpy by ∓c (Q − Q_K)/(a rho), left and right. Q is such that the total pressures in
+/// the throat meet; the waves change them there as they do the pressures in the ducts, which is so in slow flow, and does not matter in a steady one.
+///
+/// Not the pressures, each at what its own cell carries: where a stream turns, a cell carries the mean of what passes its two faces, and Q passes the throat
+/// as seen from both sides. Each face would make energy, Q (Q_R² − Q_L²) over twice the square of density and throat, and a drift among
+/// obstacles, which nothing else damps, would feed itself. With the total pressures no face makes any, whatever its areas: sound and shear only
+/// take it.
 ///
 /// What passes the throat is the gas upstream, and between it and the gas of the cell downstream moves a contact. So Q_K there is that of the gas
 /// upstream at the velocity and pressure downstream, and so is what it takes to reach the throat; the wave beyond the contact runs in the gas downstream,
@@ -228,12 +233,13 @@ fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases
     // Stiffnesses c/a of the ducts, times both areas.
     let stiff = [sound[0] * face.ducts[1], sound[1] * face.ducts[0]];
     let pushed = stiff[0] * mass[0] + stiff[1] * mass[1];
-    let from_left = pushed + drive(face.throat.each_ref().map(|t| t.pressure)) >= R::ZERO;
+    let total = face.throat.each_ref().map(|t| t.pressure + R::HALF * (t.density * (t.velocity[0] * t.velocity[0])));
+    let from_left = pushed + drive(total) >= R::ZERO;
     let share = share_of_densities(face, gas, from_left);
     // By side: 1 upstream.
     let share = [if from_left { R::ONE } else { share }, if from_left { share } else { R::ONE }];
     let at_throat = |s: usize| {
-        let (cell, throat) = (face.cell[s].pressure, face.throat[s].pressure);
+        let (cell, throat) = (face.cell[s].pressure, total[s]);
         if share[s] == R::ONE { throat } else { cell + share[s] * (throat - cell) }
     };
     let common = (pushed + drive([at_throat(0), at_throat(1)])) / (stiff[0] / share[0] + stiff[1] / share[1]);
