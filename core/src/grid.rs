@@ -12,6 +12,12 @@ use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use core::fmt;
 
+/// A coordinate this near to a plane, as a share of the grid's length, lies in it but for rounding: far below the digits of any `f32` file.
+const NEAR: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// So does one within so many units in the last place of the grid's largest coordinate.
+const NEAR_ULPS: f64 = 2.0;
+
 /// Edges of a rectilinear grid, borrowed from the caller, checked once.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid<'a, R> {
@@ -60,6 +66,12 @@ impl fmt::Display for GridError {
 }
 
 impl core::error::Error for GridError {}
+
+/// Distance within which a coordinate beside a grid between two planes is that of a plane but for rounding.
+pub(crate) fn rounding<R: Real>([first, last]: [R; 2]) -> R {
+    let largest = first.abs().larger(last.abs());
+    (last - first) * R::from_f64(NEAR) + largest * R::EPSILON * R::from_f64(NEAR_ULPS)
+}
 
 impl<'a, R: Real> Grid<'a, R> {
     /// A grid on three lists of strictly increasing, finite edges, each with at least two entries.
@@ -125,6 +137,20 @@ impl<'a, R: Real> Grid<'a, R> {
             // No grid is made of fewer than two edges.
             _ => [R::ZERO; 2],
         }
+    }
+
+    /// Distance along an axis (0, 1 for x, y, otherwise z) within which a coordinate is that of a plane but for rounding.
+    #[must_use]
+    pub fn rounding(&self, axis: usize) -> R {
+        rounding(self.ends(axis))
+    }
+
+    /// The plane of the grid that a coordinate lies in, or misses by rounding in `f64`.
+    pub(crate) fn plane_at(&self, axis: usize, value: f64) -> Option<f64> {
+        let (edges, room) = (self.edges(axis), rounding(self.ends(axis).map(R::to_f64)));
+        let above = edges.partition_point(|e| e.to_f64() < value);
+        let beside = [edges.get(above), above.checked_sub(1).and_then(|below| edges.get(below))];
+        beside.into_iter().flatten().map(|e| e.to_f64()).find(|e| (e - value).abs() <= room)
     }
 
     /// The box of the whole grid.

@@ -1,6 +1,8 @@
 //! Integrals of several functions at once over a panel, by two rules whose difference tells the error.
 //!
-//! Nodes and weights after R. Piessens et al., *QUADPACK*, Springer 1983, subroutine QK15.
+//! Nodes and weights after R. Piessens et al., *QUADPACK*, Springer 1983, subroutine QK15. Sixteen more nodes make of its fifteen a rule that is exact up to
+//! degree 47, as T. N. L. Patterson, *The Optimum Addition of Points to Quadrature Formulae*, Mathematics of Computation 22, 1968, tells; found by linear
+//! equations in 120 digits.
 
 /// Nodes and weights of Kronrod's rule of fifteen points, and of Gauss' in every other node; the last is the middle.
 const NODES: [[f64; 3]; 8] = [
@@ -14,6 +16,30 @@ const NODES: [[f64; 3]; 8] = [
     [0.0, 0.209_482_141_084_727_82, 0.417_959_183_673_469_4],
 ];
 
+/// Weights of the same nodes in the rule of 31.
+const KEPT: [f64; 8] = [
+    0.011_319_468_444_683_436,
+    0.031_577_706_217_045_856,
+    0.052_384_370_820_982_69,
+    0.070_332_046_410_400_65,
+    0.084_498_765_301_243_02,
+    0.095_178_029_931_830_68,
+    0.102_214_180_005_702_74,
+    0.104_743_213_564_805_84,
+];
+
+/// Its other nodes and their weights.
+const ADDED: [[f64; 2]; 8] = [
+    [0.998_687_109_678_466_7, 0.003_634_931_195_049_884],
+    [0.975_383_588_208_893_4, 0.021_039_446_258_726_796],
+    [0.912_204_882_783_262_9, 0.042_193_500_584_546_595],
+    [0.807_688_939_172_437_5, 0.061_821_985_645_449_856],
+    [0.667_348_098_104_300_2, 0.077_875_347_115_246],
+    [0.498_636_786_552_832, 0.090_261_802_146_558_6],
+    [0.308_579_247_910_587_8, 0.099_196_857_667_432_91],
+    [0.104_528_273_810_780_71, 0.104_099_955_472_697_36],
+];
+
 /// `a + b · factor`, each component by itself.
 #[inline(always)]
 #[must_use]
@@ -22,17 +48,31 @@ pub fn plus<const N: usize>(mut a: [f64; N], b: [f64; N], factor: f64) -> [f64; 
     a
 }
 
-/// The integrals of the components of `at` from one place to another, by Kronrod's rule of fifteen points and by Gauss' of seven. Their difference is
-/// the error of the second.
+/// The integrals of the components of `at` from one place to another by two rules, that of more points first: Kronrod's of fifteen points and Gauss' of
+/// seven, and where the difference of these is not `enough`, that of 31 and Kronrod's. The difference is the error of the second.
 #[inline(always)]
-pub fn panel<const N: usize>([from, to]: [f64; 2], mut at: impl FnMut(f64) -> [f64; N]) -> [[f64; N]; 2] {
+pub fn panel<const N: usize>(
+    [from, to]: [f64; 2],
+    mut at: impl FnMut(f64) -> [f64; N],
+    enough: impl Fn([f64; N]) -> bool,
+) -> [[f64; N]; 2] {
     let (middle, half) = ((from + to) * 0.5, (to - from) * 0.5);
-    let (mut fine, mut coarse) = ([0.0; N], [0.0; N]);
-    for [node, kronrod, gauss] in NODES {
+    let (mut fine, mut coarse, mut finer) = ([0.0; N], [0.0; N], [0.0; N]);
+    // One loop over both lists of nodes, so that there is one place that calls `at`.
+    for n in 0..16 {
+        let (first, n) = (n < 8, n & 7);
+        let [node, more] = if first { [NODES[n][0], KEPT[n]] } else { ADDED[n] };
         let both = if node == 0.0 { at(middle) } else { plus(at(middle - half * node), at(middle + half * node), 1.0) };
-        (fine, coarse) = (plus(fine, both, kronrod * half), plus(coarse, both, gauss * half));
+        finer = plus(finer, both, more * half);
+        if first {
+            let [_, kronrod, gauss] = NODES[n];
+            (fine, coarse) = (plus(fine, both, kronrod * half), plus(coarse, both, gauss * half));
+        }
+        if first && n == 7 && enough(plus(fine, coarse, -1.0)) {
+            return [fine, coarse];
+        }
     }
-    [fine, coarse]
+    [finer, fine]
 }
 
 /// The integral of `at` from one place to another, by Gauss' rule of seven points.

@@ -501,9 +501,10 @@ impl Cuts {
 
 /// The integral of `at` from one place to another. Calls itself for halves, at most so many levels deep.
 fn summed(at: &mut dyn FnMut(f64) -> Sums, [from, to]: [f64; 2], tolerance: f64, halvings: u32) -> Sums {
-    let (middle, [fine, coarse]) = ((from + to) * 0.5, panel([from, to], &mut *at));
-    let error = (0..4).map(|n| (fine[n] - coarse[n]).abs()).fold(0.0, f64::max);
-    if !(error > tolerance) || halvings == 0 {
+    let error = |d: Sums| d.into_iter().map(f64::abs).fold(0.0, f64::max);
+    let [fine, coarse] = panel([from, to], &mut *at, |d| error(d) <= tolerance);
+    let middle = (from + to) * 0.5;
+    if !(error(plus(fine, coarse, -1.0)) > tolerance) || halvings == 0 {
         return fine;
     }
     let halves = [[from, middle], [middle, to]].map(|half| summed(at, half, tolerance, halvings - 1));

@@ -4,7 +4,7 @@
 //! (ρ − R)² + z² <= r², ρ the distance from the axis. Along a line that is a quartic; between the roots of its derivative, a cubic without
 //! square term, it has one root at most, and between those of the cubic's derivative so has the cubic.
 
-use super::roots::root;
+use super::roots::newton_root;
 use crate::number::axis::Axis;
 use crate::number::plane::{self, P2};
 use crate::number::real::Real;
@@ -94,18 +94,24 @@ impl Ring {
         length2([length2([x, y]) - self.radius, z]) - self.tube
     }
 
-    /// Negative inside the whole torus: (ρ − R)² + z² − r².
+    /// Negative inside the whole torus: (ρ − R)² + z² − r², and how that grows along the line.
     #[inline(always)]
-    fn square(&self, line: &Line, t: f64) -> f64 {
-        let [x, y, z] = line.point(t);
+    fn square(&self, line: &Line, t: f64) -> P2 {
+        let ([x, y, z], along) = (line.point(t), line.along);
         let rho = Real::sqrt(x * x + y * y);
+        let off = rho - self.radius;
+        let rate = 2.0 * (off * ((x * along[0] + y * along[1]) / rho) + z * along[2]);
         if rho < self.radius * 0.5 {
             // The hole of a horn is as narrow as ρ is there.
-            let hole = (self.radius - self.tube) * (self.radius + self.tube);
-            return rho * (rho - 2.0 * self.radius) + z * z + hole;
+            return [rho * (rho - 2.0 * self.radius) + z * z + self.hole(), rate];
         }
-        let off = rho - self.radius;
-        off * off + (z - self.tube) * (z + self.tube)
+        [off * off + (z - self.tube) * (z + self.tube), rate]
+    }
+
+    /// R² − r².
+    #[inline(always)]
+    fn hole(&self) -> f64 {
+        (self.radius - self.tube) * (self.radius + self.tube)
     }
 
     /// What a line has inside between two of its points.
@@ -119,7 +125,58 @@ impl Ring {
 
     /// The same of the whole torus.
     fn of_torus(&self, line: &Line, lo: f64, hi: f64) -> Runs {
-        let f = |t: f64| self.square(line, t);
+        match line.along {
+            [_, _, 0.0] => self.of_line_across(line, lo, hi),
+            [0.0, 0.0, _] => self.of_line_along(line, lo, hi),
+            _ => self.of_oblique_line(line, lo, hi),
+        }
+    }
+
+    /// Across the axis: between two circles.
+    fn of_line_across(&self, line: &Line, lo: f64, hi: f64) -> Runs {
+        let (mut runs, z) = (Runs::new(), line.at[2]);
+        let square = (self.tube - z) * (self.tube + z);
+        if !(square > 0.0) {
+            return runs;
+        }
+        let outer = self.radius + Real::sqrt(square);
+        let inner = (self.hole() + z * z) / outer;
+        let shift = -dot(line.at, line.along);
+        let foot = line.point(shift);
+        let nearest = length2([foot[0], foot[1]]);
+        let half = |radius: f64| Real::sqrt(((radius - nearest) * (radius + nearest)).max(0.0));
+        let (far, near) = (half(outer), half(inner));
+        let ends = if near > 0.0 { [[-far, -near], [near, far]] } else { [[-far, far], [0.0; 2]] };
+        for [from, to] in ends {
+            let (from, to) = ((from + shift).max(lo), (to + shift).min(hi));
+            if from < to {
+                let _ = runs.push([from, to]);
+            }
+        }
+        runs
+    }
+
+    /// Along the axis: through one disc.
+    fn of_line_along(&self, line: &Line, lo: f64, hi: f64) -> Runs {
+        let (mut runs, [x, y, z]) = (Runs::new(), line.at);
+        let rho = length2([x, y]);
+        let off = rho - self.radius;
+        let square = if rho < self.radius * 0.5 {
+            rho * (2.0 * self.radius - rho) - self.hole()
+        } else {
+            (self.tube - off) * (self.tube + off)
+        };
+        let (half, middle) = (Real::sqrt(square.max(0.0)), -z * line.along[2]);
+        let (from, to) = ((middle - half).max(lo), (middle + half).min(hi));
+        if from < to {
+            let _ = runs.push([from, to]);
+        }
+        runs
+    }
+
+    /// Any other line.
+    fn of_oblique_line(&self, line: &Line, lo: f64, hi: f64) -> Runs {
+        let f = |t: f64| self.square(line, t)[0];
         let mut runs = Runs::new();
         let (mut at, mut value) = (lo, f(lo));
         let mut start = (value <= 0.0).then_some(lo);
@@ -127,7 +184,7 @@ impl Ring {
         for next in turns.iter().copied().chain([hi]) {
             let there = f(next);
             if (there <= 0.0) != start.is_some() {
-                let found = root(f, [at, next], [value, there]);
+                let found = newton_root(|t| self.square(line, t), [at, next], [value, there]);
                 match start.take() {
                     Some(from) => {
                         let _ = runs.push([from, found]);
@@ -149,10 +206,11 @@ impl Ring {
         let shift = -dot(*at, *along);
         let foot = line.point(shift);
         let double = 2.0 * self.radius * self.radius;
-        let k = dot(foot, foot) + (self.radius - self.tube) * (self.radius + self.tube);
+        let k = dot(foot, foot) + self.hole();
         let (a, b) = (along[0] * along[0] + along[1] * along[1], foot[0] * along[0] + foot[1] * along[1]);
         let (linear, constant) = (k - double * a, -double * b);
         let cubic = |s: f64| (s * s + linear) * s + constant;
+        let with_rate = |s: f64| [cubic(s), 3.0 * s * s + linear];
         let half = Real::sqrt((-linear / 3.0).max(0.0));
         let mut turns = Vec::new();
         let (mut before, last) = (lo - shift, hi - shift);
@@ -163,7 +221,7 @@ impl Ring {
             }
             let there = cubic(next);
             if (value > 0.0) != (there > 0.0) {
-                let _ = turns.push((root(cubic, [before, next], [value, there]) + shift).limited(lo, hi));
+                let _ = turns.push((newton_root(with_rate, [before, next], [value, there]) + shift).limited(lo, hi));
             }
             (before, value) = (next, there);
         }

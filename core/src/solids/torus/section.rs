@@ -101,6 +101,18 @@ const NEAREST: f64 = 1e-9;
 const GROWTH: f64 = 4.0;
 const SEEN: f64 = 0.05;
 
+/// What the terms of the logarithm's series, of z to k = 1, 3, 5 … and of z to k + 1, have of 1 and of u over −1 to 1: 2 / (k (k + 2)) and
+/// 2 / ((k + 1) (k + 2)).
+const LOGARITHM: [[f64; 2]; 20] = {
+    let (mut terms, mut n) = ([[0.0; 2]; 20], 0);
+    while n < terms.len() {
+        let k = 2.0 * n as f64 + 1.0;
+        terms[n] = [2.0 / (k * (k + 2.0)), 2.0 / ((k + 1.0) * (k + 2.0))];
+        n += 1;
+    }
+    terms
+};
+
 /// Length of the runs of a line, their moment and their flux.
 type Sums = [f64; 3];
 
@@ -360,24 +372,20 @@ impl LinesOfFace<'_> {
         let half = (to - from) * 0.5;
         let at = |t: f64| {
             // Near the ends, from the ends: v = m − w cos t.
-            let (sine, versine) = (libm::sin(t), libm::sin(t * 0.5));
-            let v = if t < PI * 0.5 {
-                from + 2.0 * half * versine * versine
-            } else {
-                let other = libm::cos(t * 0.5);
-                to - 2.0 * half * other * other
-            };
-            self.over_line(v).map(|x| x * sine * half)
+            let (sin, cos) = libm::sincos(t * 0.5);
+            let v = if t < PI * 0.5 { from + 2.0 * half * sin * sin } else { to - 2.0 * half * cos * cos };
+            self.over_line(v).map(|x| x * 2.0 * sin * cos * half)
         };
         let [du, dv] = self.face.sizes();
         let size = (du + dv) * 0.5;
         let scale = |d: Sums| (d[0].abs() + d[2].abs() / size) / (du * dv);
+        let enough = |d: Sums| scale(d) <= ERROR;
         let mut waiting: Vec<(f64, f64, u8), WAITING> = Vec::new();
         let _ = waiting.push((0.0, PI, 0));
         let (mut total, mut worst, mut panels) = ([0.0; 3], 0.0, 0);
         while let Some((lo, hi, depth)) = waiting.pop() {
             panels += 1;
-            let (m, [fine, coarse]) = ((lo + hi) * 0.5, panel([lo, hi], at));
+            let (m, [fine, coarse]) = ((lo + hi) * 0.5, panel([lo, hi], at, enough));
             let apart = scale(plus(fine, coarse, -1.0));
             let enough =
                 !(apart > ERROR) || panels >= MOST_PANELS || depth >= MOST_HALVINGS || waiting.len() + 2 > WAITING;
@@ -470,24 +478,22 @@ impl LinesOfFace<'_> {
         let q = [alpha[0] + m * beta[0], alpha[1] + m * beta[1]];
         let square = plane::dot(q, q);
         let psi = ahead(q, self.reference.toward);
-        let mut sum = 2.0 * psi * constant;
+        let (mut odd, mut even) = (0.0, 2.0 * psi);
         if square > 0.0 {
-            // z = β w / q
+            // The imaginary parts of powers of z = β w / q, each from the two before it.
             let z = [plane::dot(beta, q) * w / square, plane::cross(q, beta) * w / square];
-            let mut power = z;
-            let mut k = 1.0;
-            while k < 40.0 {
-                let term = power[1] / k;
-                sum += term * slope * 2.0 / (k + 2.0);
-                power = [-(power[0] * z[0] - power[1] * z[1]), -(power[0] * z[1] + power[1] * z[0])];
-                sum += power[1] / (k + 1.0) * constant * 2.0 / (k + 2.0);
-                power = [-(power[0] * z[0] - power[1] * z[1]), -(power[0] * z[1] + power[1] * z[0])];
-                k += 2.0;
-                if power[0].abs() + power[1].abs() < 1e-17 {
+            let (double, norm) = (2.0 * z[0], plane::dot(z, z));
+            let (mut before, mut power) = (0.0, z[1]);
+            for [of_odd, of_even] in &LOGARITHM {
+                odd += of_odd * power;
+                (before, power) = (power, double * power - norm * before);
+                even -= of_even * power;
+                (before, power) = (power, double * power - norm * before);
+                if power.abs() + before.abs() < 1e-17 {
                     break;
                 }
             }
         }
-        sum * w
+        (constant * even + slope * odd) * w
     }
 }

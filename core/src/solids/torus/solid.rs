@@ -2,14 +2,15 @@
 
 use super::ring::{Ends, NOISE, Ring, ahead, length2};
 use super::section::{Rectangle, Reference, Section};
-use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
+use crate::grid::{Grid, rounding};
 use crate::number::axis::Axis;
 use crate::number::plane::P2;
 use crate::number::real::{Real, Vector};
 use crate::number::space::{P3, cross, dot, unit};
 use core::f64::consts::PI;
 use core::ops::Range;
+use heapless::Vec;
 
 /// A torus, or a part of a turn of one between flat ends. Not convex.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +72,9 @@ fn turned(degrees: f64) -> P2 {
     }
 }
 
+/// Of so many cells of a row the faces that the next one shares are kept.
+const ROW: usize = 64;
+
 /// A cell's extent along each axis, from the centre.
 type Sides = [P2; 3];
 
@@ -126,7 +130,10 @@ impl TorusSolid {
     #[must_use]
     pub fn share(&self, kind: RangeKind, lo: P3, hi: P3) -> (f64, f64) {
         let ring = &self.ring;
-        let sides = Axis::ALL.map(|n| [lo[n] - ring.center[n], hi[n] - ring.center[n]]);
+        let sides = Axis::ALL.map(|n| {
+            let room = rounding([lo[n], hi[n]]);
+            [lo[n], hi[n]].map(|x| if (x - ring.center[n]).abs() <= room { 0.0 } else { x - ring.center[n] })
+        });
         let (share, error) = if let RangeKind::Faces(axis) = kind {
             let axis = Axis::new(axis).unwrap_or(Axis::Z);
             let rectangle = rectangle(axis, sides[axis][0], &sides);
@@ -134,7 +141,7 @@ impl TorusSolid {
             let area = (rectangle.u[1] - rectangle.u[0]) * (rectangle.v[1] - rectangle.v[0]);
             (fraction(&section, area), section.error)
         } else {
-            match ring.cell(&sides, None) {
+            match ring.cell(&sides, [None; 2]) {
                 Cell::Open => (0.0, 0.0),
                 Cell::Closed => (1.0, 0.0),
                 Cell::Cut { share, error, .. } => (share.clamp(0.0, 1.0), error + (share - 1.0).max(-share).max(0.0)),
@@ -248,17 +255,23 @@ impl TorusSolid {
         if lowest > z[1] || highest < z[0] {
             return 0.0;
         }
-        let z = z.map(|z| z - self.ring.center[2]);
+        let ring = self.ring.in_planes(grid);
+        let z = z.map(|z| z - ring.center[2]);
         let [nx, ny, _] = grid.cells();
         let rows = reached(ys, self.extent_along(Axis::Y));
         let cells = reached(xs, self.extent_along(Axis::X));
-        let mut told = Teller { ring: &self.ring, cells: [nx, ny], areas, worst: 0.0, visit };
+        let mut told = Teller { ring: &ring, cells: [nx, ny], areas, worst: 0.0, visit };
+        // The faces that a row shares with the one before it, as far as there is room.
+        let mut shared: Vec<Option<Face>, ROW> = Vec::new();
+        let _ = shared.resize(cells.len().min(ROW), None);
         for j in rows.clone() {
-            let Some(y) = side(ys, j, self.ring.center[1]) else { break };
+            let Some(y) = side(ys, j, ring.center[1]) else { break };
             let mut before = None;
-            for i in cells.clone() {
-                let Some(x) = side(xs, i, self.ring.center[0]) else { break };
-                told.cell([i, j], &[x, y, z], &mut before, [i + 1 == cells.end, j + 1 == rows.end]);
+            for (n, i) in cells.clone().enumerate() {
+                let Some(x) = side(xs, i, ring.center[0]) else { break };
+                let mut none = None;
+                let below = shared.get_mut(n).unwrap_or(&mut none);
+                told.cell([i, j], &[x, y, z], [&mut before, below], [i + 1 == cells.end, j + 1 == rows.end]);
             }
         }
         told.worst
@@ -272,12 +285,13 @@ impl TorusSolid {
         if lowest > z || highest < z {
             return;
         }
-        let h = z - self.ring.center[2];
+        let ring = self.ring.in_planes(grid);
+        let h = z - ring.center[2];
         for j in reached(ys, self.extent_along(Axis::Y)) {
-            let Some(v) = side(ys, j, self.ring.center[1]) else { break };
+            let Some(v) = side(ys, j, ring.center[1]) else { break };
             for i in reached(xs, self.extent_along(Axis::X)) {
-                let Some(u) = side(xs, i, self.ring.center[0]) else { break };
-                let section = self.ring.section(&Rectangle { n: Axis::Z, h, u, v }, None, false);
+                let Some(u) = side(xs, i, ring.center[0]) else { break };
+                let section = ring.section(&Rectangle { n: Axis::Z, h, u, v }, None, false);
                 let share = fraction(&section, (u[1] - u[0]) * (v[1] - v[0]));
                 if share > 0.0 {
                     visit(RangeKind::Faces(2), j * grid.cells()[0] + i, share, section.error);
@@ -317,8 +331,9 @@ impl<F: FnMut(RangeKind, usize, f64, f64)> Teller<'_, F> {
         }
     }
 
-    /// A cell and its low faces, and high ones where none follows. `before` is the face that it shares with the cell before.
-    fn cell(&mut self, [i, j]: [usize; 2], sides: &Sides, before: &mut Option<Face>, last: [bool; 2]) {
+    /// A cell and its low faces, and high ones where none follows. `shared` are the faces that it shares with the cells before it along x and y, and becomes
+    /// those that it shares with the next.
+    fn cell(&mut self, [i, j]: [usize; 2], sides: &Sides, shared: [&mut Option<Face>; 2], last: [bool; 2]) {
         let [nx, _] = self.cells;
         let c = j * nx + i;
         let size = sides.map(|[lo, hi]| hi - lo);
@@ -326,7 +341,8 @@ impl<F: FnMut(RangeKind, usize, f64, f64)> Teller<'_, F> {
         let areas = self.areas;
         let last = [last[0], last[1], false];
         let shown = |axis: Axis, high: usize| areas && (high == 0 || last[axis]);
-        match self.ring.cell(sides, before.take()) {
+        let [along_x, along_y] = shared;
+        match self.ring.cell(sides, [along_x.take(), along_y.take()]) {
             Cell::Open => {}
             Cell::Closed => {
                 self.tell(RangeKind::Cells, c, 1.0, 0.0);
@@ -337,7 +353,7 @@ impl<F: FnMut(RangeKind, usize, f64, f64)> Teller<'_, F> {
                 }
             }
             Cell::Cut { share, error, faces } => {
-                *before = Some(faces[0][1]);
+                (*along_x, *along_y) = (Some(faces[0][1]), Some(faces[1][1]));
                 let beyond = (share - 1.0).max(-share) - error;
                 self.worst = if share.is_nan() { f64::INFINITY } else { self.worst.max(beyond) };
                 self.tell(RangeKind::Cells, c, share.min(1.0), error);
@@ -374,8 +390,17 @@ enum Cell {
 }
 
 impl Ring {
-    /// A cell; the low face across x may be known.
-    fn cell(&self, sides: &Sides, low: Option<Face>) -> Cell {
+    /// With its centre in the planes of a grid that it misses by rounding: flat ends that should lie in a plane do.
+    fn in_planes<R: Real>(&self, grid: &Grid<R>) -> Self {
+        let mut ring = *self;
+        for n in Axis::ALL {
+            ring.center[n] = grid.plane_at(n as usize, ring.center[n]).unwrap_or(ring.center[n]);
+        }
+        ring
+    }
+
+    /// A cell; the low faces across x and y may be known.
+    fn cell(&self, sides: &Sides, low: [Option<Face>; 2]) -> Cell {
         let size = sides.map(|[lo, hi]| hi - lo);
         let half = Real::sqrt(dot(size, size)) * 0.5;
         let outside = self.outside(sides.map(|[lo, hi]| (lo + hi) * 0.5));
@@ -392,7 +417,7 @@ impl Ring {
             let mut lost = self.lost(sides, &faces);
             let careful = lost > 0.0;
             if careful {
-                faces = self.faces(sides, None, true);
+                faces = self.faces(sides, [None; 2], true);
                 lost = self.lost(sides, &faces);
             }
             (share, error) = self.volume(sides, &faces, careful);
@@ -403,16 +428,16 @@ impl Ring {
         Cell::Cut { share, error, faces }
     }
 
-    /// The sides of a cell; the low one across x may be known.
-    fn faces(&self, sides: &Sides, low: Option<Face>, careful: bool) -> [[Face; 2]; 3] {
+    /// The sides of a cell; the low ones across x and y may be known.
+    fn faces(&self, sides: &Sides, low: [Option<Face>; 2], careful: bool) -> [[Face; 2]; 3] {
         let face = |n: Axis, h: f64| {
             let rectangle = rectangle(n, h, sides);
             let [x, y, _] = self.local(rectangle.middle());
             Face { section: self.section(&rectangle, None, careful), toward: [x, y] }
         };
-        let [[x0, x1], y, z] = *sides;
-        let first = low.unwrap_or_else(|| face(Axis::X, x0));
-        [[first, face(Axis::X, x1)], y.map(|h| face(Axis::Y, h)), z.map(|h| face(Axis::Z, h))]
+        let ([x, y, z], [low_x, low_y]) = (*sides, low);
+        let both = |n: Axis, [lo, hi]: P2, low: Option<Face>| [low.unwrap_or_else(|| face(n, lo)), face(n, hi)];
+        [both(Axis::X, x, low_x), both(Axis::Y, y, low_y), both(Axis::Z, z, None)]
     }
 
     /// By how much the flux of the field ρ e_φ through the sides of a cell and the ends in it is not zero, beyond what errors of the sections tell. The field

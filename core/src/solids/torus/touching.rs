@@ -93,12 +93,14 @@ impl Curve<'_> {
     fn spot(&self, s: f64) -> Spot {
         let ([w, up], radius, tube) = (self.slant, self.sign * self.ring.radius, self.ring.tube);
         let k = (1.0 - w) / (1.0 + w);
-        let (sine, cosine) = (k * libm::sin(2.0 * s), k * libm::cos(2.0 * s));
+        let (sin, cos) = libm::sincos(s);
+        let (sine, cosine) = (2.0 * k * sin * cos, k * (cos - sin) * (cos + sin));
+        // Sine and cosine of t − ψ, and of half of it.
         let bend = length2([2.0 * Real::sqrt(w) / (1.0 + w), cosine]);
-        let apart = libm::atan2(sine, bend) * 0.5;
+        let half = Real::sqrt((1.0 + bend) * 0.5);
+        let [c, d] = [half, sine / (2.0 * half)];
         let faster = if bend > 0.0 { cosine / bend } else { 0.0 };
-        let (t, psi) = (s + apart, s - apart);
-        let (of_t, of_psi) = ([libm::cos(t), libm::sin(t)], [libm::cos(psi), libm::sin(psi)]);
+        let (of_t, of_psi) = ([cos * c - sin * d, sin * c + cos * d], [cos * c + sin * d, sin * c - cos * d]);
         let place = |[ct, st]: P2, [cp, sp]: P2, [tube, radius]: P2| {
             let (x, y) = (radius * cp + tube * ct, radius * sp + tube * w * st);
             let [a, b] = self.across;
