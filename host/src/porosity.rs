@@ -113,7 +113,7 @@ fn in_frame(
     options: Options,
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
-    let roads = Roads::choose(bodies, triangles, options);
+    let roads = Roads::choose(grid, bodies, triangles, options);
     let mut joined = joined(&Scene { grid, bodies, triangles, roads, options }, &levels(bodies), layer_done);
     doubt::allow_for_rounding(grid, bodies, options, &mut joined);
     doubt::widen_unknown(grid, bodies, options, &mut joined);

@@ -1,15 +1,16 @@
 //! What stands in the way of gas of pipe bends: shadows against lines and their own parts, faces by throat, areas of pipe lines.
 
 use super::torus_points::inside;
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::PI;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::shadows::{cells, faces_of_cell};
 use voidage::porosity::{Options, Porosity, porosity, throat};
-use voidage_core::convex::shape::Cylinder;
+use voidage_core::convex::shape::{Cone, Cylinder};
 use voidage_core::solids::torus::TorusShape;
+use voidage_tests::fields::assert_close;
 use voidage_tests::solids::formulas;
 
 fn found(edges: &Edges, forms: &[Form]) -> (Porosity, Resistance) {
@@ -143,5 +144,41 @@ fn joints_in_planes_of_the_grid_are_not_wetted() {
             let lengthwise = found.totals.frontal_area[if turned { 0 } else { 2 }];
             assert!(lengthwise > side && lengthwise < 2.0 * side, "{lengthwise}");
         }
+    }
+}
+
+/// Edges as a program adds them up: planes miss the ends of pipes, cones and bends by rounding, to either side.
+#[test]
+fn ends_that_miss_planes_by_rounding_lie_in_them() {
+    let exact = Edges::cube(-1.5, 1.5, 20);
+    let off = even(-1.5, 0.15, 20);
+    assert!(off != exact.0[0], "the same planes");
+    let off = Edges([off.clone(), off.clone(), off]);
+    let at = |n: i32| 0.15 * f64::from(n);
+    let mut forms = Vec::new();
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+        let aside = DVec3::new(0.02, 0.03, 0.04) * (DVec3::ONE - axis);
+        for (from, to) in [(1, 3), (-1, 3), (-7, -3)] {
+            let [from, to] = [from, to].map(|n| axis * at(n) + aside);
+            forms.push(Form::Cylinder(Cylinder::new(from, to, 0.2)));
+            forms.push(Form::Cone(Cone::truncated(from, to, 0.2, 0.1)));
+        }
+        for (start, angle) in [(axis.yzx(), 90.0), (axis.yzx(), 270.0), (axis.zxy(), 242.0), (axis.zxy(), 180.0)] {
+            for (radius, tube) in [(0.15, 0.075), (0.6, 0.55), (0.5, 0.18)] {
+                forms.push(Form::Torus(TorusShape { center: DVec3::splat(at(1)), axis, start, radius, tube, angle }));
+            }
+        }
+    }
+    for form in forms {
+        let [one, other] = [&exact, &off].map(|edges| {
+            let found = porosity(
+                &edges.grid(None).expect("a grid"),
+                &formulas(std::slice::from_ref(&form)),
+                Options::default(),
+            );
+            assert!(found.max_gap < 5e-9, "{form:?}: gap {}", found.max_gap);
+            found
+        });
+        assert_close(&one.beta, &other.beta, 1e-9, &format!("{form:?}"));
     }
 }

@@ -5,6 +5,7 @@
 
 use super::convex::{Convex, Known, faceted, is_closed, round};
 use super::formulas::{self, FormulaMemory, FormulaSolid};
+use super::snap::ToPlanes;
 use super::{Leaf, Method, Options};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use crate::geometry::form::Form;
@@ -33,13 +34,14 @@ pub struct Roads {
 impl Roads {
     /// Choose for every body; `triangles` are those of `bodies`, or a copy with corners moved.
     #[must_use]
-    pub fn choose(bodies: &Bodies, triangles: &[[DVec3; 3]], options: Options) -> Self {
+    pub fn choose(grid: &Grid<f64>, bodies: &Bodies, triangles: &[[DVec3; 3]], options: Options) -> Self {
+        let planes = ToPlanes::new(grid);
         let known = |body: &Body| match (&body.form, options.method) {
             _ if body.doubt != Doubt::None => None,
             // Planes are measured by their surface: exact, and cheaper than any subdivision.
             (_, Method::Auto | Method::Surface) if !body.triangles.is_empty() => None,
             (_, Method::Surface) => None,
-            (Some(form), _) if body.triangles.is_empty() => round(form).map(Known::Round),
+            (Some(form), _) if body.triangles.is_empty() => round(&planes.form(form)).map(Known::Round),
             (_, Method::Auto | Method::Gjk) => {
                 let own = &triangles[body.triangles.clone()];
                 let closed = || options.leaf != Leaf::Plane && !body.sheet && is_closed(own);

@@ -4,16 +4,12 @@
 //! little would block the face or not by chance; in the plane it blocks it. No corner moves farther than its source was rounded.
 
 use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::form::Form;
 use crate::geometry::single::SingleSource;
 use glam::DVec3;
 use rayon::prelude::*;
+use voidage_core::convex::shape::{Cone, Cylinder};
 use voidage_core::grid::{Grid, Located};
-
-/// Corners within this share of the grid's length are in the plane: far below the digits of any `f32` file.
-const NEAR: f64 = 1.0 / (1_u64 << 44) as f64;
-
-/// Corners within so many units in the last place of the grid's largest coordinate are in the plane.
-const NEAR_ULPS: f64 = 2.0;
 
 /// A copy of the bodies' triangles with such corners moved; none if there are no such corners.
 #[must_use]
@@ -54,6 +50,23 @@ impl<'a> ToPlanes<'a> {
         triangle.map(|p| self.corner(p, Some(body)))
     }
 
+    /// A solid by formula, its flat ends in the planes that they miss by rounding.
+    #[must_use]
+    pub fn form(&self, form: &Form) -> Form {
+        let moved = |p: DVec3| self.corner(p, None);
+        match form {
+            Form::Cylinder(s) => {
+                let [from, to] = s.ends().map(moved);
+                Form::Cylinder(Cylinder::new(from, to, s.base_radius()))
+            }
+            Form::Cone(s) => {
+                let [from, to] = s.ends().map(moved);
+                Form::Cone(Cone::truncated(from, to, s.base_radius(), s.top_radius()))
+            }
+            other => other.clone(),
+        }
+    }
+
     /// A corner, its coordinates replaced by those of the planes that it misses by rounding.
     fn corner(&self, p: DVec3, body: Option<&Body>) -> DVec3 {
         let plane = DVec3::new(self.nearest(0, p.x), self.nearest(1, p.y), self.nearest(2, p.z));
@@ -81,11 +94,7 @@ impl<'a> ToPlanes<'a> {
 /// Distance along each axis within which any corner is in a plane, in metres.
 #[must_use]
 pub fn near(grid: &Grid<f64>) -> DVec3 {
-    DVec3::from_array([0, 1, 2].map(|axis| {
-        let e = grid.edges(axis);
-        let (lo, hi) = (e[0], e[e.len() - 1]);
-        (hi - lo) * NEAR + lo.abs().max(hi.abs()) * f64::EPSILON * NEAR_ULPS
-    }))
+    DVec3::from_array([0, 1, 2].map(|axis| grid.rounding(axis)))
 }
 
 /// The number of the body that a triangle belongs to; bodies have their triangles one after the other.
