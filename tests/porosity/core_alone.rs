@@ -315,6 +315,61 @@ fn single_precision_holds_double_precision() {
     assert!(widest < 0.02, "{widest}");
 }
 
+/// Boxes whose corners are multiples of a step, at some offset, in single precision: bounds hold what double precision makes of the same numbers, above all
+/// for faces at the sides of the grid in whose planes several boxes have walls.
+#[test]
+fn walls_in_single_precision() {
+    let random = &mut Random::new(29);
+    let (mut shared, mut wide) = (0, 0);
+    for scene in 0..600 {
+        let (parts, offset) =
+            ([8.0_f32, 4.0, 3.0, 10.0][random.below(4)], [0.0_f32, 0.0, 10.0, 100.0, 1000.0][random.below(5)]);
+        let mut two = || {
+            let (a, b) = (random.below(9), random.below(8));
+            let b = if b < a { b } else { b + 1 };
+            [a.min(b), a.max(b)]
+        };
+        let place = |n: usize| n as f32 / parts + offset;
+        // Two cells, if there is a plane between.
+        let axis = |[from, to]: [usize; 2]| {
+            let mut planes = vec![from, (from + to) / 2, to];
+            planes.dedup();
+            planes.into_iter().map(place).collect::<Vec<f32>>()
+        };
+        let edges = [axis(two()), axis(two()), axis(two())];
+        let corners: Vec<[[f32; 2]; 3]> =
+            (0..2 + scene % 3).map(|_| [two(), two(), two()].map(|ends| ends.map(place))).collect();
+        let cuboid = |[x, y, z]: &[[f32; 2]; 3]| {
+            let corner = |n: usize| DVec3::new(f64::from(x[n]), f64::from(y[n]), f64::from(z[n]));
+            cuboid(corner(0), corner(1))
+        };
+        let double: Vec<Vec<[DVec3; 3]>> = corners.iter().map(cuboid).collect();
+        let single: Vec<Vec<[Vec3; 3]>> =
+            double.iter().map(|body| body.iter().map(|t| t.map(|p| p.as_vec3())).collect()).collect();
+        let wider = edges.each_ref().map(|axis| axis.iter().map(|&e| f64::from(e)).collect::<Vec<_>>());
+        let given = Given { pieces: 400, ..PLENTY };
+        let truth = {
+            let surfaces: Vec<_> = double.iter().map(|body| Surface::new(body)).collect();
+            fields(&Grid::new(&wider[0], &wider[1], &wider[2]).expect("a grid"), &surfaces, given)
+        };
+        let surfaces: Vec<_> = single.iter().map(|body| Surface::new(body)).collect();
+        let found = fields(&Grid::new(&edges[0], &edges[1], &edges[2]).expect("a grid"), &surfaces, given);
+        let room = 100.0 * f64::from(f32::EPSILON) * f64::from(offset.max(1.0) * parts);
+        for kind in 0..4 {
+            for (at, &truth) in truth.value[kind].iter().enumerate() {
+                let [low, high] = [0, 1].map(|n| f64::from(found.bounds[n][kind][at]));
+                assert!(
+                    low - room <= truth && truth <= high + room,
+                    "scene {scene}, field {kind}, place {at}: {truth} in {low}..{high}, offset {offset}"
+                );
+                shared += usize::from(truth > 0.0 && truth < 1.0);
+                wide += usize::from(offset == 0.0 && high - low > 1e-3);
+            }
+        }
+    }
+    assert!(shared > 3000 && wide == 0, "{shared} open in part, {wide} of them near the origin not known");
+}
+
 #[test]
 fn no_input_panics() {
     let double = (0..50_000).filter(|&seed| never_panics::<DVec3>(seed)).count();

@@ -41,6 +41,13 @@ pub const MAX_SPREAD: f64 = 1e-9;
 /// one plane.
 const THICKNESS_IN_EPSILONS: f64 = 64.0;
 
+/// Where rounding asks for planes thicker than this, in cells, what that may cost counts as that of a blur does: cells far from the origin, in `f32` a hundred
+/// of their lengths.
+const MOST_ROUNDING: f64 = 1e-3;
+
+/// Where it asks for more than this there is no proof.
+const TOO_THICK: f64 = 1.0 / 64.0;
+
 /// The diagonal of a side of the cell, in its frame: no section of a piece is longer.
 const LONGEST_EDGE: f64 = 1.5;
 
@@ -196,7 +203,7 @@ pub(super) struct Frame<R> {
 pub struct CellUnion<'a, R: Real> {
     space: UnionMemory<'a, R>,
     frame: Frame<R>,
-    /// Its planes are thicker than rounding asks for.
+    /// Its planes are so thick that what this may cost counts.
     blurred: bool,
     /// Lowest and highest corner of the cells of bodies that are not marked `below`, and of those that are, in the frame.
     cells: [[[R; 3]; 2]; 2],
@@ -212,10 +219,23 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// Begin with the cell `lo..hi`; it sets the frame. Planes closer than `blur`, in cells, are taken for one plane: faces that
     /// were meant to coincide and miss by so much then do, and [`CellFractions::error`] says what that may cost.
     pub fn new<V: Vector<Scalar = R>>(space: UnionMemory<'a, R>, cell: Aabb<V>, blur: R) -> Self {
-        let frame = Frame::of(cell);
+        Self::in_frame(space, Frame::of(cell), blur)
+    }
+
+    /// The same for a cell that is thin along an axis only to see what touches one of its sides: rounding along that axis moves nothing that is asked for.
+    pub(super) fn of_slab<V: Vector<Scalar = R>>(
+        space: UnionMemory<'a, R>,
+        cell: Aabb<V>,
+        thin: usize,
+        blur: R,
+    ) -> Self {
+        Self::in_frame(space, Frame::beside(cell, Some(thin)), blur)
+    }
+
+    fn in_frame(space: UnionMemory<'a, R>, frame: Frame<R>, blur: R) -> Self {
         CellUnion {
             space,
-            blurred: blur > frame.thickness,
+            blurred: blur > frame.thickness || frame.thickness > R::from_f64(MOST_ROUNDING),
             frame: Frame { thickness: frame.thickness.max(blur), ..frame },
             cells: [[[R::ZERO; 3], [R::ONE; 3]]; 2],
             part_count: 0,
@@ -278,6 +298,9 @@ impl<'a, R: Real> CellUnion<'a, R> {
 
     /// Build the trees of the bodies added since the last time; not before it is known that all their pieces find room.
     fn build_trees(&mut self) -> Result<(), NoProof> {
+        if self.frame.thickness > R::from_f64(TOO_THICK) {
+            return Err(Ambiguous);
+        }
         for n in self.built..self.part_count {
             let UnionMemory { pieces, split_pieces, order, nodes, pending, parts, .. } = &mut self.space;
             let part = parts.get_mut(n).ok_or(Full)?;
@@ -385,10 +408,15 @@ impl<'a, R: Real> CellUnion<'a, R> {
 impl<R: Real> Frame<R> {
     /// Of a cell, with a thickness that rounding asks for.
     pub fn of<V: Vector<Scalar = R>>(cell: Aabb<V>) -> Self {
+        Self::beside(cell, None)
+    }
+
+    /// The same, rounding along a `thin` axis aside.
+    fn beside<V: Vector<Scalar = R>>(cell: Aabb<V>, thin: Option<usize>) -> Self {
         let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
         let size = sub(hi, lo);
         let mut reach = R::ONE;
-        for axis in 0..3 {
+        for axis in (0..3).filter(|&axis| thin != Some(axis)) {
             reach = reach.max(lo[axis].abs().max(hi[axis].abs()) / size[axis]);
         }
         Frame { origin: lo, scale: size, thickness: R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach }
@@ -495,6 +523,11 @@ impl<R: Real> Frame<R> {
             }
         })
     }
+}
+
+/// Does rounding ask for planes so thick in a cell that what this may cost counts?
+pub(super) fn rounds_much<V: Vector>(cell: Aabb<V>) -> bool {
+    Frame::of(cell).thickness > V::Scalar::from_f64(MOST_ROUNDING)
 }
 
 /// Does the box of a triangle share space with the cell `lo..hi`?

@@ -10,7 +10,7 @@ use crate::surface::cell_unions::with_least_blur;
 use crate::surface::division::{Shared, Site, SpareMemory, find_parts};
 use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{known, narrow, rounding};
-use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory};
+use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory, rounds_much};
 
 /// Narrow the bounds of the shared faces of a layer that lie in walls: its x and y faces and the z faces below.
 pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
@@ -70,10 +70,15 @@ fn wall<V: Vector, O: OtherBodies<V>>(
     let side = |below: bool| {
         // Beyond the outer planes the nearest layer knows all that touches them.
         let k = if axis == 2 && below { face[2].saturating_sub(1) } else { face[2].min(top) };
-        Some(WallSide { cell: side_cell(site.grid, axis, face, below)?, k, below })
+        let (cell, outside) = side_cell(site.grid, axis, face, below)?;
+        Some(WallSide { cell, k, below, thin: outside.then_some(axis) })
     };
     let (Some(below), Some(above)) = (side(true), side(false)) else { return Bounds::UNKNOWN };
     let sides = [below, above];
+    // Of planes so thick the sides of a face may be told wrongly.
+    if sides.iter().filter(|side| side.thin.is_none()).any(|side| rounds_much(side.cell)) {
+        return Bounds::UNKNOWN;
+    }
     // What a sheet blocks beyond the solids is not known here.
     if sides.iter().any(|side| site.bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g))) {
         return Bounds::UNKNOWN;
@@ -145,8 +150,11 @@ fn gather<'u, V: Vector>(
     sides: &[WallSide<V>],
     blur: V::Scalar,
 ) -> Result<CellUnion<'u, V::Scalar>, NoProof> {
-    let frame = sides.first().ok_or(NoProof::Full)?.cell;
-    let mut union = CellUnion::new(memory.reborrow(), frame, blur);
+    let first = sides.first().ok_or(NoProof::Full)?;
+    let mut union = match first.thin {
+        Some(axis) => CellUnion::of_slab(memory.reborrow(), first.cell, axis, blur),
+        None => CellUnion::new(memory.reborrow(), first.cell, blur),
+    };
     for side in sides {
         for group in bins.groups(side.k).iter().filter(|g| side.touches(g)) {
             union.add(side.cell, side.below, bins.triangles(group), bins.ids(group).iter().copied())?;
@@ -161,6 +169,8 @@ struct WallSide<V> {
     cell: Aabb<V>,
     k: usize,
     below: bool,
+    /// The axis along which it is thin, because it lies beyond the grid.
+    thin: Option<usize>,
 }
 
 impl<V: Vector> WallSide<V> {
@@ -169,8 +179,8 @@ impl<V: Vector> WallSide<V> {
     }
 }
 
-/// The cell below or above a face; beyond the grid's outer planes, a thin one.
-fn side_cell<V: Vector>(grid: &Grid<V::Scalar>, axis: usize, face: [usize; 3], below: bool) -> Option<Aabb<V>> {
+/// The cell below or above a face; beyond the grid's outer planes, a thin one, and whether it is that.
+fn side_cell<V: Vector>(grid: &Grid<V::Scalar>, axis: usize, face: [usize; 3], below: bool) -> Option<(Aabb<V>, bool)> {
     let (position, at) = (*face.get(axis)?, *grid.edges(axis).get(*face.get(axis)?)?);
     let outside = (below && position == 0) || (!below && position == *grid.cells().get(axis)?);
     // The cell on this side; outside the grid the one on the other.
@@ -178,13 +188,13 @@ fn side_cell<V: Vector>(grid: &Grid<V::Scalar>, axis: usize, face: [usize; 3], b
     *cell.get_mut(axis)? -= usize::from(below != outside);
     let found = grid.cell_box(cell)?;
     if !outside {
-        return Some(found);
+        return Some((found, false));
     }
     let (mut lo, mut hi) = (found.min.to_array(), found.max.to_array());
     let thin = (hi[axis] - lo[axis]) * V::Scalar::from_f64(OUTSIDE);
     (lo[axis], hi[axis]) = if below { (at - thin, at) } else { (at, at + thin) };
     let corner = |p: [V::Scalar; 3]| V::new(p[0], p[1], p[2]);
-    Some(Aabb { min: corner(lo), max: corner(hi) })
+    Some((Aabb { min: corner(lo), max: corner(hi) }, true))
 }
 
 /// How far beyond its outer planes a grid looks for bodies that touch them, in cells.
