@@ -99,8 +99,8 @@ impl Hollow {
 
 /// Which boxes are bodies and which their cavities. None where the text leaves it open: a box is there in both orientations, boxes of both
 /// orientations overlap in part, one
-/// with a cavity is there twice (the copy may fill it), one lies in a cavity of its own orientation, or of two smallest containers of one size one
-/// would make a cavity, and one not.
+/// with a cavity is there twice (the copy may fill it), one lies in a cavity of its own orientation, of two smallest containers of one size one
+/// would make a cavity, and one not, or cavities of a body overlap and one of them may as well be another body's.
 fn bodies(bricks: &[Brick]) -> Option<Vec<Hollow>> {
     let crossing = |a: &Brick, b: &Brick| a.inverted != b.inverted && a.overlaps(b) && !a.holds(b) && !b.holds(a);
     if bricks.iter().any(|a| bricks.iter().any(|b| crossing(a, b))) {
@@ -138,6 +138,15 @@ fn bodies(bricks: &[Brick]) -> Option<Vec<Hollow>> {
         if cavity_of[s].is_some() && copies.count() > 1 {
             return None;
         }
+    }
+    let may_move = |c: usize| {
+        let is_other = |p: usize| distinct[p].inverted != distinct[c].inverted && cavity_of[p].is_none();
+        (0..distinct.len()).any(|p| Some(p) != cavity_of[c] && is_other(p) && distinct[p].holds(&distinct[c]))
+    };
+    let overlap = |c: usize, o: usize| c != o && cavity_of[c] == cavity_of[o] && distinct[c].overlaps(&distinct[o]);
+    let cavities: Vec<usize> = (0..distinct.len()).filter(|&c| cavity_of[c].is_some()).collect();
+    if cavities.iter().any(|&c| may_move(c) && cavities.iter().any(|&o| overlap(c, o))) {
+        return None;
     }
     let hollow = |s: usize| {
         let cavities = (0..distinct.len()).filter(|&c| Some(s) == cavity_of[c]).map(|c| distinct[c]);

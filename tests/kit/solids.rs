@@ -108,7 +108,7 @@ fn sixteen_centers() -> impl Iterator<Item = DVec3> {
 /// Volume enclosed by triangles.
 #[must_use]
 pub fn volume(triangles: &[Triangle]) -> f64 {
-    voidage::geometry::repair::nesting::signed_volume(triangles, triangles.first().map_or(DVec3::ZERO, |t| t[0]))
+    voidage::geometry::repair::closed::signed_volume(triangles, triangles.first().map_or(DVec3::ZERO, |t| t[0]))
 }
 
 /// A scene of closed solids, as if each had been read from a file of its own.

@@ -8,14 +8,16 @@ use crate::geometry::close::{Unclosed, close};
 use crate::geometry::diagnosis::{Reporter, show};
 use crate::geometry::form::Form;
 use crate::geometry::mesh::{LARGEST, Mesh};
+use crate::geometry::repair::closed::Closed;
+pub use crate::geometry::repair::closed::Doubt;
 use crate::geometry::repair::copies::{self, Twins};
 use crate::geometry::repair::cracks::{self, Cracks};
 use crate::geometry::repair::crossing::{self, Found};
 use crate::geometry::repair::edges::EdgeUses;
 use crate::geometry::repair::junctions;
-pub use crate::geometry::repair::nesting::Doubt;
-use crate::geometry::repair::nesting::{self, Closed, Role};
+use crate::geometry::repair::nesting::{self, Nesting};
 use crate::geometry::repair::regions::{self, Regions, Unknown};
+use crate::geometry::repair::rooms::Role;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::shells::{self, Shell};
 use crate::geometry::repair::two_sided;
@@ -209,14 +211,18 @@ impl Bodies {
     /// Give the shells their roles and orientation, and store them.
     fn assemble(&mut self, parts: Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
         let (names, shells): (Vec<String>, Vec<Closed>) = parts.into_iter().map(|p| (p.name, p.shell)).unzip();
-        let roles = nesting::roles(&shells);
+        let Nesting { roles, either: rooms_or_parts, either_in, unclear } = nesting::nest(&shells, &names);
+        let is_either = |s: usize| rooms_or_parts.binary_search(&s).is_ok();
         let first = self.bodies.len();
         let mut cavities_of: HashMap<usize, Vec<&Closed>> = HashMap::default();
         for (role, shell) in roles.iter().zip(&shells) {
             if let Role::CavityOf(s) = role {
                 cavities_of.entry(*s).or_default().push(shell);
+                d.cavities += 1;
             }
         }
+        // What is a room or a part is a body of its own.
+        either_in.iter().for_each(|&(s, inner)| cavities_of.entry(s).or_default().push(&shells[inner]));
         for (s, shell) in shells.iter().enumerate().filter(|&(s, _)| roles[s] == Role::Body) {
             let begin = self.triangles.len();
             let mut volume = self.push(shell, true);
@@ -225,12 +231,16 @@ impl Bodies {
             let (joined, clear) = joined(&cavities);
             volume -= joined.iter().map(|cavity| self.push(cavity, false)).sum::<f64>();
             d.inside_out += usize::from(shell.volume < 0.0 && !shell.is_sheet());
-            d.cavities += count;
             d.sheets += usize::from(shell.is_sheet());
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
             let rounding = joined.iter().fold(shell.rounding, |most, cavity| most.max(cavity.rounding));
-            let doubt = if clear { shell.doubt } else { Doubt::Unknown };
-            let unknown = joined.iter().chain([shell]).flat_map(|s| s.unknown.iter().copied()).collect();
+            let doubt = match shell.doubt {
+                _ if !clear => Doubt::Unknown,
+                Doubt::None if is_either(s) => Doubt::Perhaps,
+                doubt => doubt,
+            };
+            let of_body = unclear.iter().filter(|(body, _)| *body == s).map(|(_, around)| *around);
+            let unknown = joined.iter().chain([shell]).flat_map(|s| s.unknown.iter().copied()).chain(of_body).collect();
             let (name, form, single, porosity) = (names[s].clone(), None, None, 0.0);
             let cavities = count;
             self.bodies.push(Body {
@@ -254,6 +264,7 @@ impl Bodies {
         let is_inverted = |s: usize| shells[s].volume < 0.0;
         let of_bodies = (0..shells.len()).filter(|&s| roles[s] == Role::Body).map(is_inverted);
         say_roles(&self.bodies[first..], of_bodies, d, report);
+        say_doubts(&shells, &rooms_or_parts, &unclear, report);
     }
 
     /// Store a shell's triangles, outward or inward; returns its volume without sign.
@@ -292,6 +303,35 @@ fn say_roles(bodies: &[Body], inverted: impl Iterator<Item = bool>, d: &Diagnosi
             "{} no thickness (the first at {}); what is open on both sides holds no volume and blocks a face only where it lies in its plane",
             counted(d.sheets, "sheet has", "sheets have"),
             show(place)
+        ));
+    }
+}
+
+/// Tell of what may be a room or a part, and of rooms that may be of one body or another.
+fn say_doubts(shells: &[Closed], inner: &[usize], unclear: &[(usize, [DVec3; 2])], report: &mut Reporter) {
+    let volume = |s: &usize| shells[*s].volume.abs();
+    if let Some(largest) = inner.iter().max_by(|a, b| volume(a).total_cmp(&volume(b))) {
+        let [lo, hi] = shells[*largest].bounds;
+        report.warn(format!(
+            "{} (the largest from {} to {}, {:.6e} m3): nothing tells whether {} a room or a part; {} taken as solid, and bounds hold both. \
+             For a room, write one side of each surface: outer ones looking outward, rooms inward",
+            counted(
+                inner.len(),
+                "closed surface with two sides lies within another with two sides",
+                "closed surfaces with two sides lie within others with two sides"
+            ),
+            show(lo),
+            show(hi),
+            volume(largest),
+            either(inner.len(), "it is", "each is"),
+            either(inner.len(), "it is", "they are"),
+        ));
+    }
+    if let Some((_, [lo, hi])) = unclear.first() {
+        report.warn(format!(
+            "cavities overlap within several bodies (the first from {} to {}), and nothing tells which of them is whose: what is solid there cannot be told, and the bounds there are wide",
+            show(*lo),
+            show(*hi)
         ));
     }
 }
@@ -362,7 +402,7 @@ impl Cluster {
 
     fn into_part(self, mesh: &Indexed, name_of: impl Fn(u32) -> String) -> (Part, Option<Regions>) {
         let first = self.triangles.iter().min_by_key(|&&n| mesh.source(n));
-        let shell = Closed::new(mesh.corners(&self.triangles));
+        let shell = Closed { two_sided: true, ..Closed::new(mesh.corners(&self.triangles)) };
         let name = first.map_or_else(String::new, |&n| name_of(n));
         (Part { name, own: shell.triangles.len(), shell, cluster: 0, guessed: false, contested: false }, self.regions)
     }
@@ -509,6 +549,8 @@ fn split(
 /// Drop the shells that repeat others or are their backs.
 fn drop_copies(mesh: &Indexed, shells: &mut Vec<Shell>, twins: &Twins, rounding: f64, d: &mut Diagnosis) {
     let found = copies::redundant(mesh, shells, twins, rounding);
+    let two_sided = copies::have_two_sides(mesh, shells, twins, &found.shells);
+    shells.iter_mut().zip(two_sided).for_each(|(shell, two_sided)| shell.two_sided = two_sided);
     let mut redundant = found.shells.into_iter();
     shells.retain(|_| redundant.next() != Some(true));
     d.repeated += found.repeated;

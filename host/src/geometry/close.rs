@@ -2,9 +2,9 @@
 
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
 use crate::geometry::repair::apart::Pieces;
+use crate::geometry::repair::closed::Closed;
 use crate::geometry::repair::edges::{EdgeUses, key, without_opposites};
 use crate::geometry::repair::gaps::{self, Gaping, Loose};
-use crate::geometry::repair::nesting::Closed;
 use crate::geometry::repair::rims::{Rim, rims};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::shells::Shell;
@@ -65,6 +65,7 @@ pub(super) fn close(
             open.uneven.extend(&caps.open.uneven);
             shell.unknown = caps.open.uneven;
         }
+        shell.two_sided = group.iter().all(|&s| shells[s].two_sided);
         loose.extend(boundary.iter().map(|&edge| Loose { part: closed.len(), edge }));
         let contested = is_capped && boundary.iter().any(contested);
         if !is_capped {
@@ -136,7 +137,8 @@ fn separate(
         for (n, members) in apart.into_iter().enumerate() {
             let name = members.iter().min().map_or_else(String::new, |&n| name_of(n));
             let (cluster, guessed) = (parts[s].cluster, parts[s].guessed);
-            let (shell, own) = (Closed::new(mesh.corners(&members)), members.len());
+            let two_sided = parts[s].shell.two_sided;
+            let (shell, own) = (Closed { two_sided, ..Closed::new(mesh.corners(&members)) }, members.len());
             let part = Part { name, shell, own, cluster, guessed, contested: false };
             if n == 0 {
                 parts[s] = part;

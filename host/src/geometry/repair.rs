@@ -3,6 +3,7 @@
 pub mod apart;
 pub mod boxes;
 pub mod clear;
+pub mod closed;
 pub mod copies;
 pub mod cracks;
 pub mod crossing;
@@ -13,8 +14,10 @@ pub mod join;
 pub mod junctions;
 pub mod lines;
 pub mod nesting;
+pub mod overlap;
 pub mod regions;
 pub mod rims;
+pub mod rooms;
 pub mod separation;
 pub mod sets;
 pub mod shells;

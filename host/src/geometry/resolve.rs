@@ -1,8 +1,8 @@
 //! Shells that cross themselves, or whose triangles may belong to one another, become the surface of what is solid.
 
 use crate::geometry::diagnosis::{Diagnosis, Reporter, show};
+use crate::geometry::repair::closed::{Closed, Doubt, signed_volume};
 use crate::geometry::repair::crossing::{self, Found};
-use crate::geometry::repair::nesting::{Closed, Doubt, signed_volume};
 use crate::geometry::repair::regions::{self, Regions, SourceTriangles, Unknown};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
@@ -330,7 +330,8 @@ fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, pla
     match seen {
         Seen::As(Found::Simple { .. }) => {}
         Seen::As(Found::Resolved(made)) => {
-            part.shell = Closed { unknown: part.shell.unknown, ..Closed::of_parts(made.surface) };
+            let Closed { unknown, two_sided, .. } = part.shell;
+            part.shell = Closed { unknown, two_sided, ..Closed::of_parts(made.surface) };
             d.crossing += 1;
             places.resolved.get_or_insert(made.place);
         }
@@ -351,7 +352,8 @@ fn take(mut part: Part, seen: Seen, into: &mut Vec<Part>, d: &mut Diagnosis, pla
                 d.crossing += 1;
                 into.push(Part { name: part.name.clone(), own: shell.triangles.len(), shell, ..part });
             }
-            part.shell = Closed { unknown: part.shell.unknown, ..closed(solid) };
+            let Closed { unknown, two_sided, .. } = part.shell;
+            part.shell = Closed { unknown, two_sided, ..closed(solid) };
         }
     }
     into.push(part);

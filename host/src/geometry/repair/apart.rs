@@ -1,8 +1,9 @@
 //! Closed surfaces that were joined to one because they touch, and of which another body holds only some.
 
+use crate::geometry::repair::closed::{Closed, just_within};
 use crate::geometry::repair::edges::{ends, key, without_opposites};
 use crate::geometry::repair::junctions::{corners_on, parts_of};
-use crate::geometry::repair::nesting::{Closed, contains, just_within};
+use crate::geometry::repair::overlap::contains;
 use crate::geometry::repair::rims::rims;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::{Indexed, edges_of};

@@ -1,7 +1,7 @@
 //! Surface that is there more than once: repeated triangles, repeated shells, and the backs of double-sided surfaces.
 
+use crate::geometry::repair::closed::signed_volume;
 use crate::geometry::repair::edges::{EdgeUses, balance, key};
-use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::rims::rims;
 use crate::geometry::repair::sets::{Sets, by_number};
 use crate::geometry::repair::shells::Shell;
@@ -185,6 +185,16 @@ pub fn redundant(mesh: &Indexed, shells: &[Shell], owners: &Twins, rounding: f64
         }
     }
     found
+}
+
+/// Which shells have two sides: shells that are `redundant` hold the backs of all their triangles.
+#[must_use]
+pub fn have_two_sides(mesh: &Indexed, shells: &[Shell], owners: &Twins, redundant: &[bool]) -> Vec<bool> {
+    let has_back = |&n: &u32| {
+        let of_back = owners.get(&back(from_lowest(mesh.triangles[n as usize])));
+        of_back.is_some_and(|shells| shells.iter().any(|&s| redundant[s]))
+    };
+    shells.iter().map(|shell| redundant.contains(&true) && shell.triangles.iter().all(has_back)).collect()
 }
 
 /// Doubts what belongs together where shells share edges and some of them are backs of others. A shell alone is beyond doubt, and so are parts that all

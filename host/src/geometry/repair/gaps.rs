@@ -1,6 +1,6 @@
 //! Open parts that nearly meet along their edges: perhaps a body whose corners were written too coarsely to be merged.
 
-use crate::geometry::repair::nesting::Closed;
+use crate::geometry::repair::closed::Closed;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::weld::{Buckets, Indexed};
 use glam::DVec3;

@@ -2,168 +2,74 @@
 //!
 //! A shell inside another and of opposite orientation is a cavity of it (or, inside a cavity, an island). A shell of the same
 //! orientation as its container is a body of its own, as is a shell inside nothing, whichever way round it is.
+//!
+//! **Whose cavity.** Bodies may cross, and then a cavity lies in several of them. Where each cavity lies in its body and no two of one body overlap, a body
+//! winds 0 or 1 times around every point, and all bodies together as often as there are bodies there: so often as all shells do, whichever are matched.
+//! Any such matching gives one solid, and only such a matching is taken, if there is one ([`crate::geometry::repair::rooms`]). Where there is none, or one
+//! that goes against the names in the file, several readings differ, and what overlaps is in doubt.
 
-use crate::geometry::repair::crossing::solid_angle;
+use crate::geometry::repair::closed::{Closed, Doubt};
+use crate::geometry::repair::overlap::contains;
+use crate::geometry::repair::rooms::{Role, Rooms};
 use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
 
-/// What is not known of a body.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-pub enum Doubt {
-    /// Nothing.
-    #[default]
-    None,
-    /// Whether what it holds is solid or open.
-    Perhaps,
-    /// Which part of its box is solid; it may as well be a cavity of another body.
-    Unknown,
+/// What shells are to each other.
+#[derive(Debug)]
+pub struct Nesting {
+    /// The role of every shell. Sheets are bodies, and so is what is doubtful.
+    pub roles: Vec<Role>,
+    /// Shells with two sides in others with two sides, each a room of one of these or a part.
+    pub either: Vec<usize>,
+    /// For bodies that are not among them, the largest of them that lie in it.
+    pub either_in: Vec<(usize, usize)>,
+    /// Bodies, and boxes in which it is not known which of several bodies has a cavity.
+    pub unclear: Vec<(usize, [DVec3; 2])>,
 }
 
-/// A corner where surfaces cross is off by no more than so many units in the last place.
-const CUT_ULPS: f64 = 2.0;
-
-/// A closed shell as the nesting sees it.
-#[derive(Debug, Clone)]
-pub struct Closed {
-    /// Its triangles.
-    pub triangles: Vec<[DVec3; 3]>,
-    /// Signed volume; negative if inside out.
-    pub volume: f64,
-    /// Bounding box.
-    pub bounds: [DVec3; 2],
-    /// What is not known of it.
-    pub doubt: Doubt,
-    /// How far corners may be off that were not read but computed; 0 if there are none.
-    pub rounding: f64,
-    /// Boxes in which it is not known what is solid: around rims of holes that are not plane, and around parts that may have each other's triangles.
-    pub unknown: Vec<[DVec3; 2]>,
-}
-
-impl Closed {
-    /// Measure some triangles.
-    #[must_use]
-    pub fn new(triangles: Vec<[DVec3; 3]>) -> Self {
-        let corners = || triangles.iter().flatten().copied();
-        let bounds = corners().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
-        Closed {
-            volume: signed_volume(&triangles, (bounds[0] + bounds[1]) * 0.5),
-            bounds,
-            triangles,
-            doubt: Doubt::None,
-            rounding: 0.0,
-            unknown: Vec::new(),
-        }
-    }
-
-    /// Several as one.
-    #[must_use]
-    pub fn together<'a>(shells: impl Iterator<Item = &'a Closed> + Clone) -> Self {
-        let whole = Self::new(shells.clone().flat_map(|s| s.triangles.iter().copied()).collect());
-        Closed { unknown: shells.flat_map(|s| s.unknown.iter().copied()).collect(), ..whole }
-    }
-
-    /// Measure triangles that were cut where they cross.
-    #[must_use]
-    pub fn of_parts(triangles: Vec<[DVec3; 3]>) -> Self {
-        let whole = Self::new(triangles);
-        let farthest = whole.bounds[0].abs().max(whole.bounds[1].abs()).max_element();
-        Closed { rounding: CUT_ULPS * f64::EPSILON * farthest, ..whole }
-    }
-
-    /// Area of the surface.
-    #[must_use]
-    pub fn area(&self) -> f64 {
-        self.triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length() * 0.5).sum()
-    }
-
-    /// Have the boxes around both more than a side in common?
-    #[must_use]
-    pub fn overlaps(&self, other: &Closed) -> bool {
-        self.bounds[0].cmplt(other.bounds[1]).all() && other.bounds[0].cmplt(self.bounds[1]).all()
-    }
-
-    /// Does the box around it hold that around the other?
-    #[must_use]
-    pub fn is_around(&self, other: &Closed) -> bool {
-        self.bounds[0].cmple(other.bounds[0]).all() && self.bounds[1].cmpge(other.bounds[1]).all()
-    }
-
-    /// Does it wind around a point?
-    #[must_use]
-    pub fn winds_around(&self, point: DVec3) -> bool {
-        self.triangles.iter().map(|t| solid_angle(t, point)).sum::<f64>().abs() > 0.5
-    }
-
-    /// No volume to speak of: a sheet with two sides.
-    #[must_use]
-    pub fn is_sheet(&self) -> bool {
-        let size = (self.bounds[1] - self.bounds[0]).max_element();
-        // No triangle has an area above 3/2 of the size's square; 2 hold the rounding of as many as memory does.
-        let most = 2.0 * size * size * self.triangles.len() as f64;
-        let is_small = |area: f64| self.volume.abs() <= 1e-12 * area * size;
-        is_small(most) && is_small(self.area())
-    }
-}
-
-/// Volume enclosed by closed triangles, seen from `origin` (near them, against cancellation).
+/// What shells with these names are to each other.
 #[must_use]
-pub fn signed_volume(triangles: &[[DVec3; 3]], origin: DVec3) -> f64 {
-    triangles.iter().map(|t| t.map(|p| p - origin)).map(|[a, b, c]| a.dot(b.cross(c))).sum::<f64>() / 6.0
-}
-
-/// Part of a shell's triangles in the final bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
-    /// A body of its own.
-    Body,
-    /// A cavity in the body that is shell `.0`.
-    CavityOf(usize),
-}
-
-/// The role of every shell. Sheets are bodies, and so is what is doubtful.
-#[must_use]
-pub fn roles(shells: &[Closed]) -> Vec<Role> {
-    let mut roles = vec![Role::Body; shells.len()];
+pub fn nest(shells: &[Closed], names: &[String]) -> Nesting {
     let sign = |s: usize| shells[s].volume > 0.0;
-    let solid: Vec<usize> =
+    let mut order: Vec<usize> =
         (0..shells.len()).filter(|&s| !shells[s].is_sheet() && shells[s].doubt == Doubt::None).collect();
-    if solid.iter().all(|&s| sign(s)) || solid.iter().all(|&s| !sign(s)) {
-        return roles;
-    }
-    let mut order = solid;
+    let is_mixed = order.iter().any(|&s| sign(s)) && !order.iter().all(|&s| sign(s));
     order.sort_by(|&a, &b| shells[b].volume.abs().total_cmp(&shells[a].volume.abs()));
-    for (n, &s) in order.iter().enumerate() {
+    let mut rooms = Rooms::new(shells, names, &order);
+    for (n, &s) in order.iter().enumerate().filter(|_| is_mixed) {
         // The smallest container is the nearest before it in the order.
-        let Some(&parent) = order[..n].iter().rev().find(|&&p| contains(&shells[p], &shells[s])) else { continue };
-        if sign(parent) != sign(s) && roles[parent] == Role::Body {
-            roles[s] = Role::CavityOf(parent);
+        let Some(&nearest) = order[..n].iter().rev().find(|&&p| contains(&shells[p], &shells[s])) else { continue };
+        match (sign(nearest) == sign(s), rooms.is_cavity(nearest)) {
+            (false, false) => rooms.give(s, nearest),
+            // In a room of one body it may be a room of another that crosses the first.
+            (true, true) => {
+                rooms.give_if_free(s);
+            }
+            (true, false) | (false, true) => {}
         }
     }
-    roles
+    let around = around_two_sided(shells, &order, &rooms);
+    let either: Vec<usize> = around.keys().copied().collect();
+    let is_largest = |inner: usize, outer: usize| {
+        let is_between = |other: &usize| around.get(other).is_some_and(|around| around.contains(&outer));
+        !around.contains_key(&outer) && !around[&inner].iter().any(is_between)
+    };
+    let pairs = either.iter().flat_map(|&inner| around[&inner].iter().map(move |&outer| (outer, inner)));
+    let either_in = pairs.filter(|&(outer, inner)| is_largest(inner, outer)).collect();
+    let (roles, unclear) = rooms.told();
+    Nesting { roles, either, either_in, unclear }
 }
 
-/// Share of a triangle's size by which a point is pulled off it: more than rounding, less than walls are thick.
-const OFF_THE_SURFACE: f64 = 1e-4;
-
-/// Two closed shells whose volumes differ by less than this share are one surface twice.
-const SAME: f64 = 1e-6;
-
-/// Is `inner` inside `outer`, perhaps touching it? Told by its box and a spread of points just within its own surface. Where two sides of that surface lie in
-/// one place and cancel, a point beside one is not within.
-#[must_use]
-pub fn contains(outer: &Closed, inner: &Closed) -> bool {
-    let smaller = inner.volume.abs() < (1.0 - SAME) * outer.volume.abs();
-    let step = (inner.triangles.len() / 16).max(1);
-    let is_in = |p| outer.winds_around(p) || !inner.winds_around(p);
-    let within = |t: &[DVec3; 3]| just_within(t, inner.volume).is_none_or(is_in);
-    outer.is_around(inner) && smaller && inner.triangles.iter().step_by(step).all(within)
-}
-
-/// A point beside a triangle of a shell, within it if the shell has that `volume`. None if the triangle has no area.
-#[must_use]
-pub fn just_within([a, b, c]: &[DVec3; 3], volume: f64) -> Option<DVec3> {
-    let normal = (b - a).cross(c - a) * volume.signum();
-    let twice_area = normal.length();
-    (twice_area != 0.0).then(|| (a + b + c) / 3.0 - normal * (OFF_THE_SURFACE / twice_area.sqrt()))
+/// For shells with two sides those with two sides that hold them, unless a cavity of these does.
+fn around_two_sided(shells: &[Closed], order: &[usize], rooms: &Rooms<'_>) -> BTreeMap<usize, Vec<usize>> {
+    let two_sided: Vec<usize> = order.iter().copied().filter(|&s| shells[s].two_sided && !rooms.is_cavity(s)).collect();
+    let around = |n: usize| -> Vec<usize> {
+        let inner = &shells[two_sided[n]];
+        let is_in_room_of = |outer: usize| rooms.of(outer).iter().any(|&room| contains(&shells[room], inner));
+        let holds = |outer: &usize| contains(&shells[*outer], inner) && !is_in_room_of(*outer);
+        two_sided[..n].iter().copied().filter(holds).collect()
+    };
+    let all = (0..two_sided.len()).into_par_iter().map(|n| (two_sided[n], around(n)));
+    all.filter(|(_, around)| !around.is_empty()).collect()
 }

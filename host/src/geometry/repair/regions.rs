@@ -11,10 +11,10 @@
 //!
 //! **Proof.** The surfaces found must be closed: their areas cancel and their volumes along x, y and z agree, else there is no answer.
 
+use crate::geometry::repair::closed::signed_volume;
 use crate::geometry::repair::crossing::{Meetings, SideUse, edges, is_closed, tolerance};
 use crate::geometry::repair::face::{Face, push_parts};
 use crate::geometry::repair::lines::{FLAT, directions};
-use crate::geometry::repair::nesting::signed_volume;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use crate::geometry::repair::weld::bits;

@@ -23,6 +23,8 @@ pub struct Shell {
     pub cluster: usize,
     /// It is one of those, or overlaps itself so.
     pub guessed: bool,
+    /// Every triangle was there from both sides.
+    pub two_sided: bool,
 }
 
 /// Neighbours across edges. `same` tells that both run the edge the same way: one of them is the wrong way round.
