@@ -6,7 +6,7 @@ use voidage::geometry::bodies::Bodies;
 use voidage::grid::Edges;
 use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::shadows::{cells, faces_of_cell};
-use voidage::porosity::{Options, Porosity, porosity};
+use voidage::porosity::{Options, Porosity, porosity, throat};
 use voidage_core::grid::Grid;
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::surface::bins::{Group, Surface};
@@ -14,6 +14,7 @@ use voidage_core::surface::layer::{AreaSlices, CellSides, LayerMemory, LayerOpti
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 use voidage_core::surface::surface_area::{CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, SurfaceArea};
 use voidage_core::surface::union::UnionMemory;
+use voidage_tests::fields::assert_close;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, scene, turned_box};
 
@@ -354,5 +355,22 @@ fn crossing_sheets_against_lines() {
             let truth = met.count() as f64 / (LINES * LINES) as f64;
             assert!((share[axis][0] - truth).abs() < 3e-3, "{count} along {axis}: {share:?} and {truth}");
         }
+    }
+}
+
+/// A beam that ends within a cell, turned by next to nothing: what it hides is next to nothing, and no face changes by more.
+#[test]
+fn what_is_hardly_hidden_lowers_no_face() {
+    let edges = Edges([(0..=12).map(|n| 0.5 * f64::from(n)).collect(), vec![0.0, 1.0], vec![0.0, 0.5, 1.0]]);
+    let (min, max) = (DVec3::new(1.1, -1.0, -1.0), DVec3::new(2.9, 2.0, 0.75));
+    let lowered = |angle: f64| {
+        let bodies = scene(&[turned_box((min + max) * 0.5, (max - min) * 0.5, DMat3::from_rotation_y(angle))]);
+        let (mut result, found) = found(&edges, &bodies);
+        throat::lower(&edges.grid(None).expect("a grid"), &mut result, &found.shadows);
+        result.beta
+    };
+    let level = lowered(0.0);
+    for angle in [1e-10, -1e-10, 1e-8, -1e-8, 1e-6, -1e-6] {
+        assert_close(&level, &lowered(angle), 10.0 * f64::abs(angle) + 1e-9, &format!("turned by {angle}"));
     }
 }

@@ -20,6 +20,8 @@ pub struct Shadows {
     /// Where in the cell that surface stands, 0 at the low side, 1 at the high one; along x, y and z. One half where no more is blocked than a side of
     /// the cell shows.
     pub place: [Vec<f64>; 3],
+    /// By how much a share may be off where a curved solid stands as facets.
+    pub doubt: f64,
     /// Cells that hold more surface than there is room for: in place of their shadow stands what their faces show.
     pub too_full: usize,
     /// Hidden passages along x, y and z.
@@ -44,6 +46,9 @@ pub struct HiddenPassages {
 
 /// Blockage of its section that makes a cell between two open faces a hidden passage.
 pub const HIDDEN: f64 = 0.95;
+
+/// What the facets of curved solids may take of a share, or add to it.
+const FACETS: f64 = 5e-4;
 
 /// A cell hides something if along one axis it blocks this share of its section beyond what its faces show.
 const LEAST_HIDDEN: f64 = 0.02;
@@ -78,7 +83,9 @@ impl Shadows {
             too_full
         };
         let too_full = slices.into_par_iter().enumerate().map(layer).sum();
-        let mut found = Shadows { tau, place, too_full, ..Shadows::default() };
+        let has_facets = bodies.bodies.iter().any(|body| body.form.is_some() && body.triangles.is_empty());
+        let doubt = if has_facets { FACETS } else { 0.0 };
+        let mut found = Shadows { tau, place, doubt, too_full, ..Shadows::default() };
         found.find_hidden(grid, beta);
         let kept: Vec<_> = known.iter().map(|(_, kept)| *kept).collect();
         // What hides nearly all of a section is a wall.
@@ -104,6 +111,7 @@ impl Shadows {
             }
         }
         self.too_full = self.too_full.max(other.too_full);
+        self.doubt = self.doubt.max(other.doubt);
     }
 
     /// Counts the hidden passages, now that the faces are known.

@@ -1,6 +1,7 @@
 //! Faces that see what stands between them: walls are tight wherever they lie.
 
 use super::Porosity;
+use super::fields::FieldSet;
 use super::shadows::{Shadows, cells, faces_of_cell};
 use voidage_core::grid::Grid;
 
@@ -12,14 +13,15 @@ pub enum Faces {
     /// What is open in the plane of the face: exact, but a wall between two planes is not seen.
     #[default]
     Plane,
-    /// What can pass: where a cell blocks more than its two faces show, the nearer one is lowered to that.
+    /// What can pass: where a cell blocks more than its two faces show, one of them is lowered to that.
     Throat,
 }
 
-/// A face is lowered only by more than this, and one of two only if nearer by more: less is rounding.
+/// A face is lowered only by more than this, and one of two is preferred only by more: less is rounding.
 const LEAST: f64 = 1e-9;
 
-/// Lowers, in each cell and along each axis, the face nearer to what stands in the cell to the share of lines that pass. Of two that are equally near
+/// Lowers, in each cell and along each axis, one face to the share of lines that pass: the nearer one to what stands in the cell, or the one that shows more
+/// of it already if the other shows less by more than what is hidden. So what is hardly hidden hardly changes anything. Of two that are alike in this
 /// it is the one towards the middle of the grid, and both in the middle cell: mirrored scenes have mirrored faces. Returns how many faces were lowered.
 pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usize {
     lower_within(grid, result, shadows, ([0; 3], grid.cells()))
@@ -33,26 +35,34 @@ pub fn lower_within(
     (first, count): ([usize; 3], [usize; 3]),
 ) -> usize {
     let mut lowered = 0;
-    let Porosity { beta, bounds, .. } = result;
+    let Porosity { beta, bounds, max_gap, .. } = result;
     for axis in 0..3 {
         let (before, count) = (beta.faces(axis).to_vec(), count[axis]);
         for (n, at) in cells(grid).enumerate() {
             let place_in_row = 2 * (first[axis] + at[axis]) + 1;
             let passes = 1.0 - shadows.tau[axis][n];
             let faces = faces_of_cell(grid, axis, at);
-            if !(passes < before[faces[0]].min(before[faces[1]]) - LEAST) {
+            let open = faces.map(|face| before[face]);
+            let hidden = open[0].min(open[1]) - passes;
+            if !(hidden > LEAST) {
                 continue;
             }
-            let place = shadows.place[axis][n];
+            // Positive for the high face.
+            let aside = open[0] - open[1] + hidden * (2.0 * shadows.place[axis][n] - 1.0);
             let (before_middle, behind_middle) = (place_in_row < count, place_in_row > count);
-            let nearer = match place - 0.5 {
-                aside if aside.abs() > LEAST => [aside < 0.0, aside > 0.0],
-                _ => [!before_middle, !behind_middle],
-            };
-            for (face, _) in faces.into_iter().zip(nearer).filter(|(_, nearer)| *nearer) {
-                for field in bounds.iter_mut().flatten().chain([&mut *beta]).map(|set| set.faces_mut(axis)) {
-                    field[face] = field[face].min(passes);
+            let wanted =
+                if aside.abs() > LEAST { [aside < 0.0, aside > 0.0] } else { [!before_middle, !behind_middle] };
+            for (face, _) in faces.into_iter().zip(wanted).filter(|(_, wanted)| *wanted) {
+                let lower_to = |set: &mut FieldSet, most: f64| {
+                    let open = &mut set.faces_mut(axis)[face];
+                    *open = open.min(most.clamp(0.0, 1.0));
+                };
+                lower_to(beta, passes);
+                if let Some([lowest, highest]) = bounds {
+                    lower_to(lowest, passes - shadows.doubt);
+                    lower_to(highest, passes + shadows.doubt);
                 }
+                *max_gap = max_gap.max(2.0 * shadows.doubt);
                 lowered += 1;
             }
         }
