@@ -4,7 +4,7 @@ use crate::kit::api::{Api, grid, named, no_fault, zeroed};
 use core::ptr::{null, null_mut};
 use voidage::flow::{Flow as HostFlow, Scalar, Treatment};
 use voidage_capi::Flow;
-use voidage_capi::status::Status;
+use voidage_capi::status::{Fault, Status};
 use voidage_capi::types::{Boundary, Case, StepReport};
 use voidage_core::flow::{Boundary as CoreBoundary, Gas, Primitive};
 use voidage_tests::euler::property::Source;
@@ -195,6 +195,31 @@ fn an_inlet_faster_than_sound_keeps_its_state() {
             assert!(worst.iter().all(|&w| w < 1e-6), "side {number}, later {later}: {worst:?}");
         }
     }
+}
+
+/// A result that would be written into the flow itself is refused, and the flow stays as it is.
+#[test]
+fn results_do_not_go_into_the_flow() {
+    let lists = edges::<f64>([8, 1, 1]);
+    let mut flow = Owned::new(&Case { grid: grid(&lists), gamma: 1.4, ..zeroed() });
+    let [one, zero] = [1.0, 0.0].map(|x| vec![x; 8]);
+    flow.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+    let before = flow.get();
+    for offset in [64, 512] {
+        let at = unsafe { flow.flow.cast::<u8>().add(offset) };
+        let (number, report, mut fault) = (at.cast::<f64>(), at.cast::<StepReport<f64>>(), no_fault());
+        let refused =
+            |status: Status, fault: &Fault, name: &str| assert_eq!((status, named(fault)), (Status::Overlap, name));
+        let status = unsafe { f64::flow_rate(flow.flow, number, &mut fault) };
+        refused(status, &fault, "rate");
+        let status = unsafe { f64::flow_totals(flow.flow, number, &mut fault) };
+        refused(status, &fault, "totals");
+        let status = unsafe { f64::flow_step(flow.flow, 1e-3, report, &mut fault) };
+        refused(status, &fault, "report");
+        let status = unsafe { f64::flow_advance(flow.flow, 1.0, 0.5, 3, report, &mut fault) };
+        refused(status, &fault, "report");
+    }
+    assert_eq!(flow.get(), before);
 }
 
 #[test]

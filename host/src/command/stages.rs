@@ -134,6 +134,7 @@ pub fn measure(
 ) -> Result<Porosity> {
     let grid = edges.grid(None)?;
     warn_if_outside(bodies, edges, left_out, &grid, progress);
+    warn_if_coarse(bodies, edges, progress);
     room_for(porosity::memory(&grid, bodies, options))?;
     let layers = edges.cells()[2] * porosity::levels(bodies).len();
     let result = progress.stage("porosity", |p| {
@@ -256,6 +257,28 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &G
     let names: Vec<String> = if bodies.solids.is_empty() { files.collect() } else { solids.collect() };
     if let Some(names) = listed(&names) {
         progress.warn(format!("{names}: outside the grid, {within}, and without effect"));
+    }
+}
+
+/// A step of single-precision coordinates wider than this share of a cell is told.
+const COARSE: f64 = 0.05;
+
+/// Coordinates that a file holds in steps not far below the size of a cell, or above it; say so.
+fn warn_if_coarse(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
+    let widths = [0, 1, 2].map(|axis| edges.widths(axis).into_iter().fold(f64::INFINITY, f64::min));
+    let (mut worst, widths) = (0.0_f64, DVec3::from_array(widths));
+    for body in &bodies.bodies {
+        let Some(single) = body.single else { continue };
+        let step = 2.0 * single.error(body.bounds[0]).max(single.error(body.bounds[1]));
+        worst = worst.max((step / widths).max_element());
+    }
+    if worst > COARSE {
+        progress.warn(format!(
+            "{}: coordinates in single precision so far from the origin have steps of {} of a cell: what is smaller is lost, and corners within half a step of a \
+             plane of the grid are put into it; write the geometry nearer to the origin, or in double precision (OBJ, ASCII STL)",
+            bodies.files(),
+            number_to(worst, 0.01)
+        ));
     }
 }
 

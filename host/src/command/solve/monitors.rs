@@ -12,6 +12,7 @@ use crate::command::progress::Progress;
 use crate::error::Result;
 use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
+use crate::words::counted;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -72,6 +73,23 @@ pub fn head<const D: usize>(monitors: &[Monitor<D>]) -> String {
 pub fn monitors<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut Progress) -> Result<Vec<Monitor<D>>> {
     let all = planes(file, &setup.edges, &setup.live)?.into_iter().map(|plane| Monitor::new(plane, setup));
     let all: Vec<Monitor<D>> = all.collect();
+    // The cluster of each cell, from 1.
+    let mut clusters = vec![0_usize; if all.is_empty() { 0 } else { setup.flow.len() }];
+    for (n, cells) in setup.flow.clusters().iter().enumerate().filter(|_| !all.is_empty()) {
+        cells.iter().for_each(|&cell| clusters[cell] = n + 1);
+    }
+    for (n, monitor) in all.iter().enumerate() {
+        let cut = monitor.faces_within(&clusters);
+        if cut > 0 {
+            let reason = format!(
+                "\"{}\" passes between merged cells (at {}): what these even out among themselves is not counted, and the flow \
+                 through it can be off by some per cent; a plane beside them or porosity.merge = false tells it",
+                monitor.report.name,
+                counted(cut, "face", "faces")
+            );
+            progress.warn(file.remark(&format!("output.monitors[{n}]"), reason));
+        }
+    }
     for (n, monitor) in all.iter().enumerate().filter(|(_, monitor)| monitor.faces.is_empty()) {
         let why = if monitor.is_wall { ", it lies on a wall of the domain" } else { "" };
         let reason = format!("\"{}\" has no open face{why}: nothing passes it", monitor.report.name);
@@ -142,6 +160,12 @@ impl<const D: usize> Monitor<D> {
         let is_wall = side.is_some_and(|side| flow.boundaries[d][side].is_wall());
         let report = MonitorReport { name, axis: AXES[axis], at: edges.0[axis][plane], faces: faces.len(), area };
         Monitor { report, d, is_wall, faces }
+    }
+
+    /// At how many faces it passes between cells of one cluster, by the number of each cell's, 0 for none.
+    fn faces_within(&self, clusters: &[usize]) -> usize {
+        let within = |[low, high]: [usize; 2]| low != high && clusters[low] != 0 && clusters[low] == clusters[high];
+        self.faces.iter().filter(|face| within(face.cells)).count()
     }
 
     /// What it came to.

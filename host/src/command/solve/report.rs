@@ -161,7 +161,7 @@ impl Report {
         done: Done,
         progress: &Progress,
     ) -> Self {
-        let flow = &setup.flow;
+        let (flow, across) = (&setup.flow, setup.edges.across(&setup.live));
         let content = flow.content();
         let entered = |of: fn(&voidage_core::flow::Conserved<f64, D>) -> f64| {
             flow.total.inflow.iter().flatten().map(of).sum::<f64>()
@@ -183,16 +183,20 @@ impl Report {
             cell_updates_per_second: (flow.len() * done.steps) as f64 / done.seconds.max(1e-9),
             session: done,
             threads: rayon::current_num_threads(),
-            mass: content.density,
+            mass: content.density * across,
             mass_drift: drift(content.density, mass, entered(|c| c.density)),
             energy_drift: flow.gas().has_energy().then(|| drift(content.energy, energy, entered(|c| c.energy))),
             floors: flow.total.floored,
             floor_change: FloorChange {
-                mass: flow.total.floor_change.density,
+                mass: flow.total.floor_change.density * across,
                 momentum: std::array::from_fn(|axis| {
-                    setup.live.iter().position(|&a| a == axis).map_or(0.0, |d| flow.total.floor_change.momentum[d])
+                    setup
+                        .live
+                        .iter()
+                        .position(|&a| a == axis)
+                        .map_or(0.0, |d| flow.total.floor_change.momentum[d] * across)
                 }),
-                energy: flow.gas().has_energy().then_some(flow.total.floor_change.energy),
+                energy: flow.gas().has_energy().then_some(flow.total.floor_change.energy * across),
             },
             fallbacks: flow.total.first_order,
             repeated_steps: flow.repeated,

@@ -307,8 +307,11 @@ impl<'a, const D: usize> Run<'a, D> {
 
     /// The present forces on the solids that are asked for.
     fn forces(&self) -> Vec<SolidForce> {
-        let Setup { flow, solids, live, .. } = &self.setup;
-        solids.as_ref().map_or_else(Vec::new, |solids| solids.forces(flow, *live))
+        let Setup { flow, solids, live, edges, .. } = &self.setup;
+        let mut forces = solids.as_ref().map_or_else(Vec::new, |solids| solids.forces(flow, *live));
+        let across = edges.across(live);
+        forces.iter_mut().flat_map(|solid| &mut solid.force).for_each(|force| *force *= across);
+        forces
     }
 
     /// The last state, the largest values over time, and the pictures with the colours of the whole run.

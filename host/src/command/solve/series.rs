@@ -115,17 +115,19 @@ impl<const D: usize> Series<D> {
     }
 
     fn log_line(&self, setup: &Setup<D>, dt: f64, forces: &[SolidForce]) -> String {
-        let flow = &setup.flow;
+        let (flow, across) = (&setup.flow, setup.edges.across(&setup.live));
         let content = flow.content();
-        let energy = if flow.gas().has_energy() { content.energy.to_string() } else { String::new() };
-        let (steps, time, mass, mach) = (flow.steps, flow.time, content.density, flow.max_mach());
+        let of_energy =
+            |energy: f64| if flow.gas().has_energy() { (energy * across).to_string() } else { String::new() };
+        let (mass, energy, mach) = (content.density * across, of_energy(content.energy), flow.max_mach());
+        let (steps, time) = (flow.steps, flow.time);
         let (floors, change) = (flow.total.floored, flow.total.floor_change);
-        let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m);
-        let floor_energy = if flow.gas().has_energy() { change.energy.to_string() } else { String::new() };
-        let [x, y, z] = force_on_all(flow, setup.live);
+        let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m) * across;
+        let floor_energy = of_energy(change.energy);
+        let [x, y, z] = force_on_all(flow, setup.live).map(|force| force * across);
         let mut line = format!(
             "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
-            change.density
+            change.density * across
         );
         for SolidForce { force: [x, y, z], .. } in forces {
             let _ = write!(line, ",{x},{y},{z}"); // a String takes anything

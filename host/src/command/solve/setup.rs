@@ -1,6 +1,6 @@
 //! From a case to a flow that is ready to step: every value checked, nothing made that the case does not need.
 
-use super::case::{GasKeys, LimiterName, Model, Pressure, RiemannName};
+use super::case::{GasKeys, LimiterName, Model, Pressure, RiemannName, side_word};
 use super::case_file::CaseFile;
 use super::force::pushed_cells;
 use super::inlet::Inlet;
@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::flow::{Flow, Tidied, Treatment};
 use crate::grid::{AXES, Edges};
 use serde::Serialize;
-use voidage_core::flow::{Gas, Limiter, PressureForm, Primitive, Scheme};
+use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Scheme};
 
 /// A flow with what the run needs to know about it.
 #[derive(Debug)]
@@ -108,6 +108,7 @@ pub fn setup<const D: usize>(
     (flow.feed_sides, flow.feed_patches) = feed;
     (flow.scheme, flow.careful_steps) = scheme(file)?;
     flow.gravity = gravity(file, live)?;
+    warn_of_level_pressures(file, &flow, live, progress);
 
     let (keys, usual) = (&case.porosity, Treatment::default());
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
@@ -266,6 +267,26 @@ const CAREFUL_STEPS: usize = 5;
 
 /// Share of the stable step of a case that does not say.
 const USUAL_CFL: f64 = 0.8;
+
+/// Tells of upright sides with one pressure at all heights, through which an atmosphere under gravity flows.
+fn warn_of_level_pressures<const D: usize>(
+    file: &CaseFile,
+    flow: &Flow<f64, D>,
+    live: [usize; D],
+    progress: &mut Progress,
+) {
+    for d in (0..D).filter(|&d| (0..D).any(|e| e != d && flow.gravity[e] != 0.0)) {
+        for side in 0..2 {
+            if let Boundary::Outlet { .. } | Boundary::Reservoir { .. } | Boundary::FarField(_) =
+                flow.boundaries[d][side]
+            {
+                let reason = "has one pressure at all heights: under gravity an atmosphere at rest flows in and out there; \
+                              with \"wall\" or \"zero-gradient\" it stays at rest";
+                progress.warn(file.remark(&format!("boundary.{}", side_word(live[d], side)), reason));
+            }
+        }
+    }
+}
 
 fn gravity<const D: usize>(file: &CaseFile, live: [usize; D]) -> Result<[f64; D]> {
     let g = file.case.gravity.g.unwrap_or_default();
