@@ -126,13 +126,6 @@ impl<R: Real> Flow<R> {
         Ok(arrays)
     }
 
-    /// Where a result goes may not lie in the flow.
-    fn spares<T>(&self, at: *const T, name: &'static core::ffi::CStr) -> Answer {
-        let (at, block) = (at as usize, self.block as usize);
-        let apart = at == 0 || at >= block.saturating_add(self.bytes) || at.saturating_add(size_of::<T>()) <= block;
-        if apart { Ok(()) } else { Err(Status::Overlap.of(name)) }
-    }
-
     fn cells(&self) -> usize {
         of_state!(&self.state, s => s.len())
     }
@@ -189,7 +182,7 @@ pub unsafe fn get<R: Real>(flow: *const Flow<R>, values: Primitives<*mut R>) -> 
 /// As of [`opened`]; `rate` is null or can be written.
 pub unsafe fn rate<R: Real>(flow: *mut Flow<R>, rate: *mut R) -> Answer {
     let flow = unsafe { opened(flow)? };
-    flow.spares(rate, c"rate")?;
+    flow.arrays()?.result(rate, c"rate")?;
     let found = of_state!(&mut flow.state, s => s.rate()?);
     unsafe { give(rate, found) };
     Ok(())
@@ -201,7 +194,7 @@ pub unsafe fn rate<R: Real>(flow: *mut Flow<R>, rate: *mut R) -> Answer {
 /// As of [`opened`]; `report` is null or can be written.
 pub unsafe fn step<R: Real>(flow: *mut Flow<R>, dt: R, report: *mut StepReport<R>) -> Answer {
     let flow = unsafe { opened(flow)? };
-    flow.spares(report, c"report")?;
+    flow.arrays()?.result(report, c"report")?;
     all(&[dt], |dt| dt > R::ZERO && dt.is_finite(), c"dt")?;
     let mut found = StepReport::default();
     of_state!(&mut flow.state, s => s.step(dt, &mut found)?);
@@ -221,7 +214,7 @@ pub unsafe fn advance<R: Real>(
     report: *mut StepReport<R>,
 ) -> Answer {
     let flow = unsafe { opened(flow)? };
-    flow.spares(report, c"report")?;
+    flow.arrays()?.result(report, c"report")?;
     all(&[end], Real::is_finite, c"end")?;
     all(&[cfl], |cfl| cfl > R::ZERO && cfl <= R::ONE, c"cfl")?;
     let (found, answer) = of_state!(&mut flow.state, s => s.advance(end, cfl, max_steps));
@@ -238,7 +231,7 @@ pub unsafe fn totals<R: Real>(flow: *const Flow<R>, totals: *mut R) -> Answer {
     if totals.is_null() {
         return Err(Status::Null.of(c"totals"));
     }
-    flow.spares(totals.cast::<[R; 5]>(), c"totals")?;
+    flow.arrays()?.result(totals.cast::<[R; 5]>(), c"totals")?;
     let found = of_state!(&flow.state, s => s.totals());
     unsafe { give(totals.cast::<[R; 5]>(), found) };
     Ok(())

@@ -78,6 +78,11 @@ impl Arrays {
         Ok(unsafe { slice::from_raw_parts_mut(first, count) })
     }
 
+    /// Where a single result goes, at any address; it may be null.
+    pub fn result<T>(&mut self, at: *mut T, name: &'static CStr) -> Answer {
+        if at.is_null() { Ok(()) } else { self.note(at.cast::<u8>(), size_of::<T>(), true, name) }
+    }
+
     /// Memory of the caller, of which `needed` bytes are used.
     pub fn work(&mut self, start: *mut u8, bytes: usize, needed: usize) -> Answer {
         if needed == usize::MAX || bytes < needed {

@@ -34,6 +34,12 @@ impl<R: Api> Owned<R> {
         assert_eq!((status, named(&fault), fault.index), (Status::Ok, "", 0));
     }
 
+    /// Gas at rest, of density and pressure 1.
+    fn set_at_rest(&mut self) {
+        let [one, zero] = [R::ONE, R::ZERO].map(|x| vec![x; self.cells]);
+        self.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+    }
+
     fn get(&self) -> [Vec<R>; 5] {
         let mut fields: [Vec<R>; 5] = core::array::from_fn(|_| vec![R::ZERO; self.cells]);
         let [rho, u, v, w, p] = fields.each_mut().map(|f| f.as_mut_ptr());
@@ -162,8 +168,7 @@ fn an_inlet_is_met() {
         case.side[0] = Boundary { kind: 4, rho: 1.0, u: [0.1, 0.0, 0.0], p: 1.0, ..zeroed() };
         case.side[1] = Boundary { kind: 5, p: if gas == 1 { 1.44 } else { 1.0 }, ..zeroed() };
         let mut flow = Owned::new(&case);
-        let [one, zero] = [1.0, 0.0].map(|x| vec![x; 40]);
-        flow.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+        flow.set_at_rest();
         let report = flow.advance(60.0, u64::MAX);
         let state = flow.get();
         assert!(state[1].iter().all(|u| (u - 0.1).abs() < 2e-3), "gas {gas}: {:?}", &state[1]);
@@ -182,8 +187,7 @@ fn an_inlet_faster_than_sound_keeps_its_state() {
             case.side[1 - number] = Boundary { kind: 2, ..zeroed() };
             case.side[number] = if later { Boundary { kind: 0, ..zeroed() } } else { inlet };
             let mut flow = Owned::new(&case);
-            let [one, zero] = [1.0, 0.0].map(|x| vec![x; 40]);
-            flow.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+            flow.set_at_rest();
             if later {
                 assert_eq!(unsafe { f64::flow_set_side(flow.flow, number as i32, &inlet, null_mut()) }, Status::Ok);
             }
@@ -202,8 +206,7 @@ fn an_inlet_faster_than_sound_keeps_its_state() {
 fn results_do_not_go_into_the_flow() {
     let lists = edges::<f64>([8, 1, 1]);
     let mut flow = Owned::new(&Case { grid: grid(&lists), gamma: 1.4, ..zeroed() });
-    let [one, zero] = [1.0, 0.0].map(|x| vec![x; 8]);
-    flow.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+    flow.set_at_rest();
     let before = flow.get();
     for offset in [64, 512] {
         let at = unsafe { flow.flow.cast::<u8>().add(offset) };
@@ -226,8 +229,7 @@ fn results_do_not_go_into_the_flow() {
 fn sides_change_between_steps() {
     let lists = edges::<f64>([1, 1, 20]);
     let mut flow = Owned::new(&Case { grid: grid(&lists), gamma: 1.4, ..zeroed() });
-    let [one, zero] = [1.0, 0.0].map(|x| vec![x; 20]);
-    flow.set(&[one.clone(), zero.clone(), zero.clone(), zero, one]);
+    flow.set_at_rest();
     assert!(flow.advance(0.1, u64::MAX).inflow[5][0] == 0.0);
     let blow = Boundary { kind: 3, rho: 1.0, u: [0.0, 0.0, -0.5], p: 1.5, ..zeroed::<Boundary<f64>>() };
     assert_eq!(unsafe { f64::flow_set_side(flow.flow, 5, &blow, null_mut()) }, Status::Ok);
