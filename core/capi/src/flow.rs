@@ -126,6 +126,12 @@ impl<R: Real> Flow<R> {
         Ok(arrays)
     }
 
+    /// Where a single result goes may not lie in the flow. Called, not inlined: the list of arrays would lie in the frame of a step.
+    #[inline(never)]
+    fn spares<T>(&self, at: *mut T, name: &'static core::ffi::CStr) -> Answer {
+        self.arrays()?.result(at, name)
+    }
+
     fn cells(&self) -> usize {
         of_state!(&self.state, s => s.len())
     }
@@ -182,7 +188,7 @@ pub unsafe fn get<R: Real>(flow: *const Flow<R>, values: Primitives<*mut R>) -> 
 /// As of [`opened`]; `rate` is null or can be written.
 pub unsafe fn rate<R: Real>(flow: *mut Flow<R>, rate: *mut R) -> Answer {
     let flow = unsafe { opened(flow)? };
-    flow.arrays()?.result(rate, c"rate")?;
+    flow.spares(rate, c"rate")?;
     let found = of_state!(&mut flow.state, s => s.rate()?);
     unsafe { give(rate, found) };
     Ok(())
@@ -194,7 +200,7 @@ pub unsafe fn rate<R: Real>(flow: *mut Flow<R>, rate: *mut R) -> Answer {
 /// As of [`opened`]; `report` is null or can be written.
 pub unsafe fn step<R: Real>(flow: *mut Flow<R>, dt: R, report: *mut StepReport<R>) -> Answer {
     let flow = unsafe { opened(flow)? };
-    flow.arrays()?.result(report, c"report")?;
+    flow.spares(report, c"report")?;
     all(&[dt], |dt| dt > R::ZERO && dt.is_finite(), c"dt")?;
     let mut found = StepReport::default();
     of_state!(&mut flow.state, s => s.step(dt, &mut found)?);
@@ -214,7 +220,7 @@ pub unsafe fn advance<R: Real>(
     report: *mut StepReport<R>,
 ) -> Answer {
     let flow = unsafe { opened(flow)? };
-    flow.arrays()?.result(report, c"report")?;
+    flow.spares(report, c"report")?;
     all(&[end], Real::is_finite, c"end")?;
     all(&[cfl], |cfl| cfl > R::ZERO && cfl <= R::ONE, c"cfl")?;
     let (found, answer) = of_state!(&mut flow.state, s => s.advance(end, cfl, max_steps));
@@ -231,7 +237,7 @@ pub unsafe fn totals<R: Real>(flow: *const Flow<R>, totals: *mut R) -> Answer {
     if totals.is_null() {
         return Err(Status::Null.of(c"totals"));
     }
-    flow.arrays()?.result(totals.cast::<[R; 5]>(), c"totals")?;
+    flow.spares(totals.cast::<[R; 5]>(), c"totals")?;
     let found = of_state!(&flow.state, s => s.totals());
     unsafe { give(totals.cast::<[R; 5]>(), found) };
     Ok(())
