@@ -120,7 +120,7 @@ enum {
   /* A given state rho, u, p; waves leave. */
   VDG_SIDE_FAR_FIELD = 3,
   /* Gas enters with rho and u. The pressure starts at p and follows the flow within the time relax, so that waves still leave.
-     An inlet faster than its own sound keeps its pressure. */
+   * An inlet faster than its own sound keeps its pressure. */
   VDG_SIDE_INLET = 4,
   /* Gas leaves against the pressure p. */
   VDG_SIDE_OUTLET = 5,
