@@ -347,6 +347,13 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         self.watch = (!cells.is_empty()).then_some(Watch { cells, pushes, reference });
     }
 
+    /// The same cells again, from the present state.
+    pub fn watch_walls_anew(&mut self) {
+        if let Some(Watch { cells, reference, .. }) = self.watch.take() {
+            self.watch_walls(cells, reference);
+        }
+    }
+
     /// The watched cells, ascending, and what acted on their walls in the last step.
     pub fn watched_walls(&self) -> (&[usize], &[CellPush<R, D>]) {
         self.watch.as_ref().map_or((&[], &[]), |watch| (&watch.cells, &watch.pushes))

@@ -222,12 +222,12 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let mut areas = with_surface(scene, &convex).then(|| no_areas(grid));
+    let same = |k: usize| last.filter(|last| !last.may_change(grid, bodies, *level, k));
     let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), areas.as_mut())
         .into_par_iter()
         .enumerate()
         .map(|(k, mut target)| {
-            let same = last.filter(|last| !last.may_change(grid, bodies, *level, k));
-            let summary = match same {
+            let summary = match same(k) {
                 Some(last) => last.copy_layer(k, &mut target),
                 None => workers.layer(grid, &layers, &convex, k, target),
             };
@@ -238,7 +238,14 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
     if let Some(first) = summaries.first_mut() {
         first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
     }
-    let total = summaries.iter().fold(Summary::default(), Summary::join);
+    let mut total = summaries.iter().fold(Summary::default(), Summary::join);
+    for (k, summary) in summaries.iter().enumerate().filter(|(k, _)| same(*k).is_none()) {
+        for &(body, fraction) in &summary.leaks {
+            let layers = if fraction.is_finite() { k..k + 1 } else { 0..grid.cells()[2] };
+            let by = doubt::Leaking { bounds: bodies.bodies[body].bounds, layers, fraction };
+            total.max_gap = total.max_gap.max(by.widen(grid, options.areas, bounds.iter_mut().flatten()));
+        }
+    }
     let surface = areas.map(|areas| Arc::new(finish(grid, (bodies, &layers), &beta, areas, &summaries)));
     let porosity = Porosity {
         beta,

@@ -267,3 +267,23 @@ fn what_is_refused() {
     let volumes = ["volume", "solid_volume"].map(|key| zone[key].as_f64().expect("a number"));
     assert!(volumes.iter().all(|v| (v * 1e6 - 1.0).abs() < 1e-9), "all solid, smaller than a cell: {zone}");
 }
+
+/// Where a plate with a resistance of its own begins between planes, what it loses depends on where: that is told.
+#[test]
+fn a_plate_between_planes_is_told() {
+    let at = Scratch::new();
+    for (from, told) in [(5.0, false), (5.01, true), (4.5, false)] {
+        let plate = format!(
+            "[[solid]]\nname = \"plate\"\nshape = \"box\"\nmin = [{from}, -1, -1]\nmax = [{}, 4, 4]\nporosity = 0.5\ncr = 10\n",
+            from + 0.5
+        );
+        fs::write(at.file("scene.toml"), plate).expect("written");
+        let case = channel("scene.toml", "").replace("end = 2", "max_steps = 1");
+        let text = stderr(&solved(&at, &case, "out", &["--force"]));
+        assert_eq!(
+            text.contains("\"plate\" with a porosity and a cr begins or ends between planes of the grid"),
+            told,
+            "{from}: {text}"
+        );
+    }
+}

@@ -113,3 +113,29 @@ fn planes_that_are_none_are_refused() {
         assert!(!output.status.success() && text.contains(words), "{planes}: {text}");
     }
 }
+
+/// What a run goes on with is of the places that its tables began with; monitors may begin and end with it.
+#[test]
+fn places_of_tables_stay_what_they_were() {
+    let (at, plane) = (Scratch::new(), "{ name = \"m\", x = 1 }");
+    let with = |planes: &str, probe: &str, steps: u32| {
+        let probes = format!("probes = [{{ name = \"p\", at = [{probe}, 0.5] }}]\n");
+        case("", planes).replace("max_steps = 4", &format!("max_steps = {steps}")) + &probes
+    };
+    solved(&at, &with(plane, "0.5", 2), "out", &[]);
+    for (planes, probe, of) in
+        [("{ name = \"m\", x = 1.2 }", "0.5", "output.monitors"), (plane, "1.5", "output.probes")]
+    {
+        let text = stderr(&solve(&at, &with(planes, probe, 4), "out", &["--resume"]));
+        assert!(text.contains(&format!("checkpoint.bin: is of a run whose {of} lie elsewhere")), "{text}");
+    }
+    // Neither costs the run its state.
+    solved(&at, &with("", "0.5", 3), "out", &["--resume"]);
+    solved(&at, &with("{ x = 0.5 }, { x = 1.5 }", "0.5", 4), "begun", &[]);
+    solved(&at, &with("", "0.5", 2), "late", &[]);
+    solved(&at, &with("{ x = 0.5 }, { x = 1.5 }", "0.5", 4), "late", &["--resume"]);
+    let table = |dir: &str| fs::read_to_string(at.file(&format!("{dir}/monitors.csv"))).expect("a table");
+    let (begun, late) = (table("begun"), table("late"));
+    assert_eq!((begun.lines().count(), late.lines().count()), (6, 3));
+    assert_eq!(begun.lines().last(), late.lines().last());
+}

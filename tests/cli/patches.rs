@@ -89,3 +89,18 @@ fn patches_that_cannot_be_are_told() {
         Some(0)
     );
 }
+
+/// Two numbers are x and y, also for a patch on a side across x: that is told.
+#[test]
+fn a_box_of_two_numbers_is_told() {
+    let at = Scratch::new();
+    let patch = |min: &str, max: &str| {
+        let vent =
+            format!("[[boundary.patch]]\nside = \"x_max\"\nmin = {min}\nmax = {max}\ntype = \"outlet\"\np = 1e5\n");
+        stderr(&solved(&at, &chamber(&vent, "rho = 1.2, p = 1e5", "[time]\nmax_steps = 1\n"), "out", &["--force"]))
+    };
+    let told = patch("[0.2, 0.2]", "[9, 0.8]");
+    assert!(told.contains("boundary.patch[0]: its box has numbers along x and y alone: along z it reaches"), "{told}");
+    let silent = patch("[0, 0.2, 0.2]", "[9, 0.8, 0.8]");
+    assert!(!silent.contains("its box has numbers"), "{silent}");
+}

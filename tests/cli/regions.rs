@@ -370,3 +370,20 @@ fn a_free_ball_is_as_strong_along_every_ray() {
         assert!((ratios[0] - 1.0).abs() < 0.1 && (ratios[1] - 1.0).abs() < 0.13, "r = {r}: {ratios:?}");
     }
 }
+
+/// A ball whose radius is in millimetres covers the room, and the blast would be its own ambient.
+#[test]
+fn a_region_of_the_whole_grid_is_told() {
+    let at = Scratch::new();
+    let case = |radius: f64| {
+        format!(
+            "[grid]\nx = {{ points = [0, 4], cells = [8] }}\ny = {{ points = [0, 4], cells = [8] }}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\n\
+             uniform = {{ rho = 1.2, p = 1e5 }}\nregions = [{{ center = [2, 2], radius = {radius}, p = 6e5 }}]\n[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n\
+             y_min = \"wall\"\ny_max = \"wall\"\n[time]\nmax_steps = 1\n"
+        )
+    };
+    let told = stderr(&solved(&at, &case(400.0), "wide", &[]));
+    assert!(told.contains("initial.regions[0]: covers the whole grid: nothing remains of initial.uniform"), "{told}");
+    let silent = stderr(&solved(&at, &case(0.9), "small", &[]));
+    assert!(!silent.contains("covers"), "{silent}");
+}

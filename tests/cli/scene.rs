@@ -522,3 +522,32 @@ fn grids_that_contradict_themselves() {
     let said = stderr(&voidage(&[&"porosity", &path]));
     assert!(said.contains("array takes count, step; not spacing"), "{said}");
 }
+
+/// Two grids are one too many only where one of them is asked for.
+#[test]
+fn of_two_grids_none_counts() {
+    let dir = Scratch::new();
+    let (one, other) = (dir.file("one.toml"), dir.file("other.toml"));
+    fs::write(&one, format!("{BOX}{GRID}")).expect("written");
+    fs::write(&other, format!("{}{GRID}", BOX.replace("[1, 1, 1]", "[2, 1, 1]"))).expect("written");
+    let refused = voidage(&[&"porosity", &one, &other]);
+    assert!(stderr(&refused).contains("other.toml: a second scene with a [grid]"), "{}", stderr(&refused));
+    assert_eq!(report(&dir, &[&one, &other, &"--cells", &"4x2x2"])["grid"]["cells"], serde_json::json!([4, 2, 2]));
+}
+
+/// Of solids with resistances of their own in one place the largest counts.
+#[test]
+fn the_largest_resistance_counts() {
+    let dir = Scratch::new();
+    let grid = "[grid]\norigin = [0, 0, 0]\nspacing = [0.5, 0.5, 0.5]\ncells = [2, 2, 2]\n";
+    for ([a, b], truth) in [([4.0, 4.0], 4.0), ([4.0, 4.0001], 4.0001), ([4.0, 6.0], 6.0), ([4.0, 0.0], 4.0)] {
+        let own = [a, b].map(|cr| format!("{BOX}porosity = 0.5\ncr = {cr}\n").replace("\"b\"", &format!("\"{cr}\"")));
+        let scene = dir.file("scene.toml");
+        fs::write(&scene, own[0].clone() + &own[1].replace("\"4\"", "\"other\"") + grid).expect("written");
+        let out = dir.file("out");
+        let output = voidage(&[&"porosity", &scene, &"--drag", &"bluff", &"--npy", &out, &"-q"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let found = crate::kit::array(&out.join("cr_x.npy"))[0];
+        assert!((found - truth).abs() < 1e-12, "{a} and {b}: {found}");
+    }
+}

@@ -376,3 +376,35 @@ fn a_checkpoint_is_put_aside() {
     solved(&at, &falling(-1.0, 4), "out", &["-q", "--resume"]);
     assert!([&rho, &log].map(|path| fs::read(path).expect("a file")) == last);
 }
+
+/// What replaces a finished run leaves nothing of it; tables that belong to no run are kept; the last step has its line.
+#[test]
+fn a_run_stands_alone_in_its_directory() {
+    let at = Scratch::new();
+    let case = |more: &str| {
+        "[grid]\nx = { points = [0, 1], cells = [10] }\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = { rho = 1.2, p = 1e5 }\n\
+         [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n[time]\nmax_steps = 5\n[output]\nlog_every = 3\n"
+            .to_owned()
+            + more
+    };
+    let more = "maxima = {}\nformats = [\"vtr\"]\nprobes = [{ at = [0.5] }]\nmonitors = [{ x = 0.5 }]\n";
+    fs::create_dir(at.file("out")).expect("made");
+    fs::write(at.file("out/log.csv"), "mine\n").expect("written");
+    let first = stderr(&solved(&at, &case(more), "out", &[]));
+    assert!(first.contains("held tables of no run; they are kept as log_before.csv"), "{first}");
+    assert_eq!(fs::read_to_string(at.file("out/log_before.csv")).expect("kept"), "mine\n");
+    let log = fs::read_to_string(at.file("out/log.csv")).expect("a log");
+    let steps: Vec<&str> = log.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(steps, ["0", "3", "5"]);
+    fs::write(at.file("out/maxima/notes.txt"), "mine\n").expect("written");
+    solved(&at, &case("formats = []\n"), "out", &["--force"]);
+    for left in ["maxima/overpressure.npy", "maxima/maxima.vtr", "probes.csv", "monitors.csv", "flow.pvd"] {
+        assert!(!at.file("out").join(left).exists(), "{left}");
+    }
+    assert!(at.file("out/maxima/notes.txt").exists());
+    // A run that goes on has no line of a step that was its last.
+    solved(&at, &case("formats = []\n").replace("max_steps = 5", "max_steps = 7"), "out", &["--resume", "-q"]);
+    let log = fs::read_to_string(at.file("out/log.csv")).expect("a log");
+    let steps: Vec<&str> = log.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(steps, ["0", "3", "6", "7"]);
+}

@@ -4,7 +4,7 @@ use glam::DVec3;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::mesh::Mesh;
 use voidage::grid::Edges;
-use voidage::porosity::{Options, Porosity, porosity};
+use voidage::porosity::{FieldSet, Options, Porosity, porosity};
 use voidage_tests::solids::{Triangle, cuboid, scene, sixteen_spheres, sphere, volume};
 
 fn unit_edges(n: usize) -> Edges {
@@ -105,6 +105,36 @@ fn totals_are_the_volumes_of_the_meshes() {
     assert!((p.solid_volume - sum).abs() < 1e-14, "{} and {sum}", p.solid_volume);
     assert_eq!(p.cells.ambiguous, 0);
     assert!(p.leaks.is_empty());
+}
+
+/// A sliver is missing from one triangle of a ball: the rows say so, and bounds hold the ball as it was.
+#[test]
+fn bounds_hold_what_a_missing_sliver_changes() {
+    let edges = unit_edges(6);
+    let grid = edges.grid(None).expect("a grid");
+    let whole = scene(&[sphere(DVec3::new(3.02, 2.97, 3.01), 2.3, 6)]);
+    let bounded = Options { bounds: true, ..Options::default() };
+    let truth = porosity(&grid, &whole, bounded);
+    assert!(truth.leaks.is_empty() && truth.max_gap < 1e-12, "{:?} {}", truth.leaks, truth.max_gap);
+    let fields = |set: &FieldSet| [&set.v, &set.x, &set.y, &set.z].map(|field| field.to_vec()).concat();
+    let mut moved = 0;
+    for n in 0..whole.triangles.len() {
+        let width = [1e-2, 1e-4, 1e-6, 1e-8][n % 4];
+        let mut cracked = whole.clone();
+        let [a, b, _] = cracked.triangles[n];
+        cracked.triangles[n][0] = a.lerp(b, width);
+        let found = porosity(&grid, &cracked, bounded);
+        let worst = found.leaks.first().expect("a leak").fraction;
+        assert!(worst <= 2.0 * width && found.max_gap <= 10.0 * worst, "{n}: {worst:e} {:e}", found.max_gap);
+        let [lower, upper] = found.bounds.as_ref().expect("asked for");
+        let places = fields(&truth.beta).into_iter().zip(fields(lower)).zip(fields(upper));
+        for ((beta, lower), upper) in places {
+            assert!(lower <= beta + 1e-12 && beta <= upper + 1e-12, "{n}: {beta} not in {lower} to {upper}");
+        }
+        let off = fields(&truth.beta).into_iter().zip(fields(&found.beta)).map(|(a, b)| (a - b).abs());
+        moved += usize::from(off.fold(0.0, f64::max) > 1e-11);
+    }
+    assert!(moved > whole.triangles.len() / 2, "values changed in {moved} cases");
 }
 
 #[test]

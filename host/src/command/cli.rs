@@ -367,15 +367,22 @@ fn parse_cells(text: &str) -> Result<[usize; 3], String> {
     if cells.contains(&0) { Err("needs at least one cell along each axis".into()) } else { Ok(cells) }
 }
 
+/// What to do about a comma in a number.
+fn decimal_comma(text: &str) -> &'static str {
+    if text.contains(',') { "; decimals have a point, not a comma" } else { "" }
+}
+
 fn parse_spacing(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(d) if QUANTITY.holds(d) => Ok(d),
-        _ => Err(format!("needs a length {QUANTITY}")),
+        _ => Err(format!("needs a length {QUANTITY}{}", decimal_comma(text))),
     }
 }
 
 fn parse_slice(text: &str) -> Result<(usize, f64), String> {
-    let (axis, at) = text.split_once('=').ok_or("needs an axis and a coordinate, such as x=1.5")?;
+    let (axis, at) = text.split_once('=').ok_or(
+        "needs an axis and a coordinate, such as x=1.5; decimals have a point, and a comma begins another slice",
+    )?;
     let axis = AXES.iter().position(|name| *name == axis.trim()).ok_or("the axis is x, y or z")?;
     let at = at.trim().parse::<f64>().ok().filter(|x| SIGNED.holds(*x));
     let at = at.ok_or_else(|| format!("needs a coordinate in metres, {SIGNED}"))?;

@@ -42,6 +42,9 @@ pub fn inspect(args: &InspectArgs) -> Result<()> {
     if let Some(report) = replaced {
         return Err(Error::usage(format!("{}: the report would replace a file of the scene", report.display())));
     }
+    if args.json && args.report.as_deref().is_some_and(is_stream) {
+        return Err(Error::usage("--json and --report - both write to the standard output: one of them is enough"));
+    }
     progress.stdout_is_taken(args.report.as_deref().is_some_and(is_stream));
     let (bodies, _) = load(&args.scene, &mut progress)?;
     let inspection = Inspection {

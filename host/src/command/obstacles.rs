@@ -3,11 +3,13 @@
 use super::progress::Progress;
 use crate::geometry::bodies::{Bodies, Body};
 use crate::grid::AXES;
+use crate::picture::ticks::number as short;
 use crate::picture::ticks::part;
 use crate::porosity::divided::{DividedCells, Division};
 use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use crate::porosity::resistance::{Resistance, resistance, shadows};
 use crate::porosity::shadows::{HIDDEN, Shadows};
+use crate::porosity::snap;
 use crate::porosity::throat::{self, Faces};
 use crate::porosity::{Options, Porosity, levels};
 use crate::words::counted;
@@ -70,6 +72,7 @@ pub fn obstacles(
         }
         found.drag = Some(drag);
         warn_of_gratings(bodies, progress);
+        warn_of_partly_filled(grid, bodies, progress);
     }
     let division = progress.stage("divided", |_| Division::find(grid, bodies, &result.beta, &shadows));
     let told_already = match wanted.faces {
@@ -142,6 +145,34 @@ pub fn warn_of_gratings(bodies: &Bodies, progress: &mut Progress) {
              gives a loss of ½ ρ cr |u| u a metre, u in the pores",
             bodies.files(),
             first.name
+        ));
+    }
+}
+
+/// Say which porous solids with a resistance of their own fill cells in part: there the velocity is not that in their pores.
+fn warn_of_partly_filled(grid: &Grid<f64>, bodies: &Bodies, progress: &mut Progress) {
+    let resists = |b: &&Body| b.porosity > 0.0 && b.porosity < 1.0 && b.drag.cr.is_some_and(|cr| cr > 0.0);
+    let near = snap::near(grid);
+    let between_planes = |b: &Body| {
+        let sides = (0..3).flat_map(|axis| b.bounds.map(|corner| (axis, corner[axis])));
+        sides.filter(|&(axis, at)| grid.edges(axis).first() < Some(&at) && Some(&at) < grid.edges(axis).last()).find(
+            |&(axis, at)| {
+                let next = grid.edges(axis).partition_point(|edge| *edge < at);
+                grid.edges(axis)[next - 1..=next].iter().all(|edge| (edge - at).abs() > near[axis])
+            },
+        )
+    };
+    let mut all = bodies.bodies.iter().filter(resists).filter_map(|b| Some((b, between_planes(b)?)));
+    if let Some((first, (axis, at))) = all.next() {
+        let others = all.count();
+        let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+        progress.warn(format!(
+            "{}: \"{}\"{others} with a porosity and a cr begins or ends between planes of the grid (at {} = {}): where it fills cells in \
+             part it loses less than cr L / porosity²; its sides belong into planes of the grid",
+            bodies.files(),
+            first.name,
+            AXES[axis],
+            short(at)
         ));
     }
 }

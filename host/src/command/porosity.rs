@@ -46,7 +46,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
                 Some(text) => grid::file::parse(Path::new(INPUT), &text, &mut remarks)?,
                 None => grid::file::read(path, &mut remarks)?,
             },
-            None => grid::edges(&spec(args, &bodies, own_grid), bodies.bounds(), &mut remarks)?,
+            None => grid::edges(&spec(args, &bodies, own_grid)?, bodies.bounds(), &mut remarks)?,
         };
         remarks.into_iter().for_each(|r| progress.warn(r));
         let zones = zones::read(args.zones.as_deref(), &edges)?;
@@ -79,14 +79,14 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
 }
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.
-fn spec(args: &PorosityArgs, bodies: &Bodies, own: Option<Edges>) -> GridSpec {
-    match (args.cells, args.spacing, own) {
-        (Some(cells), ..) => GridSpec::Cells(cells, args.bounds),
-        (_, Some(spacing), _) => GridSpec::Spacing(spacing, args.bounds),
-        (.., Some(edges)) if args.bounds.is_none() => GridSpec::Edges(edges),
-        _ => {
-            let spacing = usual_spacing(args.bounds, bodies.bounds());
-            GridSpec::Spacing(spacing, args.bounds)
-        }
-    }
+fn spec(args: &PorosityArgs, bodies: &Bodies, own: Result<Option<Edges>>) -> Result<GridSpec> {
+    Ok(match (args.cells, args.spacing) {
+        (Some(cells), _) => GridSpec::Cells(cells, args.bounds),
+        (_, Some(spacing)) => GridSpec::Spacing(spacing, args.bounds),
+        _ if args.bounds.is_some() => GridSpec::Spacing(usual_spacing(args.bounds, bodies.bounds()), args.bounds),
+        _ => match own? {
+            Some(edges) => GridSpec::Edges(edges),
+            None => GridSpec::Spacing(usual_spacing(None, bodies.bounds()), None),
+        },
+    })
 }

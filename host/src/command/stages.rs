@@ -18,13 +18,13 @@ use glam::DVec3;
 use std::path::Path;
 use voidage_core::grid::Grid;
 
-/// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does.
+/// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does, or that there are two.
 ///
 /// # Errors
-/// The first file that cannot be read or holds nothing solid; or two grids.
-pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option<Edges>)> {
+/// The first file that cannot be read or holds nothing solid.
+pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result<Option<Edges>>)> {
     let scale = args.unit.unwrap_or(Unit::M).metres();
-    let (mut bodies, mut grid) = (Bodies::default(), None);
+    let (mut bodies, mut grid) = (Bodies::default(), Ok(None));
     if args.scene.iter().filter(|path| is_stream(path)).count() > 1 {
         return Err(Error::usage("the standard input can be read once: - stands for one file of a scene"));
     }
@@ -39,10 +39,10 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Option
             let found =
                 progress.stage("read", |_| text.map_or_else(|| scene::read(path), |text| scene::parse(path, text)))?;
             progress.stage("bodies", |_| scene::load::add(&found, &mut bodies))?;
-            if found.grid.is_some() && grid.is_some() {
-                return Err(Error::file(path, "a second scene with a [grid]: leave one of them out"));
-            }
-            grid = grid.or(found.grid);
+            grid = match (grid, found.grid) {
+                (Ok(Some(_)), Some(_)) => Err(Error::file(path, "a second scene with a [grid]: leave one of them out")),
+                (before, own) => before.map(|grid| grid.or(own)),
+            };
             if args.unit.is_some() {
                 progress.warn(format!(
                     "{}: a scene is in metres, and its solids of files have a unit each: the unit of STL and OBJ files does not change them",
@@ -81,7 +81,7 @@ fn warn_of_unit(args: &SceneArgs, bodies: &Bodies, progress: &mut Progress) {
     };
     let by = size.to_array().map(short).join(" × ");
     progress.warn(format!(
-        "{}: in {} its size is {by} m, {word} for a plant: check the unit, --unit here, porosity.unit in a case",
+        "{}: its size is {by} m with the unit \"{}\", {word} for a plant: check that, --unit here, porosity.unit in a case",
         bodies.files(),
         unit.name()
     ));
@@ -215,11 +215,13 @@ pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
 /// Geometry outside the grid does not count; say so.
 fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &Grid<f64>, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
-    let fine = 1e-6 * (hi - lo).max(max - min).max_element();
-    let point = |p: DVec3| {
-        format!("({})", p.to_array().map(|v| number_to(if v.abs() < fine { 0.0 } else { v }, fine)).join(", "))
+    // Digits by the size of each: a stray corner far away must not leave none of the grid.
+    let extent = |p: DVec3, q: DVec3| {
+        let fine = 1e-6 * (q - p).max_element();
+        let digits = |v: f64| number_to(if v.abs() < fine { 0.0 } else { v }, fine);
+        let point = |p: DVec3| format!("({})", p.to_array().map(digits).join(", "));
+        format!("{} to {}", point(p), point(q))
     };
-    let extent = |p, q| format!("{} to {}", point(p), point(q));
     let unit_cells: Vec<&str> = (0..3).filter(|&a| left_out[a]).map(|a| AXES[a]).collect();
     let within = match unit_cells.is_empty() {
         true => extent(lo, hi),

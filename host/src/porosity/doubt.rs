@@ -4,6 +4,8 @@
 //!   without it.
 //! - [`Doubt::Unknown`]: not even that is known. Values are what its surface gives as it winds. The body may as well be a cavity of another, or count
 //!   a part twice, so the bounds of all cells and faces in its box are 0 and 1.
+//! - Where a body's rows of cells do not return to zero, a piece of its surface is missing or counted twice: bounds are as far apart as that may change
+//!   anything in the layer.
 //! - Holes whose rims are not plane: all that lies in a box around the rim is solid or open.
 
 use super::windows::Window;
@@ -58,6 +60,30 @@ pub fn widen_unknown(grid: &Grid<f64>, bodies: &Bodies, options: Options, found:
         }
         each(&cells, |at| gap = gap.max(2.0 * share(Place { axis: None, at })));
         found.max_gap = (found.max_gap + gap).min(1.0);
+    }
+}
+
+/// A body that leaks in some layers.
+pub struct Leaking {
+    /// Its box.
+    pub bounds: [DVec3; 2],
+    /// The layers.
+    pub layers: Range<usize>,
+    /// How far the worst row ends from zero there, as a fraction of a face.
+    pub fraction: f64,
+}
+
+impl Leaking {
+    /// Widens bounds of the cells and faces of its box in these layers, lower ones first. What a row misses at its end any cell or face of it may miss,
+    /// and more where what is missing has parts that cancel. Returns how far apart that puts them.
+    pub fn widen<'s>(&self, grid: &Grid<f64>, areas: bool, sets: impl Iterator<Item = &'s mut FieldSet>) -> f64 {
+        let Some(Window { cells: [x, y, z] }) = Window::around(grid, self.bounds) else { return 0.0 };
+        let cells = [x, y, z.start.max(self.layers.start)..z.end.min(self.layers.end)];
+        let by = (4.0 * self.fraction).min(1.0);
+        for (set, sign) in sets.zip([-1.0, 1.0]) {
+            change(grid, &cells, set, areas, |beta, _| (beta + sign * by).clamp(0.0, 1.0));
+        }
+        (2.0 * by).min(1.0)
     }
 }
 

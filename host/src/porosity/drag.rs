@@ -177,12 +177,16 @@ pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Ve
     let mut given: Vec<f64> = bodies.bodies.iter().filter_map(|b| b.drag.cr).collect();
     given.sort_by(f64::total_cmp);
     given.dedup();
-    for cr in given.into_iter().filter(|cr| *cr > 0.0) {
-        let mut own = bodies.some(|body| bodies.bodies[body].drag.cr == Some(cr));
+    given.retain(|cr| *cr > 0.0);
+    let mut below = 0.0;
+    for cr in given {
+        // What resists at least as much fills so much of a cell.
+        let mut own = bodies.some(|body| bodies.bodies[body].drag.cr.is_some_and(|other| other >= cr));
         own.bodies.iter_mut().for_each(|b| b.porosity = 0.0);
         debug_assert!(levels(&own) == [0.0], "all of them solid");
         let filled = porosity(grid, &own, Options { bounds: false, areas: false, ..options });
-        sums.iter_mut().zip(filled.beta.v.iter()).for_each(|(sum, open)| *sum += cr * (1.0 - open));
+        sums.iter_mut().zip(filled.beta.v.iter()).for_each(|(sum, open)| *sum += (cr - below) * (1.0 - open));
+        below = cr;
     }
     sums
 }

@@ -18,7 +18,7 @@ use voidage_core::surface::surface_area::{
 use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, UnionNeeded};
 
 /// Rows that miss zero by more than this fraction of a face leak.
-const LEAK: f64 = 1e-9;
+const LEAK: f64 = 1e-11;
 
 /// The slices were cut for the grid they are used with.
 const FITS: &str = "slices of a layer fit its grid";

@@ -47,21 +47,18 @@ pub const BEFORE: &str = "checkpoint_before.bin";
 const TABLES: [(&str, &str); 3] =
     [("log.csv", "log_before.csv"), ("probes.csv", "probes_before.csv"), ("monitors.csv", "monitors_before.csv")];
 
-/// Renames the checkpoint in `dir`, if there is one, and the tables that go with it; whether there was.
+/// Renames the checkpoint in `dir` and the tables that go with it, as far as they are there; returns their new names, the checkpoint's first.
 ///
 /// # Errors
 /// A file cannot be renamed.
-pub fn put_aside(dir: &Path) -> Result<bool> {
-    let rename = |from: &str, to: &str| match std::fs::rename(dir.join(from), dir.join(to)) {
-        Ok(()) => Ok(true),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(false),
+pub fn put_aside(dir: &Path) -> Result<Vec<&'static str>> {
+    let all = std::iter::once((NAME, BEFORE)).chain(TABLES);
+    let renamed = all.map(|(from, to)| match std::fs::rename(dir.join(from), dir.join(to)) {
+        Ok(()) => Ok(Some(to)),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(e) => Err(Error::io(&dir.join(from), "rename", &e)),
-    };
-    let was = rename(NAME, BEFORE)?;
-    if was {
-        TABLES.iter().try_for_each(|(from, to)| rename(from, to).map(drop))?;
-    }
-    Ok(was)
+    });
+    renamed.filter_map(Result::transpose).collect()
 }
 
 /// What the run has written and counted so far.
@@ -75,6 +72,9 @@ pub struct Journal {
     pub probes: u64,
     /// Bytes of `monitors.csv`.
     pub monitors: u64,
+    /// Checksums of the places of probes and monitors.
+    #[serde(default)]
+    pub places: [u32; 2],
     /// Mass and energy at the beginning.
     pub begin: [f64; 2],
     /// Seconds of stepping.
@@ -316,14 +316,15 @@ pub fn resume<const D: usize>(
         array.iter_mut().zip(values.by_ref()).for_each(|(into, from)| *into = from);
     }
     let mut pushes = setup.flow.watched_walls().1.to_vec();
-    if pushes.len() * WATCHED * D != header.walls {
-        return Err(wrong());
+    let same_walls = pushes.len() * WATCHED * D == header.walls;
+    if same_walls {
+        for push in &mut pushes {
+            let sides = push.sides.as_flattened_mut().iter_mut();
+            let into = sides.chain(push.mass.as_flattened_mut()).chain(&mut push.drag);
+            into.zip(values.by_ref()).for_each(|(into, from)| *into = from);
+        }
+        setup.flow.restore_walls(&pushes);
     }
-    for push in &mut pushes {
-        let into = push.sides.as_flattened_mut().iter_mut().chain(push.mass.as_flattened_mut()).chain(&mut push.drag);
-        into.zip(values.by_ref()).for_each(|(into, from)| *into = from);
-    }
-    setup.flow.restore_walls(&pushes);
     let Header { time, steps, repeated, rate, first_order, floored, .. } = header;
     let mut total = Report { rate, first_order, floored, ..Report::new() };
     let lengths = header.inflow.len() == 2 * D * (D + 2) && header.floor_change.len() == D + 2;
@@ -339,6 +340,10 @@ pub fn resume<const D: usize>(
         *into = amount(from);
     }
     setup.flow.resume(state, Clock { time, steps, repeated, total }).map_err(|_| wrong())?;
+    if !same_walls {
+        // Until the next step the state alone tells what acts on the cells that the case watches now.
+        setup.flow.watch_walls_anew();
+    }
     let restore = |(inlet, p): (&Inlet<D>, f64)| inlet.set_pressure(&mut setup.flow, p);
     setup.inlets.iter().zip(header.inlet_pressures).for_each(restore);
     Ok(header.journal)

@@ -177,6 +177,9 @@ pub fn remove_old(dir: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Name of the list of frames.
+pub const SERIES: &str = "flow.pvd";
+
 /// Writes the list of frames with their times that ParaView opens as one series.
 ///
 /// # Errors

@@ -4,7 +4,7 @@
 //! the impulse is the largest value that this integral reaches. The moment of arrival is interpolated within a step.
 
 use super::charges::Charges;
-use super::frames::create;
+use super::frames::{create, forget};
 use super::output_keys::MaximaKeys;
 use crate::error::Result;
 use crate::files::npy;
@@ -137,6 +137,18 @@ impl Maxima {
         let [x, y, z] = &edges.0;
         let cell = named.map(|(name, data)| CellField::Values(NamedField { name, components: 1, data }));
         Vtr { x, y, z, cell: cell.collect(), ..Vtr::default() }.write(&dir.join("maxima.vtr"))
+    }
+
+    /// Removes what [`Maxima::write`] has written, and the directory if it holds nothing else.
+    ///
+    /// # Errors
+    /// A file cannot be removed.
+    pub fn forget(dir: &Path) -> Result<()> {
+        NAMES.iter().try_for_each(|name| forget(&dir.join(format!("{name}.npy"))))?;
+        forget(&dir.join("maxima.vtr"))?;
+        // Whatever else it holds is not ours.
+        let _ = std::fs::remove_dir(dir);
+        Ok(())
     }
 
     /// The largest values of all open cells outside these charges, and the first arrival, under a name.

@@ -51,6 +51,11 @@ pub fn report<const D: usize>(
                 let percent = 100.0 * open;
                 format!("is {percent:.2} % open, the rest is solid: its mass and energy are those of the open part")
             }
+            _ if file.case.initial.uniform.is_some() && covers_all(&shares, edges) => {
+                "covers the whole grid: nothing remains of initial.uniform, and overpressures count from the pressure of the region unless \
+                 output.ambient says another"
+                    .to_owned()
+            }
             Some(cells) if cells < 0.5 => {
                 "is smaller than a cell: its mass and energy are spread over the cells that hold it".to_owned()
             }
@@ -62,6 +67,11 @@ pub fn report<const D: usize>(
         all.push(report);
     }
     Ok(all)
+}
+
+/// Do shares of cells make the whole grid?
+fn covers_all(shares: &[(usize, f64)], edges: &Edges) -> bool {
+    shares.len() == edges.cells().iter().product::<usize>() && shares.iter().all(|&(_, share)| share == 1.0)
 }
 
 /// Radius of a region, or half its smallest extent, in the widest cells that it meets along the axes `live`.

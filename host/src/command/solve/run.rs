@@ -53,7 +53,10 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
     if args.output.is_none() && dir.as_path() == path {
         return Err(Error::file(path, "results would go into a directory of the name of the case itself: give -o DIR"));
     }
-    check_directory("-o", &dir)?;
+    check_directory(
+        if args.output.is_some() { "-o" } else { "the results, named like the case (-o gives another)" },
+        &dir,
+    )?;
     pictures::check(&file, &edges)?;
     keep_inputs(&file, &dir)?;
     let live = live_axes(&edges);
@@ -82,16 +85,24 @@ fn keep_results(dir: &Path, args: &SolveArgs) -> Result<()> {
     Err(Error::file(dir, reason))
 }
 
-/// Makes way for a run whose case is right: what a finished one left is removed, of an unfinished one the last state is kept.
+/// Makes way for a run whose case is right: what a finished one left is removed, of an unfinished one the last state is kept, and tables of neither, too.
 fn make_way(dir: &Path, progress: &mut Progress) -> Result<()> {
     let report = dir.join(REPORT);
     if report.exists() {
         frames::remove_old(dir)?;
+        Maxima::forget(&dir.join("maxima"))?;
+        for name in ["probes.csv", "monitors.csv", frames::SERIES] {
+            frames::forget(&dir.join(name))?;
+        }
         return frames::forget(&report);
     }
-    if checkpoint::put_aside(dir)? {
-        let (dir, kept) = (dir.display(), checkpoint::BEFORE);
-        progress.warn(format!("{dir}: held a run that had not ended; its last state is kept in {kept}"));
+    let kept = checkpoint::put_aside(dir)?;
+    let dir = dir.display();
+    match &kept[..] {
+        [] => {}
+        [checkpoint::BEFORE, ..] => progress
+            .warn(format!("{dir}: held a run that had not ended; its last state is kept in {}", checkpoint::BEFORE)),
+        tables => progress.warn(format!("{dir}: held tables of no run; they are kept as {}", tables.join(", "))),
     }
     Ok(())
 }
@@ -259,13 +270,14 @@ impl<'a, const D: usize> Run<'a, D> {
     /// Steps until the end, or an interrupt.
     fn steps(&mut self, line: &Meter) -> Result<()> {
         let (begun, start) = (Instant::now(), (self.setup.flow.time, self.setup.flow.steps));
-        let mut saved = begun;
+        let (mut saved, mut last_step) = (begun, None);
         while self.goes_on() {
             let stop = self.limits.next_stop(self.setup.flow.time);
             let clock = Instant::now();
             let dt = step(&mut self.setup, self.maxima.as_mut(), stop).map_err(|trouble| self.stopped(trouble))?;
             self.done.seconds += clock.elapsed().as_secs_f64();
             self.done.steps += 1;
+            last_step = Some(dt);
             self.record(dt)?;
             if self.setup.flow.time >= stop {
                 self.frame()?;
@@ -285,6 +297,9 @@ impl<'a, const D: usize> Run<'a, D> {
         }
         // A last state between two frames is shown, but no frame of a run that goes on.
         self.checkpoint()?;
+        if let Some(dt) = last_step {
+            self.series.end(&self.setup, dt, &self.forces())?;
+        }
         if self.journal.frames.last() != Some(&self.setup.flow.time) {
             self.frame()?;
         }
@@ -350,7 +365,7 @@ impl<'a, const D: usize> Run<'a, D> {
                 Format::Vtr => {
                     let path = dir.join(frames::frame_name(n, "vtr"));
                     shot.paraview(&path, &self.setup.edges, self.setup.flow.beta_v(), time)?;
-                    frames::series(&self.dir.join("flow.pvd"), &self.journal.frames)?;
+                    frames::series(&self.dir.join(frames::SERIES), &self.journal.frames)?;
                 }
                 Format::Npy => shot.arrays(&dir.join(format!("{n:04}")), &self.setup.edges)?,
                 Format::Png => {

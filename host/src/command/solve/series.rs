@@ -2,7 +2,7 @@
 
 use super::arrays::position;
 use super::case_file::CaseFile;
-use super::checkpoint::Journal;
+use super::checkpoint::{self, Journal};
 use super::force::force_on_all;
 use super::frames::{cell_at, point};
 use super::monitors::{Monitor, MonitorReport, head, monitors, planes};
@@ -11,7 +11,7 @@ use super::setup::Setup;
 use super::solids::{SolidForce, SolidShares};
 use super::table::Table;
 use crate::command::progress::Progress;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::grid::Edges;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -34,6 +34,16 @@ impl<const D: usize> Watched<D> {
         self.planes.iter().flat_map(Monitor::cells)
     }
 
+    /// Checksums of where the probes and the planes are; 0 if there are none.
+    fn places(&self) -> [u32; 2] {
+        let sum = |cells: &mut dyn Iterator<Item = usize>| {
+            let mut hasher = crc32fast::Hasher::new();
+            cells.for_each(|cell| hasher.update(&(cell as u64).to_le_bytes()));
+            hasher.finalize()
+        };
+        [sum(&mut self.probes.iter().copied()), sum(&mut self.cells())]
+    }
+
     /// Of a case; what lies in solids is told.
     ///
     /// # Errors
@@ -50,6 +60,8 @@ pub struct Series<const D: usize> {
     /// With the cells of the probes.
     probes: Option<(Table, Vec<usize>)>,
     monitors: Option<(Table, Vec<Monitor<D>>)>,
+    /// What [`Watched::places`] tells.
+    places: [u32; 2],
     /// Steps between lines of the log.
     log_every: usize,
     /// Pressure that overpressures are counted from.
@@ -69,6 +81,15 @@ impl<const D: usize> Series<D> {
         journal: &Journal,
         (log_every, ambient): (usize, f64),
     ) -> Result<Self> {
+        let places = watched.places();
+        let was = [("output.probes", journal.probes), ("output.monitors", journal.monitors)];
+        for (((of, bytes), now), then) in was.into_iter().zip(places).zip(journal.places) {
+            if bytes > 0 && now != 0 && then != 0 && now != then {
+                let reason =
+                    format!("is of a run whose {of} lie elsewhere: leave them as they were, or run without --resume");
+                return Err(Error::file(&dir.join(checkpoint::NAME), reason));
+            }
+        }
         let table = |name: &str, head: &str, of: &str, bytes: u64| match bytes {
             0 => Table::new(&dir.join(name), head),
             bytes => Table::resume(&dir.join(name), head, of, bytes),
@@ -87,7 +108,7 @@ impl<const D: usize> Series<D> {
             true => None,
             false => Some((table("monitors.csv", &head(&planes), "output.monitors", journal.monitors)?, planes)),
         };
-        Ok(Series { log, probes, monitors, log_every, ambient })
+        Ok(Series { log, probes, monitors, places, log_every, ambient })
     }
 
     /// Lines of a moment, reached by a step of `dt`; `forces` are those on the solids that are asked for.
@@ -112,6 +133,19 @@ impl<const D: usize> Series<D> {
             table.line(&line)?;
         }
         Ok(())
+    }
+
+    /// The line of the last step, if the log would leave it out; a run that goes on goes on without it.
+    ///
+    /// # Errors
+    /// The log cannot be written.
+    pub fn end(&mut self, setup: &Setup<D>, dt: f64, forces: &[SolidForce]) -> Result<()> {
+        if setup.flow.steps.is_multiple_of(self.log_every) {
+            return Ok(());
+        }
+        let line = self.log_line(setup, dt, forces);
+        self.log.line(&line)?;
+        self.log.flush()
     }
 
     fn log_line(&self, setup: &Setup<D>, dt: f64, forces: &[SolidForce]) -> String {
@@ -141,7 +175,7 @@ impl<const D: usize> Series<D> {
     /// A table cannot be written.
     pub fn flush(&mut self, journal: &mut Journal) -> Result<()> {
         self.log.flush()?;
-        journal.log = self.log.bytes();
+        (journal.log, journal.places) = (self.log.bytes(), self.places);
         if let Some((table, _)) = &mut self.probes {
             table.flush()?;
             journal.probes = table.bytes();
