@@ -104,3 +104,26 @@ fn a_box_of_two_numbers_is_told() {
     let silent = patch("[0, 0.2, 0.2]", "[9, 0.8, 0.8]");
     assert!(!silent.contains("its box has numbers"), "{silent}");
 }
+
+/// On half the cells a vent may have another area: then that is told beside the comparison.
+#[test]
+fn a_vent_that_differs_on_half_the_cells_is_told() {
+    let at = Scratch::new();
+    let case = |from: f64, to: f64| {
+        let sides = ["x_min", "x_max", "y_min", "y_max"].map(|side| format!("{side} = \"wall\"\n")).concat();
+        format!(
+            "[grid]\nx = {{ points = [0, 1], cells = [20] }}\ny = {{ points = [0, 1], cells = [20] }}\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\n\
+             uniform = {{ rho = 1.2, p = 1.2e5 }}\n[boundary]\n{sides}[[boundary.patch]]\nside = \"x_max\"\nmin = [0, {from}]\nmax = [1, {to}]\n\
+             type = \"outlet\"\np = 1e5\n[time]\nmax_steps = 2\n[output]\nformats = []\n"
+        )
+    };
+    let told = stderr(&solved(&at, &case(0.45, 0.55), "other", &["--refine-check"]));
+    assert!(
+        told.contains("boundary.patch[0]: has 0.1 m² on the cells of the case and 0.2 m² on half of them"),
+        "{told}"
+    );
+    let patch = &json(&at.file("other/report.json"))["refine_check"]["patches"][0];
+    assert!((patch["coarse"].as_f64().expect("an area") - 0.2).abs() < 1e-12, "{patch}");
+    let silent = stderr(&solved(&at, &case(0.4, 0.6), "same", &["--refine-check"]));
+    assert!(!silent.contains("on half of them"), "{silent}");
+}

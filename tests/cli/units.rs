@@ -125,8 +125,11 @@ fn sizes_by_a_given_unit_are_doubted() {
         stderr(&voidage(&all))
     };
     let text = inspect(&["--unit", "mm"]);
-    assert!(text.contains("in mm its size is 0.008369 × 0.0046 × 0.0036 m, small for a plant"), "{text}");
-    assert!(text.contains("check the unit, --unit here, porosity.unit in a case"), "{text}");
+    assert!(
+        text.contains("its size is 0.008369 × 0.0046 × 0.0036 m with the unit \"mm\", small for a plant"),
+        "{text}"
+    );
+    assert!(text.contains("check that, --unit here, porosity.unit in a case"), "{text}");
     for unit in [&[][..], &["--unit", "m"], &["--unit", "cm"], &["--unit", "ft"]] {
         let text = inspect(unit);
         assert!(!text.contains("for a plant"), "{unit:?}: {text}");
@@ -141,7 +144,7 @@ fn sizes_by_a_given_unit_are_doubted() {
         stderr(&voidage(&all))
     };
     let text = said("large.obj", &["--unit", "cm"]);
-    assert!(text.contains("in cm its size is 40000 × 40000 × 40000 m, large for a plant"), "{text}");
+    assert!(text.contains("its size is 40000 × 40000 × 40000 m with the unit \"cm\", large for a plant"), "{text}");
     assert!(!said("small.obj", &[]).contains("for a plant"));
 }
 

@@ -4,7 +4,9 @@ use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
 use voidage::geometry::read;
+use voidage::geometry::scene::hull::HullSolid;
 use voidage::grid::Edges;
 use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::number::aabb::Aabb;
@@ -236,5 +238,44 @@ proptest! {
         ][place];
         let bodies = scene(&[placed(&heap, turn, scale, to)]);
         bounds_hold_the_surface(&even_grid(8), &bodies, depth, "heap");
+    }
+}
+
+/// Regular prisms along an axis of the grid, their corners by sine and cosine: sides that are along an axis but for rounding reach heights of 1e16 cells
+/// over the columns of a part, and those that stand beside each other must not leave their rounding in its share.
+#[test]
+fn prisms_along_axes_but_for_rounding() {
+    let edges = Edges([vec![0.0, 0.3, 0.7, 1.0], vec![0.0, 0.3, 0.7, 1.0], vec![0.0, 0.3, 0.7, 1.0]]);
+    let random = &mut Random::new(31);
+    for n in 0..200 {
+        let sides = [6, 8, 12][n % 3];
+        let (axis, turned) = (n / 3 % 3, [0.0, 0.5, 0.25][n / 9 % 3]);
+        let radius = [0.25, 0.1, 0.31][n % 3];
+        let middle = [0, 1, 2].map(|_| [0.25, 0.5, 0.75, 0.3, 0.62][random.below(5)]);
+        let corner = |i: usize, high: bool| {
+            let angle = TAU * (i as f64 + turned) / sides as f64;
+            let mut at = middle;
+            at[(axis + 1) % 3] += radius * angle.sin();
+            at[(axis + 2) % 3] += radius * angle.cos();
+            at[axis] += if high { 0.0625 } else { -0.0625 };
+            DVec3::from_array(at)
+        };
+        let corners: Vec<DVec3> = (0..2 * sides).map(|i| corner(i / 2, i % 2 == 1)).collect();
+        let hull = HullSolid::new(&corners).expect("a hull");
+        let mut bodies = scene(&[hull.surface().collect()]);
+        bodies.bodies[0].form = Some(Form::Hull(hull.corners.into()));
+        let exact = exact(&edges, &bodies);
+        for depth in [3, 6] {
+            let result = run(&edges, &bodies, paper(Leaf::Plane, depth), 1);
+            assert_eq!(result.subdivided, 1);
+            let what = format!("prism {n}: {sides} sides, axis {axis}, at {middle:?}, depth {depth}");
+            assert_holds(&result, &exact, &what);
+            let [lower, upper] = result.bounds.as_ref().expect("bounds");
+            for (lower, upper) in
+                [(&lower.v, &upper.v), (&lower.x, &upper.x), (&lower.y, &upper.y), (&lower.z, &upper.z)]
+            {
+                assert!(lower.iter().zip(upper.iter()).all(|(lower, upper)| lower <= upper), "{what}: bounds cross");
+            }
+        }
     }
 }

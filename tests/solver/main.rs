@@ -20,5 +20,6 @@ mod reference;
 mod repairs;
 mod stress;
 mod throat;
+mod uneven;
 mod wall_forces;
 mod walls;

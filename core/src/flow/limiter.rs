@@ -29,6 +29,9 @@ pub(crate) trait Slope {
     /// The slope over the cell from the difference to the lower and to the upper neighbour.
     fn slope<R: Real>(a: R, b: R) -> R;
 
+    /// Half a slope stays within both differences, on cells that are alike.
+    const LIMITED: bool = true;
+
     /// The limiter takes the density apart into the share of the sound waves and the entropy wave.
     const SPLIT: bool = false;
 
@@ -117,6 +120,8 @@ impl Slope for Minmod {
 }
 
 impl Slope for Unlimited {
+    const LIMITED: bool = false;
+
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         R::HALF * (a + b)

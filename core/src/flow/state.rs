@@ -25,9 +25,10 @@ pub(crate) fn sum<R: Real, const D: usize>(t: [R; D]) -> R {
     } else if D == 2 {
         t[0] + t[1]
     } else {
-        let (low, high) = (R::smaller(t[0], t[1]), R::larger(t[0], t[1]));
+        // A selection takes its second number if one is NaN: in this order each of the three reaches the sum.
+        let (low, high) = (R::smaller(t[0], t[1]), R::larger(t[1], t[0]));
         let middle = R::larger(low, R::smaller(high, t[2]));
-        (R::smaller(low, t[2]) + R::larger(high, t[2])) + middle
+        (R::smaller(t[2], low) + R::larger(t[2], high)) + middle
     }
 }
 

@@ -274,31 +274,56 @@ fn clamped_mean<R: Real>(h: [R; 4], middle: R, full: R) -> [R; 2] {
         [(h[0] + h[1] + (h[2] + h[3])) * R::from_f64(0.25), middle]
     } else {
         let over = h.map(|h| middle + middle - h);
-        [mean_over_triangles(h, full), mean_over_triangles(over, full)]
+        let [(lower, below), (upper, above)] = [h, over].map(|h| mean_over_triangles(h, full));
+        [(lower - below).max(R::ZERO), (upper + above).min(full)]
     }
 }
 
-/// The mean over a square of the two triangles through its corners, clamped to `0..=full`.
-fn mean_over_triangles<R: Real>([a, b, c, d]: [R; 4], full: R) -> R {
-    let triangle = |x: R, y: R, z: R| mean_positive_part(x, y, z) - mean_positive_part(x - full, y - full, z - full);
-    ((triangle(a, b, c) + triangle(d, b, c)) * R::HALF).max(R::ZERO).min(full)
+/// The mean over a square of the two triangles through its corners, clamped to `0..=full`; and what rounding may change of it beyond what the sums over
+/// columns allow for.
+///
+/// Of a side that all but stands along the columns heights are as large as one likes. Those far above the box and those far below it do no harm if the means
+/// are taken from the other end; both together leave what rounding makes of the smaller of them.
+fn mean_over_triangles<R: Real>([a, b, c, d]: [R; 4], full: R) -> (R, R) {
+    let (highest, lowest) = (a.max(b).max(c.max(d)), a.min(b).min(c.min(d)));
+    let (over, under) = (highest - full, -lowest);
+    let from_below = over <= under;
+    let clamped = |x: R, y: R, z: R| {
+        if from_below {
+            mean_positive_part(x, y, z) - mean_positive_part(x - full, y - full, z - full)
+        } else {
+            full - (mean_positive_part(full - x, full - y, full - z) - mean_positive_part(-x, -y, -z))
+        }
+    };
+    let mean = (clamped(a, b, c) + clamped(d, b, c)) * R::HALF;
+    if !mean.is_finite() {
+        return (R::ZERO, full);
+    }
+    let (mean, far) = (mean.max(R::ZERO).min(full), over.min(under));
+    (mean, if far > full { far * (R::EPSILON * R::from_f64(MEAN_ROUNDINGS)) } else { R::ZERO })
 }
 
-/// The mean over a triangle of the positive part of a linear function with these values at the corners.
+/// Rounding of a mean over triangles, in units of ε times its largest term.
+const MEAN_ROUNDINGS: f64 = 16.0;
+
+/// The mean over a triangle of the positive part of a linear function with these values at the corners: sums of positive terms, which lose no digits.
 fn mean_positive_part<R: Real>(x: R, y: R, z: R) -> R {
     let (low, high) = (x.min(y).min(z), x.max(y).max(z));
     let middle = x.min(y).max(x.max(y).min(z));
     let third = R::from_f64(1.0 / 3.0);
-    // The part beyond the line where the function vanishes is a triangle of its own.
-    let tip = |top: R, p: R, q: R| top * (top / (top - p)) * (top / (top - q)) * third;
     if low >= R::ZERO {
         (low + middle + high) * third
     } else if high <= R::ZERO {
         R::ZERO
     } else if middle <= R::ZERO {
-        tip(high, middle, low)
+        // The part beyond the line where the function vanishes is a triangle of its own.
+        high * (high / (high - middle)) * (high / (high - low)) * third
     } else {
-        (low + middle + high) * third + tip(-low, -middle, -high)
+        // All of it and the triangle beyond the line, whose terms cancel: (d (m² + m h + h²) + (m + h) m h) / (3 (d + m) (d + h)) with the depth d.
+        let depth = -low;
+        let (to_middle, to_high) = (depth + middle, depth + high);
+        let squares = (middle / to_middle) * (middle + high) + high * (high / to_middle);
+        third * (depth / to_high * squares + (middle + high) * (middle / to_middle) * (high / to_high))
     }
 }
 

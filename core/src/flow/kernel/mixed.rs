@@ -13,7 +13,7 @@
 //! Γ stands behind the last variable of state and change blocks; in face state blocks behind the reference pressure; in flux blocks two variables stand
 //! there: the volume that passes, and the Γ that it carries.
 
-use crate::flow::kernel::rows::{Differences, Faces, Rate, Three, differences_of, fit, split_mut, var};
+use crate::flow::kernel::rows::{Differences, Faces, Rate, Steps, Three, fit, split_mut, var};
 use crate::flow::limiter::Slope;
 use crate::flow::state::{Fields, each, sum};
 use crate::number::real::Real;
@@ -49,8 +49,7 @@ pub(crate) fn primitives<R: Real, const D: usize>(old: &Fields<'_, R, D>, start:
 pub(crate) fn slopes<R: Real, S: Slope>(capacity: Three<'_, R>, axis: &impl Differences<R>, out: &mut [R]) {
     let capacity = fit(capacity, out.len());
     for (i, out) in out.iter_mut().enumerate() {
-        let (a, b) = differences_of(capacity, i, axis);
-        *out = S::entropy_slope(a, b);
+        *out = Steps::of(capacity, i).slope(i, axis, S::LIMITED, S::entropy_slope);
     }
 }
 

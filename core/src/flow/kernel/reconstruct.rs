@@ -283,6 +283,11 @@ struct Even;
 
 impl<R: Real> Differences<R> for Even {
     #[inline(always)]
+    fn is_even(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn scale(&self, _: usize) -> (R, R) {
         (R::ONE, R::ONE)
     }
@@ -320,6 +325,11 @@ impl<R: Real> Uneven<'_, R> {
 }
 
 impl<R: Real> Differences<R> for Uneven<'_, R> {
+    #[inline(always)]
+    fn is_even(&self) -> bool {
+        false
+    }
+
     #[inline(always)]
     fn scale(&self, i: usize) -> (R, R) {
         let (own, below, above) = self.spacing(i);

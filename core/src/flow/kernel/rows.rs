@@ -140,32 +140,57 @@ impl<'a, R> RowBeside<'a, R> {
 
 /// How differences along an axis become slopes.
 pub(crate) trait Differences<R> {
+    /// Are all cells alike, so that a slope that is limited leaves no face beyond the neighbour's value?
+    fn is_even(&self) -> bool;
     /// Own width over the distance of the centres, below and above.
     fn scale(&self, i: usize) -> (R, R);
     /// Half the weight of a column of unit density between the centres, below and above; `None` without gravity along the axis.
     fn half_weight(&self, i: usize) -> Option<(R, R)>;
 }
 
-/// Differences of a variable to the cell below and to the cell above, scaled to the width of the cell.
-#[inline(always)]
-pub(super) fn differences_of<R: Real>((low, here, high): Three<'_, R>, i: usize, axis: &impl Differences<R>) -> (R, R) {
-    let (a, b) = axis.scale(i);
-    (a * (here[i] - low[i]), b * (high[i] - here[i]))
-}
+/// Differences of a variable to the cell below and to the cell above.
+#[derive(Clone, Copy)]
+pub(super) struct Steps<R>(pub R, pub R);
 
-/// The same of the pressure, less what hydrostatic balance asks for.
-#[inline(always)]
-fn pressure_differences<R: Real>(
-    (low, here, high): Three<'_, R>,
-    rho: Three<'_, R>,
-    i: usize,
-    axis: &impl Differences<R>,
-) -> (R, R) {
-    let Some(weight) = axis.half_weight(i) else { return differences_of((low, here, high), i, axis) };
-    let (a, b) = axis.scale(i);
-    let below = (here[i] - low[i]) - (rho.0[i] + rho.1[i]) * weight.0;
-    let above = (high[i] - here[i]) - (rho.1[i] + rho.2[i]) * weight.1;
-    (a * below, b * above)
+impl<R: Real> Steps<R> {
+    /// Of a variable in cell `i`.
+    #[inline(always)]
+    pub fn of((low, here, high): Three<'_, R>, i: usize) -> Self {
+        Steps(here[i] - low[i], high[i] - here[i])
+    }
+
+    /// Of the pressure, less what hydrostatic balance asks for.
+    #[inline(always)]
+    fn of_pressure(p: Three<'_, R>, rho: Three<'_, R>, i: usize, axis: &impl Differences<R>) -> Self {
+        let Steps(below, above) = Steps::of(p, i);
+        match axis.half_weight(i) {
+            None => Steps(below, above),
+            Some((low, high)) => Steps(below - (rho.0[i] + rho.1[i]) * low, above - (rho.1[i] + rho.2[i]) * high),
+        }
+    }
+
+    /// What of these does not go with those of the pressure.
+    #[inline(always)]
+    fn without(self, Steps(below, above): Self, compliance: R) -> Self {
+        Steps(self.0 - below * compliance, self.1 - above * compliance)
+    }
+
+    /// The slope over cell `i` by a limiter of differences that are scaled to its width. Where the cell is wider than its neighbour, a limiter by itself
+    /// lets the value at the face between them go beyond the neighbour's: half the slope is at most the smaller difference.
+    #[inline(always)]
+    pub fn slope(self, i: usize, axis: &impl Differences<R>, limited: bool, by: impl Fn(R, R) -> R) -> R {
+        let (a, b) = axis.scale(i);
+        let slope = by(a * self.0, b * self.1);
+        if axis.is_even() || !limited {
+            return slope;
+        }
+        let most = R::TWO * R::smaller(self.0.abs(), self.1.abs());
+        match slope.abs() > most {
+            true if slope < R::ZERO => -most,
+            true => most,
+            false => slope,
+        }
+    }
 }
 
 /// Slopes of all variables of a row along one axis. `values` gives a variable of the state block.
@@ -189,17 +214,16 @@ pub(crate) fn slopes<'a, R: Real, S: Slope, const D: usize>(
     let out_p = &mut rest[D * n..][..n];
     let Some(compliance) = compliance else {
         for i in 0..n {
-            let (a, b) = pressure_differences(p, rho, i, axis);
-            out_p[i] = S::slope(a, b);
+            out_p[i] = Steps::of_pressure(p, rho, i, axis).slope(i, axis, S::LIMITED, S::slope);
         }
         return one_slope::<R, S>(rho, axis, out_rho);
     };
     let compliance = &compliance[..n];
     for i in 0..n {
-        let (rho_a, rho_b) = differences_of(rho, i, axis);
-        let (p_a, p_b) = pressure_differences(p, rho, i, axis);
-        let pressure = S::slope(p_a, p_b);
-        let entropy = S::entropy_slope(rho_a - p_a * compliance[i], rho_b - p_b * compliance[i]);
+        let of_pressure = Steps::of_pressure(p, rho, i, axis);
+        let of_entropy = Steps::of(rho, i).without(of_pressure, compliance[i]);
+        let pressure = of_pressure.slope(i, axis, S::LIMITED, S::slope);
+        let entropy = of_entropy.slope(i, axis, S::LIMITED, S::entropy_slope);
         out_p[i] = pressure;
         out_rho[i] = pressure * compliance[i] + entropy;
     }
@@ -210,8 +234,7 @@ fn one_slope<R: Real, S: Slope>(values: Three<'_, R>, axis: &impl Differences<R>
     let n = out.len();
     let values = fit(values, n);
     for i in 0..n {
-        let (a, b) = differences_of(values, i, axis);
-        out[i] = S::slope(a, b);
+        out[i] = Steps::of(values, i).slope(i, axis, S::LIMITED, S::slope);
     }
 }
 
@@ -359,15 +382,24 @@ pub(crate) fn face_states<R: Real, const D: usize>(
     out[(D + 2) * stride + offset..][..n].copy_from_slice(&half[half.len() - n..]);
     if let Some(weight) = weight {
         let rho = var(half, 0, n);
-        for v in [D + 1, D + 2] {
-            let o = &mut out[v * stride + offset..][..n];
-            for i in 0..n {
-                let tilt = R::HALF * weight[i] * rho[i];
-                o[i] = if high { o[i] + tilt } else { o[i] - tilt };
-            }
+        let tilted = |p: R, i: usize| {
+            let tilt = R::HALF * weight[i] * rho[i];
+            if high { p + tilt } else { p - tilt }
+        };
+        // The reference carries the weight of the cell; the state has a pressure, in however high a cell.
+        let state = &mut out[(D + 1) * stride + offset..][..n];
+        for i in 0..n {
+            state[i] = R::larger(tilted(state[i], i), R::from_f64(LEAST_PRESSURE) * state[i]);
+        }
+        let reference = &mut out[(D + 2) * stride + offset..][..n];
+        for i in 0..n {
+            reference[i] = tilted(reference[i], i);
         }
     }
 }
+
+/// Share of the pressure of a cell that the weight of its half leaves at its face at least.
+const LEAST_PRESSURE: f64 = 0.1;
 
 /// What each cell of a row loses through its two faces of axis `d`, divided by its width there.
 ///

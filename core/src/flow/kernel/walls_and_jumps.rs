@@ -32,6 +32,10 @@ pub(in crate::flow) struct Single<R> {
 }
 
 impl<R: Real> Differences<R> for Single<R> {
+    fn is_even(&self) -> bool {
+        false
+    }
+
     fn scale(&self, _: usize) -> (R, R) {
         self.scale
     }
@@ -169,7 +173,7 @@ fn slope_at_walls<R: Real, const D: usize>(
         [low, _] => {
             let (velocity, away) = (three[1 + d], if low { single.scale.1 } else { single.scale.0 });
             let [below, here, above] = velocity;
-            wall_slope(here, away * if low { above - here } else { here - below }, !low)
+            wall_slope(here, R::smaller(away, R::ONE) * if low { above - here } else { here - below }, !low)
         }
     };
     slope
@@ -202,6 +206,7 @@ pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
                 continue;
             }
             let (a, b) = axis.scale(i);
+            let [a, b] = [a, b].map(|scale| R::smaller(scale, R::ONE));
             let away = if side == 0 { b * (above[i] - here[i]) } else { a * (here[i] - below[i]) };
             let alone = cells == 1 && walls == [true; 2];
             out[i] = if alone { R::ZERO } else { wall_slope(here[i], away, side == 1) };

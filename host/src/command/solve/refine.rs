@@ -13,6 +13,7 @@ use crate::command::interrupt;
 use crate::command::progress::{Meter, Progress};
 use crate::error::{Error, Result};
 use crate::grid::{AXES, Edges};
+use crate::picture::ticks::measure;
 use crate::words::written;
 use serde::Serialize;
 use std::fmt::Display;
@@ -32,6 +33,28 @@ pub struct RefineCheck {
     pub steps: usize,
     /// Of all open cells outside the regions that a blast starts from, then of each probe.
     pub peaks: Vec<ComparedPeaks>,
+    /// Open areas of the patches, in m².
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub patches: Vec<Compared>,
+}
+
+/// Patches whose areas differ by more than this share make another case.
+const SAME_AREA: f64 = 0.02;
+
+impl RefineCheck {
+    /// Says which patches are not the same on half the cells: what the runs differ by is then not the cells alone.
+    pub fn warn_of_patches(&self, file: &CaseFile, progress: &mut Progress) {
+        let differs = |area: &Compared| (area.fine - area.coarse).abs() > SAME_AREA * area.fine.max(area.coarse);
+        for (n, area) in self.patches.iter().enumerate().filter(|(_, area)| differs(area)) {
+            let reason = format!(
+                "has {} m² on the cells of the case and {} m² on half of them: the runs of --refine-check differ by that, too; with its sides in \
+                 planes of both grids they would not",
+                measure(area.fine),
+                measure(area.coarse)
+            );
+            progress.warn(file.remark(&format!("boundary.patch[{n}]"), reason));
+        }
+    }
 }
 
 /// Largest values in one place.
@@ -109,6 +132,8 @@ pub struct Fine<'a> {
     pub maxima: &'a Maxima,
     /// The same at each probe.
     pub probes: Vec<Peaks>,
+    /// Open areas of its patches.
+    pub patches: Vec<f64>,
 }
 
 /// Runs the case on half the cells to the time `end`, and compares with the largest values of the run on all. Where a blast starts, in whichever cells of the
@@ -150,6 +175,8 @@ pub fn run<const D: usize>(
     });
     let of_fine = charges.finer(edges.cells(), fine.edges.cells(), &live, fine.beta_v);
     let coarse = std::iter::once(anywhere(&maxima, setup.flow.beta_v(), &charges)).chain(probes);
+    let areas = fine.patches.iter().zip(&setup.patches).map(|(&fine, coarse)| Compared::new(fine, coarse.area));
+    let patches = areas.collect();
     let fine = std::iter::once(anywhere(fine.maxima, fine.beta_v, &of_fine)).chain(fine.probes);
     let peaks = fine.zip(coarse).map(|(fine, coarse)| ComparedPeaks {
         overpressure: Compared::new(fine.overpressure, coarse.overpressure),
@@ -157,7 +184,7 @@ pub fn run<const D: usize>(
         dynamic_pressure: Compared::new(fine.dynamic_pressure, coarse.dynamic_pressure),
         name: fine.name,
     });
-    Ok(RefineCheck { cells: edges.cells(), steps: setup.flow.steps, peaks: peaks.collect() })
+    Ok(RefineCheck { cells: edges.cells(), steps: setup.flow.steps, peaks: peaks.collect(), patches })
 }
 
 /// The largest values of all open cells outside these charges.

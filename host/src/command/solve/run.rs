@@ -146,9 +146,11 @@ fn run<const D: usize>(
     json::write(&run.dir.join(REPORT), &summary)?;
     if let Some(maxima) = run.maxima.as_ref().filter(|_| args.refine_check) {
         let (beta_v, probes, end) = (run.setup.flow.beta_v(), run.peaks(file), run.setup.flow.time);
-        let fine = Fine { edges, beta_v, maxima, probes };
+        let patches = run.setup.patches.iter().map(|patch| patch.area).collect();
+        let fine = Fine { edges, beta_v, maxima, probes, patches };
         let _watch = interrupt::Watch::new();
         let checked = progress.stage("refine-check", |p| refine::run(file, live, fine, end, &p.line()))?;
+        checked.warn_of_patches(file, &mut progress);
         summary = report(&run, &progress).with_refine_check(checked);
         json::write(&run.dir.join(REPORT), &summary)?;
     }
