@@ -303,7 +303,7 @@ checkpoint_every = 0
 #[test]
 fn floors_are_booked_and_the_state_before_the_first_one_stays() {
     let at = Scratch::new();
-    solved(&at, &falling(-14.0, 3), "out", &["-q"]);
+    solved(&at, &falling(-40.0, 3), "out", &["-q"]);
     let report = json(&at.file("out/report.json"));
     assert!(report["floors"].as_u64().expect("a count") > 0, "no floor was visited");
     let changed = report["floor_change"]["momentum"][0].as_f64().expect("a momentum");
@@ -315,7 +315,7 @@ fn floors_are_booked_and_the_state_before_the_first_one_stays() {
     let results = || ["rho", "u", "p"].map(|f| fs::read(at.file(&format!("out/final/{f}.npy"))).expect("a file"));
     let (before, checkpoint) = (results(), at.file("out/checkpoint_before_floors.bin"));
     fs::copy(&checkpoint, at.file("out/checkpoint.bin")).expect("a copy");
-    solved(&at, &falling(-14.0, 3), "out", &["-q", "--resume"]);
+    solved(&at, &falling(-40.0, 3), "out", &["-q", "--resume"]);
     assert!(results() == before);
     assert_eq!(fs::read_to_string(at.file("out/log.csv")).expect("a log"), log);
     // A new run without floors leaves no copy of an old one behind.

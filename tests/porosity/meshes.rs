@@ -262,7 +262,7 @@ fn prisms_along_axes_but_for_rounding() {
         };
         let corners: Vec<DVec3> = (0..2 * sides).map(|i| corner(i / 2, i % 2 == 1)).collect();
         let hull = HullSolid::new(&corners).expect("a hull");
-        let mut bodies = scene(&[hull.surface().collect()]);
+        let mut bodies = scene(&[hull.surface()]);
         bodies.bodies[0].form = Some(Form::Hull(hull.corners.into()));
         let exact = exact(&edges, &bodies);
         for depth in [3, 6] {

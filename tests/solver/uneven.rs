@@ -77,7 +77,7 @@ fn a_shock_tube_on_unequal_cells() {
 
 /// Steps of random states in a box with walls, the weight of a cell up to many times its pressure: mass is kept, whatever falls back.
 fn keeps_mass<const D: usize>(cells: [usize; D]) -> usize {
-    let mut fell_back = 0;
+    let (mut fell_back, mut floored) = (0, 0);
     for seed in 0..150 {
         let random = &mut Random::new(seed);
         let widths = cells.map(|n| (0..n).map(|_| random.between(0.05, 0.2)).collect());
@@ -93,19 +93,18 @@ fn keeps_mass<const D: usize>(cells: [usize; D]) -> usize {
         for _ in 0..4 {
             flow.advance(0.9, 1.0).expect("a step");
         }
-        let drift = flow.content().density / before - 1.0;
-        assert!(
-            drift.abs() < 1e-12 && flow.total.floored == 0,
-            "{D}D, seed {seed}: {drift:e}, {} floors",
-            flow.total.floored
-        );
-        assert!(
-            flow.total.inflow.iter().flatten().all(|side| side.density == 0.0),
-            "{D}D, seed {seed}: {:?}",
-            flow.total.inflow
-        );
+        let (drift, total) = (flow.content().density / before - 1.0, &flow.total);
+        // Only where a cell weighs many times its pressure may a floor be needed, and then it is booked.
+        let floors = seed % 3 == 2;
+        let booked = total.floor_change.density / before;
+        assert!(drift.abs() <= booked + 1e-12, "{D}D, seed {seed}: {drift:e}, booked {booked:e}");
+        assert!(floors || total.floored == 0, "{D}D, seed {seed}: {} floors", total.floored);
+        let inflow = total.inflow.iter().flatten();
+        assert!(inflow.into_iter().all(|side| side.density == 0.0), "{D}D, seed {seed}: {:?}", total.inflow);
+        floored += usize::from(total.floored > 0);
         fell_back += usize::from(flow.total.first_order > 0);
     }
+    assert!(floored <= 5, "{D}D: floors in {floored} runs");
     fell_back
 }
 
