@@ -3,3 +3,4 @@
 mod bodies;
 mod input;
 mod output;
+mod vessels;

@@ -133,13 +133,17 @@ fn warn_of_divided_cells(bodies: &Bodies, divided: DividedCells, progress: &mut 
     }
 }
 
+/// How many others a sentence about the first of them is about.
+fn and_more(others: usize) -> String {
+    if others > 0 { format!(" and {others} more") } else { String::new() }
+}
+
 /// Say which porous solids slow nothing down.
 pub fn warn_of_gratings(bodies: &Bodies, progress: &mut Progress) {
     let free = |b: &&Body| b.porosity > 0.0 && b.porosity < 1.0 && b.drag.cr.is_none();
     let mut gratings = bodies.bodies.iter().filter(free);
     if let Some(first) = gratings.next() {
-        let others = gratings.count();
-        let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+        let others = and_more(gratings.count());
         progress.warn(format!(
             "{}: \"{}\"{others} with a porosity, but without cr: the gas passes with no loss but that of narrower faces; cr = … of the solid \
              gives a loss of ½ ρ cr |u| u a metre, u in the pores",
@@ -154,18 +158,15 @@ fn warn_of_partly_filled(grid: &Grid<f64>, bodies: &Bodies, progress: &mut Progr
     let resists = |b: &&Body| b.porosity > 0.0 && b.porosity < 1.0 && b.drag.cr.is_some_and(|cr| cr > 0.0);
     let near = snap::near(grid);
     let between_planes = |b: &Body| {
-        let sides = (0..3).flat_map(|axis| b.bounds.map(|corner| (axis, corner[axis])));
-        sides.filter(|&(axis, at)| grid.edges(axis).first() < Some(&at) && Some(&at) < grid.edges(axis).last()).find(
-            |&(axis, at)| {
-                let next = grid.edges(axis).partition_point(|edge| *edge < at);
-                grid.edges(axis)[next - 1..=next].iter().all(|edge| (edge - at).abs() > near[axis])
-            },
-        )
+        let mut sides = (0..3).flat_map(|axis| b.bounds.map(|corner| (axis, corner[axis])));
+        sides.find(|&(axis, at)| {
+            let is_within = grid.edges(axis).first() < Some(&at) && Some(&at) < grid.edges(axis).last();
+            is_within && (snap::nearest(grid, axis, at) - at).abs() > near[axis]
+        })
     };
     let mut all = bodies.bodies.iter().filter(resists).filter_map(|b| Some((b, between_planes(b)?)));
     if let Some((first, (axis, at))) = all.next() {
-        let others = all.count();
-        let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+        let others = and_more(all.count());
         progress.warn(format!(
             "{}: \"{}\"{others} with a porosity and a cr begins or ends between planes of the grid (at {} = {}): where it fills cells in \
              part it loses less than cr L / porosity²; its sides belong into planes of the grid",

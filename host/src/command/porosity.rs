@@ -80,13 +80,12 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.
 fn spec(args: &PorosityArgs, bodies: &Bodies, own: Result<Option<Edges>>) -> Result<GridSpec> {
-    Ok(match (args.cells, args.spacing) {
-        (Some(cells), _) => GridSpec::Cells(cells, args.bounds),
-        (_, Some(spacing)) => GridSpec::Spacing(spacing, args.bounds),
-        _ if args.bounds.is_some() => GridSpec::Spacing(usual_spacing(args.bounds, bodies.bounds()), args.bounds),
-        _ => match own? {
-            Some(edges) => GridSpec::Edges(edges),
-            None => GridSpec::Spacing(usual_spacing(None, bodies.bounds()), None),
-        },
+    let asked = args.cells.is_some() || args.spacing.is_some() || args.bounds.is_some();
+    let own = if asked { None } else { own? };
+    Ok(match (args.cells, args.spacing, own) {
+        (Some(cells), ..) => GridSpec::Cells(cells, args.bounds),
+        (_, Some(spacing), _) => GridSpec::Spacing(spacing, args.bounds),
+        (.., Some(edges)) => GridSpec::Edges(edges),
+        _ => GridSpec::Spacing(usual_spacing(args.bounds, bodies.bounds()), args.bounds),
     })
 }

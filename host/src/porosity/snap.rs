@@ -104,7 +104,8 @@ pub fn number_of_body(bodies: &Bodies, triangle: usize) -> usize {
 }
 
 /// The plane nearest to a coordinate.
-fn nearest(grid: &Grid<f64>, axis: usize, value: f64) -> f64 {
+#[must_use]
+pub fn nearest(grid: &Grid<f64>, axis: usize, value: f64) -> f64 {
     let edges = grid.edges(axis);
     let last = edges.len() - 1;
     let (below, above) = match grid.locate(axis, value) {

@@ -82,9 +82,8 @@ impl<const D: usize> Series<D> {
         (log_every, ambient): (usize, f64),
     ) -> Result<Self> {
         let places = watched.places();
-        let was = [("output.probes", journal.probes), ("output.monitors", journal.monitors)];
-        for (((of, bytes), now), then) in was.into_iter().zip(places).zip(journal.places) {
-            if bytes > 0 && now != 0 && then != 0 && now != then {
+        for ((of, now), then) in ["output.probes", "output.monitors"].into_iter().zip(places).zip(journal.places) {
+            if now != 0 && then != 0 && now != then {
                 let reason =
                     format!("is of a run whose {of} lie elsewhere: leave them as they were, or run without --resume");
                 return Err(Error::file(&dir.join(checkpoint::NAME), reason));

@@ -226,11 +226,11 @@ pub fn report<const D: usize>(
             progress.warn(file.remark(&format!("boundary.patch[{n}]"), trouble));
         }
         // Numbers of a box stand for x, y and z, also where one of them is along the axis of the side.
-        let numbers = [&keys.min, &keys.max].into_iter().flatten().map(Vec::len).max();
-        if let Some(&open) = live.iter().find(|&&a| a != live[patch.axis] && numbers.is_some_and(|n| n <= a)) {
+        let numbers = [&keys.min, &keys.max].into_iter().flatten().map(Vec::len).max().unwrap_or(AXES.len());
+        if let Some(&open) = live.iter().find(|&&a| a != live[patch.axis] && numbers <= a) {
             let reason = format!(
                 "its box has numbers along {} alone: along {} it reaches from end to end of the side",
-                AXES[..numbers.unwrap_or(0)].join(" and "),
+                AXES[..numbers].join(" and "),
                 AXES[open]
             );
             progress.warn(file.remark(&format!("boundary.patch[{n}]"), reason));
