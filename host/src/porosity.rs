@@ -239,13 +239,11 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
         first.leaks.extend(broken.into_iter().map(|body| (body, f64::INFINITY)));
     }
     let mut total = summaries.iter().fold(Summary::default(), Summary::join);
-    for (k, summary) in summaries.iter().enumerate().filter(|(k, _)| same(*k).is_none()) {
-        for &(body, fraction) in &summary.leaks {
-            let layers = if fraction.is_finite() { k..k + 1 } else { 0..grid.cells()[2] };
-            let by = doubt::Leaking { bounds: bodies.bodies[body].bounds, layers, fraction };
-            total.max_gap = total.max_gap.max(by.widen(grid, options.areas, bounds.iter_mut().flatten()));
-        }
-    }
+    // What was copied from fewer bodies is as wide as it was there.
+    let measured = summaries.iter().enumerate().filter(|(k, _)| same(*k).is_none());
+    let leaks = measured.flat_map(|(k, s)| s.leaks.iter().map(move |&(body, fraction)| (body, k, fraction)));
+    let apart = doubt::widen_leaking(grid, bodies, options.areas, leaks, &mut bounds);
+    total.max_gap = (total.max_gap + apart).min(1.0);
     let surface = areas.map(|areas| Arc::new(finish(grid, (bodies, &layers), &beta, areas, &summaries)));
     let porosity = Porosity {
         beta,

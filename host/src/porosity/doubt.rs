@@ -12,6 +12,7 @@ use super::windows::Window;
 use super::{FieldSet, Options, Porosity};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use voidage_core::grid::Grid;
 
@@ -54,37 +55,40 @@ pub fn widen_unknown(grid: &Grid<f64>, bodies: &Bodies, options: Options, found:
         let Some(Window { cells }) = Window::around(grid, [lo, hi]) else { continue };
         let share = |place: Place| place.share_within(grid, [lo, hi]);
         let mut gap = 0.0_f64;
-        if let Some([lower, upper]) = &mut found.bounds {
-            change(grid, &cells, lower, options.areas, |beta, place| (beta - share(place)).max(0.0));
-            change(grid, &cells, upper, options.areas, |beta, place| (beta + share(place)).min(1.0));
-        }
+        spread(grid, &cells, options.areas, &mut found.bounds, share);
         each(&cells, |at| gap = gap.max(2.0 * share(Place { axis: None, at })));
         found.max_gap = (found.max_gap + gap).min(1.0);
     }
 }
 
-/// A body that leaks in some layers.
-pub struct Leaking {
-    /// Its box.
-    pub bounds: [DVec3; 2],
-    /// The layers.
-    pub layers: Range<usize>,
-    /// How far the worst row ends from zero there, as a fraction of a face.
-    pub fraction: f64,
-}
-
-impl Leaking {
-    /// Widens bounds of the cells and faces of its box in these layers, lower ones first. What a row misses at its end any cell or face of it may miss,
-    /// and more where what is missing has parts that cancel. Returns how far apart that puts them.
-    pub fn widen<'s>(&self, grid: &Grid<f64>, areas: bool, sets: impl Iterator<Item = &'s mut FieldSet>) -> f64 {
-        let Some(Window { cells: [x, y, z] }) = Window::around(grid, self.bounds) else { return 0.0 };
-        let cells = [x, y, z.start.max(self.layers.start)..z.end.min(self.layers.end)];
-        let by = (4.0 * self.fraction).min(1.0);
-        for (set, sign) in sets.zip([-1.0, 1.0]) {
-            change(grid, &cells, set, areas, |beta, _| (beta + sign * by).clamp(0.0, 1.0));
-        }
-        (2.0 * by).min(1.0)
+/// Widens bounds in the boxes of bodies that leak: the body, the layer and how far its worst row there ends from zero, as a fraction of a face; infinite if it
+/// was not measured in any layer. What a row misses at its end any cell or face of it may miss, and more where what is missing has parts that cancel. Returns by
+/// how much more bounds may be apart in one place.
+pub fn widen_leaking(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    areas: bool,
+    leaks: impl Iterator<Item = (usize, usize, f64)>,
+    bounds: &mut Option<[FieldSet; 2]>,
+) -> f64 {
+    let mut by_body: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for (body, layer, fraction) in leaks {
+        let by = by_body.entry(body).or_insert_with(|| vec![0.0; grid.cells()[2]]);
+        let layers = if fraction.is_finite() { layer..layer + 1 } else { 0..by.len() };
+        by[layers].iter_mut().for_each(|by| *by = (4.0 * fraction).min(1.0).max(*by));
     }
+    let mut apart = 0.0;
+    for (body, by) in by_body {
+        let Some(Window { cells }) = Window::around(grid, bodies.bodies[body].bounds) else { continue };
+        let of_layer = |layer: Option<usize>| layer.and_then(|k| by.get(k)).copied().unwrap_or(0.0);
+        spread(grid, &cells, areas, bounds, |place| match (place.axis, place.at[2]) {
+            // Beside two layers.
+            (Some(2), plane) => of_layer(plane.checked_sub(1)).max(of_layer(Some(plane))),
+            (_, layer) => of_layer(Some(layer)),
+        });
+        apart += 2.0 * by.iter().copied().fold(0.0, f64::max);
+    }
+    apart
 }
 
 /// Widens the bounds of all cells and faces within the boxes of bodies that were cut, by what the rounding of their new corners may change.
@@ -98,9 +102,20 @@ pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, f
         };
         let by = share(0) + share(1) + share(2);
         found.max_gap = (found.max_gap + 2.0 * by).min(1.0);
-        for (set, sign) in found.bounds.iter_mut().flatten().zip([-1.0, 1.0]) {
-            change(grid, &cells, set, options.areas, |beta, _| (beta + sign * by).clamp(0.0, 1.0));
-        }
+        spread(grid, &cells, options.areas, &mut found.bounds, |_| by);
+    }
+}
+
+/// Moves the lower bounds of some cells and all their faces down and the upper ones up, from 0 to 1.
+fn spread(
+    grid: &Grid<f64>,
+    cells: &[Range<usize>; 3],
+    areas: bool,
+    bounds: &mut Option<[FieldSet; 2]>,
+    by: impl Fn(Place) -> f64,
+) {
+    for (set, sign) in bounds.iter_mut().flatten().zip([-1.0, 1.0]) {
+        change(grid, cells, set, areas, |beta, place| (beta + sign * by(place)).clamp(0.0, 1.0));
     }
 }
 
