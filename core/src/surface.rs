@@ -65,3 +65,4 @@ mod window;
 pub mod z_faces;
 
 pub use other_bodies::OtherBodies;
+pub use union::PlanarPart;

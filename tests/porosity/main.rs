@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bends;
+mod beside;
 mod boxes;
 mod common;
 mod core_alone;

@@ -9,9 +9,11 @@
 //! 1. `constraint`: an affine function and how far another may be from it
 //! 2. `filled`: what affine functions leave of a box
 //! 3. `union`: bounds of a union's share of a box
+//! 4. `planar`: what lies behind a few planes, as a solid
 
 mod constraint;
 mod filled;
+mod planar;
 mod union;
 
 pub use constraint::{BoxAround, Constraint, Enclosure};

@@ -128,7 +128,13 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             }
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
             let believed = |u: &Refined<V::Scalar>| at.agrees(layer, u, site.areas);
-            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, believed).unzip();
+            let (mut refined, surface) = if shared.others.reach(cell) {
+                let found = union_with_others(shared, site, cell, row);
+                let close = shared.tol.max(closest());
+                (found.filter(|u| believed(u) && at.is_close(layer, u, close)), None)
+            } else {
+                union::<_, _, P>(shared, site, cell, row, believed).unzip()
+            };
             let mut rest = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
             if refined.is_none() && open > shared.tol {
                 resolved.divided += 1;
@@ -186,11 +192,17 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
                 row = Row::new(site.bins, site.k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
             }
             let Some(row) = &mut row else { continue };
-            let refined = match union::<_, _, ()>(shared, site, cell, row, |_| true) {
+            let found = if shared.others.reach(cell) {
+                let close = shared.tol.max(closest());
+                union_with_others(shared, site, cell, row).filter(|u| u.high[2].gap() <= close)
+            } else {
+                union::<_, _, ()>(shared, site, cell, row, |_| true).map(|(refined, ())| refined)
+            };
+            let refined = match found {
                 None if open > shared.tol => {
                     divide(shared, site, cell, SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 })
                 }
-                found => found.map(|(refined, _)| refined),
+                found => found,
             };
             if let Some(refined) = refined {
                 narrow(lower, sum, refined.high[2]);
@@ -210,6 +222,22 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
     surfaces.chain(others.map(|b| (b, false)))
 }
 
+/// Bounds of a union with other bodies are this close at best.
+fn closest<R: Real>() -> R {
+    known::<R>() * R::from_f64(100.0)
+}
+
+/// The union with other bodies in a cell where those of triangles lie behind a few planes.
+fn union_with_others<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    cell: Aabb<V>,
+    row: &Row<V>,
+) -> Option<Refined<V::Scalar>> {
+    let bodies = bodies_in(shared.union.reborrow(), site, cell, row, V::Scalar::ZERO).ok()?.planar_parts()?;
+    shared.others.union_with(cell, &bodies).map(Refined::from_places)
+}
+
 /// The union in a cell: exact, or with the least blur that gives a proof; of triangles only. What it has of surface is found if `P` wants it.
 fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
@@ -218,9 +246,6 @@ fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     row: &Row<V>,
     believed: impl Fn(&Refined<V::Scalar>) -> bool,
 ) -> Option<(Refined<V::Scalar>, P::Found)> {
-    if shared.others.reach(cell) {
-        return None;
-    }
     let mut tried = 0_usize;
     let found = with_least_blur(shared.tol, |blur| {
         let room = shared.union.pieces.len();

@@ -1,12 +1,15 @@
 //! Bodies beside those of triangles.
 
 use crate::grid::Grid;
+use crate::grid::bounds::Bounds;
 use crate::grid::fields::Layer;
 use crate::number::aabb::Aabb;
 use crate::number::real::Vector;
+use crate::surface::union::PlanarPart;
 
 /// Bodies that enter a layer by another road than their triangles: known by formula, or subdivided. Their shares of a cell or face are
-/// given as bounds of their union, and they take no part in exact unions: a cell that they share with a surface is divided.
+/// given as bounds of their union, and they take no part in exact unions: a cell that they share with a surface is divided, unless
+/// they tell of their own what they have in common with it.
 ///
 /// The unit type stands for none.
 pub trait OtherBodies<V: Vector> {
@@ -20,6 +23,12 @@ pub trait OtherBodies<V: Vector> {
     fn add_plane(&mut self, grid: &Grid<V::Scalar>, plane: usize, layer: &mut Layer<V::Scalar>);
     /// May one of them reach a cell or its sides?
     fn reach(&mut self, cell: Aabb<V>) -> bool;
+    /// Bounds of the union of all that reach a cell with bodies which in it are what lies behind some planes: of the cell, of its low x, y and z
+    /// face and of its high ones. None if they know no better than by their own shares.
+    fn union_with(&mut self, cell: Aabb<V>, bodies: &[PlanarPart<V::Scalar>]) -> Option<[Bounds<V::Scalar>; 7]> {
+        let _ = (cell, bodies);
+        None
+    }
 }
 
 impl<V: Vector> OtherBodies<V> for () {

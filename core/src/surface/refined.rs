@@ -25,6 +25,11 @@ impl<R: Real> Refined<R> {
         Refined { cell: known(u.cell), low: u.low.map(known), high: u.high.map(known) }
     }
 
+    /// From bounds of the cell, of its low faces and of its high ones.
+    pub fn from_places([cell, x, y, z, right, back, top]: [Bounds<R>; 7]) -> Self {
+        Refined { cell, low: [x, y, z], high: [right, back, top] }
+    }
+
     /// From the parts of a cell, in number `cells` along each axis.
     pub fn from_parts(parts: &Parts<R>, cells: [usize; 3]) -> Self {
         let high = |axis: usize| if cells[axis] > 1 { parts.planes[axis][2] } else { parts.planes[axis][1] };
@@ -104,6 +109,15 @@ impl At {
             && low.zip(u.low).all(|((axis, at, _), found)| {
                 free_face(layer, axis, at).is_none_or(|(lower, sum)| fits(lower, sum, found))
             })
+    }
+
+    /// Are the bounds found of the cell and of the faces that it decides, but for those in whose plane surface lies, this close?
+    pub fn is_close<R: Real>(self, layer: &Layer<R>, found: &Refined<R>, tol: R) -> bool {
+        let close = |(axis, at, high): (usize, usize, bool)| {
+            let side = if high { &found.high } else { &found.low };
+            free_face(layer, axis, at).is_none() || side.get(axis).is_some_and(|b| b.gap() <= tol)
+        };
+        found.cell.gap() <= tol && self.faces().all(close)
     }
 
     /// Store what is known of the cell and of those of its faces that it decides.

@@ -16,6 +16,7 @@ mod bsp;
 mod descent;
 mod octree;
 mod piece;
+mod planar;
 mod separate;
 
 use crate::number::aabb::Aabb;
@@ -33,6 +34,7 @@ pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
 pub use octree::Octant;
 pub use piece::{NoProof, Piece};
+pub use planar::PlanarPart;
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
 pub const MAX_SPREAD: f64 = 1e-9;

@@ -2,16 +2,20 @@
 //!
 //! Shares of solids that do not meet add up, and that is exact. Which pairs meet is asked of GJK once for each pair of solids whose boxes
 //! overlap (`pairs`). Only in a cell or face that two such solids share is what they have in common taken off, by sections or by planes between which they lie
-//! (`union`). A solid that closes the cell leaves nothing to find out.
+//! (`union`). A solid that closes the cell leaves nothing to find out, and what of one another holds was cut off before (`nested`).
 
 mod capsule;
 mod kept;
+mod nested;
 mod pairs;
+mod planar;
 mod round;
 mod solid;
 mod union;
 
+pub use nested::without_nested;
 pub use pairs::find_partners;
+pub use planar::union_with;
 pub use solid::FormulaSolid;
 
 use kept::KeptFaces;
@@ -185,7 +189,9 @@ fn tell_shares(
                     }
                 };
                 match part {
-                    LayerPart::Layer(k, areas) => solid.layer_between(grid, k, areas, kept.of_body(s.body), &mut visit),
+                    LayerPart::Layer(k, areas) => {
+                        solid.layer_between(grid, k, areas, kept.of_solid(s.number), &mut visit)
+                    }
                     LayerPart::Plane(plane) => {
                         solid.plane(grid, plane, &mut visit);
                         0.0
@@ -294,7 +300,7 @@ struct Place<'a, 's> {
 impl<'a> Place<'a, '_> {
     fn meets(&self, a: usize) -> bool {
         let beside = |n: usize| ends_at(&self.solids[n].bounds, self.grid, self.kind, self.range);
-        let with = |&(b, _): &(usize, [f64; 2])| match self.solids[a].pair_with(self.solids[b].body) {
+        let with = |&(b, _): &(usize, [f64; 2])| match self.solids[a].pair_with(self.solids[b]) {
             None => false,
             Some(Pair::Meeting) => true,
             Some(Pair::Touching) => beside(a) && beside(b),

@@ -20,15 +20,17 @@ use voidage_core::subdivide::{
     self, Bounds, Candidate, ClosedSurface, QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, share,
     slab_margin, subdivide,
 };
-use voidage_core::surface::OtherBodies;
+use voidage_core::surface::{OtherBodies, PlanarPart};
 
 /// How each body is measured: subdivided if its entry in `convex` is some, by closed form if `formulas` lists it, else by its surface.
 #[derive(Debug, Default)]
 pub struct Roads {
     /// One entry a body: what is subdivided.
     convex: Vec<Option<Known>>,
-    /// The solids measured by closed forms, each with the number of its body.
+    /// The solids measured by closed forms, each with the number of its body, without what others hold.
     formulas: Vec<FormulaSolid>,
+    /// The bodies that these are of, by ascending numbers.
+    by_formula: Vec<usize>,
 }
 
 impl Roads {
@@ -57,7 +59,7 @@ impl Roads {
                 // Whatever the method: no other measures it.
                 (_, Some(Form::Torus(shape))) => formulas.extend(FormulaSolid::torus(body, shape)),
                 (Some(Known::Round(shape)), _) if options.method == Method::Auto => {
-                    if let Some(form) = FormulaSolid::new(body, Subdividable::bounds(shape), *shape) {
+                    if let Some(form) = FormulaSolid::new(body, *shape) {
                         formulas.push(form);
                         *known = None;
                     }
@@ -65,21 +67,22 @@ impl Roads {
                 _ => {}
             }
         }
+        let by_formula = formulas.iter().map(|f| f.body).collect();
+        let mut formulas = formulas::without_nested(formulas, |body| bodies.bodies[body].porosity);
         formulas::find_partners(&mut formulas);
-        Roads { convex, formulas }
+        Roads { convex, formulas, by_formula }
     }
 
     /// Does a body go by its surface?
     #[must_use]
     pub fn by_surface(&self, body: usize) -> bool {
-        self.convex.get(body).is_none_or(|known| known.is_none())
-            && self.formulas.binary_search_by_key(&body, |f| f.body).is_err()
+        self.convex.get(body).is_none_or(|known| known.is_none()) && self.by_formula.binary_search(&body).is_err()
     }
 
     /// How many bodies go by closed forms.
     #[must_use]
     pub fn by_formula(&self) -> usize {
-        self.formulas.len()
+        self.by_formula.len()
     }
 
     /// How many bodies go by subdivision.
@@ -345,6 +348,13 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
     fn add_plane(&mut self, grid: &Grid<f64>, plane: usize, layer: &mut Layer<f64>) {
         self.add_between(grid, [plane, plane], &[RangeKind::Faces(2)], layer);
         self.add_formulas(grid, formulas::LayerPart::Plane(plane), layer);
+    }
+
+    fn union_with(&mut self, cell: Aabb<DVec3>, bodies: &[PlanarPart<f64>]) -> Option<[Bounds<f64>; 7]> {
+        let is_subdivided = self.road.bodies.iter().any(|(bounds, _)| bounds.touches(cell));
+        let solids: Vec<&FormulaSolid> =
+            self.road.formulas.iter().copied().filter(|f| f.bounds.touches(cell)).collect();
+        (!is_subdivided).then(|| formulas::union_with(&solids, bodies, cell, self.road.rule.tol))
     }
 
     fn reach(&mut self, cell: Aabb<DVec3>) -> bool {

@@ -5,6 +5,9 @@
 //!
 //! In smooth flow the velocity of a cell's middle is none at its wall: what rises away from the wall is left as it is, and where the pressure hardly changes from
 //! cell to cell nothing is done. Slow gas that runs round a body would lose its momentum across the wall by the speed of sound.
+//!
+//! A wall that cuts off no more than a corner of a cell meets little of its gas, which goes on as it went: slipping as a whole, it would be turned without a
+//! wall that takes its momentum, and a cell beside the corner of a body would become a jet.
 
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::FaceGas;
@@ -48,8 +51,8 @@ pub(in crate::flow) fn slip_along_walls<R: Real, const D: usize, const MIXED: bo
     for i in (0..n).filter(|&i| is(marks[i], INCLINED) && !asked(i)) {
         let mut at = row.at;
         at[0] += i;
-        let normal = normal_to_wall(medium, at);
-        let share = passed(strength[i]) * left_at_wall(slab, normal, (place, i), seen.window);
+        let (normal, reached) = normal_to_wall(medium, at);
+        let share = passed(strength[i]) * reached * left_at_wall(slab, normal, (place, i), seen.window);
         if !(share > R::ZERO) {
             continue;
         }
@@ -79,14 +82,21 @@ fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
     sum::<R, D>(core::array::from_fn(|d| a[d] * b[d]))
 }
 
-/// Unit vector normal to the wall in a cell, into the gas.
-fn normal_to_wall<R: Real, const D: usize>(medium: &Medium<'_, R, D>, at: [usize; D]) -> [R; D] {
+/// Unit vector normal to the wall in a cell, into the gas, and how much of the gas the wall meets: 1 if it is as wide as the gas, else the square of its
+/// width over that of the gas. The border of a porous layer, whose area is a part of that of a wall, turns little of what passes it.
+fn normal_to_wall<R: Real, const D: usize>(medium: &Medium<'_, R, D>, at: [usize; D]) -> ([R; D], R) {
+    let widths: [R; D] = core::array::from_fn(|d| medium.mesh.widths[d][at[d]]);
     let area: [R; D] = core::array::from_fn(|d| {
         let [low, high] = medium.mesh.faces_of(d, at).map(|f| medium.porosity.faces[d][f]);
-        (high - low) / medium.mesh.widths[d][at[d]]
+        (high - low) / widths[d]
     });
     let length = dot(area, area).sqrt();
-    area.map(|a| a / length)
+    let normal = area.map(|a| a / length);
+    // Of a section of the whole cell across the normal.
+    let section: [R; D] = core::array::from_fn(|d| normal[d] / widths[d]);
+    let open = medium.porosity.volume[medium.mesh.index(at)];
+    let width = R::smaller(length / (dot(section, section).sqrt() * open), R::ONE);
+    (normal, width * width)
 }
 
 /// Which share of the velocity into a wall, in the middle of cell `i` of the row at a place, is left at the wall: what rises to the neighbours away from the wall

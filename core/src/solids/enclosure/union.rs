@@ -259,7 +259,7 @@ impl<'a, E: Enclosed> Walk<'a, E> {
 
 /// Bounds of the share of a part that a solid has which does not hold all of it; none if it does. By planes, in parts as many as are worth
 /// it, until they are close; else as the solid knows it. Calls itself, once a level.
-fn share_of<E: Enclosed>(solid: &E, place: &BoxAround, close: f64, looked_at: &mut usize) -> Option<P2> {
+pub(super) fn share_of<E: Enclosed>(solid: &E, place: &BoxAround, close: f64, looked_at: &mut usize) -> Option<P2> {
     *looked_at += 1;
     let (mut parts, mut holds, mut few) = (Vec::<Constraints, MOST_PARTS>::new(), false, true);
     solid.enclosures(place, &mut |enclosure| {

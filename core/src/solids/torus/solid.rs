@@ -173,6 +173,14 @@ impl TorusSolid {
         })
     }
 
+    /// Is another one, along the same ring and between the same ends, no thicker? False where numbers differ in any bit.
+    #[must_use]
+    pub fn holds(&self, other: &TorusSolid) -> bool {
+        let (a, b) = (&self.ring, &other.ring);
+        let is_same_ring = a.center == b.center && a.frame == b.frame && a.radius == b.radius;
+        is_same_ring && (a.ends.is_none() || a.ends == b.ends) && b.tube <= a.tube
+    }
+
     /// Equal parts of it along the ring.
     pub fn pieces(&self, count: u32) -> impl Iterator<Item = TorusSolid> {
         let ring = self.ring;

@@ -140,7 +140,7 @@ fn from_scene<const D: usize>(
     let any_has_own = bodies.bodies.iter().any(has_own);
     // Solids with a drag of their own need no law; the others have none by this one.
     let no_drag = DragCoefficients { round: 0.0, sharp: 0.0 };
-    let own = (any_has_own && law.is_none() && !silent).then_some((DragLaw::Bluff, no_drag));
+    let own = (any_has_own && law.is_none() && !given_otherwise(file)).then_some((DragLaw::Bluff, no_drag));
     if given_otherwise(file) && any_has_own {
         progress
             .warn(file.remark("drag", "its cr or from stands in place of the cd and cr that solids of the scene have"));

@@ -2,7 +2,7 @@
 
 use voidage_core::solids::quadric::{FaceBetween, FacesBetween};
 
-/// Whose part a face is of, and where: the number of the body, that of its part, and the position in the plane.
+/// Whose part a face is of, and where: the number of the solid, that of its part, and the position in the plane.
 type Key = (usize, usize, usize);
 
 /// Faces of one plane, by ascending keys.
@@ -19,7 +19,7 @@ pub struct KeptFaces {
     above: Faces,
     /// The plane of those above.
     plane: Option<usize>,
-    body: usize,
+    solid: usize,
 }
 
 impl KeptFaces {
@@ -35,9 +35,9 @@ impl KeptFaces {
         (self.passed, self.plane) = (0, Some(k + 1));
     }
 
-    /// Those of a body follow; bodies come in ascending order.
-    pub(super) fn of_body(&mut self, body: usize) -> &mut Self {
-        self.body = body;
+    /// Those of a solid follow; solids come in ascending order.
+    pub(super) fn of_solid(&mut self, solid: usize) -> &mut Self {
+        self.solid = solid;
         self
     }
 }
@@ -47,7 +47,7 @@ impl FacesBetween for KeptFaces {
         if !self.active {
             return None;
         }
-        let wanted = (self.body, part, at);
+        let wanted = (self.solid, part, at);
         while let Some((key, face)) = self.below.get(self.passed) {
             if *key >= wanted {
                 return (*key == wanted).then_some(*face);
@@ -59,7 +59,7 @@ impl FacesBetween for KeptFaces {
 
     fn above(&mut self, part: usize, at: usize, face: FaceBetween) {
         if self.active {
-            self.above.push(((self.body, part, at), face));
+            self.above.push(((self.solid, part, at), face));
         }
     }
 }

@@ -90,29 +90,33 @@ fn widest_axis(boxes: &[Boxed]) -> usize {
     [1, 2].into_iter().fold(0, |best, axis| if filled[axis] < filled[best] { axis } else { best })
 }
 
-/// Finds the partners of all solids, which are in the order of their numbers.
-pub fn find_partners(solids: &mut [FormulaSolid]) {
+/// What `look` finds for two solids, for each two whose boxes touch.
+pub(super) fn of_touching_boxes<T: Send>(
+    solids: &[FormulaSolid],
+    look: impl Fn(usize, usize) -> Option<T> + Sync,
+) -> Vec<T> {
     let mut boxes: Vec<Boxed> = solids.iter().enumerate().map(|(n, s)| Boxed { bounds: s.bounds, n }).collect();
     let axis = widest_axis(&boxes);
     boxes.sort_by(|a, b| a.bounds.min[axis].total_cmp(&b.bounds.min[axis]));
-    let found: Vec<(usize, usize, Pair)> = boxes
-        .par_iter()
-        .enumerate()
-        .flat_map_iter(|(at, one)| {
-            let (solids, boxes) = (&*solids, &boxes);
-            let later = boxes[at + 1..].iter().take_while(move |other| other.bounds.min[axis] <= one.bounds.max[axis]);
-            later.filter(|other| one.bounds.touches(other.bounds)).filter_map(move |other| {
-                pair_of_solids(&solids[one.n].kind, &solids[other.n].kind).map(|pair| (one.n, other.n, pair))
-            })
-        })
-        .collect();
+    let of_one = |(at, one): (usize, &Boxed)| {
+        let (boxes, look, one) = (&boxes, &look, *one);
+        let later = boxes[at + 1..].iter().take_while(move |other| other.bounds.min[axis] <= one.bounds.max[axis]);
+        later.filter(move |other| one.bounds.touches(other.bounds)).filter_map(move |other| look(one.n, other.n))
+    };
+    boxes.par_iter().enumerate().flat_map_iter(of_one).collect()
+}
+
+/// Numbers all solids, and finds the partners of each.
+pub fn find_partners(solids: &mut [FormulaSolid]) {
+    solids.iter_mut().enumerate().for_each(|(n, s)| s.number = n);
+    let look = |a: usize, b: usize| pair_of_solids(&solids[a].kind, &solids[b].kind).map(|pair| (a, b, pair));
+    let found: Vec<(usize, usize, Pair)> = of_touching_boxes(solids, look);
     for (a, b, pair) in found {
-        let (one, other) = (solids[a].body, solids[b].body);
         let overlap = overlap(solids[a].bounds, solids[b].bounds);
-        solids[a].partners.push(Partner { body: other, pair, overlap });
-        solids[b].partners.push(Partner { body: one, pair, overlap });
+        solids[a].partners.push(Partner { number: b, pair, overlap });
+        solids[b].partners.push(Partner { number: a, pair, overlap });
     }
-    solids.iter_mut().for_each(|s| s.partners.sort_unstable_by_key(|p| p.body));
+    solids.iter_mut().for_each(|s| s.partners.sort_unstable_by_key(|p| p.number));
 }
 
 /// What two boxes have in common, enlarged against rounding of the places where solids end.

@@ -10,6 +10,7 @@ use voidage_core::number::aabb::Aabb;
 use voidage_core::solids::enclosure::{BoxAround, Enclosed, Enclosure};
 use voidage_core::solids::quadric::QuadricSolid;
 use voidage_core::solids::torus::{TorusShape, TorusSolid};
+use voidage_core::subdivide::Subdividable;
 
 /// Shares that leave 0 to 1 by more than this are not believed: the solid is subdivided in that layer.
 pub(super) const BELIEVED: f64 = 1e-9;
@@ -26,22 +27,24 @@ pub(super) enum Pair {
     Meeting,
 }
 
-/// A solid by formula, and those that it meets.
+/// A solid by formula, or what is left of it beside others, and those that it meets.
 #[derive(Debug, Clone)]
 pub struct FormulaSolid {
-    /// Its number among all bodies.
+    /// The number of its body; several that are parts of one have the same.
     pub body: usize,
+    /// Its own among all solids.
+    pub(super) number: usize,
     /// A box around it.
     pub bounds: Aabb<DVec3>,
     pub(super) kind: Kind,
-    /// The bodies that it meets or touches, by ascending numbers.
+    /// The solids that it meets or touches, by ascending numbers.
     pub(super) partners: Vec<Partner>,
 }
 
-/// A body that a solid meets or touches.
+/// A solid that another one meets or touches.
 #[derive(Debug, Clone)]
 pub(super) struct Partner {
-    pub body: usize,
+    pub number: usize,
     pub pair: Pair,
     /// The box outside of which they share no cell or face.
     pub overlap: Aabb<DVec3>,
@@ -59,9 +62,9 @@ pub(super) enum Kind {
 impl FormulaSolid {
     /// A body that has a closed form.
     #[must_use]
-    pub fn new(body: usize, bounds: Aabb<DVec3>, convex: Convex<'static>) -> Option<Self> {
+    pub fn new(body: usize, convex: Convex<'static>) -> Option<Self> {
         let kind = Kind::Quadric(closed_form(&convex)?, convex);
-        Some(FormulaSolid { body, bounds, kind, partners: Vec::new() })
+        Some(FormulaSolid { body, number: 0, bounds: Subdividable::bounds(&convex), kind, partners: Vec::new() })
     }
 
     /// A torus; none if it has no size with which one can compute.
@@ -71,7 +74,8 @@ impl FormulaSolid {
         let extents = [0, 1, 2].map(|axis| solid.extent(axis));
         let [min, max] = [0, 1].map(|end| DVec3::from_array(extents.map(|e| e[end])));
         let pieces = solid.pieces((shape.angle / PIECE).ceil() as u32).collect();
-        Some(FormulaSolid { body, bounds: Aabb { min, max }, kind: Kind::Torus(solid, pieces), partners: Vec::new() })
+        let kind = Kind::Torus(solid, pieces);
+        Some(FormulaSolid { body, number: 0, bounds: Aabb { min, max }, kind, partners: Vec::new() })
     }
 
     /// As GJK sees it, if it is convex.
@@ -114,8 +118,8 @@ impl FormulaSolid {
         }
     }
 
-    pub(super) fn pair_with(&self, body: usize) -> Option<Pair> {
-        let at = self.partners.binary_search_by_key(&body, |p| p.body).ok()?;
+    pub(super) fn pair_with(&self, other: &FormulaSolid) -> Option<Pair> {
+        let at = self.partners.binary_search_by_key(&other.number, |p| p.number).ok()?;
         Some(self.partners[at].pair)
     }
 

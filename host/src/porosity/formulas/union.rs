@@ -11,7 +11,7 @@ use voidage_core::solids::enclosure::{UnionEffort, union_bounds};
 use voidage_core::solids::quadric::{QuadricSolid, share_of_union};
 
 /// How many solids are looked at in a cell before sections are tried; and at most.
-const FIRST: usize = 1 << 15;
+pub(super) const FIRST: usize = 1 << 15;
 const MOST: usize = 1 << 21;
 
 /// Up to so many solids have few enough sets that sections tell what each of these has in common sooner than planes do.
@@ -62,7 +62,12 @@ fn by_sections(solids: &[&FormulaSolid], sum: Bounds<f64>, cell: Aabb<DVec3>, to
 pub(super) fn ends_at(bounds: &Aabb<DVec3>, grid: &Grid<f64>, kind: RangeKind, range: CellRange) -> bool {
     let RangeKind::Faces(axis) = kind else { return false };
     let Some(&plane) = grid.edges(axis).get(range.lo[axis.min(2)] as usize) else { return true };
-    let (low, high) = (bounds.min[axis.min(2)], bounds.max[axis.min(2)]);
+    ends_in(bounds, axis.min(2), plane)
+}
+
+/// Does a solid end in a plane across an axis?
+pub(super) fn ends_in(bounds: &Aabb<DVec3>, axis: usize, plane: f64) -> bool {
+    let (low, high) = (bounds.min[axis], bounds.max[axis]);
     let near = TOUCHING * (high - low + plane.abs());
     (low - plane).abs() <= near || (high - plane).abs() <= near
 }

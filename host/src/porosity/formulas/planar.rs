@@ -1,0 +1,173 @@
+//! Solids by formula in a cell with bodies that are there what lies behind a few planes: pipes on a floor, columns on a slab, pipes through a wall.
+//!
+//! A solid that reaches a plane by no more than rounding, or than the tolerance allows, lies beyond the body or within it: then nothing has to be found out.
+//! For the others the union is bounded by planes between which their surfaces lie.
+
+use super::round::Round;
+use super::solid::{FormulaSolid, Kind, Pair};
+use super::union::{FIRST, ends_in};
+use glam::DVec3;
+use voidage_core::convex::support::Support;
+use voidage_core::grid::bounds::Bounds;
+use voidage_core::number::aabb::Aabb;
+use voidage_core::solids::enclosure::{BoxAround, Enclosed, Enclosure, UnionEffort, union_bounds};
+use voidage_core::surface::PlanarPart;
+
+/// Of what a solid may reach beyond a plane, this share of the tolerance is told in the bounds.
+const REACHES: f64 = 1.0 / 8.0;
+
+/// As little counts in any case.
+const LEAST: f64 = 1e-12;
+
+/// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones.
+pub fn union_with(
+    solids: &[&FormulaSolid],
+    bodies: &[PlanarPart<f64>],
+    cell: Aabb<DVec3>,
+    tol: f64,
+) -> [Bounds<f64>; 7] {
+    let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
+    let union = |face: Option<(usize, usize)>| {
+        let mut sides = sides;
+        if let Some((axis, end)) = face {
+            sides[axis] = [sides[axis][end]; 2];
+        }
+        union_in(solids, bodies, sides, face.map(|(axis, _)| axis), tol)
+    };
+    [None, Some((0, 0)), Some((1, 0)), Some((2, 0)), Some((0, 1)), Some((1, 1)), Some((2, 1))].map(union)
+}
+
+/// Bounds of the union in a cell, or in a face normal to an axis.
+fn union_in(
+    solids: &[&FormulaSolid],
+    bodies: &[PlanarPart<f64>],
+    sides: [[f64; 2]; 3],
+    axis: Option<usize>,
+    tol: f64,
+) -> Bounds<f64> {
+    let place = &BoxAround::new(sides);
+    let room = (REACHES * tol).max(LEAST);
+    // How much the union may be more than what is found, or less, for what solids reach beyond planes.
+    let (mut more, mut less) = (0.0, 0.0);
+    let (mut members, mut apart): (Vec<Member>, bool) = (Vec::new(), bodies.len() == 1);
+    let mut alone: Vec<&FormulaSolid> = Vec::new();
+    'solids: for &solid in solids.iter().filter(|s| reaches(s, place)) {
+        let mut beyond = 0.0;
+        for body in bodies {
+            match place_of(solid, body, place, room) {
+                Place::Within(share) => {
+                    more += share;
+                    continue 'solids;
+                }
+                Place::Beyond(share) => beyond += share,
+                Place::Across => apart = false,
+            }
+        }
+        less += beyond;
+        apart = apart && alone.iter().all(|other| !meet(solid, other, axis, sides));
+        alone.push(solid);
+        members.push(Member::Solid(solid));
+    }
+    members.extend(bodies.iter().map(Member::Body));
+    let sum = members.iter().map(|member| member.share(place)).fold(Bounds::OPEN, |sum: Bounds<f64>, share| Bounds {
+        lower: sum.lower + share.lower,
+        upper: sum.upper + share.upper,
+    });
+    let effort = UnionEffort { tol: 0.5 * tol, most: FIRST };
+    let found = if apart { sum } else { union_bounds(&members, sides, sum, effort) };
+    Bounds { lower: (found.lower - less).clamp(0.0, 1.0), upper: (found.upper + more).min(1.0) }
+}
+
+fn reaches(solid: &FormulaSolid, place: &BoxAround) -> bool {
+    let mut reaches = false;
+    (&solid).enclosures(place, &mut |enclosure| reaches |= matches!(enclosure, Enclosure::Within(_)));
+    reaches
+}
+
+/// May two solids share more of a cell or face than a wall? In a face they may if both end in its plane.
+fn meet(a: &FormulaSolid, b: &FormulaSolid, axis: Option<usize>, sides: [[f64; 2]; 3]) -> bool {
+    match a.pair_with(b) {
+        None => false,
+        Some(Pair::Meeting) => true,
+        Some(Pair::Touching) => {
+            axis.is_some_and(|axis| [a, b].iter().all(|s| ends_in(&s.bounds, axis, sides[axis][0])))
+        }
+    }
+}
+
+/// Where a solid lies as a body sees it; with the share of the cell or face in which that may be wrong.
+enum Place {
+    Beyond(f64),
+    Within(f64),
+    Across,
+}
+
+fn place_of(solid: &FormulaSolid, body: &PlanarPart<f64>, place: &BoxAround, room: f64) -> Place {
+    let mut within = Some(0.0);
+    for [normal, point] in &body.planes {
+        let [behind, before] = [normal.map(|n| -n), *normal].map(|n| reach(solid, n.into(), (*point).into()));
+        let share = |depth: f64| share_near([normal, point], depth, place);
+        if share(behind) <= room {
+            return Place::Beyond(share(behind));
+        }
+        within = within.map(|sum| sum + share(before)).filter(|sum| *sum <= room);
+    }
+    within.map_or(Place::Across, Place::Within)
+}
+
+/// How far a solid reaches beyond a plane, to the side of a unit normal, not less than it does; below 0 if it does not.
+fn reach(solid: &FormulaSolid, normal: DVec3, point: DVec3) -> f64 {
+    let (farthest, size) = match &solid.kind {
+        Kind::Quadric(_, convex) => {
+            let round = Round(convex);
+            (round.farthest(normal).point.dot(normal) + Support::radius(&round), round.extent())
+        }
+        Kind::Torus(torus, _) => {
+            let far = solid.bounds.min.abs().max(solid.bounds.max.abs());
+            (DVec3::from_array(torus.outermost(normal.to_array())).dot(normal), far.max_element() + torus.size())
+        }
+    };
+    // As of the slack of supports.
+    let rounding = 64.0 * f64::EPSILON * (size + point.abs().max_element());
+    farthest - point.dot(normal) + rounding
+}
+
+/// No less than the share of a cell or face that lies within a depth of a plane.
+fn share_near([normal, point]: [&[f64; 3]; 2], depth: f64, place: &BoxAround) -> f64 {
+    let middle: f64 = (0..3).map(|n| normal[n] * (place.middle[n] - point[n])).sum();
+    let slopes = [0, 1, 2].map(|n| (normal[n] * place.half[n]).abs());
+    let steepest = slopes.iter().fold(0.0_f64, |most, s| most.max(*s));
+    if depth < 0.0 || middle.abs() > slopes.iter().sum::<f64>() + depth {
+        return 0.0;
+    }
+    if steepest > depth { depth / steepest } else { 1.0 }
+}
+
+/// A solid or a body.
+enum Member<'a> {
+    Solid(&'a FormulaSolid),
+    Body(&'a PlanarPart<f64>),
+}
+
+impl Enclosed for Member<'_> {
+    fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure)) {
+        match self {
+            Member::Solid(solid) => solid.enclosures(place, tell),
+            Member::Body(body) => body.enclosures(place, tell),
+        }
+    }
+
+    fn share(&self, place: &BoxAround) -> Bounds<f64> {
+        match self {
+            Member::Solid(solid) => solid.share(place),
+            Member::Body(body) => body.share(place),
+        }
+    }
+
+    fn price(&self) -> f64 {
+        match self {
+            Member::Solid(solid) => solid.price(),
+            Member::Body(body) => body.price(),
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Solids by formula inside each other, and beside, on and through bodies of triangles, against quadrature of what they have in common.
+
+use glam::{DMat3, DVec3};
+use voidage::geometry::bodies::Bodies;
+use voidage::geometry::form::Form;
+use voidage::grid::Edges;
+use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
+use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
+use voidage_tests::quadrature::{Exact, common_volume};
+use voidage_tests::quadric::volume;
+use voidage_tests::random::Random;
+use voidage_tests::solids::{self, formulas};
+
+/// Cells of half a unit in a cube of 4, the first plane at `first`.
+fn lists(first: f64) -> Edges {
+    Edges([0, 1, 2].map(|axis| (0..=10).map(|i| first * f64::from(axis + 1) + 0.5 * f64::from(i)).collect()))
+}
+
+fn run(edges: &Edges, bodies: &Bodies, method: Method) -> Porosity {
+    let options = Options { bounds: true, method, ..Options::default() };
+    porosity(&edges.grid(None).expect("a grid"), bodies, options)
+}
+
+fn form(exact: &Exact) -> Form {
+    match *exact {
+        Exact::Ball(center, radius) => Form::Sphere(Sphere { center, radius }),
+        Exact::Capsule(from, to, radius) => Form::Capsule(Capsule { from, to, radius }),
+        Exact::Cylinder(from, to, radius) => Form::Cylinder(Cylinder::new(from, to, radius)),
+        Exact::Frustum(from, to, [r, s]) => Form::Cone(Cone::truncated(from, to, r, s)),
+        _ => panic!("no such solid here: {exact:?}"),
+    }
+}
+
+fn pick<T: Copy>(random: &mut Random, some: &[T]) -> T {
+    some[random.below(some.len())]
+}
+
+/// A rod, and one along it: as long or not, from the same end or not, as thick or not, beside its axis, a little turned; or a ball or capsule in it.
+fn along_each_other(random: &mut Random) -> [Exact; 2] {
+    let turned = DVec3::from_array(random.on_sphere());
+    let along = pick(random, &[DVec3::X, DVec3::Y, DVec3::Z, turned, turned, turned]);
+    let from = DVec3::splat(2.5) - along * 0.9 + DVec3::from_array(random.on_sphere()) * 0.4;
+    let (length, radius) = (random.between(0.7, 1.9), random.between(0.2, 0.6));
+    let to = from + along * length;
+    let across = along.any_orthonormal_vector();
+    let thick = radius * pick(random, &[1.0, 0.999, 0.6, 0.6, 1.1]);
+    let tilt = across * pick(random, &[0.0, 0.0, 0.0, 1e-12, 1e-6, 1e-2]);
+    let beside = across * (radius * pick(random, &[0.0, 0.0, 0.3, 0.4]));
+    let place = |at: f64| {
+        if at == 0.0 {
+            from
+        } else if at == 1.0 {
+            to
+        } else {
+            from + along * (length * at)
+        }
+    };
+    let (a, b) = (pick(random, &[0.0, 0.0, -0.3, 0.2]), pick(random, &[1.0, 1.0, 1.3, 0.6]));
+    let ends = [place(a) + beside, place(b) + beside + tilt];
+    let [a, b] = if random.below(3) == 0 { [ends[1], ends[0]] } else { ends };
+    let outer = match random.below(3) {
+        0 => Exact::Frustum(from, to, [radius, radius * random.between(0.4, 1.0)]),
+        _ => Exact::Cylinder(from, to, radius),
+    };
+    let inner = match random.below(8) {
+        0 => Exact::Frustum(a, b, [thick, thick * random.between(0.3, 1.2)]),
+        1 => Exact::Capsule(a, b, thick * 0.5),
+        2 => Exact::Ball(a, thick * 0.5),
+        _ => Exact::Cylinder(a, b, thick),
+    };
+    if random.below(2) == 0 { [outer, inner] } else { [inner, outer] }
+}
+
+/// Lower and upper bounds of the solid share of a cell or face: field 0 for cells, 1 to 3 for faces.
+fn bounds(p: &Porosity, field: usize, at: usize) -> [f64; 2] {
+    let of = |set: &FieldSet| if field == 0 { set.v[at] } else { set.faces(field - 1)[at] };
+    let [low, high] = p.bounds.as_ref().expect("bounds");
+    [1.0 - of(high), 1.0 - of(low)]
+}
+
+/// Cell by cell and face by face the bounds of two ways hold one value.
+fn agree(found: &Porosity, divided: &Porosity, what: &str) {
+    for field in 0..4 {
+        let count = if field == 0 { found.beta.v.len() } else { found.beta.faces(field - 1).len() };
+        for at in 0..count {
+            let ([low, high], [least, most]) = (bounds(found, field, at), bounds(divided, field, at));
+            assert!(low.max(least) <= high.min(most) + 1e-9, "{low} {high}, {least} {most}: {what}");
+        }
+    }
+}
+
+/// Bounds of the solid volume in all cells.
+fn volumes(found: &Porosity) -> [f64; 2] {
+    let [low, high] = found.bounds.as_ref().expect("bounds");
+    [high, low].map(|set| set.v.iter().map(|open| 0.125 * (1.0 - open)).sum())
+}
+
+/// Ends and radii of a rod.
+fn rod(solid: &Exact) -> Option<([DVec3; 2], [f64; 2])> {
+    match *solid {
+        Exact::Cylinder(a, b, r) => Some(([a, b], [r; 2])),
+        Exact::Frustum(a, b, radii) => Some(([a, b], radii)),
+        _ => None,
+    }
+}
+
+/// Area that two discs have in common.
+fn lens(r: f64, s: f64, apart: f64) -> f64 {
+    let least = r.min(s).max(0.0);
+    if apart <= (r - s).abs() {
+        return std::f64::consts::PI * least * least;
+    }
+    if apart >= r + s {
+        return 0.0;
+    }
+    let part = |r: f64, s: f64| {
+        let x = (apart * apart + r * r - s * s) / (2.0 * apart);
+        r * r * (x / r).clamp(-1.0, 1.0).acos() - x * (r * r - x * x).max(0.0).sqrt()
+    };
+    part(r, s) + part(s, r)
+}
+
+/// The volume that two rods have in common whose axes are along each other: discs in common, summed along the axis. None of others.
+fn common_along([one, other]: &[Exact; 2]) -> Option<f64> {
+    let (([a, b], own), ([c, d], its)) = (rod(one)?, rod(other)?);
+    let axis = (b - a).normalize();
+    if axis.cross((d - c).normalize()).length() > 1e-9 {
+        return None;
+    }
+    let place = |p: DVec3| (p - a).dot(axis);
+    let apart = (c - a - axis * place(c)).length();
+    let radius = |s: f64, [from, to]: [f64; 2], [r, t]: [f64; 2]| r + (t - r) * (s - from) / (to - from);
+    let spans = [[0.0, place(b)], [place(c), place(d)]];
+    let (lo, hi) = (spans[1][0].min(spans[1][1]).max(0.0), spans[1][0].max(spans[1][1]).min(spans[0][1]));
+    const STEPS: usize = 20_000;
+    let step = (hi - lo).max(0.0) / STEPS as f64;
+    let area = |n: usize| {
+        let s = lo + (n as f64 + 0.5) * step;
+        lens(radius(s, spans[0], own), radius(s, spans[1], its), apart)
+    };
+    Some((0..STEPS).map(area).sum::<f64>() * step)
+}
+
+#[test]
+fn what_one_solid_holds_of_another_counts_once() {
+    let mut random = Random::new(31);
+    let mut known = 0;
+    for n in 0..60 {
+        let solids = along_each_other(&mut random);
+        let edges = lists(pick(&mut random, &[0.0, 0.0313]));
+        let bodies = formulas(&solids.each_ref().map(form));
+        let found = run(&edges, &bodies, Method::Auto);
+        let what = format!("{n}: {solids:?}");
+        assert!(found.max_gap <= 1.01e-4, "{}: {what}", found.max_gap);
+        agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
+        let Some(common) = common_along(&solids) else { continue };
+        known += 1;
+        let truth = volume(&solids[0]) + volume(&solids[1]) - common;
+        let [least, most] = volumes(&found);
+        assert!(least - 1e-7 <= truth && truth <= most + 1e-7, "{least} {truth} {most}: {what}");
+    }
+    assert!(known > 20, "{known}");
+}
+
+/// A pipe in a coat that is the more solid of both, or the more open; through flanges; what is left is measured as if nothing had been there.
+#[test]
+fn parts_of_a_run() {
+    let edges = lists(0.0);
+    let turn = DMat3::from_axis_angle(DVec3::new(1.0, -2.0, 0.5).normalize(), 0.8);
+    let place = |x: f64| DVec3::new(2.2, 2.4, 2.6) + turn * (DVec3::X * x);
+    let cylinder = |a: f64, b: f64, r: f64| Form::Cylinder(Cylinder::new(place(a), place(b), r));
+    let run_of = |forms: &[Form]| run(&edges, &formulas(forms), Method::Auto);
+    let pipe = cylinder(-1.5, 1.5, 0.2);
+    let flanges = [-1.0, 0.0, 0.75].map(|x| cylinder(x, x + 0.1, 0.35));
+    let found = run_of(&[vec![pipe], flanges.to_vec()].concat());
+    let pi = std::f64::consts::PI;
+    let truth = pi * (0.04 * 3.0 + 3.0 * 0.1 * (0.35_f64.powi(2) - 0.04));
+    assert!((found.solid_volume - truth).abs() < 1e-12, "{} {truth}", found.solid_volume);
+    assert!(found.max_gap < 1e-11 && found.cells.ambiguous == 0, "{}", found.max_gap);
+    assert_eq!(found.by_formula, 4);
+
+    let porous = |inner: f64, outer: f64| {
+        let mut bodies = formulas(&[cylinder(-1.5, 1.5, 0.2), cylinder(-1.0, 1.0, 0.35)]);
+        (bodies.bodies[0].porosity, bodies.bodies[1].porosity) = (inner, outer);
+        run(&edges, &bodies, Method::Auto).solid_volume
+    };
+    let (core, coat, ends) = (pi * 0.04 * 2.0, pi * (0.35_f64.powi(2) - 0.04) * 2.0, pi * 0.04);
+    for (inner, outer) in [(0.0, 0.5), (0.5, 0.0), (0.25, 0.25)] {
+        let truth = core * (1.0 - f64::min(inner, outer)) + coat * (1.0 - outer) + ends * (1.0 - inner);
+        let found = porous(inner, outer);
+        assert!((found - truth).abs() < 2e-4, "{inner} in {outer}: {found} instead of {truth}");
+    }
+}
+
+/// A box and a solid that lies on it, stands on it, passes through it, is in it, or reaches into it by next to nothing; in the frame of the box.
+fn on_a_box(random: &mut Random) -> (DVec3, Exact) {
+    let half = DVec3::new(random.between(0.6, 1.2), random.between(0.6, 1.2), random.between(0.2, 0.5));
+    let top = half.z + pick(random, &[0.0, 0.0, -1e-13, -1e-9, -1e-6, 1e-9]);
+    let radius = random.between(0.1, 0.4);
+    let flat = |random: &mut Random, z: f64| DVec3::new(random.between(-0.5, 0.5), random.between(-0.5, 0.5), z);
+    let (a, b) = (flat(random, top + radius), flat(random, top + radius));
+    let up = DVec3::Z * random.between(0.3, 1.0);
+    let solid = match random.below(8) {
+        0 => Exact::Cylinder(a, a + (b - a).normalize() * 1.2, radius),
+        1 => Exact::Cylinder(flat(random, top), DVec3::ZERO, radius),
+        2 => Exact::Ball(a, radius),
+        3 => Exact::Capsule(a, b, radius),
+        4 => Exact::Frustum(a, a + up, [radius, radius * 0.3]),
+        5 => Exact::Cylinder(flat(random, -1.0), flat(random, 1.0), radius),
+        6 => Exact::Cylinder(flat(random, -0.1), flat(random, 0.1), 0.05),
+        _ => Exact::Ball(flat(random, half.z), radius),
+    };
+    // Those that stand.
+    let solid = match solid {
+        Exact::Cylinder(foot, to, r) if to == DVec3::ZERO => Exact::Cylinder(foot, foot + up, r),
+        Exact::Frustum(a, to, r) => Exact::Frustum(a - DVec3::Z * radius, to - DVec3::Z * radius, r),
+        other => other,
+    };
+    (half, solid)
+}
+
+fn moved(solid: &Exact, place: impl Fn(DVec3) -> DVec3) -> Exact {
+    match *solid {
+        Exact::Ball(c, r) => Exact::Ball(place(c), r),
+        Exact::Capsule(a, b, r) => Exact::Capsule(place(a), place(b), r),
+        Exact::Cylinder(a, b, r) => Exact::Cylinder(place(a), place(b), r),
+        Exact::Frustum(a, b, r) => Exact::Frustum(place(a), place(b), r),
+        other => other,
+    }
+}
+
+#[test]
+fn solids_on_and_through_boxes() {
+    let mut random = Random::new(32);
+    for n in 0..48 {
+        let (half, solid) = on_a_box(&mut random);
+        let turn = if n % 2 == 0 { DMat3::IDENTITY } else { random.turn() };
+        let center = DVec3::splat(2.5) + DVec3::from_array(random.on_sphere()) * 0.2;
+        let mut bodies = solids::scene(&[solids::turned_box(center, half, turn)]);
+        let placed = moved(&solid, |p| center + turn * p);
+        bodies.bodies.extend(formulas(&[form(&placed)]).bodies);
+        let edges = lists(pick(&mut random, &[0.0, 0.0313]));
+        let found = run(&edges, &bodies, Method::Auto);
+        assert!(found.max_gap <= 1.01e-4, "{n}: {} of {solid:?} on {half}", found.max_gap);
+        // What both have in common, by quadrature in the frame of the box.
+        let common = common_volume(&[solid], [-half, half], 1e-7);
+        let truth = 8.0 * half.element_product() + volume(&solid) - common;
+        let [least, most] = volumes(&found);
+        let what = format!("{n}: {solid:?} on {half}, {turn}");
+        assert!(least - 1e-5 <= truth && truth <= most + 1e-5, "{least} {truth} {most}: {what}");
+        agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
+    }
+}
