@@ -134,6 +134,25 @@ fn bodies_askew_make_no_jets() {
     }
 }
 
+/// A burst of 100 atmospheres of hot gas beside a cylinder: behind its shoulders the gas leaves the wall, and is not colder than it can become.
+#[test]
+fn a_burst_beside_a_cylinder_makes_no_cold() {
+    let at = Scratch::new();
+    let solid = "[[solid]]\nshape = \"cylinder\"\nfrom = [0.62, 0.5, -1]\nto = [0.62, 0.5, 2]\nradius = 0.13\n";
+    fs::write(at.file("cylinder.toml"), solid).expect("written");
+    let case = "[grid]\nx = { points = [0, 1], cells = [60] }\ny = { points = [0, 1], cells = [60] }\n\
+                [porosity]\nscene = \"cylinder.toml\"\n[drag]\nlaw = \"none\"\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\ngas_constant = 287\n\
+                [initial]\nuniform = { T = 288, p = 101325 }\n\
+                regions = [{ center = [0.3, 0.5], radius = 0.15, p = 101325e2, T = 1440 }]\n\
+                [boundary]\nx_min = \"wall\"\nx_max = { type = \"outlet\", p = 101325 }\ny_min = \"wall\"\ny_max = \"wall\"\n\
+                [time]\nend = 0.00045\n[output]\nformats = [\"npy\"]\n";
+    solved(&at, case, "burst", &["-q"]);
+    let [p, rho] = ["p", "rho"].map(|field| array(&at.file("burst").join(format!("final/{field}.npy"))));
+    let before = 101_325.0 * (101_325.0_f64 / 287.0 / 288.0).powf(-1.4);
+    let least = p.iter().zip(&rho).map(|(p, rho)| p * rho.powf(-1.4) / before).fold(1.0, f64::min);
+    assert!(least > 0.97, "{least}");
+}
+
 /// Without a law there is no force, and that is said; `none` says that it is meant so.
 #[test]
 fn frontal_area_without_force_is_told() {
