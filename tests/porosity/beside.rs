@@ -192,9 +192,8 @@ fn parts_of_a_run() {
     }
 }
 
-/// A box and a solid that lies on it, stands on it, passes through it, is in it, or reaches into it by next to nothing; in the frame of the box.
-fn on_a_box(random: &mut Random) -> (DVec3, Exact) {
-    let half = DVec3::new(random.between(0.6, 1.2), random.between(0.6, 1.2), random.between(0.2, 0.5));
+/// A solid that lies on a box, stands on it, passes through it, is in it, or reaches into it by next to nothing; in the frame of the box.
+fn on_a_box(random: &mut Random, half: DVec3) -> Exact {
     let top = half.z + pick(random, &[0.0, 0.0, -1e-13, -1e-9, -1e-6, 1e-9]);
     let radius = random.between(0.1, 0.4);
     let flat = |random: &mut Random, z: f64| DVec3::new(random.between(-0.5, 0.5), random.between(-0.5, 0.5), z);
@@ -211,12 +210,11 @@ fn on_a_box(random: &mut Random) -> (DVec3, Exact) {
         _ => Exact::Ball(flat(random, half.z), radius),
     };
     // Those that stand.
-    let solid = match solid {
+    match solid {
         Exact::Cylinder(foot, to, r) if to == DVec3::ZERO => Exact::Cylinder(foot, foot + up, r),
         Exact::Frustum(a, to, r) => Exact::Frustum(a - DVec3::Z * radius, to - DVec3::Z * radius, r),
         other => other,
-    };
-    (half, solid)
+    }
 }
 
 fn moved(solid: &Exact, place: impl Fn(DVec3) -> DVec3) -> Exact {
@@ -233,7 +231,8 @@ fn moved(solid: &Exact, place: impl Fn(DVec3) -> DVec3) -> Exact {
 fn solids_on_and_through_boxes() {
     let mut random = Random::new(32);
     for n in 0..48 {
-        let (half, solid) = on_a_box(&mut random);
+        let half = DVec3::new(random.between(0.6, 1.2), random.between(0.6, 1.2), random.between(0.2, 0.5));
+        let solid = on_a_box(&mut random, half);
         let turn = if n % 2 == 0 { DMat3::IDENTITY } else { random.turn() };
         let center = DVec3::splat(2.5) + DVec3::from_array(random.on_sphere()) * 0.2;
         let mut bodies = solids::scene(&[solids::turned_box(center, half, turn)]);
@@ -249,5 +248,72 @@ fn solids_on_and_through_boxes() {
         let what = format!("{n}: {solid:?} on {half}, {turn}");
         assert!(least - 1e-5 <= truth && truth <= most + 1e-5, "{least} {truth} {most}: {what}");
         agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
+    }
+}
+
+/// The sides of the box lie in planes of the grid: so do the bottoms of what stands on it, and faces in those planes are shared with what does not.
+#[test]
+fn solids_on_and_through_boxes_in_planes_of_the_grid() {
+    let mut random = Random::new(33);
+    let edges = lists(0.0);
+    for n in 0..60 {
+        let mut some = || pick(&mut random, &[0.5, 0.75, 1.0]);
+        let half = DVec3::new(some(), some(), pick(&mut random, &[0.25, 0.5]));
+        // Which side is the top of the box.
+        let cycle = |p: DVec3| [p, DVec3::new(p.z, p.x, p.y), DVec3::new(p.y, p.z, p.x)][n % 3];
+        let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+        let center = DVec3::splat(1.5) + cycle(half);
+        let solid = on_a_box(&mut random, half);
+        let mut bodies = solids::scene(&[solids::turned_box(center, cycle(half), DMat3::IDENTITY)]);
+        let placed = moved(&solid, |p| center + cycle(p) * sign);
+        bodies.bodies.extend(formulas(&[form(&placed)]).bodies);
+        let found = run(&edges, &bodies, Method::Auto);
+        let what = format!("{n}: {placed:?} at {center}, {half}");
+        assert!(found.max_gap <= 1.01e-4, "{}: {what}", found.max_gap);
+        agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
+        walls_agree(&found, &edges, (center, cycle(half)), &placed, &what);
+    }
+}
+
+/// What is closed of faces in the planes of a box's sides, where its section or that of a solid is, by counting points.
+fn walls_agree(found: &Porosity, edges: &Edges, (center, half): (DVec3, DVec3), solid: &Exact, what: &str) {
+    const POINTS: usize = 50;
+    let holds = |p: DVec3| ((p - center).abs() - half).max_element() <= 0.0 || holds(solid, p);
+    for axis in 0..3 {
+        let planes = [center[axis] - half[axis], center[axis] + half[axis]];
+        let cells = [0, 1, 2].map(|n| edges.0[n].len() - 1);
+        let mut shape = cells;
+        shape[axis] += 1;
+        for at in 0..shape.iter().product() {
+            let place = [at % shape[0], at / shape[0] % shape[1], at / (shape[0] * shape[1])];
+            let low = DVec3::from_array([0, 1, 2].map(|n| edges.0[n][place[n]]));
+            if !planes.contains(&low[axis]) {
+                continue;
+            }
+            let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+            let closed = (0..POINTS * POINTS).filter(|n| {
+                let mut p = low;
+                p[u] += 0.5 * ((n % POINTS) as f64 + 0.5) / POINTS as f64;
+                p[v] += 0.5 * ((n / POINTS) as f64 + 0.5) / POINTS as f64;
+                holds(p)
+            });
+            let counted = closed.count() as f64 / (POINTS * POINTS) as f64;
+            let [least, most] = bounds(found, axis + 1, at);
+            assert!(least - 0.02 <= counted && counted <= most + 0.02, "{least} {counted} {most}, {axis} {low}: {what}");
+        }
+    }
+}
+
+fn holds(solid: &Exact, p: DVec3) -> bool {
+    let rounding = 1e-12;
+    let along = |a: DVec3, b: DVec3| (p - a).dot(b - a) / (b - a).length_squared();
+    match *solid {
+        Exact::Ball(c, r) => p.distance(c) <= r + rounding,
+        Exact::Capsule(a, b, r) => p.distance(a + (b - a) * along(a, b).clamp(0.0, 1.0)) <= r + rounding,
+        _ => {
+            let ([a, b], [r, s]) = rod(solid).expect("a rod");
+            let t = along(a, b);
+            (-rounding..=1.0 + rounding).contains(&t) && p.distance(a + (b - a) * t) <= r + (s - r) * t + rounding
+        }
     }
 }

@@ -127,14 +127,11 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
                 row = Row::new(site.bins, site.k, [lo, hi], (&mut *numbers, &mut *groups));
             }
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
-            let believed = |u: &Refined<V::Scalar>| at.agrees(layer, u, site.areas);
-            let (mut refined, surface) = if shared.others.reach(cell) {
-                let found = union_with_others(shared, site, cell, row);
-                let close = shared.tol.max(closest());
-                (found.filter(|u| believed(u) && at.is_close(layer, u, close)), None)
-            } else {
-                union::<_, _, P>(shared, site, cell, row, believed).unzip()
+            let checks = UnionChecks {
+                is_believed: |u: &Refined<_>| at.agrees(layer, u, site.areas),
+                is_close: |u: &Refined<_>, tol| at.is_close(layer, u, tol),
             };
+            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, checks);
             let mut rest = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
             if refined.is_none() && open > shared.tol {
                 resolved.divided += 1;
@@ -192,18 +189,15 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
                 row = Row::new(site.bins, site.k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
             }
             let Some(row) = &mut row else { continue };
-            let found = if shared.others.reach(cell) {
-                let close = shared.tol.max(closest());
-                union_with_others(shared, site, cell, row).filter(|u| u.high[2].gap() <= close)
-            } else {
-                union::<_, _, ()>(shared, site, cell, row, |_| true).map(|(refined, ())| refined)
+            let checks = UnionChecks {
+                is_believed: |_: &Refined<_>| true,
+                is_close: |u: &Refined<V::Scalar>, tol| u.high[2].gap() <= tol,
             };
-            let refined = match found {
-                None if open > shared.tol => {
-                    divide(shared, site, cell, SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 })
-                }
-                found => found,
-            };
+            let (mut refined, _) = union::<_, _, ()>(shared, site, cell, row, checks);
+            if refined.is_none() && open > shared.tol {
+                let spare = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
+                refined = divide(shared, site, cell, spare);
+            }
             if let Some(refined) = refined {
                 narrow(lower, sum, refined.high[2]);
             }
@@ -222,24 +216,36 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
     surfaces.chain(others.map(|b| (b, false)))
 }
 
-/// Bounds of a union with other bodies are this close at best.
-fn closest<R: Real>() -> R {
-    known::<R>() * R::from_f64(100.0)
+/// Bounds of a union with other bodies count as found if they are so close.
+pub(super) fn close_enough<R: Real>(tol: R) -> R {
+    tol.max(known::<R>() * R::from_f64(100.0))
 }
 
-/// The union with other bodies in a cell where those of triangles lie behind a few planes.
-fn union_with_others<V: Vector, O: OtherBodies<V>>(
+/// What a union has to fulfil: to agree with what is known of the bodies, and if there are others than of triangles, to lie within bounds so close.
+struct UnionChecks<B, C> {
+    is_believed: B,
+    is_close: C,
+}
+
+/// The union in a cell, where others than bodies of triangles reach it only if these lie behind a few planes, and what it has of surface.
+fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
     row: &Row<V>,
-) -> Option<Refined<V::Scalar>> {
-    let bodies = bodies_in(shared.union.reborrow(), site, cell, row, V::Scalar::ZERO).ok()?.planar_parts()?;
-    shared.others.union_with(cell, &bodies).map(Refined::from_places)
+    checks: UnionChecks<impl Fn(&Refined<V::Scalar>) -> bool, impl Fn(&Refined<V::Scalar>, V::Scalar) -> bool>,
+) -> (Option<Refined<V::Scalar>>, Option<P::Found>) {
+    if !shared.others.reach(cell) {
+        return union_of_triangles::<_, _, P>(shared, site, cell, row, checks.is_believed).unzip();
+    }
+    let bodies = bodies_in(shared.union.reborrow(), site, cell, row, V::Scalar::ZERO);
+    let bodies = bodies.ok().and_then(|bodies| bodies.planar_parts()).filter(|bodies| !bodies.is_empty());
+    let found = bodies.and_then(|bodies| shared.others.union_with(cell, &bodies)).map(Refined::from_places);
+    (found.filter(|u| (checks.is_believed)(u) && (checks.is_close)(u, close_enough(shared.tol))), None)
 }
 
-/// The union in a cell: exact, or with the least blur that gives a proof; of triangles only. What it has of surface is found if `P` wants it.
-fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
+/// The union of bodies of triangles in a cell: exact, or with the least blur that gives a proof. What it has of surface is found if `P` wants it.
+fn union_of_triangles<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,

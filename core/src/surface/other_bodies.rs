@@ -24,7 +24,8 @@ pub trait OtherBodies<V: Vector> {
     /// May one of them reach a cell or its sides?
     fn reach(&mut self, cell: Aabb<V>) -> bool;
     /// Bounds of the union of all that reach a cell with bodies which in it are what lies behind some planes: of the cell, of its low x, y and z
-    /// face and of its high ones. None if they know no better than by their own shares.
+    /// face and of its high ones; where the cell is a face, flat along one axis, only the first are asked for, and bodies lie on one of its sides or on
+    /// both. None if they know no better than by their own shares.
     fn union_with(&mut self, cell: Aabb<V>, bodies: &[PlanarPart<V::Scalar>]) -> Option<[Bounds<V::Scalar>; 7]> {
         let _ = (cell, bodies);
         None

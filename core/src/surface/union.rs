@@ -35,6 +35,7 @@ pub use descent::Fragment;
 pub use octree::Octant;
 pub use piece::{NoProof, Piece};
 pub use planar::PlanarPart;
+pub(super) use planar::PlanarParts;
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
 pub const MAX_SPREAD: f64 = 1e-9;

@@ -6,11 +6,11 @@ use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group};
-use crate::surface::cell_unions::with_least_blur;
+use crate::surface::cell_unions::{close_enough, with_least_blur};
 use crate::surface::division::{Shared, Site, SpareMemory, find_parts};
 use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{known, narrow, rounding};
-use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory, rounds_much};
+use crate::surface::union::{CellUnion, Limit, NoProof, PlanarParts, UnionMemory, rounds_much};
 
 /// Narrow the bounds of the shared faces of a layer that lie in walls: its x and y faces and the z faces below.
 pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
@@ -83,8 +83,11 @@ fn wall<V: Vector, O: OtherBodies<V>>(
     if sides.iter().any(|side| site.bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g))) {
         return Bounds::UNKNOWN;
     }
-    let other = sides.iter().any(|side| shared.others.reach(side.cell));
-    let whole = if other { None } else { whole_wall(shared, site.bins, axis, &sides) };
+    let whole = if sides.iter().any(|side| shared.others.reach(side.cell)) {
+        wall_with_others(shared, site.bins, axis, &sides)
+    } else {
+        whole_wall(shared, site.bins, axis, &sides)
+    };
     whole.or_else(|| divided_wall(shared, site, axis, &sides, spare)).unwrap_or(Bounds::UNKNOWN)
 }
 
@@ -99,6 +102,27 @@ fn whole_wall<V: Vector, O>(
         let (closed, error) = wall_union(&mut shared.union, bins, axis, sides, blur)?;
         Ok((Bounds::around(closed, error), error))
     })
+}
+
+/// The union with other bodies on a face with walls, where those of triangles lie on both sides behind a few planes; none unless bounds are close.
+fn wall_with_others<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    bins: &Bins<V>,
+    axis: usize,
+    sides: &[WallSide<V>; 2],
+) -> Option<Bounds<V::Scalar>> {
+    let mut bodies = PlanarParts::new();
+    for side in sides {
+        // The planes of walls in the face are none: what ends there fills this side up to it.
+        let parts = gather(&mut shared.union, bins, &[*side], V::Scalar::ZERO).ok()?.planar_parts()?;
+        bodies.extend_from_slice(&parts).ok()?;
+    }
+    let [_, above] = sides.map(|side| side.cell);
+    let mut high = above.max.to_array();
+    high[axis] = above.min.to_array()[axis];
+    let face = Aabb { min: above.min, max: V::new(high[0], high[1], high[2]) };
+    let [found, ..] = shared.others.union_with(face, &bodies)?;
+    (found.gap() <= close_enough(shared.tol)).then_some(found)
 }
 
 /// Bounds of a face with walls from its quarters, each between halves of the cells on both sides; none if the depth is spent.

@@ -10,6 +10,9 @@ use heapless::Vec;
 const MOST_PLANES: usize = 3;
 const MOST_BODIES: usize = 4;
 
+/// The bodies in a cell, or on both sides of a face.
+pub(in crate::surface) type PlanarParts<R> = Vec<PlanarPart<R>, MOST_BODIES>;
+
 /// What lies behind all of some planes. In a cell a body may be that.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanarPart<R> {
@@ -18,16 +21,14 @@ pub struct PlanarPart<R> {
 }
 
 impl<R: Real> CellUnion<'_, R> {
-    /// The bodies, if each is convex in the cell and all of its surface there lies in a few planes: what a closed surface encloses is then
-    /// what lies behind them. None else.
-    pub(in crate::surface) fn planar_parts(&self) -> Option<Vec<PlanarPart<R>, MOST_BODIES>> {
+    /// The bodies, if each is convex in the cell and all of its surface inside lies in a few planes: what a closed surface encloses is then
+    /// what lies behind them; without any, all of the cell. None else.
+    pub(in crate::surface) fn planar_parts(&self) -> Option<PlanarParts<R>> {
         let mut found = Vec::new();
         for part in self.space.parts.get(..self.part_count)? {
-            // One without surface fills the cell.
-            let pieces = self.space.pieces.get(part.first..part.end).filter(|p| !p.is_empty())?;
-            found.push(self.frame.behind(pieces)?).ok()?;
+            found.push(self.frame.behind(self.space.pieces.get(part.first..part.end)?)?).ok()?;
         }
-        (!found.is_empty()).then_some(found)
+        Some(found)
     }
 }
 

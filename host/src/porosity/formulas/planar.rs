@@ -19,7 +19,7 @@ const REACHES: f64 = 1.0 / 8.0;
 /// As little counts in any case.
 const LEAST: f64 = 1e-12;
 
-/// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones.
+/// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones; in a face, flat along one axis, all are its own.
 pub fn union_with(
     solids: &[&FormulaSolid],
     bodies: &[PlanarPart<f64>],
@@ -34,6 +34,9 @@ pub fn union_with(
         }
         union_in(solids, bodies, sides, face.map(|(axis, _)| axis), tol)
     };
+    if let Some(axis) = (0..3).find(|&n| sides[n][0] == sides[n][1]) {
+        return [union(Some((axis, 0))); 7];
+    }
     [None, Some((0, 0)), Some((1, 0)), Some((2, 0)), Some((0, 1)), Some((1, 1)), Some((2, 1))].map(union)
 }
 
