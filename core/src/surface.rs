@@ -65,4 +65,4 @@ mod window;
 pub mod z_faces;
 
 pub use other_bodies::OtherBodies;
-pub use union::PlanarPart;
+pub use union::{MOST_PLANES, PlanarPart};

@@ -256,7 +256,7 @@ fn solids_on_and_through_boxes() {
 fn solids_on_and_through_boxes_in_planes_of_the_grid() {
     let mut random = Random::new(33);
     let edges = lists(0.0);
-    for n in 0..60 {
+    for n in 0..36 {
         let mut some = || pick(&mut random, &[0.5, 0.75, 1.0]);
         let half = DVec3::new(some(), some(), pick(&mut random, &[0.25, 0.5]));
         // Which side is the top of the box.
@@ -299,7 +299,10 @@ fn walls_agree(found: &Porosity, edges: &Edges, (center, half): (DVec3, DVec3), 
             });
             let counted = closed.count() as f64 / (POINTS * POINTS) as f64;
             let [least, most] = bounds(found, axis + 1, at);
-            assert!(least - 0.02 <= counted && counted <= most + 0.02, "{least} {counted} {most}, {axis} {low}: {what}");
+            assert!(
+                least - 0.02 <= counted && counted <= most + 0.02,
+                "{least} {counted} {most}, {axis} {low}: {what}"
+            );
         }
     }
 }
@@ -315,5 +318,96 @@ fn holds(solid: &Exact, p: DVec3) -> bool {
             let t = along(a, b);
             (-rounding..=1.0 + rounding).contains(&t) && p.distance(a + (b - a) * t) <= r + (s - r) * t + rounding
         }
+    }
+}
+
+/// A beam of two flanges and a web along x, in its frame, as three boxes.
+struct Beam {
+    length: f64,
+    width: f64,
+    height: f64,
+    web: f64,
+    flange: f64,
+}
+
+impl Beam {
+    fn boxes(&self) -> [[DVec3; 2]; 3] {
+        let [x, y, z] = [self.length, self.width, self.height].map(|size| 0.5 * size);
+        let inner = z - self.flange;
+        [(y, -z, -inner), (0.5 * self.web, -inner, inner), (y, inner, z)]
+            .map(|(y, low, high)| [DVec3::new(-x, -y, low), DVec3::new(x, y, high)])
+    }
+
+    /// One shell.
+    fn triangles(&self, place: impl Fn(DVec3) -> DVec3) -> Vec<[DVec3; 3]> {
+        let [x, y, z] = [self.length, self.width, self.height].map(|size| 0.5 * size);
+        let (web, inner) = (0.5 * self.web, z - self.flange);
+        // Halves of the profile from below to above; the web's corners are corners of the flanges' ends.
+        let right = [(y, -z), (y, -inner), (web, -inner), (web, inner), (y, inner), (y, z)];
+        let left = right.map(|(y, z)| (-y, z));
+        let outline: Vec<_> = right.into_iter().chain(left.into_iter().rev()).collect();
+        let at = |x: f64, (y, z): (f64, f64)| place(DVec3::new(x, y, z));
+        let mut found = Vec::new();
+        for (n, &from) in outline.iter().enumerate() {
+            let to = outline[(n + 1) % outline.len()];
+            let [a, b, c, d] = [at(-x, from), at(-x, to), at(x, to), at(x, from)];
+            found.extend([[a, c, b], [a, d, c]]);
+        }
+        let ends = [vec![0, 1, 2, 9, 10, 11], vec![2, 3, 8, 9], vec![5, 6, 7, 8, 3, 4]];
+        for end in ends {
+            for pair in end[1..].windows(2) {
+                let corners = [end[0], pair[0], pair[1]].map(|n: usize| outline[n]);
+                let [a, b, c] = corners.map(|corner| at(x, corner));
+                let [d, e, f] = corners.map(|corner| at(-x, corner));
+                found.extend([[a, b, c], [d, f, e]]);
+            }
+        }
+        found
+    }
+}
+
+/// A solid on a beam, under a flange, in the corner of web and flange, through the web, or across all of it.
+fn at_a_beam(random: &mut Random, beam: &Beam) -> Exact {
+    let radius = random.between(0.05, 0.2);
+    let off = pick(random, &[0.0, 0.0, 0.0, 1e-13, 1e-7, -1e-7, 0.02]);
+    let (top, inner) = (0.5 * beam.height, 0.5 * beam.height - beam.flange);
+    let x = random.between(-0.5, 0.5);
+    let corner = DVec3::new(x, 0.5 * beam.web + radius + off, inner - radius);
+    match random.below(6) {
+        0 => Exact::Cylinder(DVec3::new(x, -0.8, top + radius + off), DVec3::new(x, 0.8, top + radius + off), radius),
+        1 => Exact::Ball(corner, radius),
+        2 => Exact::Cylinder(corner, corner + DVec3::X * 0.7, radius),
+        3 => Exact::Cylinder(DVec3::new(x, -0.7, 0.1), DVec3::new(x + 0.1, 0.7, 0.1 + off), radius),
+        4 => Exact::Cylinder(DVec3::new(x, 0.1, top + off), DVec3::new(x, 0.1, top + off + 0.5), radius),
+        _ => Exact::Capsule(DVec3::new(x, -0.4, -0.6), DVec3::new(-x, 0.3, 0.7), radius),
+    }
+}
+
+#[test]
+fn solids_at_beams_of_triangles() {
+    let mut random = Random::new(34);
+    for n in 0..24 {
+        let beam = Beam {
+            length: pick(&mut random, &[2.0, 2.4]),
+            width: pick(&mut random, &[0.5, 0.6]),
+            height: pick(&mut random, &[0.8, 1.0]),
+            web: random.between(0.01, 0.1),
+            flange: random.between(0.01, 0.15),
+        };
+        let solid = at_a_beam(&mut random, &beam);
+        let turn = if n % 2 == 0 { DMat3::IDENTITY } else { random.turn() };
+        let place = |p: DVec3| DVec3::splat(2.5) + turn * p;
+        let mut bodies = solids::scene(&[beam.triangles(place)]);
+        bodies.bodies.extend(formulas(&[form(&moved(&solid, place))]).bodies);
+        let edges = lists(pick(&mut random, &[0.0, 0.0313]));
+        let found = run(&edges, &bodies, Method::Auto);
+        let what = format!("{n}: {solid:?} at {:?}, {turn}", beam.boxes());
+        assert!(found.max_gap <= 1.01e-4, "{}: {what}", found.max_gap);
+        let boxes = beam.boxes();
+        let truth = volume(&solid) + boxes.iter().map(|[lo, hi]| (*hi - *lo).element_product()).sum::<f64>()
+            - boxes.iter().map(|part| common_volume(&[solid], *part, 1e-8)).sum::<f64>();
+        let [least, most] = volumes(&found);
+        assert!(least - 1e-6 <= truth && truth <= most + 1e-6, "{least} {truth} {most}: {what}");
+        agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
     }
 }

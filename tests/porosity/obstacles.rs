@@ -230,3 +230,44 @@ fn bits_do_not_depend_on_threads() {
     };
     assert_eq!(run(1), run(4));
 }
+
+/// A ball and a cylinder that begins in its middle fill a cell together, which neither does alone: nothing in it is seen. The wetted area of a vessel with
+/// two heads is that of its outside.
+#[test]
+fn what_two_solids_fill_together_has_no_surface() {
+    let list = |all: &[f64]| all.to_vec();
+    let ball = Form::Sphere(Sphere { center: DVec3::ZERO, radius: 1.0 });
+    let cylinder = |from: DVec3, to: DVec3, radius: f64| Form::Cylinder(Cylinder::new(from, to, radius));
+    let edges_of_two = Edges([list(&[-0.3, 0.3]), list(&[-0.3, 0.3]), list(&[-1.6, -0.2, 1.2])]);
+    let found = obstacles(&edges_of_two, &formulas(&[ball, cylinder(DVec3::ZERO, DVec3::Z * 3.0, 1.0)]));
+    assert!(found.s[0] > 0.1 && found.s[1] == 0.0, "{:?}", found.s);
+
+    let (radius, foot, top) = (0.13, DVec3::new(0.46, 0.51, 0.33), DVec3::new(0.46, 0.51, 0.63));
+    let head = |center: DVec3| Form::Sphere(Sphere { center, radius });
+    let vessel = formulas(&[cylinder(foot, top, radius), head(foot), head(top)]);
+    let found = obstacles(&edges(10, 0.0, 1.0), &vessel).totals;
+    let pi = std::f64::consts::PI;
+    let (wetted, along) = (2.0 * pi * radius * 0.3 + 4.0 * pi * radius * radius, pi * radius * radius);
+    assert!((found.wetted_area / wetted - 1.0).abs() < 1e-3, "{} {wetted}", found.wetted_area);
+    assert!((found.frontal_area[2] / along - 1.0).abs() < 1e-3, "{:?} {along}", found.frontal_area);
+}
+
+/// The wall of a tank and a thin pipe in one cell: the larger the tank, the more facets stand for it, so that its shadow is right.
+#[test]
+fn the_shadow_of_a_large_tank() {
+    let list = |n: usize| (0..=n).map(|n| 0.1 * n as f64).collect::<Vec<f64>>();
+    for radius in [1.0, 5.0, 20.0] {
+        let angle = 1.078_f64;
+        let center = DVec3::new(0.15 - radius * angle.cos(), 0.0, 0.15 - radius * angle.sin());
+        let rod = |at: DVec3, radius: f64| Form::Cylinder(Cylinder::new(at - DVec3::Y, at + DVec3::Y * 2.0, radius));
+        let found = obstacles(
+            &Edges([list(3), list(1), list(3)]),
+            &formulas(&[rod(center, radius), rod(DVec3::new(0.19, 0.0, 0.19), 0.005)]),
+        );
+        // Along x, what is below the tank's wall where it enters the cell, and of the pipe what stands higher.
+        let height = center.z + (radius * radius - (0.1 - center.x).powi(2)).sqrt();
+        let truth = (height - 0.1 + (0.195 - height.max(0.185)).max(0.0)) / 0.1;
+        let (tau, doubt) = (found.shadows.tau[0][4], found.shadows.doubt);
+        assert!(doubt <= 5.1e-4 && (tau - truth).abs() <= doubt, "{radius}: {tau} {truth}, {doubt}");
+    }
+}

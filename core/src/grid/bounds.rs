@@ -22,7 +22,13 @@ impl<R: Real> Bounds<R> {
     /// Bounds of a value that is known up to an error, cut to 0..1.
     #[must_use]
     pub fn around(value: R, error: R) -> Self {
-        Bounds { lower: (value - error).max(R::ZERO), upper: (value + error).min(R::ONE) }
+        Bounds { lower: value, upper: value }.widened(error)
+    }
+
+    /// Bounds that may be wrong by an error, further apart by that on both sides, cut to 0..1.
+    #[must_use]
+    pub fn widened(self, error: R) -> Self {
+        Bounds { lower: (self.lower - error).max(R::ZERO), upper: (self.upper + error).min(R::ONE) }
     }
 
     /// Bounds of the open fraction from those of the solid one, and the reverse.

@@ -1,5 +1,6 @@
 //! Cells that several bodies share: their exact union, or division until bounds are close.
 
+use crate::grid::bounds::Bounds;
 use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
@@ -8,7 +9,7 @@ use crate::surface::division::{Shared, Site, SpareMemory, divide};
 use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{At, Refined, known, narrow};
 use crate::surface::surface_area::{KeptSurface, PieceSums, SurfaceArea};
-use crate::surface::union::{CellUnion, NoProof, UnionMemory};
+use crate::surface::union::{CellUnion, NoProof, PlanarParts, UnionMemory};
 use core::ops::Range;
 use heapless::Vec;
 
@@ -127,11 +128,8 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
                 row = Row::new(site.bins, site.k, [lo, hi], (&mut *numbers, &mut *groups));
             }
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
-            let checks = UnionChecks {
-                is_believed: |u: &Refined<_>| at.agrees(layer, u, site.areas),
-                is_close: |u: &Refined<_>, tol| at.is_close(layer, u, tol),
-            };
-            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, checks);
+            let believed = |u: &Refined<_>| at.agrees(layer, u, site.areas);
+            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, believed);
             let mut rest = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
             if refined.is_none() && open > shared.tol {
                 resolved.divided += 1;
@@ -189,11 +187,7 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
                 row = Row::new(site.bins, site.k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
             }
             let Some(row) = &mut row else { continue };
-            let checks = UnionChecks {
-                is_believed: |_: &Refined<_>| true,
-                is_close: |u: &Refined<V::Scalar>, tol| u.high[2].gap() <= tol,
-            };
-            let (mut refined, _) = union::<_, _, ()>(shared, site, cell, row, checks);
+            let (mut refined, _) = union::<_, _, ()>(shared, site, cell, row, |_| true);
             if refined.is_none() && open > shared.tol {
                 let spare = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
                 refined = divide(shared, site, cell, spare);
@@ -216,32 +210,41 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
     surfaces.chain(others.map(|b| (b, false)))
 }
 
-/// Bounds of a union with other bodies count as found if they are so close.
-pub(super) fn close_enough<R: Real>(tol: R) -> R {
-    tol.max(known::<R>() * R::from_f64(100.0))
-}
-
-/// What a union has to fulfil: to agree with what is known of the bodies, and if there are others than of triangles, to lie within bounds so close.
-struct UnionChecks<B, C> {
-    is_believed: B,
-    is_close: C,
-}
-
-/// The union in a cell, where others than bodies of triangles reach it only if these lie behind a few planes, and what it has of surface.
+/// The union in a cell, if it agrees with what is known of the bodies, and what it has of surface; where others than bodies of triangles reach it, only
+/// bounds of the union, as close as the others tell them, and if there are few planes.
 fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
     row: &Row<V>,
-    checks: UnionChecks<impl Fn(&Refined<V::Scalar>) -> bool, impl Fn(&Refined<V::Scalar>, V::Scalar) -> bool>,
+    believed: impl Fn(&Refined<V::Scalar>) -> bool,
 ) -> (Option<Refined<V::Scalar>>, Option<P::Found>) {
     if !shared.others.reach(cell) {
-        return union_of_triangles::<_, _, P>(shared, site, cell, row, checks.is_believed).unzip();
+        return union_of_triangles::<_, _, P>(shared, site, cell, row, believed).unzip();
     }
-    let bodies = bodies_in(shared.union.reborrow(), site, cell, row, V::Scalar::ZERO);
-    let bodies = bodies.ok().and_then(|bodies| bodies.planar_parts()).filter(|bodies| !bodies.is_empty());
-    let found = bodies.and_then(|bodies| shared.others.union_with(cell, &bodies)).map(Refined::from_places);
-    (found.filter(|u| (checks.is_believed)(u) && (checks.is_close)(u, close_enough(shared.tol))), None)
+    let found = union_with_others(shared, cell, |memory, blur, parts| {
+        bodies_in(memory.reborrow(), site, cell, row, blur)?.add_planar_parts(parts)
+    });
+    (found.map(Refined::from_places).filter(believed), None)
+}
+
+/// The union of other bodies in a cell or on a face with bodies of triangles, whose parts there are found with a blur and their error returned: in the cell, or
+/// on the face, and in the cell's low and high faces.
+pub(super) fn union_with_others<V: Vector, O: OtherBodies<V>>(
+    shared: &mut Shared<V, O>,
+    place: Aabb<V>,
+    mut parts: impl FnMut(&mut UnionMemory<V::Scalar>, V::Scalar, &mut PlanarParts<V::Scalar>) -> Result<V::Scalar, NoProof>,
+) -> Option<[Bounds<V::Scalar>; 7]> {
+    if !O::UNITES {
+        return None;
+    }
+    let (bodies, error) = with_least_blur(shared.tol, |blur| {
+        let mut found = PlanarParts::new();
+        let error = parts(&mut shared.union, blur, &mut found)?;
+        Ok(((found, error), error))
+    })?;
+    let found = shared.others.union_with(place, &bodies)?;
+    Some(found.map(|bounds| bounds.widened(error)))
 }
 
 /// The union of bodies of triangles in a cell: exact, or with the least blur that gives a proof. What it has of surface is found if `P` wants it.

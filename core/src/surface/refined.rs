@@ -111,15 +111,6 @@ impl At {
             })
     }
 
-    /// Are the bounds found of the cell and of the faces that it decides, but for those in whose plane surface lies, this close?
-    pub fn is_close<R: Real>(self, layer: &Layer<R>, found: &Refined<R>, tol: R) -> bool {
-        let close = |(axis, at, high): (usize, usize, bool)| {
-            let side = if high { &found.high } else { &found.low };
-            free_face(layer, axis, at).is_none() || side.get(axis).is_some_and(|b| b.gap() <= tol)
-        };
-        found.cell.gap() <= tol && self.faces().all(close)
-    }
-
     /// Store what is known of the cell and of those of its faces that it decides.
     pub fn store<R: Real>(self, layer: &mut Layer<R>, refined: &Refined<R>) {
         let c = self.cell();

@@ -202,8 +202,8 @@ pub struct KeptCell {
     pub(super) pieces: CellPieces,
     /// Surface may lie in the plane of a side normal to x, y, z.
     pub(super) walls: [bool; 3],
-    /// The body that alone has surface in the cell or in the planes of its sides, seen from it.
-    pub(super) alone: Option<u32>,
+    /// The bodies with surface in the cell or in the planes of its sides, seen from it; several also where one is a sheet.
+    pub(super) bodies: Bodies,
     /// No line along x, y or z enters solid twice in the cell.
     pub(super) entered_once: bool,
 }
@@ -212,7 +212,16 @@ impl KeptCell {
     /// The number of the body that alone has surface in the cell, or in the planes of its sides as seen from the cell.
     #[must_use]
     pub fn alone(&self) -> Option<u32> {
-        self.alone
+        match self.bodies {
+            Bodies::One(body) => Some(body),
+            _ => None,
+        }
+    }
+
+    /// Has no body surface in the cell, nor in the planes of its sides as seen from the cell?
+    #[must_use]
+    pub fn is_bare(&self) -> bool {
+        self.bodies == Bodies::None
     }
 
     /// Nobody has surface there but one convex body, whose frontal areas are those that are known: then these tell the shadows.
@@ -235,7 +244,7 @@ impl<'a, R> KeptPieces<'a, R> {
 
     /// The corners of all pieces inside a cell, if one body alone has surface there or in the planes of its sides, as seen from the cell.
     pub fn of_one(&self, cell: usize) -> Option<impl Iterator<Item = &'a [[R; 3]]> + use<'a, R>> {
-        let own = self.of(cell).filter(|own| own.alone.is_some())?;
+        let own = self.of(cell).filter(|own| own.alone().is_some())?;
         Some(self.pieces(own).map(|(corners, ..)| corners))
     }
 
@@ -267,7 +276,7 @@ impl KeptPiece {
 }
 
 /// The bodies with volume that have surface in a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Bodies {
     #[default]
     None,

@@ -34,8 +34,8 @@ pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
 pub use octree::Octant;
 pub use piece::{NoProof, Piece};
-pub use planar::PlanarPart;
 pub(super) use planar::PlanarParts;
+pub use planar::{MOST_PLANES, PlanarPart};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
 pub const MAX_SPREAD: f64 = 1e-9;

@@ -6,11 +6,11 @@ use crate::grid::fields::{Layer, gap};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group};
-use crate::surface::cell_unions::{close_enough, with_least_blur};
+use crate::surface::cell_unions::{union_with_others, with_least_blur};
 use crate::surface::division::{Shared, Site, SpareMemory, find_parts};
 use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{known, narrow, rounding};
-use crate::surface::union::{CellUnion, Limit, NoProof, PlanarParts, UnionMemory, rounds_much};
+use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory, rounds_much};
 
 /// Narrow the bounds of the shared faces of a layer that lie in walls: its x and y faces and the z faces below.
 pub(super) fn resolve<V: Vector, O: OtherBodies<V>>(
@@ -104,25 +104,26 @@ fn whole_wall<V: Vector, O>(
     })
 }
 
-/// The union with other bodies on a face with walls, where those of triangles lie on both sides behind a few planes; none unless bounds are close.
+/// The union with other bodies on a face with walls, where those of triangles have few planes on both sides.
 fn wall_with_others<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     bins: &Bins<V>,
     axis: usize,
     sides: &[WallSide<V>; 2],
 ) -> Option<Bounds<V::Scalar>> {
-    let mut bodies = PlanarParts::new();
-    for side in sides {
-        // The planes of walls in the face are none: what ends there fills this side up to it.
-        let parts = gather(&mut shared.union, bins, &[*side], V::Scalar::ZERO).ok()?.planar_parts()?;
-        bodies.extend_from_slice(&parts).ok()?;
-    }
     let [_, above] = sides.map(|side| side.cell);
     let mut high = above.max.to_array();
     high[axis] = above.min.to_array()[axis];
     let face = Aabb { min: above.min, max: V::new(high[0], high[1], high[2]) };
-    let [found, ..] = shared.others.union_with(face, &bodies)?;
-    (found.gap() <= close_enough(shared.tol)).then_some(found)
+    union_with_others(shared, face, |memory, blur, parts| {
+        // What ends in the face fills this side up to it.
+        let mut error = V::Scalar::ZERO;
+        for side in sides {
+            error = error.max(gather(memory, bins, &[*side], blur)?.add_planar_parts(parts)?);
+        }
+        Ok(error)
+    })
+    .map(|[found, ..]| found)
 }
 
 /// Bounds of a face with walls from its quarters, each between halves of the cells on both sides; none if the depth is spent.

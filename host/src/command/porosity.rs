@@ -16,7 +16,7 @@ use crate::geometry::bodies::Bodies;
 use crate::grid::{self, Edges, GridSpec, usual_spacing};
 use crate::porosity::congestion::congestion;
 use crate::porosity::throat::Faces;
-use crate::porosity::{Method, Options};
+use crate::porosity::{Leaf, Method, Options};
 use report::Report;
 use std::path::Path;
 
@@ -50,8 +50,9 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         };
         remarks.into_iter().for_each(|r| progress.warn(r));
         let zones = zones::read(args.zones.as_deref(), &edges)?;
-        let depth = args.depth.unwrap_or(args.leaf.depth());
-        let (bounds, areas, method, leaf) = (args.bounds_fields, !args.no_areas, args.method, args.leaf);
+        let leaf = leaf_of(args, &mut progress);
+        let depth = args.depth.unwrap_or(leaf.depth());
+        let (bounds, areas, method) = (args.bounds_fields, !args.no_areas, args.method);
         let resistance = args.resistance || args.zones.is_some() || args.drag.is_some();
         let options = Options { tol: args.tol, depth, bounds, areas, method, leaf, resistance };
         // Throats need the surface in each cell, which porosity cuts anyway.
@@ -76,6 +77,15 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         }
         Ok(())
     })
+}
+
+/// What ends a subdivision; without one, where a cell that has no proof is divided, the default.
+fn leaf_of(args: &PorosityArgs, progress: &mut Progress) -> Leaf {
+    if args.method == Method::Gjk || args.leaf == Leaf::Plane {
+        return args.leaf;
+    }
+    progress.warn("--leaf has no effect: it is of --method gjk, which subdivides bodies");
+    Leaf::Plane
 }
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.

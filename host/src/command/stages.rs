@@ -144,10 +144,7 @@ pub fn measure(
     report_leaks(bodies, &result, progress);
     report_sheets(bodies, result.sheets_off_planes, progress);
     if options.leaf != Leaf::Plane && result.subdivided == 0 {
-        progress.warn(match options.method {
-            Method::Gjk => "--leaf has no effect: no body can be subdivided",
-            _ => "--leaf has no effect: it is of --method gjk, which subdivides bodies, and without that none was",
-        });
+        progress.warn("--leaf has no effect: no body can be subdivided");
     }
     if options.method == Method::Gjk && result.subdivided < bodies.bodies.len() {
         let why = match options.leaf {

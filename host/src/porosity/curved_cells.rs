@@ -28,9 +28,9 @@ pub fn measure(
             let at = [c % nx, c / nx, k];
             let candidates = match kept.alone() {
                 Some(body) => vec![Some(body)],
-                None if area.wetted > 0.0 => continue,
                 // What bulges beyond its facets.
-                None => beside(grid, &alone, at),
+                None if kept.is_bare() => beside(grid, &alone, at),
+                None => continue,
             };
             let Some(cell) = grid.cell_box(at) else { continue };
             let forms = candidates.into_iter().flatten().filter_map(|n| curved(bodies.bodies.get(n as usize)?));

@@ -52,7 +52,7 @@ pub struct Porosity {
     pub cells: CellCounts,
     /// Solid volume within the grid.
     pub solid_volume: f64,
-    /// Largest distance of the bounds of any cell or face.
+    /// No bounds of a cell or face are further apart; with porous solids, lowered faces or holes the furthest may be closer.
     pub max_gap: f64,
     /// Cells divided because their union had no proof at once.
     pub divided: usize,

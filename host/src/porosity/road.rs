@@ -350,6 +350,8 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
         self.add_formulas(grid, formulas::LayerPart::Plane(plane), layer);
     }
 
+    const UNITES: bool = true;
+
     fn union_with(&mut self, cell: Aabb<DVec3>, bodies: &[PlanarPart<f64>]) -> Option<[Bounds<f64>; 7]> {
         let is_subdivided = self.road.bodies.iter().any(|(bounds, _)| bounds.touches(cell));
         let solids: Vec<&FormulaSolid> =

@@ -3,6 +3,7 @@
 use super::cell_triangles::CellTriangles;
 use super::fields::FieldSet;
 use crate::geometry::bodies::Bodies;
+use crate::geometry::facets;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
@@ -47,11 +48,17 @@ pub struct HiddenPassages {
 /// Blockage of its section that makes a cell between two open faces a hidden passage.
 pub const HIDDEN: f64 = 0.95;
 
-/// What the facets of curved solids may take of a share, or add to it.
-const FACETS: f64 = 5e-4;
+/// How far the outline of facets may be from that of a curved solid, as a share of the narrowest cell. A shadow in a cell may have two such outlines.
+pub(super) const FACETS_MISS: f64 = 2.5e-4;
 
 /// A cell hides something if along one axis it blocks this share of its section beyond what its faces show.
 const LEAST_HIDDEN: f64 = 0.02;
+
+/// Width of the narrowest cell along any axis.
+pub(super) fn narrowest(grid: &Grid<f64>) -> f64 {
+    let widths = |axis: usize| grid.edges(axis).windows(2).map(|ends| ends[1] - ends[0]);
+    (0..3).flat_map(widths).fold(f64::INFINITY, f64::min)
+}
 
 impl Shadows {
     /// Of bodies in layers, whose open fractions and areas of surface are known, with what is told beside the areas for each layer, and the pieces of surface
@@ -83,8 +90,9 @@ impl Shadows {
             too_full
         };
         let too_full = slices.into_par_iter().enumerate().map(layer).sum();
-        let has_facets = bodies.bodies.iter().any(|body| body.form.is_some() && body.triangles.is_empty());
-        let doubt = if has_facets { FACETS } else { 0.0 };
+        let width = narrowest(grid);
+        let misses = bodies.bodies.iter().map(|body| 2.0 * facets::miss_of_body(body, FACETS_MISS * width) / width);
+        let doubt = misses.fold(0.0, f64::max).min(1.0);
         let mut found = Shadows { tau, place, doubt, too_full, ..Shadows::default() };
         found.find_hidden(grid, beta);
         let kept: Vec<_> = known.iter().map(|(_, kept)| *kept).collect();

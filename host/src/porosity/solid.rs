@@ -1,5 +1,6 @@
 //! The layers of the bodies that are solid, for what is measured beside their porosity.
 
+use super::shadows;
 use super::solid_layers::SolidLayers;
 use super::surface_fields::SurfaceFields;
 use super::surface_layers::of_layers;
@@ -72,8 +73,9 @@ fn with_layers_of<T>(
     let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
     // Ends of pipes and bends, too, lie in the planes that they miss by rounding.
     let planes = snap::ToPlanes::new(grid);
+    let miss = shadows::FACETS_MISS * shadows::narrowest(grid);
     let in_planes = |body: &Body| {
-        let facets = facets::of_body(body).unwrap_or_default();
+        let facets = facets::close_to_body(body, miss).unwrap_or_default();
         facets.into_iter().map(|triangle| planes.moved(triangle, body)).collect()
     };
     let curved: Vec<Vec<[DVec3; 3]>> = bodies.bodies.par_iter().map(in_planes).collect();

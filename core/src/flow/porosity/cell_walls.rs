@@ -6,8 +6,8 @@
 //!   acts there, and closed faces are walls that the gas meets.
 //! - Several, and the fractions are those that a plane leaves: the wall of a body that the grid resolves. The stream runs along it,
 //!   and the geometric form is exact for a uniform one.
-//! - Several, and no plane leaves such fractions: obstacles smaller than the cell, the border of a porous layer askew to the grid, two walls
-//!   of a gap, the corner of a turned body. The flow tells: along walls Σ A_d u_d = 0, through a contraction along one axis
+//! - Several, and no plane leaves such fractions, or one that is all but aligned while the space beyond is open: obstacles smaller than the cell, the
+//!   border of a porous layer askew to the grid, two walls of a gap, the corner of a turned body. The flow tells: along walls Σ A_d u_d = 0, through a contraction along one axis
 //!   |Σ A_d u_d| = Σ |A_d u_d|, and the ratio of both is the weight of the stationary wave.
 //!
 //! The direction of A alone does not tell these apart: taking every cell with a second component for a wall costs a layer of random
@@ -38,6 +38,12 @@ fn components<R: Real, const D: usize>(openings: [(R, R); D]) -> usize {
 /// Open fractions that differ by no more than this from those that a plane leaves are those of a wall which bends within the cell: a circle
 /// of a radius of four cells or more. The border of a layer of porosity 0.8 at 45° to the grid differs by up to 0.06, one of 0.5 by more.
 const BEND: f64 = 0.03;
+
+/// Walls whose area vector has no second component above this share of the first are tilted so little that a cell does not tell their end from their going on.
+const TILT: f64 = 0.1;
+
+/// Solids are turned by so little, as a share, that nobody meant it.
+const NOISE: f64 = 1e-3;
 
 /// Halvings of the interval in which the best plane is searched for; its place is wanted to a share of what walls may bend.
 const HALVINGS: usize = 20;
@@ -120,9 +126,40 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         }
     }
 
+    /// Whether a wall that is all but aligned with the grid is the front of something that gas passes: of a porous layer, or beside a slit. In one cell it
+    /// looks like a plane wall that crosses the face; but beyond the face that would leave next to nothing open.
+    fn is_front_of_duct(&self, at: [usize; D], area: [R; D]) -> bool {
+        let openings = self.openings_of(at);
+        let largest = area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs()));
+        let tilts = area.iter().filter(|a| a.abs() > R::from_f64(TILT) * largest).count();
+        let along = (0..D).find(|&d| area.get(d).is_some_and(|a| a.abs() >= largest));
+        let (1, Some(d)) = (tilts, along) else { return false };
+        let (low, high) = openings.get(d).copied().unwrap_or_default();
+        let mut beyond = at;
+        if let Some(place) = beyond.get_mut(d) {
+            *place = if high < low { *place + 1 } else { place.wrapping_sub(1) };
+            if *place >= self.mesh.cells().get(d).copied().unwrap_or_default() {
+                return false;
+            }
+        }
+        let narrow = R::smaller(low, high);
+        narrow > rounding() && self.open_volume(beyond) >= R::HALF * narrow
+    }
+
+    /// Whether a cell holds an inclined wall that changes the open areas along an axis. One that is tilted from that axis by less than [`NOISE`] does not: a
+    /// jump beside it is that of something else, as of the mouth of a slit.
+    pub fn holds_wall_across(&self, at: [usize; D], d: usize) -> bool {
+        let CellWalls::Askew(area) = self.walls_of(at) else { return false };
+        let largest = area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs()));
+        area.get(d).is_some_and(|a| a.abs() > R::from_f64(NOISE) * largest) && self.holds_inclined_wall(at)
+    }
+
     /// Whether a single wall askew to the grid, plane but for what it bends within a cell, leaves the open fractions of a cell.
     pub fn holds_inclined_wall(&self, at: [usize; D]) -> bool {
         let CellWalls::Askew(area) = self.walls_of(at) else { return false };
+        if self.is_front_of_duct(at, area) {
+            return false;
+        }
         // In double precision: a component of the normal may be a millionth of another.
         let open = self.open_volume(at).to_f64();
         let sum = area.iter().fold(0.0, |s, a| s + a.abs().to_f64());

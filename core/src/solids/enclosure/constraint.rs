@@ -80,6 +80,9 @@ impl Constraint {
         Some(Constraint { middle, slope, rest: [-room, room] })
     }
 
+    /// What may hold all points or none.
+    const UNDECIDED: Self = Constraint { middle: 0.0, slope: [0.0; 3], rest: [-1.0, 1.0] };
+
     /// What no point is inside of.
     #[must_use]
     pub const fn nowhere() -> Self {
@@ -115,15 +118,18 @@ pub enum Enclosure {
 }
 
 impl Enclosure {
-    /// From the constraints of a part, three at most; what decides nothing in the box is left out.
+    /// From the constraints of a part. Of more than three the last says nothing, as long as they all decide something in the box; what decides nothing in the box is left out.
     pub fn new(constraints: impl IntoIterator<Item = Constraint>) -> Self {
         let mut kept = Vec::new();
         for constraint in constraints {
             if constraint.excludes() {
                 return Enclosure::Open;
             }
-            if !constraint.holds() && kept.push(constraint).is_err() {
-                debug_assert!(false, "more constraints than a part has");
+            if !constraint.holds()
+                && kept.push(constraint).is_err()
+                && let Some(last) = kept.last_mut()
+            {
+                *last = Constraint::UNDECIDED;
             }
         }
         Enclosure::Within(kept)

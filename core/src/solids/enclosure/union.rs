@@ -7,6 +7,7 @@ use super::constraint::{BoxAround, Constraint, Enclosure, MOST_CONSTRAINTS};
 use super::filled::filled;
 use crate::grid::bounds::Bounds;
 use crate::number::plane::P2;
+use crate::surface::MOST_PLANES;
 use core::ops::Range;
 use heapless::Vec;
 
@@ -33,6 +34,9 @@ pub trait Enclosed {
 
 /// Parts of solids whose union is measured at once.
 const MOST_PARTS: usize = 3;
+
+/// Constraints that they have together.
+const MOST_AT_ONCE: usize = MOST_PARTS * MOST_CONSTRAINTS;
 
 /// How often a box is halved at most.
 const MOST_LEVELS: usize = 20;
@@ -271,10 +275,7 @@ pub(super) fn share_of<E: Enclosed>(solid: &E, place: &BoxAround, close: f64, lo
     if holds {
         return None;
     }
-    let rounding = rounding_in(place);
-    let [upper, lower]: P2 =
-        [false, true].map(|rest| parts.iter().map(|part| share_of_polytope(part.iter(), rest)).sum());
-    let found: P2 = [f64::max(lower - rounding, 0.0), f64::min(upper + rounding, 1.0)];
+    let found = shares_of_polytopes(parts.iter().map(|part| part.iter()), place);
     let gap = found[1] - found[0];
     if few && gap <= close {
         return Some(found);
@@ -291,6 +292,16 @@ pub(super) fn share_of<E: Enclosed>(solid: &E, place: &BoxAround, close: f64, lo
         sum = [sum[0] + lower, sum[1] + upper];
     }
     Some(sum.map(|s| s / count as f64))
+}
+
+/// Bounds of the sum of the shares of parts that have no volume in common, from polytopes within them and around them; of as many constraints each as a part has planes.
+pub(super) fn shares_of_polytopes<'c, P: Iterator<Item = &'c Constraint> + Clone>(
+    parts: impl Iterator<Item = P> + Clone,
+    place: &BoxAround,
+) -> P2 {
+    let rounding = rounding_in(place);
+    let [upper, lower]: P2 = [false, true].map(|rest| parts.clone().map(|part| share_of_polytope(part, rest)).sum());
+    [f64::max(lower - rounding, 0.0), f64::min(upper + rounding, 1.0)]
 }
 
 /// Of a part of a solid.
@@ -315,7 +326,8 @@ fn share_of_polytope<'c>(constraints: impl Iterator<Item = &'c Constraint> + Clo
         0 | 1 => filled::<1>(constraints, rest),
         2 => filled::<2>(constraints, rest),
         3 => filled::<3>(constraints, rest),
-        _ => filled::<{ MOST_PARTS * MOST_CONSTRAINTS }>(constraints, rest),
+        4..=MOST_AT_ONCE => filled::<MOST_AT_ONCE>(constraints, rest),
+        _ => filled::<MOST_PLANES>(constraints, rest),
     }
 }
 

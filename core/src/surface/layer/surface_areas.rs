@@ -197,11 +197,8 @@ fn note_kept<R: Real>(cells: &[CellSurface<R>], walls: &Fields<u8>, has_top: boo
             is_wall(walls.y, c) || is_wall(walls.y, c + nx),
             has_top || cell.wall_on_top || is_wall(walls.z, c),
         ];
-        let alone = match cell.bodies {
-            Bodies::One(body) if !(cell.sheets.wetted > R::ZERO) => Some(body),
-            _ => None,
-        };
-        *kept = KeptCell { pieces: cell.kept, walls, alone, entered_once: false };
+        let bodies = if cell.sheets.wetted > R::ZERO { Bodies::Several } else { cell.bodies };
+        *kept = KeptCell { pieces: cell.kept, walls, bodies, entered_once: false };
     }
 }
 

@@ -1,60 +1,95 @@
-//! Bodies that in one cell are what lies behind a few planes: walls, edges and corners of boxes and plates, beams however they are turned.
+//! Bodies in one cell as convex parts, each of them what lies behind a few planes: walls, edges and corners of boxes and plates, flanges and webs of beams
+//! however they are turned, some facets of a pipe.
 
-use super::piece::{Piece, Plane, span};
-use super::{CellUnion, Frame};
+use super::bsp::{Branch, Node};
+use super::piece::Plane;
+use super::{CellUnion, Frame, NoProof};
 use crate::number::real::Real;
 use crate::number::space::dot;
 use heapless::Vec;
 
-/// Planes of a body in a cell, and bodies.
-const MOST_PLANES: usize = 3;
-const MOST_BODIES: usize = 4;
+/// Planes of a part, at most.
+pub const MOST_PLANES: usize = 16;
 
-/// The bodies in a cell, or on both sides of a face.
-pub(in crate::surface) type PlanarParts<R> = Vec<PlanarPart<R>, MOST_BODIES>;
+/// Parts of all bodies in a cell, at most.
+const MOST_PARTS: usize = 32;
 
-/// What lies behind all of some planes. In a cell a body may be that.
+/// What lies behind all of some planes; without any, all of the cell. A body in a cell is one such part or several, which share walls at most.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanarPart<R> {
+    /// The body that it is of. Parts of one body stand together.
+    pub body: usize,
     /// The outward unit normal of each plane, and a point in it.
     pub planes: Vec<[[R; 3]; 2], MOST_PLANES>,
 }
 
+/// The parts of all bodies in a cell, or on both sides of a face.
+pub(in crate::surface) type PlanarParts<R> = Vec<PlanarPart<R>, MOST_PARTS>;
+
 impl<R: Real> CellUnion<'_, R> {
-    /// The bodies, if each is convex in the cell and all of its surface inside lies in a few planes: what a closed surface encloses is then
-    /// what lies behind them; without any, all of the cell. None else.
-    pub(in crate::surface) fn planar_parts(&self) -> Option<PlanarParts<R>> {
-        let mut found = Vec::new();
-        for part in self.space.parts.get(..self.part_count)? {
-            found.push(self.frame.behind(self.space.pieces.get(part.first..part.end)?)?).ok()?;
+    /// Add the convex parts of the bodies, if they are few and simple, and their union has a proof: the solid leaves of their trees. Returns the
+    /// error of the union.
+    ///
+    /// # Errors
+    /// [`NoProof::Full`] if there are more parts or planes than there is room for, or as of the union in the cell.
+    pub(in crate::surface) fn add_planar_parts(&mut self, found: &mut PlanarParts<R>) -> Result<R, NoProof> {
+        let error = self.cell()?.error;
+        let first = found.last().map_or(0, |part| part.body + 1);
+        for (n, part) in self.space.parts.iter().take(self.part_count).enumerate() {
+            self.add_solid_leaves(part.root, first + n, found)?;
         }
-        Some(found)
+        Ok(error)
+    }
+
+    /// Each leaf lies behind or before the planes on the way to it.
+    fn add_solid_leaves(&self, root: Branch, body: usize, found: &mut PlanarParts<R>) -> Result<(), NoProof> {
+        let mut way: Vec<(u32, bool), MOST_PLANES> = Vec::new();
+        let mut branch = root;
+        loop {
+            if let Branch::Node(number) = branch {
+                way.push((number, false)).map_err(no_room)?;
+                branch = self.node(number)?.negative;
+                continue;
+            }
+            if branch == Branch::Solid {
+                let mut planes = Vec::new();
+                for &(number, before) in &way {
+                    planes.push(self.frame.in_space(&self.node(number)?.plane, before)).map_err(no_room)?;
+                }
+                found.push(PlanarPart { body, planes }).map_err(no_room)?;
+            }
+            // On to the other side of the last plane of which only one has been seen.
+            loop {
+                match way.pop() {
+                    None => return Ok(()),
+                    Some((_, true)) => {}
+                    Some((number, false)) => {
+                        way.push((number, true)).map_err(no_room)?;
+                        branch = self.node(number)?.positive;
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    fn node(&self, number: u32) -> Result<&Node<R>, NoProof> {
+        self.space.nodes.get(number as usize).ok_or(NoProof::Full)
     }
 }
 
-impl<R: Real> Frame<R> {
-    /// What lies behind the planes of all pieces; none if these are too many, or a piece is before one of them.
-    fn behind(&self, pieces: &[Piece<R>]) -> Option<PlanarPart<R>> {
-        let mut planes: Vec<Plane<R>, MOST_PLANES> = Vec::new();
-        for Piece { polygon, plane, .. } in pieces {
-            let is_in = |other: &Plane<R>| {
-                let (least, most) = span(polygon, other);
-                least >= -self.thickness && most <= self.thickness && dot(plane.normal, other.normal) > R::ZERO
-            };
-            if !planes.iter().any(is_in) {
-                planes.push(*plane).ok()?;
-            }
-        }
-        let is_behind = |plane: &Plane<R>| pieces.iter().all(|p| span(&p.polygon, plane).1 <= self.thickness);
-        let planes = planes.iter().map(|p| is_behind(p).then(|| self.in_space(p)));
-        Some(PlanarPart { planes: planes.collect::<Option<_>>()? })
-    }
+/// What did not fit.
+fn no_room<T>(_: T) -> NoProof {
+    NoProof::Full
+}
 
-    /// The outward unit normal of a plane and a point in it, in the coordinates of the cell's corners.
-    fn in_space(&self, plane: &Plane<R>) -> [[R; 3]; 2] {
+impl<R: Real> Frame<R> {
+    /// The unit normal out of what lies behind a plane, or before it, and a point in it, in the coordinates of the cell's corners.
+    fn in_space(&self, plane: &Plane<R>, before: bool) -> [[R; 3]; 2] {
         let normal = [0, 1, 2].map(|n| plane.normal[n] / self.scale[n]);
         let length = dot(normal, normal).sqrt();
         let unit = normal.map(|n| n / length);
-        [unit, [0, 1, 2].map(|n| self.origin[n] + unit[n] * (plane.offset / length))]
+        let point = [0, 1, 2].map(|n| self.origin[n] + unit[n] * (plane.offset / length));
+        [if before { unit.map(|n| -n) } else { unit }, point]
     }
 }
