@@ -163,6 +163,7 @@ fn a_turn_by_next_to_nothing_changes_next_to_nothing() {
                         [gas]\nmodel = \"ideal\"\ngamma = 1.4\ngas_constant = 287\n[initial]\nuniform = { T = 300, p = 100000 }\n\
                         [boundary]\nx_min = { type = \"reservoir\", T = 300, p = 101000 }\nx_max = { type = \"outlet\", p = 100000 }\n\
                         y_min = \"wall\"\ny_max = \"wall\"\n[time]\nend = 0.1\n[output]\nformats = [\"npy\"]\n";
+            let name = &format!("{name}-{angle}");
             solved(&at, case, name, &["-q"]);
             let [rho, u] = ["rho", "u"].map(|field| array(&at.file(name).join(format!("final/{field}.npy"))));
             (0..4).map(|j| rho[40 * j + 38] * u[40 * j + 38]).sum::<f64>()

@@ -34,8 +34,7 @@ pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
 pub use octree::Octant;
 pub use piece::{NoProof, Piece};
-pub(super) use planar::PlanarParts;
-pub use planar::{MOST_PLANES, PlanarPart};
+pub use planar::{MOST_PLANES, PlanarPart, PlanarParts};
 
 /// Largest accepted difference of the volumes along x, y and z, in cells.
 pub const MAX_SPREAD: f64 = 1e-9;

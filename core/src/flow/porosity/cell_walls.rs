@@ -146,12 +146,13 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         narrow > rounding() && self.open_volume(beyond) >= R::HALF * narrow
     }
 
-    /// Whether a cell holds an inclined wall that changes the open areas along an axis. One that is tilted from that axis by less than [`NOISE`] does not: a
-    /// jump beside it is that of something else, as of the mouth of a slit.
-    pub fn holds_wall_across(&self, at: [usize; D], d: usize) -> bool {
+    /// Whether a cell holds an inclined wall that tells what one of its faces across an axis is, of which so much is open. A wall tilted from the axis by less
+    /// than [`NOISE`] does not, unless it closes the face but for so much: a jump there is that of something else, as of the mouth of a slit.
+    pub fn holds_wall_at_face(&self, at: [usize; D], d: usize, open: R) -> bool {
         let CellWalls::Askew(area) = self.walls_of(at) else { return false };
-        let largest = area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs()));
-        area.get(d).is_some_and(|a| a.abs() > R::from_f64(NOISE) * largest) && self.holds_inclined_wall(at)
+        let (noise, largest) = (R::from_f64(NOISE), area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs())));
+        let changes = area.get(d).is_some_and(|a| a.abs() > noise * largest);
+        (changes || !(open > noise)) && self.holds_inclined_wall(at)
     }
 
     /// Whether a single wall askew to the grid, plane but for what it bends within a cell, leaves the open fractions of a cell.

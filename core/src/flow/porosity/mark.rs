@@ -29,8 +29,8 @@ fn is_wall<R: Real>(width: R, threshold: R) -> bool {
 /// for no jumps), which cells are small, which are sealed, which an inclined wall cuts.
 ///
 /// Both belong to ducts, layers and walls aligned with the grid, and to obstacles smaller than a cell. A face beside a cell that an
-/// inclined wall cuts across it is neither: the area of such a cell's faces changes though no duct does, and the stream runs along the wall, not
-/// against the closed face ([`cell_walls`](super::cell_walls)).
+/// inclined wall cuts is neither, unless it is open and the wall does not change what is open along its axis: the area of such a cell's faces changes
+/// though no duct does, and the stream runs along the wall, not against the closed face ([`cell_walls`](super::cell_walls)).
 ///
 /// `marks` is one byte per cell.
 ///
@@ -64,7 +64,7 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
                 let (left, right) = own.beside(0, bit == break_high(d));
                 let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
                 let closed = !(open > R::ZERO) && medium.mesh.beside(d, face, periodic[d]).iter().flatten().any(feels);
-                let inclined = |c: &[usize; D]| medium.holds_wall_across(*c, d);
+                let inclined = |c: &[usize; D]| medium.holds_wall_at_face(*c, d, open);
                 let breaks = closed || is_jump(left, open, right, threshold);
                 if breaks && !medium.mesh.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
                     bits |= bit;

@@ -24,7 +24,7 @@ pub struct PlanarPart<R> {
 }
 
 /// The parts of all bodies in a cell, or on both sides of a face.
-pub(in crate::surface) type PlanarParts<R> = Vec<PlanarPart<R>, MOST_PARTS>;
+pub type PlanarParts<R> = Vec<PlanarPart<R>, MOST_PARTS>;
 
 impl<R: Real> CellUnion<'_, R> {
     /// Add the convex parts of the bodies, if they are few and simple, and their union has a proof: the solid leaves of their trees. Returns the
