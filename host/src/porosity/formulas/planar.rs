@@ -16,11 +16,11 @@ use voidage_core::surface::PlanarPart;
 /// Of what a solid may reach beyond a plane, this share of the tolerance is told in the bounds.
 const REACHES: f64 = 1.0 / 8.0;
 
-/// Where surfaces nearly coincide, as those of a pipe and of a bore with its radius, planes take so many times the effort that is tried first.
-const MORE: usize = 8;
-
 /// As little counts in any case.
 const LEAST: f64 = 1e-12;
+
+/// Where surfaces nearly coincide, as those of a pipe and of a bore with its radius, planes take so many times the effort that is tried first.
+const MORE: usize = 8;
 
 /// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones; in a face, flat along one axis, all are its own.
 pub fn union_with(
