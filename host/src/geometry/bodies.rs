@@ -79,6 +79,14 @@ pub struct Body {
     pub drag: OwnDrag,
 }
 
+impl Body {
+    /// Its form, if it is known by that alone: it has no triangles.
+    #[must_use]
+    pub fn form_alone(&self) -> Option<&Form> {
+        self.form.as_ref().filter(|_| self.triangles.is_empty())
+    }
+}
+
 /// Drag that a scene gives for a solid.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

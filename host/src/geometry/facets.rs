@@ -15,28 +15,23 @@ const MOST_EVERY_WAY: usize = 256;
 /// The facets of a body that is known by its form alone; none if it has triangles of its own.
 #[must_use]
 pub fn of_body(body: &Body) -> Option<Vec<[DVec3; 3]>> {
-    alone(body).map(triangles)
+    body.form_alone().map(triangles)
 }
 
 /// The same, whose outline misses the true one by no more than a length where so many facets may be. As many are needed for that as the square root of the
 /// solid's size over the length.
 #[must_use]
 pub fn close_to_body(body: &Body, miss: f64) -> Option<Vec<[DVec3; 3]>> {
-    alone(body).map(|form| triangles_around(form, around(form, miss)))
+    body.form_alone().map(|form| triangles_around(form, around(form, miss)))
 }
 
 /// By how much the outline of such facets misses that of a body, at most; 0 for one that has triangles of its own.
 #[must_use]
 pub fn miss_of_body(body: &Body, miss: f64) -> f64 {
-    alone(body).map_or(0.0, |form| {
+    body.form_alone().map_or(0.0, |form| {
         let step = PI / around(form, miss) as f64;
         roundness(form).size * step * step
     })
-}
-
-/// The form of a body that has nothing else.
-fn alone(body: &Body) -> Option<&Form> {
-    body.form.as_ref().filter(|_| body.triangles.is_empty())
 }
 
 /// How a form is round: its outline is missed by `size` × (π/n)² with n facets, and there may be so many.

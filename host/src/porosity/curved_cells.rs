@@ -60,7 +60,7 @@ pub fn measure(
 
 /// The form of a body that is known by it alone and not bounded by planes.
 fn curved(body: &Body) -> Option<&Form> {
-    body.form.as_ref().filter(|form| body.triangles.is_empty() && !form.is_polytope())
+    body.form_alone().filter(|form| !form.is_polytope())
 }
 
 /// The bodies that have the cells beside a cell for themselves, each once.

@@ -17,7 +17,7 @@ pub fn from_corner(grid: &Grid<f64>, bodies: &Bodies, triangles: &[[DVec3; 3]]) 
     let corner = [0, 1, 2].map(|axis| grid.edges(axis)[0]);
     let length = [0, 1, 2].map(|axis| grid.edges(axis).last().map_or(0.0, |end| end - corner[axis]));
     let far = (0..3).any(|axis| corner[axis].abs() > FAR * length[axis]);
-    if !far || bodies.bodies.iter().any(|b| b.form.is_some() && b.triangles.is_empty()) {
+    if !far || bodies.bodies.iter().any(|b| b.form_alone().is_some()) {
         return None;
     }
     let edges = [0, 1, 2].map(|axis| grid.edges(axis).iter().map(|e| e - corner[axis]).collect());

@@ -49,13 +49,18 @@ pub struct HiddenPassages {
 pub const HIDDEN: f64 = 0.95;
 
 /// How far the outline of facets may be from that of a curved solid, as a share of the narrowest cell. A shadow in a cell may have two such outlines.
-pub(super) const FACETS_MISS: f64 = 2.5e-4;
+const FACETS_MISS: f64 = 2.5e-4;
 
 /// A cell hides something if along one axis it blocks this share of its section beyond what its faces show.
 const LEAST_HIDDEN: f64 = 0.02;
 
+/// How far the outline of facets may be from that of a curved solid on a grid, if so many facets may be.
+pub(super) fn facets_miss(grid: &Grid<f64>) -> f64 {
+    FACETS_MISS * narrowest(grid)
+}
+
 /// Width of the narrowest cell along any axis.
-pub(super) fn narrowest(grid: &Grid<f64>) -> f64 {
+fn narrowest(grid: &Grid<f64>) -> f64 {
     let widths = |axis: usize| grid.edges(axis).windows(2).map(|ends| ends[1] - ends[0]);
     (0..3).flat_map(widths).fold(f64::INFINITY, f64::min)
 }
@@ -90,9 +95,9 @@ impl Shadows {
             too_full
         };
         let too_full = slices.into_par_iter().enumerate().map(layer).sum();
-        let width = narrowest(grid);
-        let misses = bodies.bodies.iter().map(|body| 2.0 * facets::miss_of_body(body, FACETS_MISS * width) / width);
-        let doubt = misses.fold(0.0, f64::max).min(1.0);
+        let wanted = facets_miss(grid);
+        let miss = bodies.bodies.iter().map(|body| facets::miss_of_body(body, wanted)).fold(0.0, f64::max);
+        let doubt = (2.0 * miss / narrowest(grid)).min(1.0);
         let mut found = Shadows { tau, place, doubt, too_full, ..Shadows::default() };
         found.find_hidden(grid, beta);
         let kept: Vec<_> = known.iter().map(|(_, kept)| *kept).collect();

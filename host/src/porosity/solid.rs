@@ -73,7 +73,7 @@ fn with_layers_of<T>(
     let solid = |b: &Body| b.porosity == 0.0 && b.doubt != Doubt::Unknown;
     // Ends of pipes and bends, too, lie in the planes that they miss by rounding.
     let planes = snap::ToPlanes::new(grid);
-    let miss = shadows::FACETS_MISS * shadows::narrowest(grid);
+    let miss = shadows::facets_miss(grid);
     let in_planes = |body: &Body| {
         let facets = facets::close_to_body(body, miss).unwrap_or_default();
         facets.into_iter().map(|triangle| planes.moved(triangle, body)).collect()

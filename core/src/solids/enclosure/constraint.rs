@@ -118,7 +118,7 @@ pub enum Enclosure {
 }
 
 impl Enclosure {
-    /// From the constraints of a part. Of more than three the last says nothing, as long as they all decide something in the box; what decides nothing in the box is left out.
+    /// From the constraints of a part; what decides nothing in the box is left out. Where more than three decide something the last says nothing.
     pub fn new(constraints: impl IntoIterator<Item = Constraint>) -> Self {
         let mut kept = Vec::new();
         for constraint in constraints {

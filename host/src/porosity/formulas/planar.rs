@@ -46,7 +46,7 @@ pub fn union_with(
 /// Bounds of the union in a cell, or in a face normal to an axis.
 fn union_in(
     solids: &[&FormulaSolid],
-    bodies: &[PlanarPart<f64>],
+    parts: &[PlanarPart<f64>],
     sides: [[f64; 2]; 3],
     axis: Option<usize>,
     tol: f64,
@@ -55,7 +55,6 @@ fn union_in(
     let room = (REACHES * tol).max(LEAST);
     // How much the union may be more than what is found, or less, for what solids reach beyond planes.
     let (mut more, mut less) = (0.0, 0.0);
-    let parts = bodies;
     let bodies: Vec<_> = parts.chunk_by(|a, b| a.body == b.body).collect();
     let (mut members, mut apart): (Vec<Member>, bool) = (Vec::new(), bodies.len() == 1);
     let mut alone: Vec<&FormulaSolid> = Vec::new();
