@@ -30,6 +30,11 @@ fn differs<R: Real>(low: R, high: R) -> bool {
     (high - low).abs() > rounding()
 }
 
+/// The largest component of an area vector.
+fn largest<R: Real, const D: usize>(area: [R; D]) -> R {
+    area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs()))
+}
+
 /// The number of axes along which the two faces of a cell differ: of the components of the area vector of its walls.
 fn components<R: Real, const D: usize>(openings: [(R, R); D]) -> usize {
     openings.iter().filter(|(low, high)| differs(*low, *high)).count()
@@ -130,7 +135,7 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     /// looks like a plane wall that crosses the face; but beyond the face that would leave next to nothing open.
     fn is_front_of_duct(&self, at: [usize; D], area: [R; D]) -> bool {
         let openings = self.openings_of(at);
-        let largest = area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs()));
+        let largest = largest(area);
         let tilts = area.iter().filter(|a| a.abs() > R::from_f64(TILT) * largest).count();
         let along = (0..D).find(|&d| area.get(d).is_some_and(|a| a.abs() >= largest));
         let (1, Some(d)) = (tilts, along) else { return false };
@@ -149,18 +154,24 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
     /// Whether a cell holds an inclined wall that tells what one of its faces across an axis is, of which so much is open. A wall tilted from the axis by less
     /// than [`NOISE`] does not, unless it closes the face but for so much: a jump there is that of something else, as of the mouth of a slit.
     pub fn holds_wall_at_face(&self, at: [usize; D], d: usize, open: R) -> bool {
-        let CellWalls::Askew(area) = self.walls_of(at) else { return false };
-        let (noise, largest) = (R::from_f64(NOISE), area.iter().fold(R::ZERO, |most, a| R::larger(most, a.abs())));
-        let changes = area.get(d).is_some_and(|a| a.abs() > noise * largest);
-        (changes || !(open > noise)) && self.holds_inclined_wall(at)
+        let noise = R::from_f64(NOISE);
+        let changes = |area: [R; D]| area.get(d).is_some_and(|a| a.abs() > noise * largest(area));
+        self.inclined_wall(at).is_some_and(|area| changes(area) || !(open > noise))
     }
 
     /// Whether a single wall askew to the grid, plane but for what it bends within a cell, leaves the open fractions of a cell.
     pub fn holds_inclined_wall(&self, at: [usize; D]) -> bool {
-        let CellWalls::Askew(area) = self.walls_of(at) else { return false };
-        if self.is_front_of_duct(at, area) {
-            return false;
-        }
+        self.inclined_wall(at).is_some()
+    }
+
+    /// The area vector of such a wall.
+    fn inclined_wall(&self, at: [usize; D]) -> Option<[R; D]> {
+        let CellWalls::Askew(area) = self.walls_of(at) else { return None };
+        (!self.is_front_of_duct(at, area) && self.fits_plane(at, area)).then_some(area)
+    }
+
+    /// Whether a plane wall of an area vector, but for what it bends, leaves the open fractions of a cell.
+    fn fits_plane(&self, at: [usize; D], area: [R; D]) -> bool {
         // In double precision: a component of the normal may be a millionth of another.
         let open = self.open_volume(at).to_f64();
         let sum = area.iter().fold(0.0, |s, a| s + a.abs().to_f64());
