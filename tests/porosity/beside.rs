@@ -1,6 +1,7 @@
 //! Solids by formula inside each other, and beside, on and through bodies of triangles, against quadrature of what they have in common.
 
 use glam::{DMat3, DVec3};
+use std::f64::consts::PI;
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
@@ -409,5 +410,86 @@ fn solids_at_beams_of_triangles() {
         let [least, most] = volumes(&found);
         assert!(least - 1e-6 <= truth && truth <= most + 1e-6, "{least} {truth} {most}: {what}");
         agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
+    }
+}
+
+/// A cup, upright in its frame: a prism with a hollow, by the number of its sides and their distances from the axis, inside and outside.
+struct Cup {
+    sides: usize,
+    inside: f64,
+    outside: f64,
+    floor: f64,
+    height: f64,
+}
+
+impl Cup {
+    fn volume(&self) -> f64 {
+        let of_sides = |distance: f64| self.sides as f64 * (PI / self.sides as f64).tan() * distance * distance;
+        of_sides(self.outside) * self.height - of_sides(self.inside) * (self.height - self.floor)
+    }
+
+    fn triangles(&self, place: impl Fn(DVec3) -> DVec3) -> Vec<[DVec3; 3]> {
+        let angle = 2.0 * PI / self.sides as f64;
+        let at = |distance: f64, n: usize, z: f64| {
+            let (sin, cos) = (angle * (n as f64 - 0.5)).sin_cos();
+            place(DVec3::new(cos, sin, 0.0) * (distance / (0.5 * angle).cos()) + DVec3::Z * z)
+        };
+        let mut found = Vec::new();
+        for n in 0..self.sides {
+            let next = (n + 1) % self.sides;
+            let mut quad = |[a, b, c, d]: [DVec3; 4]| found.extend([[a, b, c], [a, c, d]]);
+            let (out, inn, floor, top) = (self.outside, self.inside, self.floor, self.height);
+            quad([at(out, n, 0.0), at(out, next, 0.0), at(out, next, top), at(out, n, top)]);
+            quad([at(inn, n, floor), at(inn, n, top), at(inn, next, top), at(inn, next, floor)]);
+            quad([at(out, n, top), at(out, next, top), at(inn, next, top), at(inn, n, top)]);
+            let [below, above] = [0.0, floor].map(|z| place(DVec3::Z * z));
+            found.push([below, at(out, next, 0.0), at(out, n, 0.0)]);
+            found.push([above, at(inn, n, floor), at(inn, next, floor)]);
+        }
+        found
+    }
+}
+
+#[test]
+fn rods_in_cups_of_many_facets() {
+    let mut random = Random::new(35);
+    for n in 0..12 {
+        let outside = random.between(0.3, 0.7);
+        let cup = Cup {
+            sides: pick(&mut random, &[8, 12, 16, 20]),
+            inside: outside * random.between(0.8, 0.95),
+            outside,
+            floor: random.between(0.02, 0.2),
+            height: random.between(0.4, 0.9),
+        };
+        // Some stand on the floor around the axis, one goes through the middle of a side.
+        let mut solids: Vec<Exact> = Vec::new();
+        let count = 2 + random.below(5);
+        for rod in 0..count {
+            let (sin, cos) = (2.0 * PI * (rod as f64 + random.between(0.0, 0.4)) / count as f64).sin_cos();
+            let foot = DVec3::new(cos, sin, 0.0) * (0.5 * cup.inside) + DVec3::Z * cup.floor;
+            let radius = cup.inside * random.between(0.03, 0.1);
+            solids.push(Exact::Cylinder(foot, foot + DVec3::Z * random.between(0.2, 0.8), radius));
+        }
+        let (sin, cos) = (2.0 * PI * random.below(cup.sides) as f64 / cup.sides as f64).sin_cos();
+        let (out, up) = (DVec3::new(cos, sin, 0.0), DVec3::Z * (0.5 * (cup.floor + cup.height)));
+        let radius = 0.07 * cup.inside;
+        solids.push(Exact::Cylinder(up + out * (0.7 * cup.inside), up + out * (1.4 * outside), radius));
+        let turn = if n % 2 == 0 { DMat3::IDENTITY } else { random.turn() };
+        let place = |p: DVec3| DVec3::splat(2.45) + turn * p;
+        let mut bodies = solids::scene(&[cup.triangles(place)]);
+        let forms: Vec<Form> = solids.iter().map(|solid| form(&moved(solid, place))).collect();
+        bodies.bodies.extend(formulas(&forms).bodies);
+        let edges = lists(pick(&mut random, &[0.0, 0.0313]));
+        let found = run(&edges, &bodies, Method::Auto);
+        let what = format!("{n}: {solids:?} in {} sides, {} {outside}, {turn}", cup.sides, cup.inside);
+        assert!(found.max_gap <= 1.01e-4, "{}: {what}", found.max_gap);
+        let through = PI * radius * radius * (outside - cup.inside);
+        let truth = cup.volume() + solids.iter().map(volume).sum::<f64>() - through;
+        let [least, most] = volumes(&found);
+        assert!(least - 1e-9 <= truth && truth <= most + 1e-9, "{least} {truth} {most}: {what}");
+        if n < 2 {
+            agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
+        }
     }
 }

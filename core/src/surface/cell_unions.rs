@@ -7,7 +7,7 @@ use crate::number::real::{Real, Vector};
 use crate::surface::bins::{Bins, Group, Row, cells_touched};
 use crate::surface::division::{Shared, Site, SpareMemory, divide};
 use crate::surface::other_bodies::OtherBodies;
-use crate::surface::refined::{At, Refined, known, narrow};
+use crate::surface::refined::{At, PLACES, Refined, TOP, known, narrow};
 use crate::surface::surface_area::{KeptSurface, PieceSums, SurfaceArea};
 use crate::surface::union::{CellUnion, NoProof, PlanarParts, UnionMemory};
 use core::ops::Range;
@@ -129,7 +129,8 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             }
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
             let believed = |u: &Refined<_>| at.agrees(layer, u, site.areas);
-            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, believed);
+            let places = if wanted { [true; PLACES] } else { at.open_places(layer) };
+            let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, places, believed);
             let mut rest = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
             if refined.is_none() && open > shared.tol {
                 resolved.divided += 1;
@@ -187,7 +188,7 @@ pub(super) fn resolve_top<V: Vector, O: OtherBodies<V>>(
                 row = Row::new(site.bins, site.k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
             }
             let Some(row) = &mut row else { continue };
-            let (mut refined, _) = union::<_, _, ()>(shared, site, cell, row, |_| true);
+            let (mut refined, _) = union::<_, _, ()>(shared, site, cell, row, TOP, |_| true);
             if refined.is_none() && open > shared.tol {
                 let spare = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
                 refined = divide(shared, site, cell, spare);
@@ -211,30 +212,32 @@ fn boxes<'i, V: Vector, O: OtherBodies<V>>(
 }
 
 /// The union in a cell, if it agrees with what is known of the bodies, and what it has of surface; where others than bodies of triangles reach it, only
-/// bounds of the union, as close as the others tell them, and if there are few planes.
+/// bounds of the union in the places wanted, as close as the others tell them, and if there are few planes.
 fn union<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared: &mut Shared<V, O>,
     site: &Site<V>,
     cell: Aabb<V>,
     row: &Row<V>,
+    wanted: [bool; PLACES],
     believed: impl Fn(&Refined<V::Scalar>) -> bool,
 ) -> (Option<Refined<V::Scalar>>, Option<P::Found>) {
     if !shared.others.reach(cell) {
         return union_of_triangles::<_, _, P>(shared, site, cell, row, believed).unzip();
     }
-    let found = union_with_others(shared, cell, |memory, blur, parts| {
+    let found = union_with_others(shared, cell, wanted, |memory, blur, parts| {
         bodies_in(memory.reborrow(), site, cell, row, blur)?.add_planar_parts(parts)
     });
     (found.map(Refined::from_places).filter(believed), None)
 }
 
 /// The union of other bodies in a cell or on a face with bodies of triangles, whose parts there are found with a blur and their error returned: in the cell, or
-/// on the face, and in the cell's low and high faces.
+/// on the face, and in those of the cell's low and high faces that are wanted.
 pub(super) fn union_with_others<V: Vector, O: OtherBodies<V>>(
     shared: &mut Shared<V, O>,
     place: Aabb<V>,
+    wanted: [bool; PLACES],
     mut parts: impl FnMut(&mut UnionMemory<V::Scalar>, V::Scalar, &mut PlanarParts<V::Scalar>) -> Result<V::Scalar, NoProof>,
-) -> Option<[Bounds<V::Scalar>; 7]> {
+) -> Option<[Bounds<V::Scalar>; PLACES]> {
     if !O::UNITES {
         return None;
     }
@@ -243,7 +246,7 @@ pub(super) fn union_with_others<V: Vector, O: OtherBodies<V>>(
         let error = parts(&mut shared.union, blur, &mut found)?;
         Ok(((found, error), error))
     })?;
-    let found = shared.others.union_with(place, &bodies)?;
+    let found = shared.others.union_with(place, &bodies, wanted)?;
     Some(found.map(|bounds| bounds.widened(error)))
 }
 

@@ -26,10 +26,15 @@ pub trait OtherBodies<V: Vector> {
     /// Do they know more of their union with other bodies than by their own shares?
     const UNITES: bool = false;
     /// Bounds of the union of all that reach a cell with bodies of which the convex parts in it are given: of the cell, of its low x, y and z
-    /// face and of its high ones; where the cell is a face, flat along one axis, only the first are asked for, and bodies lie on one of its sides or on
-    /// both. None if they know no more than by their own shares.
-    fn union_with(&mut self, cell: Aabb<V>, bodies: &[PlanarPart<V::Scalar>]) -> Option<[Bounds<V::Scalar>; 7]> {
-        let _ = (cell, bodies);
+    /// face and of its high ones, so far as they are `wanted`; where the cell is a face, flat along one axis, only the first are asked for, and bodies lie
+    /// on one of its sides or on both. None if they know no more than by their own shares.
+    fn union_with(
+        &mut self,
+        cell: Aabb<V>,
+        bodies: &[PlanarPart<V::Scalar>],
+        wanted: [bool; 7],
+    ) -> Option<[Bounds<V::Scalar>; 7]> {
+        let _ = (cell, bodies, wanted);
         None
     }
 }

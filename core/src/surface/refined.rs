@@ -26,7 +26,7 @@ impl<R: Real> Refined<R> {
     }
 
     /// From bounds of the cell, of its low faces and of its high ones.
-    pub fn from_places([cell, x, y, z, right, back, top]: [Bounds<R>; 7]) -> Self {
+    pub fn from_places([cell, x, y, z, right, back, top]: [Bounds<R>; PLACES]) -> Self {
         Refined { cell, low: [x, y, z], high: [right, back, top] }
     }
 
@@ -36,6 +36,15 @@ impl<R: Real> Refined<R> {
         Refined { cell: parts.cell, low: parts.planes.map(|planes| planes[0]), high: [high(0), high(1), high(2)] }
     }
 }
+
+/// A cell, its low faces and its high ones.
+pub(super) const PLACES: usize = 7;
+
+/// Of these the cell.
+pub(super) const WHOLE: [bool; PLACES] = [true, false, false, false, false, false, false];
+
+/// The face above.
+pub(super) const TOP: [bool; PLACES] = [false, false, false, false, false, false, true];
 
 /// By how much a union may leave the bounds given by the bodies' own shares and still be rounding: 10⁻⁹, more in `f32`.
 pub(super) fn rounding<R: Real>() -> R {
@@ -96,6 +105,17 @@ impl At {
         self.faces()
             .filter_map(|(axis, at, _)| free_face(layer, axis, at))
             .fold(self.cell_gap(layer), |most, (l, s)| most.max(gap(l, s)))
+    }
+
+    /// The cell and those of the faces that it decides of which bounds are apart.
+    pub fn open_places<R: Real>(self, layer: &Layer<R>) -> [bool; PLACES] {
+        let mut open = [self.cell_gap(layer) > known(), false, false, false, false, false, false];
+        for (axis, at, high) in self.faces() {
+            let is_open = free_face(layer, axis, at).is_some_and(|(lower, sum)| gap(lower, sum) > known());
+            let place = 1 + axis + if high { 3 } else { 0 };
+            open.get_mut(place).into_iter().for_each(|open| *open = is_open);
+        }
+        open
     }
 
     /// Does a union agree with the bodies' own shares of the cell and of those low faces that lie in no wall?

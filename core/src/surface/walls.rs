@@ -9,7 +9,7 @@ use crate::surface::bins::{Bins, Group};
 use crate::surface::cell_unions::{union_with_others, with_least_blur};
 use crate::surface::division::{Shared, Site, SpareMemory, find_parts};
 use crate::surface::other_bodies::OtherBodies;
-use crate::surface::refined::{known, narrow, rounding};
+use crate::surface::refined::{WHOLE, known, narrow, rounding};
 use crate::surface::union::{CellUnion, Limit, NoProof, UnionMemory, rounds_much};
 
 /// Narrow the bounds of the shared faces of a layer that lie in walls: its x and y faces and the z faces below.
@@ -115,7 +115,7 @@ fn wall_with_others<V: Vector, O: OtherBodies<V>>(
     let mut high = above.max.to_array();
     high[axis] = above.min.to_array()[axis];
     let face = Aabb { min: above.min, max: V::new(high[0], high[1], high[2]) };
-    union_with_others(shared, face, |memory, blur, parts| {
+    union_with_others(shared, face, WHOLE, |memory, blur, parts| {
         // What ends in the face fills this side up to it.
         let mut error = V::Scalar::ZERO;
         for side in sides {

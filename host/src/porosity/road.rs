@@ -352,11 +352,16 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
 
     const UNITES: bool = true;
 
-    fn union_with(&mut self, cell: Aabb<DVec3>, bodies: &[PlanarPart<f64>]) -> Option<[Bounds<f64>; 7]> {
+    fn union_with(
+        &mut self,
+        cell: Aabb<DVec3>,
+        bodies: &[PlanarPart<f64>],
+        wanted: [bool; 7],
+    ) -> Option<[Bounds<f64>; 7]> {
         let is_subdivided = self.road.bodies.iter().any(|(bounds, _)| bounds.touches(cell));
         let solids: Vec<&FormulaSolid> =
             self.road.formulas.iter().copied().filter(|f| f.bounds.touches(cell)).collect();
-        (!is_subdivided).then(|| formulas::union_with(&solids, bodies, cell, self.road.rule.tol))
+        (!is_subdivided).then(|| formulas::union_with(&solids, bodies, (cell, wanted), self.road.rule.tol))
     }
 
     fn reach(&mut self, cell: Aabb<DVec3>) -> bool {

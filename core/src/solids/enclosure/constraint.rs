@@ -80,8 +80,11 @@ impl Constraint {
         Some(Constraint { middle, slope, rest: [-room, room] })
     }
 
-    /// What may hold all points or none.
-    const UNDECIDED: Self = Constraint { middle: 0.0, slope: [0.0; 3], rest: [-1.0, 1.0] };
+    /// The same, but no point is known to be inside.
+    fn or_nowhere(self) -> Self {
+        let beyond = 2.0 * (self.middle.abs() + self.reach()) + 1.0;
+        Constraint { rest: [self.rest[0], beyond], ..self }
+    }
 
     /// What no point is inside of.
     #[must_use]
@@ -118,7 +121,7 @@ pub enum Enclosure {
 }
 
 impl Enclosure {
-    /// From the constraints of a part; what decides nothing in the box is left out. Where more than three decide something the last says nothing.
+    /// From the constraints of a part; what decides nothing in the box is left out. Where more than three decide something, what lies within all of them is not known.
     pub fn new(constraints: impl IntoIterator<Item = Constraint>) -> Self {
         let mut kept = Vec::new();
         for constraint in constraints {
@@ -129,7 +132,7 @@ impl Enclosure {
                 && kept.push(constraint).is_err()
                 && let Some(last) = kept.last_mut()
             {
-                *last = Constraint::UNDECIDED;
+                *last = last.or_nowhere();
             }
         }
         Enclosure::Within(kept)

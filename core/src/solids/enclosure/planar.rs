@@ -26,6 +26,10 @@ impl Enclosed for PlanarPart<f64> {
         tell(Enclosure::new(self.constraints(place)));
     }
 
+    fn is_apart(&self, other: &Self, _: &BoxAround) -> bool {
+        self.body == other.body
+    }
+
     fn share(&self, place: &BoxAround) -> Bounds<f64> {
         let constraints = self.constraints(place);
         match Enclosure::new(constraints.iter().copied()) {

@@ -25,6 +25,12 @@ pub trait Enclosed {
     /// Tells what is known of each of its convex parts in a box.
     fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure));
 
+    /// Is it known that inside a box it shares nothing with another one?
+    fn is_apart(&self, other: &Self, place: &BoxAround) -> bool {
+        let _ = (other, place);
+        false
+    }
+
     /// Its share of a box, as near as it is known.
     fn share(&self, place: &BoxAround) -> Bounds<f64>;
 
@@ -34,6 +40,12 @@ pub trait Enclosed {
 
 /// Parts of solids whose union is measured at once.
 const MOST_PARTS: usize = 3;
+
+/// Parts of solids of which each two are looked at.
+const MOST_PAIRED: usize = 12;
+
+/// What two of them have in common counts as so many looks at a solid.
+const PAIR: usize = 1;
 
 /// Constraints that they have together.
 const MOST_AT_ONCE: usize = MOST_PARTS * MOST_CONSTRAINTS;
@@ -193,7 +205,7 @@ impl<'a, E: Enclosed> Walk<'a, E> {
     fn look(&mut self, level: &mut Level, close: f64) -> Looked {
         let place = level.place;
         let (mut holding, mut cutting) = (0, 0);
-        let mut parts: Vec<Constraints, MOST_PARTS> = Vec::new();
+        let mut parts = Parts::default();
         let (mut few, mut fits) = (true, true);
         for at in self.places(level) {
             let Some((number, solid)) = self.solid(level, at) else { continue };
@@ -202,7 +214,7 @@ impl<'a, E: Enclosed> Walk<'a, E> {
             solid.enclosures(&place, &mut |enclosure| {
                 if let Enclosure::Within(constraints) = enclosure {
                     (holds, reaches) = (holds || constraints.is_empty(), true);
-                    few = parts.push(constraints).is_ok() && few;
+                    few = few && parts.push(number, constraints);
                 }
             });
             if reaches {
@@ -219,7 +231,17 @@ impl<'a, E: Enclosed> Walk<'a, E> {
             (0, 0 | 1) => Looked::Known([0.0; 2]),
             (1.., 0) => Looked::Known([(holding - 1) as f64; 2]),
             (1.., _) => Looked::Known(self.beside_holder(level, holding, close)),
-            _ if few => Looked::Cut(between_polytopes(&parts, &place)),
+            _ if few => {
+                let is_apart = |a: u32, b: u32| {
+                    let [a, b] = [a, b].map(|n| self.solids.get(n as usize));
+                    a.zip(b).is_some_and(|(a, b)| a.is_apart(b, &place))
+                };
+                let pairs = parts.find_meeting(is_apart);
+                if parts.all.len() > MOST_PARTS {
+                    self.looked_at += pairs * PAIR;
+                }
+                Looked::Cut(parts.excess(&place))
+            }
             _ => Looked::Cut(self.beside_hub(level)),
         }
     }
@@ -307,13 +329,6 @@ pub(super) fn shares_of_polytopes<'c, P: Iterator<Item = &'c Constraint> + Clone
 /// Of a part of a solid.
 type Constraints = Vec<Constraint, MOST_CONSTRAINTS>;
 
-/// Bounds of the excess of parts of solids, from polytopes within them and around them: it grows with each of them.
-fn between_polytopes(parts: &[Constraints], place: &BoxAround) -> P2 {
-    let rounding = rounding_in(place);
-    let [upper, lower] = [false, true].map(|rest| excess_of_polytopes(parts, rest));
-    [(lower - rounding).max(0.0), upper + rounding]
-}
-
 /// What shares of a box are rounded by.
 fn rounding_in(place: &BoxAround) -> f64 {
     let shift = place.rounding();
@@ -331,13 +346,73 @@ fn share_of_polytope<'c>(constraints: impl Iterator<Item = &'c Constraint> + Clo
     }
 }
 
-/// What two polytopes have in common counts; what three have has been counted three times.
-fn excess_of_polytopes(parts: &[Constraints], rest: bool) -> f64 {
-    let sets = (1_usize << parts.len()) - 1;
-    let share = |set: usize| {
-        let of_set = || parts.iter().enumerate().filter(move |(n, _)| set >> n & 1 == 1).flat_map(|(_, part)| part);
-        let share = share_of_polytope(of_set(), rest);
-        if set.count_ones().is_multiple_of(2) { share } else { -share }
-    };
-    (1..=sets).filter(|set| set.count_ones() > 1).map(share).sum()
+/// Parts of solids in a box.
+#[derive(Default)]
+struct Parts {
+    all: Vec<Part, MOST_PAIRED>,
+}
+
+struct Part {
+    /// The number of its solid.
+    of: u32,
+    constraints: Constraints,
+    /// Which of the parts before it may have something in common with it, as bits.
+    meeting: u32,
+}
+
+impl Parts {
+    /// Adds a part, if there is room.
+    fn push(&mut self, of: u32, constraints: Constraints) -> bool {
+        self.all.push(Part { of, constraints, meeting: 0 }).is_ok()
+    }
+
+    /// Finds the parts that may have something in common: not those of one solid, nor of solids that are apart. Returns how many pairs.
+    fn find_meeting(&mut self, is_apart: impl Fn(u32, u32) -> bool) -> usize {
+        let mut pairs = 0;
+        for n in 1..self.all.len() {
+            let Some((part, before)) = self.all.get_mut(..=n).and_then(|parts| parts.split_last_mut()) else { break };
+            let meets = |other: &Part| other.of != part.of && !is_apart(other.of, part.of);
+            part.meeting = before.iter().enumerate().filter(|(_, other)| meets(other)).map(|(n, _)| 1 << n).sum();
+            pairs += part.meeting.count_ones() as usize;
+        }
+        pairs
+    }
+
+    /// Bounds of the excess, from polytopes within the parts and around them: it grows with each of them.
+    fn excess(&self, place: &BoxAround) -> P2 {
+        let rounding = rounding_in(place) * self.all.len() as f64;
+        let [upper, lower] = [false, true].map(|rest| self.excess_of_polytopes(rest));
+        [f64::max(lower[0] - rounding, 0.0), upper[1] + rounding]
+    }
+
+    /// What two have in common counts; what three have has been counted three times. If they are too many for that, bounds.
+    fn excess_of_polytopes(&self, rest: bool) -> P2 {
+        let common = |of_set: &[&Part]| share_of_polytope(of_set.iter().flat_map(|p| &p.constraints), rest);
+        let mut pairs = 0.0;
+        // What each has in common with all others together.
+        let mut of_each = [0.0_f64; MOST_PAIRED];
+        let mut triples = 0.0;
+        let mut meet_by_three = false;
+        for (n, part) in self.all.iter().enumerate() {
+            for (m, other) in self.all.iter().enumerate().take(n).filter(|(m, _)| part.meeting >> m & 1 == 1) {
+                let share = common(&[part, other]);
+                pairs += share;
+                for one in [n, m] {
+                    of_each.get_mut(one).into_iter().for_each(|sum| *sum += share);
+                }
+                let third = part.meeting & other.meeting;
+                meet_by_three = meet_by_three || third != 0;
+                if self.all.len() <= MOST_PARTS && share > 0.0 {
+                    let first = self.all.first().filter(|_| third & 1 == 1);
+                    triples += first.map_or(0.0, |first| common(&[part, other, first]));
+                }
+            }
+        }
+        if self.all.len() <= MOST_PARTS || !meet_by_three {
+            return [pairs - triples; 2];
+        }
+        let shares = self.all.iter().map(|part| common(&[part]));
+        let (sum, largest) = shares.fold((0.0, 0.0), |(sum, most), s| (sum + s, f64::max(most, s)));
+        [of_each.into_iter().fold(0.0, f64::max), f64::min(pairs, sum - largest)]
+    }
 }

@@ -22,11 +22,12 @@ const LEAST: f64 = 1e-12;
 /// Where surfaces nearly coincide, as those of a pipe and of a bore with its radius, planes take so many times the effort that is tried first.
 const MORE: usize = 8;
 
-/// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones; in a face, flat along one axis, all are its own.
+/// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones, so far as they are `wanted`; in a face, flat
+/// along one axis, all are its own.
 pub fn union_with(
     solids: &[&FormulaSolid],
     bodies: &[PlanarPart<f64>],
-    cell: Aabb<DVec3>,
+    (cell, wanted): (Aabb<DVec3>, [bool; 7]),
     tol: f64,
 ) -> [Bounds<f64>; 7] {
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
@@ -40,7 +41,8 @@ pub fn union_with(
     if let Some(axis) = (0..3).find(|&n| sides[n][0] == sides[n][1]) {
         return [union(Some((axis, 0))); 7];
     }
-    [None, Some((0, 0)), Some((1, 0)), Some((2, 0)), Some((0, 1)), Some((1, 1)), Some((2, 1))].map(union)
+    let places = [None, Some((0, 0)), Some((1, 0)), Some((2, 0)), Some((0, 1)), Some((1, 1)), Some((2, 1))];
+    std::array::from_fn(|n| if wanted[n] { union(places[n]) } else { Bounds::UNKNOWN })
 }
 
 /// Bounds of the union in a cell, or in a face normal to an axis.
@@ -180,6 +182,14 @@ impl Enclosed for Member<'_> {
         match self {
             Member::Solid(solid) => solid.enclosures(place, tell),
             Member::Part(part) => part.enclosures(place, tell),
+        }
+    }
+
+    fn is_apart(&self, other: &Self, place: &BoxAround) -> bool {
+        match (self, other) {
+            (Member::Solid(one), Member::Solid(another)) => one.is_apart(another, place),
+            (Member::Part(one), Member::Part(another)) => one.is_apart(another, place),
+            _ => false,
         }
     }
 

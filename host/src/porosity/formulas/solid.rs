@@ -150,6 +150,15 @@ impl Enclosed for &FormulaSolid {
         }
     }
 
+    fn is_apart(&self, other: &Self, place: &BoxAround) -> bool {
+        match self.pair_with(other) {
+            None => true,
+            // Two that end in the plane of a face share some of it.
+            Some(Pair::Touching) => place.half.iter().all(|half| *half > 0.0),
+            Some(Pair::Meeting) => false,
+        }
+    }
+
     fn share(&self, place: &BoxAround) -> Bounds<f64> {
         match &self.kind {
             Kind::Quadric(solid, _) => Enclosed::share(solid, place),
