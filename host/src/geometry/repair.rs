@@ -9,6 +9,7 @@ pub mod cracks;
 pub mod crossing;
 pub mod edges;
 pub mod face;
+pub mod frame;
 pub mod gaps;
 pub mod join;
 pub mod junctions;

@@ -206,7 +206,7 @@ impl<'a> Meetings<'a> {
     #[must_use]
     pub fn new(triangles: &'a [[DVec3; 3]], on: f64) -> Self {
         let faces: Vec<Face> = triangles.iter().map(|&t| Face::new(t)).collect();
-        let tree = Tree::new(triangles);
+        let tree = Tree::turned(triangles, on);
         let mut contacts = Contacts::default();
         let mut see = |m, n| contacts.see(&faces, [m, n], [on, 0.0]);
         if !tree.some_touching_pairs(PAIRS * triangles.len(), &mut see) {

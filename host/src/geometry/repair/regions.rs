@@ -13,8 +13,8 @@
 
 use crate::geometry::repair::closed::signed_volume;
 use crate::geometry::repair::crossing::{Meetings, SideUse, edges, is_closed, tolerance};
-use crate::geometry::repair::face::{Face, push_parts};
-use crate::geometry::repair::lines::{FLAT, directions};
+use crate::geometry::repair::face::{Face, bounds, push_parts};
+use crate::geometry::repair::lines::{FLAT, Way, directions};
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::tree::Tree;
 use crate::geometry::repair::weld::bits;
@@ -24,6 +24,15 @@ use std::sync::OnceLock;
 
 /// Parts connected by edges of their own are asked at so many places.
 const PLACES: usize = 8;
+
+/// A set of sides that sees no other one has been asked at so many places at most.
+const MOST_PLACES: usize = 512;
+
+/// So many boxes around triangles may be looked at along lines for one surface: some seconds. Then regions that were not seen to be one stay apart.
+const BUDGET: usize = 50_000_000;
+
+/// Triangles in more parts than this have them in a tree.
+const MANY: usize = 16;
 
 /// Surfaces of what is solid, counter-clockwise seen from outside; from inside if the whole surface looks inward.
 #[derive(Debug, Default)]
@@ -70,11 +79,17 @@ impl<'a> SourceTriangles<'a> {
         self.triangles
     }
 
-    /// Those whose boxes are as near to a point as `on`. Most files never ask.
-    fn near(&self, p: DVec3, on: f64) -> impl Iterator<Item = Face> {
-        let mut found = Vec::new();
-        self.tree.get_or_init(|| Tree::new(self.triangles)).touching([p - on, p + on], |n| found.push(n));
-        found.into_iter().map(|n| Face::new(self.triangles[n as usize]))
+    /// Those that may have points in the plane of a triangle, and there as near to it as `on`. Most files never ask.
+    fn in_plane_of(&self, face: &Face, on: f64) -> Vec<Face> {
+        let tree = self.tree.get_or_init(|| Tree::turned(self.triangles, on));
+        let (mut found, [lo, hi]) = (Vec::new(), bounds(&face.corners));
+        tree.touching([lo - on, hi + on], |n| {
+            let other = Face::new(self.triangles[n as usize]);
+            if other.normal.dot(face.normal).abs() > 1.0 - FLAT {
+                found.push(other);
+            }
+        });
+        found
     }
 }
 
@@ -138,6 +153,8 @@ struct Complex<'a> {
     elements: Vec<Element>,
     /// The elements of each triangle.
     of: Vec<Vec<usize>>,
+    /// Their places among these, of triangles that have many.
+    trees: HashMap<u32, Tree>,
     sets: Sets,
     on: f64,
 }
@@ -154,8 +171,14 @@ impl<'a> Complex<'a> {
                 elements.push(Element { triangle: n as u32, corners, middle });
             }
         }
+        let around = |&e: &usize| {
+            let corners: &[DVec3] = &elements[e].corners;
+            corners.iter().fold([corners[0]; 2], |[lo, hi], p| [lo.min(*p), hi.max(*p)])
+        };
+        let tree = |elements: &Vec<usize>| Tree::of_boxes(elements.iter().map(around), None);
+        let trees = (0..).zip(&of).filter(|(_, elements)| elements.len() > MANY).map(|(n, of)| (n, tree(of))).collect();
         let sets = Sets::new(2 * elements.len() + 1);
-        Complex { sided, meetings, elements, of, sets, on }
+        Complex { sided, meetings, elements, of, trees, sets, on }
     }
 
     /// With all sides joined that are seen to belong to one region.
@@ -190,14 +213,23 @@ impl<'a> Complex<'a> {
     /// The part of a triangle that holds a point of its plane, not on its rim.
     fn part_at(&self, triangle: usize, p: DVec3) -> Option<usize> {
         let (face, clear) = (self.face(triangle), self.meetings.lines().clear);
-        let within = |e: &&usize| {
-            let corners = &self.elements[**e].corners;
+        let within = |e: &usize| {
+            let corners = &self.elements[*e].corners;
             (0..corners.len()).all(|i| {
                 let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
                 face.normal.cross(b - a).normalize_or_zero().dot(p - a) > clear
             })
         };
-        self.of[triangle].iter().find(within).copied()
+        let parts = &self.of[triangle];
+        let Some(tree) = self.trees.get(&(triangle as u32)) else { return parts.iter().copied().find(within) };
+        let mut found = None;
+        tree.touching([p - clear, p + clear], |n| {
+            let part = parts[n as usize];
+            if found.is_none() && within(&part) {
+                found = Some(part);
+            }
+        });
+        found
     }
 
     /// The triangles that lie where an element is, itself too.
@@ -222,34 +254,27 @@ impl<'a> Complex<'a> {
         }
     }
 
-    /// Follow a line from an element to what it meets first; joins nothing if that cannot be told.
-    fn follow(&mut self, element: usize, before: bool, direction: DVec3) {
-        let from = self.elements[element].middle;
-        let own: Vec<u32> = self.layers(element).into_iter().map(|m| m as u32).collect();
+    /// The side that is seen along a line, or the open; none if that cannot be told.
+    fn seen_along(&self, way: &Way, from: DVec3, direction: DVec3) -> Option<usize> {
         let lines = self.meetings.lines();
-        let way = lines.follow(from, direction, &own);
         let known = |hit: &(f64, u32)| lines.clear / self.face(hit.1 as usize).normal.dot(direction).abs();
         let first =
             way.through.iter().fold((f64::INFINITY, 0), |first, hit| if hit.0 < first.0 { *hit } else { first });
         if way.unclear.is_some_and(|unclear| unclear <= first.0 + lines.slack()) {
-            return;
+            return None;
         }
-        let own = side(element, before);
         if way.through.is_empty() {
-            let outside = self.outside();
-            return self.sets.join(own, outside);
+            return Some(self.outside());
         }
         // What may be met as early must lie on what is met first: between two walls a rounding apart is a region of its own.
         let last = first.0 + known(&first);
         let mut as_early = way.through.iter().filter(|hit| hit.1 != first.1 && hit.0 - known(hit) <= last);
         if !as_early.all(|hit| self.meetings.covering(first.1).any(|m| m == hit.1)) {
-            return;
+            return None;
         }
         let (along, met) = (first.0, first.1 as usize);
-        let normal = self.face(met).normal;
-        if let Some(e) = self.part_at(met, from + direction * along) {
-            self.sets.join(own, side(e, normal.dot(direction) < 0.0));
-        }
+        let part = self.part_at(met, from + direction * along)?;
+        Some(side(part, self.face(met).normal.dot(direction) < 0.0))
     }
 
     /// Join the sides that see each other, or the open.
@@ -265,18 +290,55 @@ impl<'a> Complex<'a> {
                 n % step == 0
             })
             .collect();
-        for e in asked {
-            let normal = self.face(self.elements[e].triangle as usize).normal;
-            for before in [false, true] {
-                for direction in directions(if before { normal } else { -normal }, e) {
-                    let outside = self.outside();
-                    if self.sets.find(side(e, before)) == self.sets.find(outside) {
-                        break;
-                    }
-                    self.follow(e, before, direction);
+        let asked: Vec<usize> = asked.into_iter().flat_map(|e| [side(e, false), side(e, true)]).collect();
+        // Sets that saw no other one, with how many sides each had then.
+        let mut alone: HashMap<usize, usize> = HashMap::default();
+        let mut looked_at = 0;
+        loop {
+            let mut sets: Vec<(usize, usize)> = asked.iter().map(|&side| (self.sets.find(side), side)).collect();
+            sets.sort_unstable();
+            let mut joined = false;
+            for sides in sets.chunk_by(|a, b| a.0 == b.0) {
+                let set = sides[0].0;
+                if alone.get(&set) == Some(&sides.len()) {
+                    continue;
+                }
+                if self.joins_what_it_sees(sides, &mut looked_at) {
+                    joined = true;
+                } else {
+                    alone.insert(set, sides.len());
+                }
+            }
+            if !joined || looked_at > BUDGET {
+                return;
+            }
+        }
+    }
+
+    /// Looks from the sides of a set until another set is seen, and joins that. Is there one? What is open is known to be.
+    fn joins_what_it_sees(&mut self, sides: &[(usize, usize)], looked_at: &mut usize) -> bool {
+        let outside = self.outside();
+        let places = sides.iter().step_by(sides.len().div_ceil(MOST_PLACES));
+        for &(_, own) in places {
+            let element = own / 2;
+            let Element { triangle, middle, .. } = self.elements[element];
+            let normal = self.face(triangle as usize).normal;
+            let layers: Vec<u32> = self.layers(element).into_iter().map(|m| m as u32).collect();
+            for direction in directions(if own % 2 == 1 { normal } else { -normal }, element) {
+                if *looked_at > BUDGET || self.sets.find(own) == self.sets.find(outside) {
+                    return false;
+                }
+                let way = self.meetings.lines().first(middle, direction, &layers);
+                *looked_at += way.looked_at;
+                if let Some(other) = self.seen_along(&way, middle, direction)
+                    && self.sets.find(other) != self.sets.find(own)
+                {
+                    self.sets.join(own, other);
+                    return true;
                 }
             }
         }
+        false
     }
 
     /// Is an element there from the front, and from the back?
@@ -292,18 +354,21 @@ impl<'a> Complex<'a> {
         looks
     }
 
-    /// The same, counting what else of the source lies there.
-    fn looks(&self, element: usize, source: &SourceTriangles<'_>) -> [bool; 2] {
-        let Element { triangle, middle, .. } = self.elements[element];
-        let normal = self.face(triangle as usize).normal;
-        let mut looks = self.looks_of_layers(element);
-        let lies_here = |f: &Face| {
-            f.normal.dot(normal).abs() > 1.0 - FLAT
-                && f.height(middle).abs() <= self.on
-                && f.inward(middle).iter().all(|&d| d > 0.0)
-        };
-        for face in source.near(middle, self.on).filter(lies_here) {
-            looks[usize::from(face.normal.dot(normal) <= 0.0)] = true;
+    /// The same of all elements, counting what else of the source lies there.
+    fn looks(&self, source: &SourceTriangles<'_>) -> Vec<[bool; 2]> {
+        let mut looks = vec![[false; 2]; self.elements.len()];
+        for (n, elements) in self.of.iter().enumerate().filter(|(_, elements)| !elements.is_empty()) {
+            let normal = self.face(n).normal;
+            let here = source.in_plane_of(self.face(n), self.on);
+            for &e in elements {
+                let middle = self.elements[e].middle;
+                looks[e] = self.looks_of_layers(e);
+                let lies_here =
+                    |f: &&Face| f.height(middle).abs() <= self.on && f.inward(middle).iter().all(|&d| d > 0.0);
+                for face in here.iter().filter(lies_here) {
+                    looks[e][usize::from(face.normal.dot(normal) <= 0.0)] = true;
+                }
+            }
         }
         looks
     }
@@ -564,7 +629,7 @@ pub fn arrangement(
     }
     let meetings = Meetings::new(&corners, on);
     let mut complex = Complex::joined(&sided, &meetings, &edges, on);
-    let looks: Vec<[bool; 2]> = (0..complex.elements.len()).map(|e| complex.looks(e, source)).collect();
+    let looks = complex.looks(source);
     let two_sided = looks.contains(&[true, true]);
     let kinds = if two_sided { complex.by_sides(&looks, mixed) } else { complex.by_winding() };
     let backs = if two_sided { triangles.len() - sided.len() } else { 0 };
