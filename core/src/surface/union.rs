@@ -39,6 +39,9 @@ pub use planar::{MOST_PLANES, PlanarPart, PlanarParts};
 /// Largest accepted difference of the volumes along x, y and z, in cells.
 pub const MAX_SPREAD: f64 = 1e-9;
 
+/// Where the volumes differ by no more than this, they are rounded. Else some piece of surface is wrongly kept or dropped, as where planes all but coincide.
+const ROUNDED: f64 = 1e-12;
+
 /// Rounding of corners in the frame of a cell, in ε of the coordinates as seen from there. Planes closer than that are
 /// one plane.
 const THICKNESS_IN_EPSILONS: f64 = 64.0;
@@ -360,9 +363,20 @@ impl<'a, R: Real> CellUnion<'a, R> {
         if !(error <= R::from_f64(MAX_SPREAD).max(self.frame.thickness).max(shift)) {
             return Err(Ambiguous);
         }
+        let error = if error > R::from_f64(ROUNDED) { error + self.open_area(high)? } else { error };
         let error = error + shift;
         let within = |v: R| v.max(R::ZERO).min(R::ONE);
         Ok(CellFractions { cell: within((max + min) * R::HALF), low, high: high.map(within), error })
+    }
+
+    /// How much of the union's surface is missing or too much, as its high sides tell: in cells, twice the sum of what they differ by from what the surface
+    /// leads to. A volume is wrong by no more than the area that is, unless pieces of it cancel.
+    fn open_area(&mut self, high: [R; 3]) -> Result<R, NoProof> {
+        let mut sum = R::ZERO;
+        for (axis, share) in high.into_iter().enumerate() {
+            sum += (self.face(axis, R::ONE, Limit::Below)? - share).abs();
+        }
+        Ok(R::TWO * sum)
     }
 
     /// By how much a blur may change volumes and areas: every piece moves by no more than the thickness.
