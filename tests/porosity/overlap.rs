@@ -1,6 +1,6 @@
 //! Unions of bodies against an oracle, and against themselves.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Options, porosity};
 use voidage_tests::fields::assert_close;
@@ -279,4 +279,49 @@ fn ten_thousand_pieces_in_one_cell_are_summed() {
     let found = porosity(&edges.grid(None).expect("a grid"), &scene(&pieces), Options::default());
     let truth = 1.0 - pieces.iter().map(|piece| voidage_tests::solids::volume(piece)).sum::<f64>();
     assert!((found.beta.v[0] - truth).abs() < 1e-12 && found.max_gap < 1e-9, "{} {truth}", found.beta.v[0]);
+}
+
+/// A turned box far from the origin, each triangle of its surface in `parts` parts along each side, corners in single precision.
+fn tessellated(center: DVec3, half: DVec3, turn: DMat3, parts: u32) -> Vec<Triangle> {
+    let whole = turned_box(center, half, turn);
+    let steps = f64::from(parts);
+    let mut found = Vec::new();
+    for [a, b, c] in whole {
+        let at = |i: u32, j: u32| (a + (b - a) * (f64::from(i) / steps) + (c - a) * (f64::from(j) / steps)).as_vec3();
+        for i in 0..parts {
+            for j in 0..parts - i {
+                found.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                if i + j + 1 < parts {
+                    found.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+    }
+    found.into_iter().map(|t| t.map(glam::Vec3::as_dvec3)).collect()
+}
+
+/// Planes that all but coincide: one body two or three times, each otherwise tessellated. Bounds of a cell and of its parts must agree.
+#[test]
+fn other_tessellations_of_one_body_have_true_bounds() {
+    for seed in 0..300 {
+        let mut rng = Random::new(seed);
+        let (turn, half) = (rng.turn(), DVec3::new(0.7, 0.2, 0.1));
+        let center = DVec3::splat(if seed % 2 == 0 { 0.0 } else { 7.0 });
+        let count = 2 + rng.below(2);
+        let solids: Vec<_> = (0..count).map(|_| tessellated(center, half, turn, 1 + rng.below(5) as u32)).collect();
+        let bodies = scene(&solids);
+        let cell = [0, 1, 2].map(|axis| center[axis] + rng.between(-0.3, 0.0));
+        let size = [0, 1, 2].map(|_| rng.between(0.1, 0.4));
+        let bounds = |parts: usize| {
+            let edges =
+                Edges([0, 1, 2].map(|a| (0..=parts).map(|n| cell[a] + size[a] * (n as f64 / parts as f64)).collect()));
+            let options = Options { bounds: true, ..Options::default() };
+            let p = porosity(&edges.grid(None).expect("a grid"), &bodies, options);
+            let mean = |set: &FieldSet| set.v.iter().sum::<f64>() / set.v.len() as f64;
+            let [lower, upper] = p.bounds.as_ref().expect("bounds");
+            [mean(lower), mean(upper)]
+        };
+        let ([low, high], [least, most]) = (bounds(1), bounds(2));
+        assert!(low <= most + 1e-12 && least <= high + 1e-12, "seed {seed}: {low} {high}, {least} {most}");
+    }
 }
