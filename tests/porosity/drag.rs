@@ -120,6 +120,54 @@ fn what_a_solid_gives_itself() {
 }
 
 /// The table of congestion of some zones.
+
+/// What a body has of surface within another one exerts no force: neither its own coefficient nor its kind counts there.
+#[test]
+fn surface_that_others_hide_does_not_count() {
+    let block = scene(&[cuboid(DVec3::splat(0.3), DVec3::splat(0.7))]);
+    let with = |forms: &[Form], cd: Option<f64>| {
+        let mut bodies = block.clone();
+        bodies.bodies.extend(formulas(forms).bodies);
+        bodies.bodies[1..].iter_mut().for_each(|body| body.drag.cd = cd);
+        bodies
+    };
+    let middle = DVec3::splat(0.5);
+    let check = |bodies: &Bodies, expected: [f64; 3]| {
+        let edges = edges(1, 1.0);
+        let drag = drag_of(&edges, bodies, DragLaw::Bluff, DragCoefficients::default());
+        let open = found(&edges, bodies).0.beta.v[0];
+        for axis in 0..3 {
+            let superficial = drag.cr[axis][0] * open;
+            assert!((superficial / expected[axis] - 1.0).abs() < 6e-4, "{axis}: {superficial} {expected:?}");
+        }
+    };
+    check(&with(&[Form::Sphere(Sphere { center: middle, radius: 0.1 })], Some(7.0)), [2.0 * 0.16; 3]);
+    // A pipe through the block: along it its ends count in place of what it covers.
+    let ends = [0.1, 0.9].map(|x| middle.with_x(x));
+    let (aside, disc) = (1.2 * 0.2 * 0.4 + 2.0 * 0.16, std::f64::consts::PI * 0.01);
+    let pipe = Form::Cylinder(Cylinder::new(ends[0], ends[1], 0.1));
+    check(&with(&[pipe], None), [1.2 * disc + 2.0 * (0.16 - disc), aside, aside]);
+    // Nine pipes cast into the block, and one outside.
+    let mut cast: Vec<Form> = (0..9)
+        .map(|n| {
+            let place = DVec3::new(0.32, 0.4 + 0.1 * f64::from(n % 3), 0.4 + 0.1 * f64::from(n / 3));
+            Form::Cylinder(Cylinder::new(place, place.with_x(0.68), 0.03))
+        })
+        .collect();
+    cast.push(Form::Cylinder(Cylinder::new(DVec3::new(0.1, 0.1, 0.15), DVec3::new(0.1, 0.1, 0.85), 0.05)));
+    let outside = 2.0 * 0.16 + 1.2 * 0.1 * 0.7;
+    check(&with(&cast, None), [outside, outside, 2.0 * 0.16 + 1.2 * std::f64::consts::PI * 0.0025]);
+    let mut boxes = scene(&[
+        cuboid(DVec3::splat(0.2), DVec3::splat(0.6)),
+        cuboid(DVec3::new(0.4, 0.3, 0.3), DVec3::new(0.8, 0.5, 0.5)),
+    ]);
+    boxes.bodies[0].drag.cd = Some(3.0);
+    let aside = 3.0 * 0.16 + 2.0 * 0.04;
+    check(&boxes, [0.5 * (3.0 * (0.16 + 0.12) + 2.0 * 0.04), aside, aside]);
+    boxes.bodies.reverse();
+    check(&boxes, [0.5 * (3.0 * (0.16 + 0.12) + 2.0 * 0.04), aside, aside]);
+}
+
 fn table(edges: &Edges, bodies: &Bodies, zones: &[[DVec3; 2]]) -> Vec<Congestion> {
     let grid = edges.grid(None).expect("a grid");
     let result = porosity(&grid, bodies, Options::default());

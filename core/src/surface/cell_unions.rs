@@ -265,7 +265,7 @@ fn union_of_triangles<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
         tried = tried.saturating_add(bodies.as_ref().map_or(room, CellUnion::piece_count));
         let mut bodies = bodies?;
         let mut surface = P::Found::default();
-        let found = bodies.cell_and_surface(&mut |kept| {
+        let found = bodies.cell_and_surface(&mut |_, kept| {
             if P::WANTED {
                 let ([x, y, z], across) = (kept.doubled_area(), side_areas(cell));
                 surface.keep(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));

@@ -16,6 +16,7 @@ mod shadows;
 mod slices;
 mod solid_bounds;
 mod surface_areas;
+mod weighted_areas;
 
 pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};

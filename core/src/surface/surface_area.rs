@@ -417,6 +417,15 @@ impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
     }
 }
 
+/// Add an area times each weight.
+pub(super) fn add_weighted<R: Real, const N: usize>(sums: &mut [[R; 3]; N], weights: &[R; N], area: [R; 3]) {
+    for (sum, &weight) in sums.iter_mut().zip(weights) {
+        for (sum, area) in sum.iter_mut().zip(area) {
+            *sum += weight * area;
+        }
+    }
+}
+
 /// Add the frontal areas of single bodies in each cell of layer `k`, multiplied by weights of the body; `cells` is `ny*nx`, x fastest.
 pub(super) fn gather_weighted<V: Vector, const N: usize>(
     bins: &Bins<V>,
@@ -432,11 +441,7 @@ pub(super) fn gather_weighted<V: Vector, const N: usize>(
             spread(grid, k, &corners.map(Vector::to_array), &mut |[i, j], place, polygon| {
                 let Some(cell) = cells.get_mut(j * nx + i).filter(|_| place == Place::Inside) else { return };
                 let area = SurfaceArea::of_polygon(polygon.doubled_area()).frontal;
-                for (sum, &weight) in cell.iter_mut().zip(weights) {
-                    for (sum, area) in sum.iter_mut().zip(area) {
-                        *sum += weight * area;
-                    }
-                }
+                add_weighted(cell, weights, area);
             });
         }
     }

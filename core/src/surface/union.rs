@@ -296,6 +296,11 @@ impl<'a, R: Real> CellUnion<'a, R> {
         Ok(())
     }
 
+    /// So many bodies have been added that have a share of the cell.
+    pub fn part_count(&self) -> usize {
+        self.part_count
+    }
+
     /// So many pieces of surface have been added.
     pub fn piece_count(&self) -> usize {
         self.piece_count
@@ -326,15 +331,15 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// # Errors
     /// [`NoProof`]: divide the cell.
     pub fn cell(&mut self) -> Result<CellFractions<R>, NoProof> {
-        self.cell_and_surface(&mut |_| ())
+        self.cell_and_surface(&mut |_, _| ())
     }
 
-    /// As [`CellUnion::cell`]; hands over the surface of the union inside the cell, in its frame. Without a proof what was handed over
-    /// may be wrong.
+    /// As [`CellUnion::cell`]; hands over the surface of the union inside the cell, in its frame, with the number of the body that it is of among those
+    /// of [`CellUnion::part_count`]. Without a proof what was handed over may be wrong.
     ///
     /// # Errors
     /// [`NoProof`]: divide the cell.
-    pub fn cell_and_surface(&mut self, each: &mut dyn FnMut(&Polygon<R>)) -> Result<CellFractions<R>, NoProof> {
+    pub fn cell_and_surface(&mut self, each: &mut dyn FnMut(usize, &Polygon<R>)) -> Result<CellFractions<R>, NoProof> {
         self.build_trees()?;
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
         let (mut descent, pieces) = self.descent();
@@ -343,7 +348,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
                 let rule = DescentRule { toward: plane.normal, own: Some(own), both_sides: false };
                 descent.send(polygon, *ball, rule, |kept| {
                     integrate(kept, &mut flux, &mut moment);
-                    each(kept);
+                    each(own, kept);
                 })?;
             }
         }

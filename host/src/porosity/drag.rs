@@ -13,6 +13,7 @@ use super::resistance::Resistance;
 use super::shadows::{cells, faces_of_cell};
 use super::solid::with_solid_layers;
 use super::solid_layers::SolidLayers;
+use super::worker::Workers;
 use super::{FieldSet, Options, Porosity, porosity};
 use crate::geometry::bodies::{Bodies, Body};
 use crate::geometry::form::Form;
@@ -69,6 +70,12 @@ const MOST_BLOCKAGE: f64 = 0.95;
 /// Sources of turbulence as shares of CR: of round and of sharp bodies.
 const TURBULENCE: [f64; 2] = [0.035, 0.08];
 
+/// The slices were cut for the grid they are used with.
+const FITS: &str = "slices of a layer fit its grid";
+
+/// Where bodies have more frontal area than their union by this share, one hides some of another's.
+const HIDDEN: f64 = 1e-6;
+
 /// The resistance of the obstacles in `resistance`, whose porosities are `result`.
 #[must_use]
 pub fn drag(
@@ -90,8 +97,20 @@ pub fn drag(
     let sums = with_solid_layers(grid, bodies, options, |grid, SolidLayers { layers, .. }| {
         let [nx, ny, nz] = grid.cells();
         let mut sums = vec![[[0.0; 3]; 3]; nx * ny * nz];
+        let workers = Workers::new();
         sums.par_chunks_mut(nx * ny).enumerate().for_each(|(k, sums)| {
-            layers.weighted_frontal_areas(k, &weights, sums).expect("slices of a layer fit its grid");
+            layers.weighted_frontal_areas(k, &weights, sums).expect(FITS);
+            let is_hidden = |(c, [all, ..]): (usize, &[[f64; 3]; 3])| {
+                let volume = grid.cell_box([c % nx, c / nx, k]).map_or(0.0, |cell| cell.size().element_product());
+                let seen = |axis: usize| resistance.a[axis][k * nx * ny + c] * volume;
+                (0..3).any(|axis| all[axis] > seen(axis) * (1.0 + HIDDEN))
+            };
+            let hidden: Vec<bool> = sums.iter().enumerate().map(is_hidden).collect();
+            if hidden.contains(&true) {
+                workers.beside(grid, layers, |memory| {
+                    layers.visible_frontal_areas(k, (&weights, &hidden), sums, memory).expect(FITS);
+                });
+            }
         });
         sums
     });

@@ -145,6 +145,16 @@ impl Workers {
         self.with(layers, |worker| worker.layer(grid, layers, road, k, target))
     }
 
+    /// Do something else with layers in the memory of the current thread, which leaves the sums of layers as they are.
+    pub fn beside<T>(
+        &self,
+        grid: &Grid<f64>,
+        layers: &Layers<DVec3>,
+        work: impl FnOnce(&mut LayerMemory<DVec3>) -> T,
+    ) -> T {
+        self.with(layers, |worker| work(&mut worker.sums.memory(grid, true)))
+    }
+
     /// Work in the memory of the current thread.
     fn with<T>(&self, layers: &Layers<DVec3>, work: impl FnOnce(&mut Worker) -> T) -> T {
         let slot = rayon::current_thread_index().and_then(|n| self.0.get(n));

@@ -20,7 +20,7 @@ use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{Refined, known};
 use crate::surface::surface_area::{
     Bodies, CellPieces, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea,
-    UnionSurface, gather_weighted,
+    UnionSurface,
 };
 use crate::surface::union::{Frame, integrate};
 
@@ -234,29 +234,6 @@ fn summed<R: Real>(
         }
     }
     report
-}
-
-impl<V: Vector> Layers<'_, V> {
-    /// Sums over all bodies, whether they overlap or not, of the frontal areas along x, y and z in the cells of layer `k`, each multiplied by `N`
-    /// weights of its body; `sums` is `ny*nx`, x fastest, and a body without weights does not count.
-    ///
-    /// # Errors
-    /// [`LayerError`]: no such layer, a slice of wrong length.
-    pub fn weighted_frontal_areas<const N: usize>(
-        &self,
-        k: usize,
-        weights: &[[V::Scalar; N]],
-        sums: &mut [[[V::Scalar; 3]; N]],
-    ) -> Result<(), LayerError> {
-        let [nx, ny, layers] = self.grid.cells();
-        if k >= layers {
-            return Err(LayerError::NoLayer { layer: k, layers });
-        }
-        exactly(nx * ny, sums.len())?;
-        sums.fill([[V::Scalar::ZERO; 3]; N]);
-        gather_weighted(&self.bins, &self.grid, k, weights, sums);
-        Ok(())
-    }
 }
 
 impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
