@@ -119,8 +119,6 @@ fn what_a_solid_gives_itself() {
     assert!((drag.cr[0][MIDDLE] - 2.0).abs() < 1e-12, "half of the cell is grating");
 }
 
-/// The table of congestion of some zones.
-
 /// What a body has of surface within another one exerts no force: neither its own coefficient nor its kind counts there.
 #[test]
 fn surface_that_others_hide_does_not_count() {
@@ -168,6 +166,7 @@ fn surface_that_others_hide_does_not_count() {
     check(&boxes, [0.5 * (3.0 * (0.16 + 0.12) + 2.0 * 0.04), aside, aside]);
 }
 
+/// The table of congestion of some zones.
 fn table(edges: &Edges, bodies: &Bodies, zones: &[[DVec3; 2]]) -> Vec<Congestion> {
     let grid = edges.grid(None).expect("a grid");
     let result = porosity(&grid, bodies, Options::default());
