@@ -77,7 +77,14 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
         layers.finish_areas(at, &known, sides.get(..used).unwrap_or_default(), union.get_mut(..at).unwrap_or_default());
     let areas = union.get(..at).zip(sides.get(..used));
     let kept = KeptPieces { cells: &kept, pieces: &pieces, corners: &corners };
-    porosity ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, (areas, Some(kept)), at)
+    let (weights, wanted) = ([[zero; 2]; 5], [true; 99]);
+    let mut sums = [[[zero; 3]; 2]; 99];
+    let sums = sums.get_mut(..at).unwrap_or_default();
+    let all = layers.weighted_frontal_areas(at, &weights, sums);
+    let wanted = (&weights[..], wanted.get(..at).unwrap_or_default());
+    let visible = layers.visible_frontal_areas(at, wanted, sums, &mut memory);
+    let weighted = usize::from(all.is_ok()) ^ usize::from(visible.is_ok());
+    porosity ^ weighted ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, (areas, Some(kept)), at)
 }
 
 fn shadowed<V: Vector>(
