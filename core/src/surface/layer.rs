@@ -212,6 +212,18 @@ impl<'a, V: Vector> Layers<'a, V> {
         Ok(report)
     }
 
+    /// Cells along x and y of layer `k`, if there is such a layer, and if memory is given, it is of this grid.
+    fn cells_of_layer(&self, k: usize, memory: Option<&LayerMemory<V>>) -> Result<[usize; 2], LayerError> {
+        let [nx, ny, layers] = self.grid.cells();
+        if k >= layers {
+            return Err(LayerError::NoLayer { layer: k, layers });
+        }
+        if memory.is_some_and(|memory| memory.cells != [nx, ny]) {
+            return Err(LayerError::OtherGrid);
+        }
+        Ok([nx, ny])
+    }
+
     fn check(
         &self,
         k: usize,
@@ -219,13 +231,7 @@ impl<'a, V: Vector> Layers<'a, V> {
         bounds: Option<&[LayerSlices<V::Scalar>; 2]>,
         memory: &LayerMemory<V>,
     ) -> Result<(), LayerError> {
-        let [nx, ny, layers] = self.grid.cells();
-        if k >= layers {
-            return Err(LayerError::NoLayer { layer: k, layers });
-        }
-        if memory.cells != [nx, ny] {
-            return Err(LayerError::OtherGrid);
-        }
+        self.cells_of_layer(k, Some(memory))?;
         for slices in core::iter::once(beta).chain(bounds.into_iter().flatten()) {
             slices.check(&self.grid, k, self.options.areas)?;
         }

@@ -44,9 +44,6 @@ const MOST_PARTS: usize = 3;
 /// Parts of solids of which each two are looked at.
 const MOST_PAIRED: usize = 12;
 
-/// What two of them have in common counts as so many looks at a solid.
-const PAIR: usize = 1;
-
 /// Constraints that they have together.
 const MOST_AT_ONCE: usize = MOST_PARTS * MOST_CONSTRAINTS;
 
@@ -238,7 +235,8 @@ impl<'a, E: Enclosed> Walk<'a, E> {
                 };
                 let pairs = parts.find_meeting(is_apart);
                 if parts.all.len() > MOST_PARTS {
-                    self.looked_at += pairs * PAIR;
+                    // What two have in common counts as a look at a solid.
+                    self.looked_at += pairs;
                 }
                 Looked::Cut(parts.excess(&place))
             }

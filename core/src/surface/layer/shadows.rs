@@ -36,10 +36,7 @@ impl<V: Vector> Layers<'_, V> {
         shadows: ShadowSlices<V::Scalar>,
         memory: ShadowMemory<V::Scalar>,
     ) -> Result<usize, LayerError> {
-        let [nx, ny, layers] = self.grid.cells();
-        if k >= layers {
-            return Err(LayerError::NoLayer { layer: k, layers });
-        }
+        let [nx, ny] = self.cells_of_layer(k, None)?;
         open.check(&self.grid)?;
         let ShadowSlices { mut share, mut place } = shadows;
         let areas_found = areas.map(|(areas, _)| areas.len());

@@ -156,10 +156,7 @@ impl<V: Vector> Layers<'_, V> {
         sides: &[CellSides<V::Scalar>],
         union: &mut [SurfaceArea<V::Scalar>],
     ) -> Result<(), LayerError> {
-        let [nx, ny, layers] = self.grid.cells();
-        if k >= layers {
-            return Err(LayerError::NoLayer { layer: k, layers });
-        }
+        let [nx, ny] = self.cells_of_layer(k, None)?;
         open.check(&self.grid)?;
         exactly(nx * ny, union.len())?;
         for CellSides { cell, solid, .. } in sides {

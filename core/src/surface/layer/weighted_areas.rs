@@ -40,10 +40,7 @@ impl<V: Vector> Layers<'_, V> {
         weights: &[[V::Scalar; N]],
         sums: &mut [[[V::Scalar; 3]; N]],
     ) -> Result<(), LayerError> {
-        let [nx, ny, layers] = self.grid.cells();
-        if k >= layers {
-            return Err(LayerError::NoLayer { layer: k, layers });
-        }
+        let [nx, ny] = self.cells_of_layer(k, None)?;
         exactly(nx * ny, sums.len())?;
         sums.fill([[V::Scalar::ZERO; 3]; N]);
         gather_weighted(&self.bins, &self.grid, k, weights, sums);
@@ -62,13 +59,7 @@ impl<V: Vector> Layers<'_, V> {
         sums: &mut [Weighted<V::Scalar, N>],
         memory: &mut LayerMemory<V>,
     ) -> Result<(), LayerError> {
-        let [nx, ny, layers] = self.grid.cells();
-        if k >= layers {
-            return Err(LayerError::NoLayer { layer: k, layers });
-        }
-        if memory.cells != [nx, ny] {
-            return Err(LayerError::OtherGrid);
-        }
+        let [nx, ny] = self.cells_of_layer(k, Some(memory))?;
         exactly(nx * ny, wanted.len())?;
         exactly(nx * ny, sums.len())?;
         let LayerMemory { numbers, groups, union, .. } = memory;
@@ -84,8 +75,8 @@ impl<V: Vector> Layers<'_, V> {
                 let is_plain = !self.bins.groups(k).iter().any(|group| group.sheet && reaches(group, cell));
                 if is_plain && weights_differ(row, cell, weights) {
                     let place = (&self.bins, row, cell);
-                    let mut left = (MOST_LEVELS, MOST_EFFORT);
-                    *sum = in_parts(union.reborrow(), place, weights, self.options.tol, &mut left).unwrap_or(*sum);
+                    let (limits, mut left) = ((self.options.tol, MOST_LEVELS), MOST_EFFORT);
+                    *sum = in_parts(union.reborrow(), place, weights, limits, &mut left).unwrap_or(*sum);
                 }
             }
         }
@@ -106,22 +97,22 @@ fn weights_differ<V: Vector, const N: usize>(row: &Row<V>, cell: Aabb<V>, weight
     here.any(|other| Some(other) != first)
 }
 
-/// The weighted areas of the surface of the union in a cell; where that has no proof, in its parts, as long as levels and effort are left. Calls itself, once a
-/// level.
+/// The weighted areas of the surface of the union in a cell; where that has no proof, in its parts, so many levels of them, while triangles are `left` to be
+/// looked at. Calls itself, once a level.
 fn in_parts<V: Vector, const N: usize>(
     mut memory: UnionMemory<V::Scalar>,
     (bins, row, cell): (&Bins<V>, &Row<V>, Aabb<V>),
     weights: &[[V::Scalar; N]],
-    tol: V::Scalar,
-    left: &mut (u32, usize),
+    (tol, levels): (V::Scalar, u32),
+    left: &mut usize,
 ) -> Option<Weighted<V::Scalar, N>> {
     let triangles: usize = row.groups.iter().filter(|group| reaches(group, cell)).map(|g| row.ids(g).len()).sum();
-    left.1 = left.1.checked_sub(triangles)?;
+    *left = left.checked_sub(triangles)?;
     let whole = with_least_blur(tol, |blur| of_union(memory.reborrow(), (bins, row, cell), blur, weights));
     if whole.is_some() {
         return whole;
     }
-    left.0 = left.0.checked_sub(1)?;
+    let levels = levels.checked_sub(1)?;
     let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
     let cut = [0, 1, 2].map(|n| lo[n] + (hi[n] - lo[n]) * V::Scalar::from_f64(CUT));
     let mut sums = [[V::Scalar::ZERO; 3]; N];
@@ -131,12 +122,11 @@ fn in_parts<V: Vector, const N: usize>(
             V::new(x, y, z)
         };
         let part = Aabb { min: corner(lo, cut), max: corner(cut, hi) };
-        let found = in_parts(memory.reborrow(), (bins, row, part), weights, tol, left)?;
+        let found = in_parts(memory.reborrow(), (bins, row, part), weights, (tol, levels), left)?;
         for (sum, found) in sums.iter_mut().zip(found) {
             *sum = [0, 1, 2].map(|n| sum[n] + found[n]);
         }
     }
-    left.0 += 1;
     Some(sums)
 }
 
