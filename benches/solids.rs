@@ -1,4 +1,4 @@
-//! Time of solids by formula: `cargo bench -p voidage-benches --bench solids`; with words after `--`, of the cases whose names hold them all.
+//! Time of solids by formula: `cargo bench -p voidage-benches --bench solids`; with words after `--`, of the cases whose names hold them all as words.
 //! With the word `once` each case is computed a single time on one thread, so that callgrind counts its instructions.
 //!
 //! One line a case: medians over several runs of the computation alone, on one thread and on two, and nanoseconds of the first for each cut
@@ -84,7 +84,7 @@ fn elbows(count: usize, oblique: bool, edges: &Edges) -> Bodies {
 
 fn case(name: &str, bodies: impl FnOnce() -> Bodies, edges: &Edges) {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    if words.iter().any(|word| word != ONCE && !name.contains(word.as_str())) {
+    if words.iter().any(|word| word != ONCE && !name.split([' ', ',']).any(|of_name| of_name == word)) {
         return;
     }
     let [nx, ny, nz] = edges.cells();
