@@ -1,8 +1,14 @@
 //! Clusters of small cells stay local, whatever is equal to what: where a wall repeats itself from cell to cell, too.
 
+use glam::DVec3;
+use voidage::geometry::form::Form;
+use voidage::grid::Edges;
+use voidage::porosity::{Options, porosity};
+use voidage_core::convex::shape::Cylinder;
 use voidage_core::flow::{Fractions, Merging, Mesh, Treatment, cluster_scratch, prepare};
 use voidage_core::number::real::Real;
 use voidage_tests::euler::space::{OpenFractions, half_space, open_fractions};
+use voidage_tests::solids::formulas;
 
 /// The clusters of open fractions of a mesh of equal cells, each a sorted list of cells.
 fn clusters<R: Real, const D: usize>(n: [usize; D], open: &OpenFractions<D>) -> Vec<Vec<usize>> {
@@ -82,24 +88,51 @@ fn clusters_of_cells_that_are_all_alike_stay_local() {
     assert!(longest(n, &found) <= 12, "{} cells", longest(n, &found));
 }
 
+/// Clusters with each cell moved elsewhere.
+fn moved<const D: usize>(
+    n: [usize; D],
+    clusters: &[Vec<usize>],
+    to: impl Fn([usize; D]) -> [usize; D],
+) -> Vec<Vec<usize>> {
+    let number = |at: [usize; D]| at.iter().zip(n).rev().fold(0, |number, (i, n)| number * n + i);
+    let mut all: Vec<Vec<usize>> =
+        clusters.iter().map(|c| c.iter().map(|&cell| number(to(at(n, cell)))).collect()).collect();
+    all.iter_mut().for_each(|c| c.sort_unstable());
+    all.sort();
+    all
+}
+
+/// Pipes that touch planes of the grid but for rounding: the face in front is open but for a slit as wide as the root of that, on one side and not on the other.
+#[test]
+fn mirrored_pipes_give_mirrored_clusters() {
+    let n = [6, 20, 20];
+    let mut found = 0;
+    for (radius, length) in [(0.1, 2.0), (0.2, 2.0), (0.3, 2.0), (1e4, 2e5), (3e-4, 2e-3)] {
+        let edges = Edges::uniform(DVec3::ZERO, DVec3::new(0.3 * length, length, length), n);
+        for (y, z) in [(0.5, 0.25), (0.35, 0.3), (0.3, 0.5), (0.25, 0.65)] {
+            let pipe = |y: f64| {
+                let end = |x: f64| DVec3::new(x, y, z) * length;
+                Form::Cylinder(Cylinder::new(end(-0.1), end(0.5), radius))
+            };
+            let scene = formulas(&[pipe(y), pipe(1.0 - y)][usize::from(y == 0.5)..]);
+            let beta = porosity(&edges.grid(None).unwrap(), &scene, Options::default()).beta;
+            let faces = [0, 1, 2].map(|axis| beta.faces(axis).to_vec());
+            let clusters = clusters::<f64, 3>(n, &OpenFractions { volume: beta.v.to_vec(), faces });
+            let mirrored = moved(n, &clusters, |[i, j, k]| [i, n[1] - 1 - j, k]);
+            assert_eq!(mirrored, clusters, "radius {radius} at {y}, {z}");
+            found += clusters.len();
+        }
+    }
+    assert!(found > 100, "{found} clusters");
+}
+
 #[test]
 fn mirrored_and_exchanged_porosity_gives_mirrored_and_exchanged_clusters() {
     let n = [30, 30];
     let wall = |normal: [f64; 2], offset: f64| {
         clusters::<f64, 2>(n, &open_fractions(n, [-15.0; 2], 1.0, |low, high| half_space(normal, offset, low, high)))
     };
-    let seen = |clusters: &[Vec<usize>], to: fn([usize; 2]) -> [usize; 2]| {
-        let mut all: Vec<Vec<usize>> = clusters
-            .iter()
-            .map(|c| {
-                let mut c: Vec<usize> = c.iter().map(|&cell| to(at(n, cell))).map(|[i, j]| i + n[0] * j).collect();
-                c.sort_unstable();
-                c
-            })
-            .collect();
-        all.sort();
-        all
-    };
+    let seen = |clusters: &[Vec<usize>], to: fn([usize; 2]) -> [usize; 2]| moved(n, clusters, to);
     let mut found = 0;
     for (a, b) in [(1.0, 1.0), (1.0, 2.0), (1.0, 0.3)] {
         for offset in [0.5, 0.7, 3.6] {

@@ -38,8 +38,9 @@ const REASONS: usize = 4;
 /// The number of the reason that is the place. It ranks without tolerance.
 const PLACE: usize = 3;
 
-/// Reasons that differ by less than this share are equal: the fractions of mirrored faces agree but for rounding.
-const EQUAL: f64 = 1e-9;
+/// Reasons that differ by less than this share are equal: the fractions of mirrored faces agree but for rounding, and where a face touches a curved wall
+/// but for rounding by the root of that, times the root of the wall's radius in cells.
+const EQUAL: f64 = 1e-5;
 
 /// Are the first `count` reasons of a face as good as the best?
 fn equal_up_to<R: Real>(count: usize, this: &[R; REASONS], best: &[R; REASONS]) -> bool {
