@@ -46,7 +46,7 @@ use rayon::prelude::*;
 pub use result::{CellCounts, Gjk, Leak, Porosity};
 use road::{Road, Roads};
 use std::sync::Arc;
-use surface_layers::{finish, no_areas};
+use surface_layers::finish;
 use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
@@ -221,9 +221,9 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
     let workers = Workers::new();
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
-    let mut areas = with_surface(scene, &convex).then(|| no_areas(grid));
+    let with_surface = with_surface(scene, &convex);
     let same = |k: usize| last.filter(|last| !last.may_change(grid, bodies, *level, k));
-    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), areas.as_mut())
+    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), with_surface)
         .into_par_iter()
         .enumerate()
         .map(|(k, mut target)| {
@@ -244,7 +244,7 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
     let leaks = measured.flat_map(|(k, s)| s.leaks.iter().map(move |&(body, fraction)| (body, k, fraction)));
     let apart = doubt::widen_leaking(grid, bodies, options.areas, leaks, &mut bounds);
     total.max_gap = (total.max_gap + apart).min(1.0);
-    let surface = areas.map(|areas| Arc::new(finish(grid, (bodies, &layers), &beta, areas, &summaries)));
+    let surface = with_surface.then(|| Arc::new(finish(grid, (bodies, &layers), &beta, &mut summaries)));
     let porosity = Porosity {
         beta,
         bounds,

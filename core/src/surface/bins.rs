@@ -456,26 +456,15 @@ pub(super) fn cells_touched<R: Real>(edges: &[R], [lo, hi]: [R; 2]) -> Range<usi
 
 /// Which triangles reach or touch, by their boxes, which cell of a layer, for those cells that are wanted.
 pub(super) struct CellLists<'m> {
-    /// The last entry of each cell, [`NO_ENTRY`], [`UNWANTED`] or [`UNLISTED`].
+    /// The last entry of each cell, [`NO_ENTRY`] or [`UNWANTED`].
     last: &'m [u32],
     /// Position of a group in the layer, number of a triangle, and the entry of the same cell before.
     entries: &'m [[u32; 3]],
 }
 
-/// Marks cells that are not wanted, those that are wanted without a list, and the end of a list.
+/// Mark cells that are not wanted, and the end of a list.
 const UNWANTED: u32 = u32::MAX;
-const UNLISTED: u32 = u32::MAX - 1;
-const NO_ENTRY: u32 = u32::MAX - 2;
-
-/// What is wanted of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum WantedList {
-    Nothing,
-    /// To come back to it: its surface is known otherwise.
-    Cell,
-    /// The triangles that reach or touch it.
-    Triangles,
-}
+const NO_ENTRY: u32 = u32::MAX - 1;
 
 impl<'m> CellLists<'m> {
     /// Numbers needed if all cells are wanted.
@@ -485,7 +474,7 @@ impl<'m> CellLists<'m> {
         entries.saturating_mul(3).saturating_add(nx * ny)
     }
 
-    /// Of layer `k`; each cell is asked for once what is wanted of it.
+    /// Of the wanted cells of layer `k`.
     ///
     /// # Errors
     /// [`ShapeMismatch`] if the memory is too small.
@@ -493,26 +482,24 @@ impl<'m> CellLists<'m> {
         bins: &Bins<V>,
         grid: &Grid<V::Scalar>,
         k: usize,
-        wanted: impl FnMut(usize) -> WantedList,
+        wanted: impl Iterator<Item = usize>,
         memory: &'m mut [u32],
     ) -> Result<Self, ShapeMismatch> {
         let [nx, ny, _] = grid.cells();
         let (given, short) = (memory.len(), ShapeMismatch { expected: nx * ny, found: memory.len() });
         let (last, entries) = memory.split_at_mut_checked(nx * ny).ok_or(short)?;
         let (entries, _) = entries.as_chunks_mut();
-        let (mut any, mut count) = (false, 0_usize);
-        for (last, wanted) in last.iter_mut().zip((0..).map(wanted)) {
-            *last = match wanted {
-                WantedList::Nothing => UNWANTED,
-                WantedList::Cell => UNLISTED,
-                WantedList::Triangles => NO_ENTRY,
-            };
-            any |= wanted == WantedList::Triangles;
+        last.fill(UNWANTED);
+        for cell in wanted {
+            if let Some(last) = last.get_mut(cell) {
+                *last = NO_ENTRY;
+            }
         }
+        let mut count = 0_usize;
         let mut add = |[group, id]: [u32; 2], [x, y]: [Range<usize>; 2]| {
             for j in y {
                 let row = last.get_mut(j * nx..).and_then(|rows| rows.get_mut(x.clone())).unwrap_or_default();
-                for last in row.iter_mut().filter(|last| **last < UNLISTED) {
+                for last in row.iter_mut().filter(|last| **last != UNWANTED) {
                     if let Some(entry) = entries.get_mut(count) {
                         *entry = [group, id, *last];
                         *last = count as u32;
@@ -521,9 +508,7 @@ impl<'m> CellLists<'m> {
                 }
             }
         };
-        if any {
-            each_span(bins, grid, k, &mut add);
-        }
+        each_span(bins, grid, k, &mut add);
         at_least(nx * ny + 3 * count, given)?;
         Ok(CellLists { last, entries })
     }

@@ -22,7 +22,7 @@ pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};
 pub use report::{CellKinds, LayerReport};
 pub use slices::LayerSlices;
-pub use surface_areas::{AreaReport, AreaSlices, CellSides, KnownAreas, KnownSurface, LayerReports, OpenLayer};
+pub use surface_areas::{AreaReport, AreaSlices, CellSides, KnownSurface, LayerReports, OpenLayer};
 
 use crate::grid::Grid;
 use crate::grid::fields::{Fields, Layer};

@@ -42,10 +42,10 @@ pub struct ShadowMemory<'a, R: Real> {
 /// The shadows of the solids in the cells of a layer along x, y and z, `ny*nx` each, x fastest.
 #[derive(Debug)]
 pub struct ShadowSlices<'a, R> {
-    /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it.
+    /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it. Zeros before.
     pub share: [&'a mut [R]; 3],
-    /// Where, from 0 at the low side of the cell to 1: the mean place of the surface inside, each part counted by its area as seen along the axis. One
-    /// half where lines that meet solid do so on a side of the cell.
+    /// Where, in widths of the cell from its middle, −½ to ½: the mean place of the surface inside, each part counted by its area as seen along the
+    /// axis. Zero where lines that meet solid do so on a side of the cell. Zeros before.
     pub place: [&'a mut [R]; 3],
 }
 

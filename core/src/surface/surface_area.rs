@@ -184,11 +184,22 @@ impl<R: Real> PieceMemory<'_, R> {
     }
 }
 
-/// The pieces of surface that have been kept of a layer.
+/// A cell of a layer that has surface. The default serves as memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SurfaceCell<R> {
+    /// Its number in the layer, x fastest.
+    pub cell: u32,
+    /// Areas of the union in it, in the unit of the grid. Sheets count as they are.
+    pub area: SurfaceArea<R>,
+    /// What has been kept of it.
+    pub kept: KeptCell,
+}
+
+/// The cells of a layer that have surface, and the pieces that have been kept of it.
 #[derive(Clone, Copy, Debug)]
 pub struct KeptPieces<'a, R> {
-    /// Of each cell, `ny*nx`, x fastest.
-    pub cells: &'a [KeptCell],
+    /// The cells, in ascending order.
+    pub cells: &'a [SurfaceCell<R>],
     /// All pieces.
     pub pieces: &'a [KeptPiece],
     /// Their corners.
@@ -218,6 +229,11 @@ impl KeptCell {
         }
     }
 
+    /// Have all pieces been kept?
+    pub(super) fn is_complete(&self) -> bool {
+        self.pieces != CellPieces::Incomplete
+    }
+
     /// Has no body surface in the cell, nor in the planes of its sides as seen from the cell?
     #[must_use]
     pub fn is_bare(&self) -> bool {
@@ -231,9 +247,11 @@ impl KeptCell {
 }
 
 impl<'a, R> KeptPieces<'a, R> {
-    /// What has been kept of a cell, if that is all.
-    pub(super) fn of(&self, cell: usize) -> Option<KeptCell> {
-        self.cells.get(cell).copied().filter(|kept| kept.pieces != CellPieces::Incomplete)
+    /// What has been kept of a cell, if that is all; of cells without surface there is nothing to keep.
+    fn of(&self, cell: usize) -> Option<KeptCell> {
+        let at = self.cells.binary_search_by_key(&cell, |own| own.cell as usize).ok();
+        let kept = at.and_then(|at| self.cells.get(at)).map_or_else(KeptCell::default, |own| own.kept);
+        kept.is_complete().then_some(kept)
     }
 
     /// The triangles that have a piece inside a cell, if all of these have been kept: the number of the body, and that of the triangle among those of the
@@ -339,10 +357,41 @@ impl<R: Real> KeptSurface<R> for UnionSurface<R> {
     }
 }
 
+/// The cells of a layer that have surface, and what they hold.
+struct CellsWithSurface<'a, R> {
+    /// Of each cell, `ny*nx`, x fastest, which of `cells` is its own, counted from 1; 0 without surface.
+    numbers: &'a mut [u32],
+    /// In the order in which surface was found in them.
+    cells: &'a mut [CellSurface<R>],
+    count: usize,
+}
+
+impl<'a, R: Real> CellsWithSurface<'a, R> {
+    fn new(numbers: &'a mut [u32], cells: &'a mut [CellSurface<R>]) -> Self {
+        numbers.fill(0);
+        CellsWithSurface { numbers, cells, count: 0 }
+    }
+
+    fn place(&self, cell: usize) -> Option<usize> {
+        (*self.numbers.get(cell)? as usize).checked_sub(1)
+    }
+
+    /// What a cell holds, nothing at first.
+    #[inline(always)]
+    fn get_or_add(&mut self, cell: usize) -> Option<&mut CellSurface<R>> {
+        let number = self.numbers.get_mut(cell)?;
+        if *number == 0 {
+            *self.cells.get_mut(self.count)? = CellSurface::default();
+            self.count += 1;
+            *number = self.count as u32;
+        }
+        self.cells.get_mut((*number as usize).wrapping_sub(1))
+    }
+}
+
 /// The surfaces in the cells of a layer, gathered piece by piece.
 pub(super) struct LayerSurface<'a, R> {
-    /// `ny*nx`, x fastest.
-    cells: &'a mut [CellSurface<R>],
+    cells: CellsWithSurface<'a, R>,
     /// What the pieces are cut from.
     owner: Owner,
     pieces: PieceMemory<'a, R>,
@@ -350,9 +399,9 @@ pub(super) struct LayerSurface<'a, R> {
 }
 
 impl<'a, R: Real> LayerSurface<'a, R> {
-    /// Of no surface yet; pieces are kept as far as the memory goes.
-    pub fn new(cells: &'a mut [CellSurface<R>], pieces: PieceMemory<'a, R>) -> Self {
-        cells.fill(CellSurface::default());
+    /// Of no surface yet; pieces are kept as far as the memory goes. `numbers` and `cells` have room for all cells.
+    pub fn new(numbers: &'a mut [u32], cells: &'a mut [CellSurface<R>], pieces: PieceMemory<'a, R>) -> Self {
+        let cells = CellsWithSurface::new(numbers, cells);
         LayerSurface { cells, owner: Owner::default(), pieces, used: PiecesUsed::default() }
     }
 
@@ -361,23 +410,31 @@ impl<'a, R: Real> LayerSurface<'a, R> {
         self.used
     }
 
-    /// What has been gathered.
-    pub fn cells(&self) -> &[CellSurface<R>] {
-        self.cells
+    /// The cells with surface in ascending order, and what they hold.
+    pub fn cells(&self) -> impl Iterator<Item = (usize, &CellSurface<R>)> {
+        let CellsWithSurface { numbers, cells, .. } = &self.cells;
+        let own = |number: u32| cells.get((number as usize).checked_sub(1)?);
+        numbers.iter().enumerate().filter(|(_, number)| **number != 0).filter_map(move |(c, &n)| Some((c, own(n)?)))
+    }
+
+    /// What a cell holds; none without surface.
+    pub fn cell(&self, cell: usize) -> Option<&CellSurface<R>> {
+        self.cells.cells.get(self.cells.place(cell)?)
+    }
+
+    /// The same, to add to it.
+    pub fn cell_mut(&mut self, cell: usize) -> Option<&mut CellSurface<R>> {
+        let place = self.cells.place(cell)?;
+        self.cells.cells.get_mut(place)
     }
 
     /// What a cell holds inside which one body with volume has all surface, and the pieces of that surface; none if several have some, or pieces are not
     /// known.
     pub fn of_one(&self, cell: usize) -> Option<(&CellSurface<R>, impl Iterator<Item = &[[R; 3]]>)> {
         let known = |s: &&CellSurface<R>| matches!(s.inner, Bodies::One(_)) && s.kept != CellPieces::Incomplete;
-        let surface = self.cells.get(cell).filter(known)?;
+        let surface = self.cell(cell).filter(known)?;
         let pieces = list(self.pieces.pieces, surface.kept).filter(|piece| !piece.owner.sheet);
         Some((surface, pieces.map_while(|piece| piece.corners_in(self.pieces.corners))))
-    }
-
-    /// What a cell holds; none if there is no such cell.
-    pub fn cell_mut(&mut self, cell: usize) -> Option<&mut CellSurface<R>> {
-        self.cells.get_mut(cell)
     }
 }
 
@@ -395,7 +452,7 @@ impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
 
     #[inline(always)]
     fn add(&mut self, cell: usize, place: Place, doubled_area: [R; 3], piece: &Polygon<R>) {
-        let Some(cell) = self.cells.get_mut(cell) else { return };
+        let Some(cell) = self.cells.get_or_add(cell) else { return };
         let Owner { body, sheet, .. } = self.owner;
         if place == Place::Inside {
             cell.kept = self.pieces.keep(&mut self.used, cell.kept, self.owner, piece);

@@ -6,77 +6,124 @@ use crate::geometry::cut_areas;
 use crate::geometry::form::Form;
 use rayon::prelude::*;
 use voidage_core::grid::Grid;
-use voidage_core::surface::surface_area::SurfaceArea;
+use voidage_core::surface::surface_area::{KeptCell, SurfaceArea, SurfaceCell};
 
 /// Sets the areas of all cells where one curved body alone has surface, and tells their layers where it is convex; by how much the areas of all cells
 /// together change. Cells that several bodies share keep what facets have.
-pub fn measure(
-    grid: &Grid<f64>,
-    bodies: &Bodies,
-    areas: &mut [SurfaceArea<f64>],
-    summaries: &mut [Summary],
-) -> SurfaceArea<f64> {
-    let [nx, ny, _] = grid.cells();
+pub fn measure(grid: &Grid<f64>, bodies: &Bodies, summaries: &mut [Summary]) -> SurfaceArea<f64> {
     if bodies.bodies.iter().all(|body| curved(body).is_none()) {
         return SurfaceArea::default();
     }
-    let alone: Vec<Option<u32>> =
-        summaries.iter().flat_map(|summary| summary.kept.cells().iter().map(|cell| cell.alone())).collect();
-    let layer = |(k, (areas, summary)): (usize, (&mut [SurfaceArea<f64>], &mut Summary))| {
-        let (mut change, kept) = (SurfaceArea::default(), summary.kept.cells_mut());
-        for (c, (area, kept)) in areas.iter_mut().zip(kept).enumerate() {
-            let at = [c % nx, c / nx, k];
-            let candidates = match kept.alone() {
-                Some(body) => vec![Some(body)],
-                // What bulges beyond its facets.
-                None if kept.is_bare() => beside(grid, &alone, at),
-                None => continue,
-            };
-            let Some(cell) = grid.cell_box(at) else { continue };
-            let forms = candidates.into_iter().flatten().filter_map(|n| curved(bodies.bodies.get(n as usize)?));
-            let (mut found, mut count, mut convex) = (SurfaceArea::default(), 0, true);
-            for form in forms {
-                let Some(part) = cut_areas::in_box(form, cell) else { continue };
-                found = found.plus(part);
-                count += 1;
-                convex &= !matches!(form, Form::Torus(_));
+    let layers = Alone(summaries.iter().map(|summary| alone(&summary.kept.cells)).collect());
+    let measured = |(k, summary): (usize, &mut Summary)| {
+        let (mut change, mut found) = (SurfaceArea::default(), Vec::new());
+        let mut known = std::mem::take(&mut summary.kept.cells).into_iter().peekable();
+        for c in layers.cells_about(grid, k) {
+            while let Some(before) = known.next_if(|own| (own.cell as usize) < c) {
+                found.push(before);
             }
-            if count == 0 {
-                continue;
+            let own = known.next_if(|own| own.cell as usize == c);
+            let mut own = own.unwrap_or_else(|| SurfaceCell { cell: c as u32, ..SurfaceCell::default() });
+            if let Some(before) = measure_cell(grid, bodies, &layers, k, &mut own) {
+                change = change.plus(own.area).plus(before.times(-1.0));
             }
-            change = change.plus(found).plus(area.times(-1.0));
-            *area = found;
-            if count == 1 && convex {
-                kept.set_convex();
+            if own.area != SurfaceArea::default() || own.kept != KeptCell::default() {
+                found.push(own);
             }
         }
+        found.extend(known);
+        summary.kept.cells = found;
         change
     };
-    let changes: Vec<SurfaceArea<f64>> =
-        areas.par_chunks_mut(nx * ny).zip(summaries.par_iter_mut()).enumerate().map(layer).collect();
+    let changes: Vec<SurfaceArea<f64>> = summaries.par_iter_mut().enumerate().map(measured).collect();
     // In the order of layers, so that the bits do not depend on the number of threads.
     changes.into_iter().fold(SurfaceArea::default(), SurfaceArea::plus)
+}
+
+/// Sets the areas of a cell of layer `k`, if curved bodies alone have surface in it; then what they were.
+fn measure_cell(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    layers: &Alone,
+    k: usize,
+    own: &mut SurfaceCell<f64>,
+) -> Option<SurfaceArea<f64>> {
+    let nx = grid.cells()[0];
+    let at = [own.cell as usize % nx, own.cell as usize / nx, k];
+    let candidates = match own.kept.alone() {
+        Some(body) => vec![body],
+        // What bulges beyond its facets.
+        None if own.kept.is_bare() => layers.beside(grid, at),
+        None => Vec::new(),
+    };
+    let cell = grid.cell_box(at)?;
+    let forms = candidates.into_iter().filter_map(|n| curved(bodies.bodies.get(n as usize)?));
+    let (mut found, mut count, mut convex) = (SurfaceArea::default(), 0, true);
+    for form in forms {
+        let Some(part) = cut_areas::in_box(form, cell) else { continue };
+        found = found.plus(part);
+        count += 1;
+        convex &= !matches!(form, Form::Torus(_));
+    }
+    if count == 0 {
+        return None;
+    }
+    if count == 1 && convex {
+        own.kept.set_convex();
+    }
+    Some(std::mem::replace(&mut own.area, found))
+}
+
+/// The cells of each layer that one body has for itself, in ascending order, and the body.
+struct Alone(Vec<Vec<(usize, u32)>>);
+
+fn alone(cells: &[SurfaceCell<f64>]) -> Vec<(usize, u32)> {
+    cells.iter().filter_map(|own| Some((own.cell as usize, own.kept.alone()?))).collect()
+}
+
+impl Alone {
+    /// The cells of a layer that one body has for itself, and all beside such, in ascending order.
+    fn cells_about(&self, grid: &Grid<f64>, k: usize) -> Vec<usize> {
+        let [nx, ny, _] = grid.cells();
+        let of_layer = |k: usize| self.0.get(k).into_iter().flatten().map(|(c, _)| *c);
+        let mut found: Vec<usize> = of_layer(k.wrapping_sub(1)).chain(of_layer(k + 1)).collect();
+        for c in of_layer(k) {
+            let (i, j) = (c % nx, c / nx);
+            found.push(c);
+            found.extend((i > 0).then(|| c - 1));
+            found.extend((i + 1 < nx).then_some(c + 1));
+            found.extend((j > 0).then(|| c - nx));
+            found.extend((j + 1 < ny).then_some(c + nx));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// The bodies that have the cells beside a cell for themselves, each once.
+    fn beside(&self, grid: &Grid<f64>, at: [usize; 3]) -> Vec<u32> {
+        let cells = grid.cells();
+        let mut found = Vec::new();
+        for (axis, up) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+            let mut next = at;
+            next[axis] = if up { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
+            if next[axis] < cells[axis] {
+                let body = self.body(next[2], next[1] * cells[0] + next[0]);
+                found.extend(body.filter(|body| !found.contains(body)));
+            }
+        }
+        found
+    }
+
+    /// The body that has a cell of a layer for itself.
+    fn body(&self, k: usize, cell: usize) -> Option<u32> {
+        let layer = self.0.get(k)?;
+        let at = layer.binary_search_by_key(&cell, |(c, _)| *c).ok()?;
+        layer.get(at).map(|(_, body)| *body)
+    }
 }
 
 /// The form of a body that is known by it alone and not bounded by planes.
 fn curved(body: &Body) -> Option<&Form> {
     body.form_alone().filter(|form| !form.is_polytope())
-}
-
-/// The bodies that have the cells beside a cell for themselves, each once.
-fn beside(grid: &Grid<f64>, alone: &[Option<u32>], at: [usize; 3]) -> Vec<Option<u32>> {
-    let cells = grid.cells();
-    let mut found = Vec::new();
-    for (axis, up) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
-        let mut next = at;
-        next[axis] = if up { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
-        if next[axis] < cells[axis] {
-            let [i, j, k] = next;
-            let body = alone.get((k * cells[1] + j) * cells[0] + i).copied().flatten();
-            if body.is_some() && !found.contains(&body) {
-                found.push(body);
-            }
-        }
-    }
-    found
 }

@@ -1,9 +1,10 @@
 //! What stands in the way of the gas: frontal area, wetted area and lengths of the obstacles in every cell.
 
-use super::shadows::{Shadows, place_of_cell};
+use super::shadows::{HIDDEN, Shadows, faces_of_nth_cell, place_of_cell};
 use super::solid::{up_to, with_solid_surface};
 use super::surface_fields::SurfaceFields;
-use super::{Options, Porosity, levels};
+use super::throat::Faces;
+use super::{FieldSet, Options, Porosity, levels};
 use crate::geometry::bodies::Bodies;
 use std::sync::Arc;
 use voidage_core::grid::Grid;
@@ -96,8 +97,7 @@ fn thinned(mut levels: Vec<f64>) -> Vec<f64> {
 
 /// Totals in the order of cells, so that their bits do not depend on the number of threads.
 fn totals(SurfaceFields { areas, sum, unproved, max_doubt, facet_error, .. }: &SurfaceFields) -> Totals {
-    let surface = areas.iter().filter(|area| area.wetted > 0.0);
-    let union = surface.fold(SurfaceArea::default(), |total, area| total.plus(*area));
+    let union = areas.iter().fold(SurfaceArea::default(), |total, (_, area)| total.plus(*area));
     Totals {
         frontal_area: union.frontal,
         wetted_area: union.wetted,
@@ -109,15 +109,33 @@ fn totals(SurfaceFields { areas, sum, unproved, max_doubt, facet_error, .. }: &S
     }
 }
 
+/// Frontal area along x, y and z in m² that no face shows: where lines enter solid and leave it again in one cell. With `beta`, the open fractions in the
+/// planes of faces, the pressure of a cell pushes on what its two faces differ by; walls that [`Faces::Throat`] makes tight are pushed from both sides.
+#[must_use]
+pub fn unseen_frontal_area(grid: &Grid<f64>, beta: &FieldSet, found: &Resistance, faces: Faces) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for &n in &found.shadows.standing {
+        let Some(cell) = grid.cell_box(place_of_cell(grid, n)) else { continue };
+        let (size, volume) = (cell.size(), cell.size().element_product());
+        for axis in 0..3 {
+            let [low, high] = faces_of_nth_cell(grid, axis, n).map(|face| beta.faces(axis)[face]);
+            let is_tight = faces == Faces::Throat && found.shadows.tau[axis][n] > HIDDEN;
+            let seen = 0.5 * (high - low).abs() * (volume / size[axis]);
+            sum[axis] += if is_tight { 0.0 } else { (found.a[axis][n] * volume - seen).max(0.0) };
+        }
+    }
+    sum
+}
+
 /// Less solid than this, as a share of a cell, is rounding.
 const ROUNDING: f64 = 2e-13;
 
 /// Areas over volumes, and the lengths that follow.
-fn densities(grid: &Grid<f64>, open: &[f64], union: &[SurfaceArea<f64>]) -> Resistance {
-    let zeros = || vec![0.0; union.len()];
+fn densities(grid: &Grid<f64>, open: &[f64], union: &[(usize, SurfaceArea<f64>)]) -> Resistance {
+    let zeros = || vec![0.0; open.len()];
     let mut found = Resistance { a: [zeros(), zeros(), zeros()], s: zeros(), d_h: zeros(), ..Resistance::default() };
     found.l_obs = zeros();
-    for (n, area) in union.iter().enumerate().filter(|(_, area)| area.wetted > 0.0) {
+    for &(n, area) in union.iter().filter(|(_, area)| area.wetted > 0.0) {
         let Some(cell) = grid.cell_box(place_of_cell(grid, n)) else { continue };
         let area = area.times(cell.size().element_product().recip());
         found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a[n] = f);

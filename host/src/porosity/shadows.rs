@@ -9,18 +9,19 @@ use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
 use voidage_core::grid::fields::ShapeMismatch;
-use voidage_core::surface::layer::{CellSides, KnownAreas, LayerError, Layers, OpenLayer};
+use voidage_core::surface::layer::{KnownSurface, LayerError, Layers, OpenLayer};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
-use voidage_core::surface::surface_area::{KeptPieces, SurfaceArea};
 
 /// Shadows of the union of bodies in the cells of a grid, `nx*ny*nz`, x fastest.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shadows {
     /// Along x, y and z, which share of the lines through the cell meets solid in it or a blocked side of it.
     pub tau: [Vec<f64>; 3],
-    /// Where in the cell that surface stands, 0 at the low side, 1 at the high one; along x, y and z. One half where no more is blocked than a side of
-    /// the cell shows.
+    /// Where in the cell that surface stands, from its middle, −½ at the low side, ½ at the high one; along x, y and z. Zero where no more is blocked than a
+    /// side of the cell shows.
     pub place: [Vec<f64>; 3],
+    /// The cells that may block more than their faces show, by their numbers in the grid, in ascending order.
+    pub(super) standing: Vec<usize>,
     /// By how much a share may be off where a curved solid stands as facets.
     pub doubt: f64,
     /// Cells that hold more surface than there is room for: in place of their shadow stands what their faces show.
@@ -30,9 +31,6 @@ pub struct Shadows {
     /// What stands in the cells that hide something.
     pub(super) triangles: CellTriangles,
 }
-
-/// What is told beside the areas of a layer, and the pieces of surface that have been kept of it.
-pub type BesideAreas<'a> = (&'a [CellSides<f64>], KeptPieces<'a, f64>);
 
 /// Cells that are blocked across an axis by more than [`HIDDEN`] of their section beyond what either of their two faces shows, both of which
 /// are open.
@@ -66,14 +64,13 @@ fn narrowest(grid: &Grid<f64>) -> f64 {
 }
 
 impl Shadows {
-    /// Of bodies in layers, whose open fractions and areas of surface are known, with what is told beside the areas for each layer, and the pieces of surface
-    /// that have been kept of it.
+    /// Of bodies in layers, whose open fractions and surface are known.
     #[must_use]
     pub fn of_layers(
         grid: &Grid<f64>,
         (bodies, layers): (&Bodies, &Layers<DVec3>),
         beta: &FieldSet,
-        (areas, known): (&[SurfaceArea<f64>], &[BesideAreas]),
+        known: &[KnownSurface<f64>],
     ) -> Self {
         let [nx, ny, nz] = grid.cells();
         let fields = || [0; 3].map(|_| vec![0.0; nx * ny * nz]);
@@ -88,9 +85,7 @@ impl Shadows {
         let buffers = Mutex::new(Vec::new());
         let layer = |(k, slices): (usize, ShadowSlices<f64>)| {
             let mut own = buffers.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_else(Buffers::new);
-            let (sides, kept) = known[k];
-            let areas = (&areas[k * nx * ny..(k + 1) * nx * ny], sides);
-            let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), areas, kept), slices);
+            let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), known[k]), slices);
             buffers.lock().unwrap_or_else(PoisonError::into_inner).push(own);
             too_full
         };
@@ -98,9 +93,14 @@ impl Shadows {
         let wanted = facets_miss(grid);
         let miss = bodies.bodies.iter().map(|body| facets::miss_of_body(body, wanted)).fold(0.0, f64::max);
         let doubt = (2.0 * miss / narrowest(grid)).min(1.0);
-        let mut found = Shadows { tau, place, doubt, too_full, ..Shadows::default() };
+        let kept: Vec<_> = known.iter().map(|(kept, _)| *kept).collect();
+        let standing = kept.iter().enumerate().flat_map(|(k, kept)| {
+            let with_front = kept.cells.iter().filter(|own| own.area.frontal != [0.0; 3]);
+            with_front.map(move |own| k * nx * ny + own.cell as usize)
+        });
+        let standing = standing.collect();
+        let mut found = Shadows { tau, place, standing, doubt, too_full, ..Shadows::default() };
         found.find_hidden(grid, beta);
-        let kept: Vec<_> = known.iter().map(|(_, kept)| *kept).collect();
         // What hides nearly all of a section is a wall.
         let hiding = found.hiding(grid, beta).into_iter().map(|(cell, hidden)| (cell, hidden <= HIDDEN));
         found.triangles = CellTriangles::of(bodies, &kept, nx * ny, hiding);
@@ -109,7 +109,8 @@ impl Shadows {
 
     /// Of nothing, in so many cells.
     pub(super) fn none(cells: usize) -> Self {
-        Shadows { tau: [0; 3].map(|_| vec![0.0; cells]), place: [0; 3].map(|_| vec![0.5; cells]), ..Shadows::default() }
+        let fields = || [0; 3].map(|_| vec![0.0; cells]);
+        Shadows { tau: fields(), place: fields(), standing: (0..cells).collect(), ..Shadows::default() }
     }
 
     /// Adds other shadows, weighted. What stands in a cell stands where the heavier of both does.
@@ -117,7 +118,7 @@ impl Shadows {
         for axis in 0..3 {
             let into = self.tau[axis].iter_mut().zip(&mut self.place[axis]);
             for ((tau, place), (&more, &there)) in into.zip(other.tau[axis].iter().zip(&other.place[axis])) {
-                if there != 0.5 && (*place == 0.5 || weight * more > *tau) {
+                if there != 0.0 && (*place == 0.0 || weight * more > *tau) {
                     *place = there;
                 }
                 *tau += weight * more;
@@ -129,23 +130,29 @@ impl Shadows {
 
     /// Counts the hidden passages, now that the faces are known.
     pub(super) fn find_hidden(&mut self, grid: &Grid<f64>, beta: &FieldSet) {
-        self.hidden = [0, 1, 2].map(|axis| hidden(grid, axis, &self.tau[axis], beta));
+        self.hidden = [0, 1, 2].map(|axis| self.hidden_along(grid, axis, beta));
     }
 
     /// The cells that are not closed and hide something, in ascending order, with the largest share of its section that each hides along an axis.
     pub(super) fn hiding(&self, grid: &Grid<f64>, beta: &FieldSet) -> Vec<(usize, f64)> {
         let [x, y, z] = &self.tau;
-        let mut hiding = Vec::new();
-        for (n, (((&x, &y), &z), &open)) in x.iter().zip(y).zip(z).zip(&beta.v).enumerate() {
-            // No more can be hidden than is blocked.
-            if open > 0.0 && (x >= LEAST_HIDDEN || y >= LEAST_HIDDEN || z >= LEAST_HIDDEN) {
-                let hidden = self.largest_hidden(grid, beta, n);
-                if hidden >= LEAST_HIDDEN {
-                    hiding.push((n, hidden));
-                }
+        // No more can be hidden than is blocked.
+        let may_hide = |n: usize| beta.v[n] > 0.0 && [x[n], y[n], z[n]].iter().any(|tau| *tau >= LEAST_HIDDEN);
+        let standing = self.standing.iter().filter(|n| may_hide(**n));
+        standing.map(|&n| (n, self.largest_hidden(grid, beta, n))).filter(|(_, share)| *share >= LEAST_HIDDEN).collect()
+    }
+
+    fn hidden_along(&self, grid: &Grid<f64>, axis: usize, beta: &FieldSet) -> HiddenPassages {
+        let tau = &self.tau[axis];
+        let mut found = HiddenPassages::default();
+        for &n in self.standing.iter().filter(|n| tau[**n] > HIDDEN) {
+            // A closed face shows all there can be.
+            if hidden_share(grid, axis, tau[n], beta, n) > HIDDEN {
+                found.cells += 1;
+                found.first = found.first.or_else(|| Some(place_of_cell(grid, n)));
             }
         }
-        hiding
+        found
     }
 
     /// The largest share of its section that the n-th cell blocks along an axis beyond what its faces show.
@@ -191,18 +198,6 @@ fn hidden_share(grid: &Grid<f64>, axis: usize, tau: f64, beta: &FieldSet, n: usi
     tau - (1.0 - faces[low].min(faces[high]))
 }
 
-fn hidden(grid: &Grid<f64>, axis: usize, tau: &[f64], beta: &FieldSet) -> HiddenPassages {
-    let mut found = HiddenPassages::default();
-    for (n, &tau) in tau.iter().enumerate().filter(|(_, tau)| **tau > HIDDEN) {
-        // A closed face shows all there can be.
-        if hidden_share(grid, axis, tau, beta, n) > HIDDEN {
-            found.cells += 1;
-            found.first = found.first.or_else(|| Some(place_of_cell(grid, n)));
-        }
-    }
-    found
-}
-
 /// Faces that a cell may hold at first, and at most; so many edges, too, seen along one axis. Curved solids are thousands of facets.
 const FACES: usize = 1 << 12;
 const MOST_FACES: usize = 1 << 18;
@@ -234,13 +229,13 @@ impl Buffers {
         &mut self,
         layers: &Layers<DVec3>,
         k: usize,
-        (open, areas, kept): (&OpenLayer<f64>, KnownAreas<f64>, KeptPieces<f64>),
+        (open, known): (&OpenLayer<f64>, KnownSurface<f64>),
         mut into: ShadowSlices<f64>,
     ) -> usize {
         loop {
             let Buffers { edges, places, lists, faces } = self;
             let memory = ShadowMemory { edges, places, lists, faces };
-            match layers.shadows(k, open, (Some(areas), Some(kept)), into.reborrow(), memory) {
+            match layers.shadows(k, open, known, into.reborrow(), memory) {
                 Err(LayerError::Shape(ShapeMismatch { expected, found })) if found == self.lists.len() => {
                     self.lists.resize(expected.max(2 * found), 0);
                 }

@@ -4,11 +4,11 @@ use super::shadows::Shadows;
 use std::sync::Arc;
 use voidage_core::surface::surface_area::SurfaceArea;
 
-/// Areas and shadows of the surface of a union in the cells of a grid, `nx*ny*nz`, x fastest.
+/// Areas and shadows of the surface of a union in the cells of a grid.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SurfaceFields {
-    /// Areas of the union in m².
-    pub areas: Vec<SurfaceArea<f64>>,
+    /// The cells that have surface, by their numbers in the grid, x fastest, in ascending order; with the areas of the union in m².
+    pub areas: Vec<(usize, SurfaceArea<f64>)>,
     /// Areas of all bodies added up, whether they overlap or not.
     pub sum: SurfaceArea<f64>,
     /// Cells shared by bodies whose union has no proof.

@@ -24,34 +24,32 @@ pub fn of_layers(
     options: Options,
     beta: &FieldSet,
 ) -> SurfaceFields {
-    let (mut own, mut areas) = (FieldSet::new(grid, true), no_areas(grid));
+    let mut own = FieldSet::new(grid, true);
     let (workers, road) = (Workers::new(), Road::new(Vec::new(), options));
-    let mut summaries: Vec<Summary> = targets(grid, &mut own, None, Some(&mut areas))
+    let mut summaries: Vec<Summary> = targets(grid, &mut own, None, true)
         .into_par_iter()
         .enumerate()
         .map(|(k, target)| workers.layer(grid, layers, &road, k, target))
         .collect();
-    let change = curved_cells::measure(grid, bodies, &mut areas, &mut summaries);
-    let found = finish(grid, (bodies, layers), beta, areas, &summaries);
+    let change = curved_cells::measure(grid, bodies, &mut summaries);
+    let found = finish(grid, (bodies, layers), beta, &mut summaries);
     SurfaceFields { sum: found.sum.plus(change), facet_error: *facet_error, ..found }
 }
 
-/// From the areas that layers have given, now that all faces are known.
+/// From the surface that layers have, now that all faces are known.
 #[must_use]
 pub fn finish(
     grid: &Grid<f64>,
     (bodies, layers): (&Bodies, &Layers<DVec3>),
     beta: &FieldSet,
-    mut areas: Vec<SurfaceArea<f64>>,
-    summaries: &[Summary],
+    summaries: &mut [Summary],
 ) -> SurfaceFields {
-    let [nx, ny, _] = grid.cells();
-    areas.par_chunks_mut(nx * ny).zip(summaries).enumerate().for_each(|(k, (areas, summary))| {
-        let open = beta.open_layer(grid, k);
-        layers.finish_areas(k, &open, &summary.sides, areas).expect("slices of a layer fit its grid");
+    summaries.par_iter_mut().enumerate().for_each(|(k, summary)| {
+        let (open, kept) = (beta.open_layer(grid, k), &mut summary.kept);
+        layers.finish_areas(k, &open, &kept.sides, &mut kept.cells).expect("slices of a layer fit its grid");
     });
-    let known: Vec<_> = summaries.iter().map(|summary| (&summary.sides[..], summary.kept.pieces())).collect();
-    let shadows = Arc::new(Shadows::of_layers(grid, (bodies, layers), beta, (&areas, &known)));
+    let known: Vec<_> = summaries.iter().map(|summary| summary.kept.known()).collect();
+    let shadows = Arc::new(Shadows::of_layers(grid, (bodies, layers), beta, &known));
     let reports = summaries.iter().map(|summary| summary.areas);
     SurfaceFields {
         // In the order of layers, so that the bits do not depend on the number of threads.
@@ -59,13 +57,16 @@ pub fn finish(
         unproved: reports.clone().map(|r| r.unproved).sum(),
         max_doubt: reports.fold(0.0, |most, r| r.max_doubt.max(most)),
         facet_error: 0.0,
-        areas,
+        areas: areas(grid, summaries),
         shadows,
     }
 }
 
-/// Room for the areas of all cells.
-#[must_use]
-pub fn no_areas(grid: &Grid<f64>) -> Vec<SurfaceArea<f64>> {
-    vec![SurfaceArea::default(); grid.cell_count()]
+/// The areas of all cells with surface.
+fn areas(grid: &Grid<f64>, summaries: &[Summary]) -> Vec<(usize, SurfaceArea<f64>)> {
+    let [nx, ny, _] = grid.cells();
+    let of_layer = |(k, summary): (usize, &Summary)| {
+        summary.kept.cells.iter().map(move |own| (k * nx * ny + own.cell as usize, own.area)).collect::<Vec<_>>()
+    };
+    summaries.iter().enumerate().flat_map(of_layer).collect()
 }

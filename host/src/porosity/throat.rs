@@ -2,7 +2,7 @@
 
 use super::Porosity;
 use super::fields::FieldSet;
-use super::shadows::{Shadows, cells, faces_of_cell};
+use super::shadows::{Shadows, faces_of_nth_cell, place_of_cell};
 use voidage_core::grid::Grid;
 
 /// What the open fraction of a face means.
@@ -37,22 +37,24 @@ pub fn lower_within(
     let mut lowered = 0;
     let Porosity { beta, bounds, max_gap, .. } = result;
     for axis in 0..3 {
-        let (before, count) = (beta.faces(axis).to_vec(), count[axis]);
-        for (n, at) in cells(grid).enumerate() {
-            let place_in_row = 2 * (first[axis] + at[axis]) + 1;
+        let (faces, count) = (|n: usize| faces_of_nth_cell(grid, axis, n), count[axis]);
+        let before: Vec<[f64; 2]> = {
+            let open = beta.faces(axis);
+            shadows.standing.iter().map(|&n| faces(n).map(|face| open[face])).collect()
+        };
+        for (&n, open) in shadows.standing.iter().zip(before) {
+            let place_in_row = 2 * (first[axis] + place_of_cell(grid, n)[axis]) + 1;
             let passes = 1.0 - shadows.tau[axis][n];
-            let faces = faces_of_cell(grid, axis, at);
-            let open = faces.map(|face| before[face]);
             let hidden = open[0].min(open[1]) - passes;
             if !(hidden > LEAST) {
                 continue;
             }
             // Positive for the high face.
-            let aside = open[0] - open[1] + hidden * (2.0 * shadows.place[axis][n] - 1.0);
+            let aside = open[0] - open[1] + hidden * (2.0 * shadows.place[axis][n]);
             let (before_middle, behind_middle) = (place_in_row < count, place_in_row > count);
             let wanted =
                 if aside.abs() > LEAST { [aside < 0.0, aside > 0.0] } else { [!before_middle, !behind_middle] };
-            for (face, _) in faces.into_iter().zip(wanted).filter(|(_, wanted)| *wanted) {
+            for (face, _) in faces(n).into_iter().zip(wanted).filter(|(_, wanted)| *wanted) {
                 let lower_to = |set: &mut FieldSet, most: f64| {
                     let open = &mut set.faces_mut(axis)[face];
                     *open = open.min(most.clamp(0.0, 1.0));

@@ -10,11 +10,9 @@ use voidage_core::grid::fields::Fields;
 use voidage_core::subdivide::QueryCount;
 use voidage_core::surface::bins::Group;
 use voidage_core::surface::layer::{
-    AreaReport, AreaSlices, CellKinds, CellSides, LayerMemory, LayerReport, Layers, MemoryNeeded,
+    AreaReport, AreaSlices, CellKinds, CellSides, KnownSurface, LayerMemory, LayerReport, Layers, MemoryNeeded,
 };
-use voidage_core::surface::surface_area::{
-    CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, PiecesUsed, SurfaceArea,
-};
+use voidage_core::surface::surface_area::{CellSurface, KeptPiece, KeptPieces, PieceMemory, SurfaceCell};
 use voidage_core::surface::union::{Fragment, Node, Octant, Part, PendingNode, Piece, UnionMemory, UnionNeeded};
 
 /// Rows that miss zero by more than this fraction of a face leak.
@@ -42,36 +40,26 @@ pub struct Summary {
     pub leaks: Vec<(usize, f64)>,
     /// What is told about areas.
     pub areas: AreaReport<f64>,
-    /// What is told beside the areas of some cells.
-    pub sides: Vec<CellSides<f64>>,
-    /// The pieces of surface, with areas.
+    /// The surface, with areas.
     pub kept: Kept,
 }
 
-/// Pieces of surface that were cut for the areas of a layer and serve its shadows.
+/// The surface in a layer, with the pieces that were cut for its areas and serve its shadows.
 #[derive(Debug, Clone, Default)]
 pub struct Kept {
-    cells: Vec<KeptCell>,
+    /// The cells that have some, in ascending order.
+    pub cells: Vec<SurfaceCell<f64>>,
+    /// What is told beside the areas of some cells.
+    pub sides: Vec<CellSides<f64>>,
     pieces: Vec<KeptPiece>,
     corners: Vec<[f64; 3]>,
 }
 
 impl Kept {
-    /// What has been kept of each cell of the layer.
-    #[must_use]
-    pub fn cells(&self) -> &[KeptCell] {
-        &self.cells
-    }
-
-    /// The same, to be told what else is known.
-    pub fn cells_mut(&mut self) -> &mut [KeptCell] {
-        &mut self.cells
-    }
-
     /// As the core takes it.
     #[must_use]
-    pub fn pieces(&self) -> KeptPieces<'_, f64> {
-        KeptPieces { cells: &self.cells, pieces: &self.pieces, corners: &self.corners }
+    pub fn known(&self) -> KnownSurface<'_, f64> {
+        (KeptPieces { cells: &self.cells, pieces: &self.pieces, corners: &self.corners }, &self.sides)
     }
 }
 
@@ -119,8 +107,8 @@ pub struct Target<'a> {
     pub beta: Slices<'a>,
     /// Lower and upper bounds, if wanted.
     pub bounds: Option<[Slices<'a>; 2]>,
-    /// Areas of the surface in cells, if wanted; then bodies go by their surface alone.
-    pub areas: Option<&'a mut [SurfaceArea<f64>]>,
+    /// The surface in cells is wanted; then bodies go by it alone.
+    pub surface: bool,
 }
 
 /// Bytes of memory that one layer's sums take.
@@ -179,7 +167,7 @@ struct Worker {
 #[derive(Default)]
 struct AreaVecs {
     cells: Vec<CellSurface<f64>>,
-    sides: Vec<CellSides<f64>>,
+    numbers: Vec<u32>,
     kept: Kept,
 }
 
@@ -188,8 +176,9 @@ impl AreaVecs {
     fn make_room(&mut self, cells: usize, layers: usize) {
         let pieces = (ALL_PIECES_KEPT / layers.max(1)).min(PIECES_KEPT);
         self.cells.resize(cells, CellSurface::default());
-        self.sides.resize(cells, CellSides::default());
-        self.kept.cells.resize(cells, KeptCell::default());
+        self.numbers.resize(cells, 0);
+        self.kept.cells.resize(cells, SurfaceCell::default());
+        self.kept.sides.resize(cells, CellSides::default());
         self.kept.pieces.resize(pieces, KeptPiece::default());
         if self.kept.corners.len() != CORNERS_EACH * pieces {
             // A new list of zeros takes no memory before it is used.
@@ -198,10 +187,14 @@ impl AreaVecs {
     }
 
     /// A copy of what has been kept of a layer.
-    fn kept(&self, used: PiecesUsed) -> Kept {
-        let Kept { cells, pieces, corners } = &self.kept;
-        let (pieces, corners) = (pieces[..used.pieces].to_vec(), corners[..used.corners].to_vec());
-        Kept { cells: cells.clone(), pieces, corners }
+    fn kept(&self, used: &AreaReport<f64>) -> Kept {
+        let Kept { cells, sides, pieces, corners } = &self.kept;
+        Kept {
+            cells: cells[..used.cells].to_vec(),
+            sides: sides[..used.sides].to_vec(),
+            pieces: pieces[..used.kept.pieces].to_vec(),
+            corners: corners[..used.kept.corners].to_vec(),
+        }
     }
 }
 
@@ -266,18 +259,18 @@ impl Worker {
                 leaks.push((body, defects.leak));
             }
         };
-        let Target { beta, bounds, areas } = target;
+        let Target { beta, bounds, surface } = target;
         let (beta, bounds) = (beta.for_core(), bounds.map(|both| both.map(Slices::for_core)));
-        let Some(union) = areas else {
+        if !surface {
             let report = layers.zeroed_layer(k, beta, bounds, &mut memory, &mut others, note_leak).expect(FITS);
             return Summary::new(report, &others, leaks);
-        };
-        vecs.make_room(union.len(), grid.cells()[2]);
-        let AreaVecs { cells, sides, kept: Kept { cells: kept, pieces, corners } } = &mut *vecs;
-        let areas = AreaSlices { union, sides, cells, kept, pieces: PieceMemory { pieces, corners } };
+        }
+        let [nx, ny, nz] = grid.cells();
+        vecs.make_room(nx * ny, nz);
+        let AreaVecs { cells, numbers, kept: Kept { cells: union, sides, pieces, corners } } = &mut *vecs;
+        let areas = AreaSlices { union, sides, cells, numbers, pieces: PieceMemory { pieces, corners } };
         let (report, areas) = layers.layer_and_areas(k, beta, bounds, areas, &mut memory, note_leak).expect(FITS);
-        let (sides, kept) = (vecs.sides[..areas.sides].to_vec(), vecs.kept(areas.kept));
-        Summary { areas, sides, kept, ..Summary::new(report, &others, leaks) }
+        Summary { areas, kept: vecs.kept(&areas), ..Summary::new(report, &others, leaks) }
     }
 }
 

@@ -8,7 +8,7 @@ use voidage_core::surface::layer::{
     AreaSlices, CellSides, KnownSurface, LayerMemory, LayerOptions, LayerSlices, Layers, OpenLayer,
 };
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
-use voidage_core::surface::surface_area::{CellSurface, KeptCell, KeptPiece, KeptPieces, PieceMemory, SurfaceArea};
+use voidage_core::surface::surface_area::{CellSurface, KeptPiece, KeptPieces, PieceMemory, SurfaceCell};
 use voidage_core::surface::union::{UnionBuffers, UnionMemory};
 
 fn asked<V: Vector>(edges: &[V::Scalar], triangles: &[[V; 3]], at: usize, r: V::Scalar) -> usize {
@@ -58,14 +58,14 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     };
     let (Some(beta), Some(low), Some(high), Some(again)) = (next(), next(), next(), next()) else { return 2 };
     let porosity = layers.layer(at, beta, Some([low, high]), &mut memory).map_or(3, |report| report.divided);
-    let (mut union, mut sides) = ([SurfaceArea::default(); 99], [CellSides::default(); 99]);
+    let (mut union, mut sides) = ([SurfaceCell::default(); 99], [CellSides::default(); 99]);
     let mut cells = [CellSurface::default(); 99];
-    let (mut kept, mut pieces, mut corners) = ([KeptCell::default(); 99], [KeptPiece::default(); 9], [[zero; 3]; 40]);
+    let (mut numbers, mut pieces, mut corners) = ([0; 99], [KeptPiece::default(); 9], [[zero; 3]; 40]);
     let areas = AreaSlices {
         union: union.get_mut(..at).unwrap_or_default(),
         sides: sides.get_mut(..at).unwrap_or_default(),
         cells: cells.get_mut(..at).unwrap_or_default(),
-        kept: kept.get_mut(..at).unwrap_or_default(),
+        numbers: numbers.get_mut(..at).unwrap_or_default(),
         pieces: PieceMemory { pieces: &mut pieces, corners: &mut corners },
     };
     let found = layers.layer_and_areas(at, again, None, areas, &mut memory, |_, _| ());
@@ -75,8 +75,7 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let known = OpenLayer { cell: of(at), x: of(at + 1), y: of(at + 2), z: of(at), top: of(at) };
     let finished =
         layers.finish_areas(at, &known, sides.get(..used).unwrap_or_default(), union.get_mut(..at).unwrap_or_default());
-    let areas = union.get(..at).zip(sides.get(..used));
-    let kept = KeptPieces { cells: &kept, pieces: &pieces, corners: &corners };
+    let kept = KeptPieces { cells: union.get(..at).unwrap_or_default(), pieces: &pieces, corners: &corners };
     let (weights, wanted) = ([[zero; 2]; 5], [true; 99]);
     let mut sums = [[[zero; 3]; 2]; 99];
     let sums = sums.get_mut(..at).unwrap_or_default();
@@ -84,13 +83,13 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let wanted = (&weights[..], wanted.get(..at).unwrap_or_default());
     let visible = layers.visible_frontal_areas(at, wanted, sums, &mut memory);
     let weighted = usize::from(all.is_ok()) ^ usize::from(visible.is_ok());
-    porosity ^ weighted ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, (areas, Some(kept)), at)
+    porosity ^ weighted ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, (kept, sides.get(..used).unwrap_or_default()), at)
 }
 
 fn shadowed<V: Vector>(
     layers: &Layers<V>,
     open: &OpenLayer<V::Scalar>,
-    areas: KnownSurface<V::Scalar>,
+    surface: KnownSurface<V::Scalar>,
     at: usize,
 ) -> usize {
     let (mut edges, mut places, mut lists) = ([ShadowEdge::default(); 99], [0; 33], [0; 99]);
@@ -102,7 +101,7 @@ fn shadowed<V: Vector>(
         share: share.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),
         place: place.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),
     };
-    layers.shadows(at, open, areas, slices.reborrow(), memory).unwrap_or(5)
+    layers.shadows(at, open, surface, slices.reborrow(), memory).unwrap_or(5)
 }
 
 /// In double precision.

@@ -2,16 +2,16 @@
 
 use super::Layers;
 use super::error::LayerError;
-use super::surface_areas::{KnownAreas, KnownSurface, OpenLayer};
+use super::surface_areas::{CellSides, KnownSurface, OpenLayer};
 use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::{CellLists, WantedList};
+use crate::surface::bins::CellLists;
 use crate::surface::cell_unions::side_areas;
 use crate::surface::clip::Polygon;
 use crate::surface::refined::known;
 use crate::surface::shadow::{CellFaces, Outlines, ShadowMemory, ShadowSlices};
-use crate::surface::surface_area::{KeptCell, KeptPieces, SurfaceArea};
+use crate::surface::surface_area::{KeptPieces, SurfaceCell};
 use crate::surface::union::Frame;
 
 impl<V: Vector> Layers<'_, V> {
@@ -22,9 +22,9 @@ impl<V: Vector> Layers<'_, V> {
     }
 
     /// The shadows of the union in the cells of layer `k`, and how many cells hold more than the memory: what is given for them are the blocked
-    /// shares of their sides. `open` holds the layer's open fractions, `areas` those of [`Layers::finish_areas`], if they are known: where they
-    /// prove that no surface hides behind what a side of the cell shows, nothing is searched. `kept` holds pieces that [`Layers::layer_and_areas`] has kept of
-    /// the layer, which are cut again where there are none. Sheets cast shadows.
+    /// shares of their sides. `open` holds the layer's open fractions, `cells` what [`Layers::finish_areas`] has finished: where areas
+    /// prove that no surface hides behind what a side of the cell shows, nothing is searched. Of surface that was not kept, pieces are cut again.
+    /// Sheets cast shadows.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length, too few lists.
@@ -32,65 +32,96 @@ impl<V: Vector> Layers<'_, V> {
         &self,
         k: usize,
         open: &OpenLayer<V::Scalar>,
-        (areas, kept): KnownSurface<V::Scalar>,
+        (kept, sides): KnownSurface<V::Scalar>,
         shadows: ShadowSlices<V::Scalar>,
         memory: ShadowMemory<V::Scalar>,
     ) -> Result<usize, LayerError> {
         let [nx, ny] = self.cells_of_layer(k, None)?;
         open.check(&self.grid)?;
         let ShadowSlices { mut share, mut place } = shadows;
-        let areas_found = areas.map(|(areas, _)| areas.len());
-        for found in share.iter().chain(&place).map(|field| field.len()).chain(areas_found) {
+        for found in share.iter().chain(&place).map(|field| field.len()) {
             exactly(nx * ny, found)?;
         }
         show_sides(open, nx, &mut share);
-        place.iter_mut().for_each(|field| field.fill(V::Scalar::HALF));
-        let here = LayerWithFaces { layers: self, k, open, areas };
-        let kept_of = |c: usize| kept.and_then(|kept| Some((kept, kept.of(c)?)));
-        let wanted = |c: usize| {
-            let Some(seen) = here.seen(c) else { return WantedList::Nothing };
-            for axis in 0..3 {
-                set(share[axis], c, seen.share[axis]);
-            }
-            match seen.doubtful {
-                [false, false, false] => WantedList::Nothing,
-                _ if kept_of(c).is_some() => WantedList::Cell,
-                _ => WantedList::Triangles,
-            }
-        };
+        let here = LayerWithFaces { layers: self, k, open, sides };
         let ShadowMemory { edges, places, lists, faces } = memory;
-        let lists = CellLists::new(&self.bins, &self.grid, k, wanted, lists)?;
         let mut work = Work::new(Outlines::new(edges, places), CellFaces::new(faces));
-        let mut too_full = 0;
-        for c in 0..nx * ny {
-            let Some(entries) = lists.of(c) else { continue };
-            let (Some(cell), Some(mut found)) = (here.cell_box(c), here.seen(c)) else { continue };
-            let loaded = match kept_of(c) {
-                Some((kept, pieces)) => load_kept(cell, kept, pieces, &mut work),
-                None => here.load(cell, entries, &mut work),
-            };
-            too_full += usize::from(loaded.and_then(|()| here.shadow(&mut work, &mut found)).is_none());
+        let (mut too_full, mut not_kept) = (0, false);
+        let mut write = |c: usize, found: &Seen<V::Scalar>| {
             for axis in 0..3 {
                 set(share[axis], c, found.share[axis]);
                 set(place[axis], c, found.place[axis]);
             }
+        };
+        for own in kept.cells {
+            let Some(mut found) = here.seen(own) else { continue };
+            if found.is_doubtful() {
+                let Some(cell) = here.cell_box(own.cell as usize).filter(|_| own.kept.is_complete()) else {
+                    not_kept = true;
+                    continue;
+                };
+                let loaded = load_kept(cell, kept, own, &mut work);
+                too_full += usize::from(loaded.and_then(|()| here.shadow(&mut work, &mut found)).is_none());
+            }
+            write(own.cell as usize, &found);
+        }
+        if !not_kept {
+            return Ok(too_full);
+        }
+        let others = || {
+            let not_kept = kept.cells.iter().filter(|own| !own.kept.is_complete());
+            not_kept.filter_map(|own| Some((own, here.seen(own).filter(Seen::is_doubtful)?)))
+        };
+        let lists = CellLists::new(&self.bins, &self.grid, k, others().map(|(own, _)| own.cell as usize), lists)?;
+        for (own, mut found) in others() {
+            let c = own.cell as usize;
+            let (Some(cell), Some(entries)) = (here.cell_box(c), lists.of(c)) else { continue };
+            let loaded = here.load(cell, entries, &mut work);
+            too_full += usize::from(loaded.and_then(|()| here.shadow(&mut work, &mut found)).is_none());
+            write(c, &found);
         }
         Ok(too_full)
     }
 }
 
-/// Write what the sides of the cells show: the larger of both solid fractions.
+/// Write what the sides of the cells show, the larger of both solid fractions, and all of closed cells. Rows in which all is open stay as they are.
 fn show_sides<R: Real>(open: &OpenLayer<R>, nx: usize, [x, y, z]: &mut [&mut [R]; 3]) {
-    let show = |share: &mut [R], low: &[R], high: &[R]| {
-        for ((share, low), high) in share.iter_mut().zip(low).zip(high) {
-            *share = R::ONE - low.smaller(*high);
+    let wide = nx.max(1);
+    let rows = x.chunks_exact_mut(wide).zip(y.chunks_exact_mut(wide)).zip(z.chunks_exact_mut(wide));
+    for (row, ((x, y), z)) in rows.enumerate() {
+        let Some(open) = OpenRow::new(open, row, nx).filter(|row| !row.is_open()) else { continue };
+        for (share, [low, high]) in [x, y, z].into_iter().zip(open.sides) {
+            for (((share, low), high), cell) in share.iter_mut().zip(low).zip(high).zip(open.cells) {
+                *share = if *cell > R::ZERO { R::ONE - low.smaller(*high) } else { R::ONE };
+            }
         }
-    };
-    for (share, open) in x.chunks_exact_mut(nx.max(1)).zip(open.x.chunks_exact(nx.saturating_add(1))) {
-        show(share, open, open.get(1..).unwrap_or_default());
     }
-    show(y, open.y, open.y.get(nx..).unwrap_or_default());
-    show(z, open.z, open.top);
+}
+
+/// Open fractions of a row of cells.
+struct OpenRow<'a, R> {
+    cells: &'a [R],
+    /// The low and the high sides along each axis.
+    sides: [[&'a [R]; 2]; 3],
+}
+
+impl<'a, R: Real> OpenRow<'a, R> {
+    fn new(open: &OpenLayer<'a, R>, row: usize, nx: usize) -> Option<Self> {
+        let first = row * nx;
+        let of = |field: &'a [R], from: usize| field.get(from..)?.get(..nx);
+        let sides = [
+            [of(open.x, first + row)?, of(open.x, first + row + 1)?],
+            [of(open.y, first)?, of(open.y, first + nx)?],
+            [of(open.z, first)?, of(open.top, first)?],
+        ];
+        Some(OpenRow { cells: of(open.cell, first)?, sides })
+    }
+
+    /// Is all of it open? Compared without a branch for each value.
+    fn is_open(&self) -> bool {
+        let all_open = |field: &[R]| field.iter().fold(true, |all, open| all & (*open == R::ONE));
+        all_open(self.cells) && self.sides.iter().flatten().all(|side| all_open(side))
+    }
 }
 
 /// Set an entry, if there is one.
@@ -120,10 +151,9 @@ fn fit<R: Real>() -> R {
 }
 
 impl<R: Real> Seen<R> {
-    /// All is blocked.
-    fn closed() -> Self {
-        let (blocked, place) = ([[R::ONE; 2]; 3], [R::HALF; 3]);
-        Seen { blocked, share: [R::ONE; 3], place, doubtful: [false; 3], frontal: None }
+    /// May there be more?
+    fn is_doubtful(&self) -> bool {
+        self.doubtful != [false; 3]
     }
 
     /// Raise a share to a shadow.
@@ -160,7 +190,7 @@ struct LayerWithFaces<'a, V: Vector> {
     layers: &'a Layers<'a, V>,
     k: usize,
     open: &'a OpenLayer<'a, V::Scalar>,
-    areas: Option<KnownAreas<'a, V::Scalar>>,
+    sides: &'a [CellSides<V::Scalar>],
 }
 
 impl<V: Vector> LayerWithFaces<'_, V> {
@@ -174,34 +204,19 @@ impl<V: Vector> LayerWithFaces<'_, V> {
         self.layers.grid.cell_box([i, j, self.k])
     }
 
-    /// What the sides of a cell show if it has surface, or is closed; none where they show all.
-    #[inline(always)]
-    fn seen(&self, c: usize) -> Option<Seen<V::Scalar>> {
-        let zero = V::Scalar::ZERO;
-        let area = self.areas.and_then(|(areas, _)| areas.get(c));
-        if !self.open.cell.get(c).is_some_and(|&share| share > zero) {
-            return Some(Seen::closed());
-        }
-        if area.is_some_and(|area| area.frontal == [zero; 3]) {
+    /// What the sides of a cell with surface show; none where that is known to be all there is, or the cell is closed.
+    fn seen(&self, own: &SurfaceCell<V::Scalar>) -> Option<Seen<V::Scalar>> {
+        let (nx, c, zero) = (self.layers.grid.cells()[0], own.cell as usize, V::Scalar::ZERO);
+        if own.area.frontal == [zero; 3] || !self.open.cell.get(c).is_some_and(|&share| share > zero) {
             return None;
         }
-        self.seen_surface(c, area)
-    }
-
-    /// The same of a cell with surface.
-    fn seen_surface(&self, c: usize, area: Option<&SurfaceArea<V::Scalar>>) -> Option<Seen<V::Scalar>> {
-        let nx = self.layers.grid.cells()[0];
         let (blocked, cell) = (self.open.blocked(self.at(c), nx)?, self.cell_box(c)?);
-        let listed = self.areas.and_then(|(_, sides)| {
-            sides.binary_search_by_key(&c, |side| side.cell as usize).ok().and_then(|n| sides.get(n))
-        });
-        let (across, known) = (side_areas(cell), listed.is_none_or(|side| side.exact));
-        let frontal = area.filter(|_| known).map(|area| {
-            let [x, y, z] = area.frontal;
-            [x / across[0], y / across[1], z / across[2]]
-        });
+        let listed = self.sides.binary_search_by_key(&c, |side| side.cell as usize).ok();
+        let known = listed.and_then(|n| self.sides.get(n)).is_none_or(|side| side.exact);
+        let (across, [x, y, z]) = (side_areas(cell), own.area.frontal);
+        let frontal = known.then(|| [x / across[0], y / across[1], z / across[2]]);
         let share = blocked.map(|[low, high]| low.larger(high));
-        let mut seen = Seen { blocked, share, frontal, ..Seen::closed() };
+        let mut seen = Seen { blocked, share, place: [zero; 3], doubtful: [false; 3], frontal };
         seen.doubt();
         Some(seen)
     }
@@ -212,7 +227,7 @@ impl<V: Vector> LayerWithFaces<'_, V> {
             if !found.doubtful[axis] {
                 continue;
             }
-            found.place[axis] = work.faces.place(axis);
+            found.place[axis] = work.faces.place(axis) - V::Scalar::HALF;
             let all = match found.frontal {
                 // Of a convex body lines meet on the area that they enter, and that on which they begin in it.
                 Some(frontal) if work.entered_once => {
@@ -290,13 +305,13 @@ impl<V: Vector> LayerWithFaces<'_, V> {
 fn load_kept<V: Vector>(
     cell: Aabb<V>,
     kept: KeptPieces<V::Scalar>,
-    own: KeptCell,
+    own: &SurfaceCell<V::Scalar>,
     work: &mut Work<V::Scalar>,
 ) -> Option<()> {
     let (frame, mut last) = (Frame::of(cell), None);
     work.faces.clear();
-    (work.walls, work.entered_once) = (own.walls, own.entered_once);
-    for (corners, body, sheet) in kept.pieces(own) {
+    (work.walls, work.entered_once) = (own.kept.walls, own.kept.entered_once);
+    for (corners, body, sheet) in kept.pieces(own.kept) {
         if last.replace(body) != Some(body) {
             work.faces.begin_solid(sheet);
         }

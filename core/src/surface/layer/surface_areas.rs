@@ -20,7 +20,7 @@ use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{Refined, known};
 use crate::surface::surface_area::{
     Bodies, CellPieces, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea,
-    UnionSurface,
+    SurfaceCell, UnionSurface,
 };
 use crate::surface::union::{Frame, integrate};
 
@@ -70,6 +70,8 @@ type Sides<R> = [[R; 2]; 3];
 pub struct AreaReport<R> {
     /// The areas of all bodies added up, whether they overlap or not.
     pub sum: SurfaceArea<R>,
+    /// Entries of [`AreaSlices::union`] that are used.
+    pub cells: usize,
     /// Entries of [`AreaSlices::sides`] that are used.
     pub sides: usize,
     /// Cells that several bodies share and whose union has no proof, even divided: their areas lie between that of one body and the sum.
@@ -83,14 +85,14 @@ pub struct AreaReport<R> {
 /// Where the areas of a layer go, and memory for them.
 #[derive(Debug)]
 pub struct AreaSlices<'a, R> {
-    /// Areas of the union, without what [`Layers::finish_areas`] adds, `ny*nx`, x fastest, in the unit of the grid. Sheets count as they are.
-    pub union: &'a mut [SurfaceArea<R>],
-    /// Cells whose areas are not all that there is to know, in ascending order, `ny*nx` at most.
+    /// The cells with surface in ascending order, without what [`Layers::finish_areas`] adds; room for `ny*nx`.
+    pub union: &'a mut [SurfaceCell<R>],
+    /// Cells whose areas are not all that there is to know, in ascending order; room for `ny*nx`.
     pub sides: &'a mut [CellSides<R>],
     /// Memory, `ny*nx`.
     pub cells: &'a mut [CellSurface<R>],
-    /// Which of `pieces` each cell has, `ny*nx`.
-    pub kept: &'a mut [KeptCell],
+    /// Memory, `ny*nx`.
+    pub numbers: &'a mut [u32],
     /// Memory for the pieces of surface, which [`Layers::shadows`] need not cut again; as much as one likes, none will do.
     pub pieces: PieceMemory<'a, R>,
 }
@@ -98,11 +100,8 @@ pub struct AreaSlices<'a, R> {
 /// What is told of the porosity of a layer, and of its areas.
 pub type LayerReports<R> = (LayerReport<R>, AreaReport<R>);
 
-/// Areas of the union in a layer, and what is told beside them of some cells.
-pub type KnownAreas<'a, R> = (&'a [SurfaceArea<R>], &'a [CellSides<R>]);
-
-/// What is known of the surface in a layer: its areas, and pieces that have been kept.
-pub type KnownSurface<'a, R> = (Option<KnownAreas<'a, R>>, Option<KeptPieces<'a, R>>);
+/// What is known of the surface in a layer: the cells that have some with the pieces that have been kept, and what is told beside of some cells.
+pub type KnownSurface<'a, R> = (KeptPieces<'a, R>, &'a [CellSides<R>]);
 
 /// A cell that several bodies share. The default serves as memory.
 #[derive(Clone, Copy, Debug, Default)]
@@ -129,23 +128,20 @@ impl<V: Vector> Layers<'_, V> {
         each_body: impl FnMut(usize, Defects<V::Scalar>),
     ) -> Result<LayerReports<V::Scalar>, LayerError> {
         let [nx, ny, _] = self.grid.cells();
-        let AreaSlices { union, sides, cells, kept, pieces } = areas;
-        for found in [union.len(), sides.len(), cells.len(), kept.len()] {
+        let AreaSlices { union, sides, cells, numbers, pieces } = areas;
+        for found in [union.len(), sides.len(), cells.len(), numbers.len()] {
             exactly(nx * ny, found)?;
         }
         // Flags of the plane below have then been replaced by those of the plane above.
         let has_top = !beta.top.is_empty();
-        let mut surface = LayerSurface::new(cells, pieces);
+        let mut surface = LayerSurface::new(numbers, cells, pieces);
         let report = self.measure(k, (beta, bounds), memory, (&mut (), &mut surface), each_body)?;
-        let mut areas = summed(surface.cells(), union, sides);
-        areas.kept = surface.used();
-        let walls = Fields::within(&self.grid, &mut *memory.has_surface)?;
-        note_kept(surface.cells(), &walls, has_top, nx, kept);
-        Ok((report, areas))
+        let walls = Walls { flags: Fields::within(&self.grid, &mut *memory.has_surface)?, has_top, nx };
+        Ok((report, noted(&surface, &walls, union, sides)))
     }
 
     /// Add to the areas of the union what is wetted in the planes of grid, for which the faces of neighbouring layers must be known, and drop the surface of
-    /// cells that are closed. `open` holds the open fractions of layer `k`, `sides` as many entries as [`AreaReport::sides`] tells.
+    /// cells that are closed. `open` holds the open fractions of layer `k`, `sides` and `union` as many entries as [`AreaReport`] tells.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length.
@@ -154,23 +150,23 @@ impl<V: Vector> Layers<'_, V> {
         k: usize,
         open: &OpenLayer<V::Scalar>,
         sides: &[CellSides<V::Scalar>],
-        union: &mut [SurfaceArea<V::Scalar>],
+        union: &mut [SurfaceCell<V::Scalar>],
     ) -> Result<(), LayerError> {
-        let [nx, ny] = self.cells_of_layer(k, None)?;
+        let [nx, _] = self.cells_of_layer(k, None)?;
         open.check(&self.grid)?;
-        exactly(nx * ny, union.len())?;
         for CellSides { cell, solid, .. } in sides {
             let (c, Some(solid)) = (*cell as usize, solid) else { continue };
             let at = [c.checked_rem(nx).unwrap_or(0), c.checked_div(nx).unwrap_or(0)];
             let (Some(blocked), Some(cell)) = (open.blocked(at, nx), self.grid.cell_box([at[0], at[1], k])) else {
                 continue;
             };
-            if let Some(area) = union.get_mut(c) {
-                area.wetted += in_planes(cell, &blocked, solid);
+            let own = union.binary_search_by_key(&c, |own| own.cell as usize).ok();
+            if let Some(own) = own.and_then(|at| union.get_mut(at)) {
+                own.area.wetted += in_planes(cell, &blocked, solid);
             }
         }
-        for (area, open) in union.iter_mut().zip(open.cell) {
-            if !(*open > V::Scalar::ZERO) {
+        for SurfaceCell { cell, area, .. } in union {
+            if !open.cell.get(*cell as usize).is_some_and(|&open| open > V::Scalar::ZERO) {
                 // Another body holds all that surface.
                 *area = SurfaceArea::default();
             }
@@ -179,58 +175,84 @@ impl<V: Vector> Layers<'_, V> {
     }
 }
 
-/// Write which pieces each cell has, and in the planes of which of its sides surface lies.
-fn note_kept<R: Real>(cells: &[CellSurface<R>], walls: &Fields<u8>, has_top: bool, nx: usize, kept: &mut [KeptCell]) {
-    let is_wall = |faces: &[u8], at: usize| faces.get(at).is_none_or(|&flag| flag != 0);
-    for ((c, cell), kept) in cells.iter().enumerate().zip(kept) {
+/// In the planes of which faces of a layer surface lies.
+struct Walls<'a> {
+    flags: Fields<'a, u8>,
+    /// In that above, for all that is known.
+    has_top: bool,
+    nx: usize,
+}
+
+impl Walls<'_> {
+    /// What has been kept of a cell.
+    fn kept<R: Real>(&self, c: usize, cell: &CellSurface<R>) -> KeptCell {
         if cell.kept == CellPieces::None && cell.bodies == Bodies::None {
             // Without pieces nobody asks for the sides.
-            *kept = KeptCell::default();
-            continue;
+            return KeptCell::default();
         }
-        let x = c + c.checked_div(nx).unwrap_or(0);
+        let is_wall = |faces: &[u8], at: usize| faces.get(at).is_none_or(|&flag| flag != 0);
+        let (flags, x) = (&self.flags, c + c.checked_div(self.nx).unwrap_or(0));
         let walls = [
-            is_wall(walls.x, x) || is_wall(walls.x, x + 1),
-            is_wall(walls.y, c) || is_wall(walls.y, c + nx),
-            has_top || cell.wall_on_top || is_wall(walls.z, c),
+            is_wall(flags.x, x) || is_wall(flags.x, x + 1),
+            is_wall(flags.y, c) || is_wall(flags.y, c + self.nx),
+            self.has_top || cell.wall_on_top || is_wall(flags.z, c),
         ];
         let bodies = if cell.sheets.wetted > R::ZERO { Bodies::Several } else { cell.bodies };
-        *kept = KeptCell { pieces: cell.kept, walls, bodies, entered_once: false };
+        KeptCell { pieces: cell.kept, walls, bodies, entered_once: false }
     }
 }
 
-/// Write the areas of the union, and the sides of those cells whose wetted area asks for their faces.
-fn summed<R: Real>(
-    cells: &[CellSurface<R>],
-    union: &mut [SurfaceArea<R>],
+/// Write the areas of the union with what has been kept, and the sides of those cells whose wetted area asks for their faces.
+fn noted<R: Real>(
+    surface: &LayerSurface<R>,
+    walls: &Walls,
+    union: &mut [SurfaceCell<R>],
     sides: &mut [CellSides<R>],
 ) -> AreaReport<R> {
-    let mut report = AreaReport::default();
-    for ((surface, union), cell) in cells.iter().zip(union).zip(0..) {
-        *union = surface.sum();
-        if !(union.wetted > R::ZERO) {
+    let mut report = AreaReport { kept: surface.used(), ..AreaReport::default() };
+    for (c, own) in surface.cells() {
+        let (area, kept) = (area_of(own, c, &mut report, sides), walls.kept(c, own));
+        if !(area.wetted > R::ZERO) && kept == KeptCell::default() {
             continue;
         }
-        report.sum = report.sum.plus(*union);
-        if surface.bodies != Bodies::Several {
-            continue;
-        }
-        let found = surface.of_union();
-        *union = found.area.plus(surface.sheets);
-        if found.doubt > R::ZERO {
-            report.unproved += 1;
-            report.max_doubt = report.max_doubt.max(found.doubt);
-        }
-        let solid = found.sides.filter(|_| surface.in_plane > R::ZERO);
-        if solid.is_none() {
-            union.wetted += surface.in_plane;
-        }
-        if let Some(place) = sides.get_mut(report.sides).filter(|_| solid.is_some() || !found.exact) {
-            *place = CellSides { cell, exact: found.exact, solid };
-            report.sides += 1;
+        if let Some(place) = union.get_mut(report.cells) {
+            *place = SurfaceCell { cell: c as u32, area, kept };
+            report.cells += 1;
         }
     }
     report
+}
+
+/// The areas of the union in a cell, which is added to the report.
+fn area_of<R: Real>(
+    surface: &CellSurface<R>,
+    c: usize,
+    report: &mut AreaReport<R>,
+    sides: &mut [CellSides<R>],
+) -> SurfaceArea<R> {
+    let sum = surface.sum();
+    if !(sum.wetted > R::ZERO) {
+        return sum;
+    }
+    report.sum = report.sum.plus(sum);
+    if surface.bodies != Bodies::Several {
+        return sum;
+    }
+    let found = surface.of_union();
+    let mut area = found.area.plus(surface.sheets);
+    if found.doubt > R::ZERO {
+        report.unproved += 1;
+        report.max_doubt = report.max_doubt.max(found.doubt);
+    }
+    let solid = found.sides.filter(|_| surface.in_plane > R::ZERO);
+    if solid.is_none() {
+        area.wetted += surface.in_plane;
+    }
+    if let Some(place) = sides.get_mut(report.sides).filter(|_| solid.is_some() || !found.exact) {
+        *place = CellSides { cell: c as u32, exact: found.exact, solid };
+        report.sides += 1;
+    }
+    area
 }
 
 impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
@@ -238,7 +260,7 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
 
     fn wants_union(&self, cell: usize) -> bool {
         let shared = |s: &CellSurface<V::Scalar>| s.bodies == Bodies::Several && s.inside.wetted > V::Scalar::ZERO;
-        self.cells().get(cell).is_some_and(shared)
+        self.cell(cell).is_some_and(shared)
     }
 
     fn settle(&mut self, (number, cell): (usize, Aabb<V>), solid: V::Scalar) -> bool {
@@ -337,10 +359,10 @@ fn parts_of<V: Vector, O: OtherBodies<V>>(
     for k in 0..2 {
         let part = Site { grid: &grid, bins: &bins, k, areas: true, halvings: site.halvings.checked_sub(3)? };
         layer.clear();
-        let mut cells = [CellSurface::default(); 4];
-        let mut pieces = LayerSurface::new(&mut cells, PieceMemory::default());
+        let (mut numbers, mut cells) = ([0; 4], [CellSurface::default(); 4]);
+        let mut pieces = LayerSurface::new(&mut numbers, &mut cells, PieceMemory::default());
         solid_bounds(shared, &part, &mut layer, &mut scratch, spare.reborrow(), &mut pieces, |_, _| ());
-        for (n, surface) in cells.iter().enumerate() {
+        for (n, surface) in pieces.cells() {
             if layer.lower.cell.get(n).is_none_or(|&lower| lower >= V::Scalar::ONE) {
                 continue;
             }
