@@ -203,6 +203,12 @@ fn frontal_area_without_force_is_told() {
     let meant = solved(&at, &channel("bars.toml", "[drag]\nlaw = \"none\""), "none", &[]);
     assert!(!stderr(&meant).contains("exert no force"), "{}", stderr(&meant));
     assert!(loss(&at, "none").abs() < 0.05);
+    // The faces show a body that is wider than cells, and its pressure is a force.
+    let tank = "[[solid]]\nshape = \"cylinder\"\nfrom = [5, 1.5, -1]\nto = [5, 1.5, 4]\nradius = 1.3\n";
+    fs::write(at.file("tank.toml"), tank).expect("written");
+    let fine = channel("tank.toml", "").replace("cells = [20]", "cells = [100]").replace("cells = [6]", "cells = [30]");
+    let seen = stderr(&solved(&at, &fine.replace("end = 2", "max_steps = 1"), "tank", &[]));
+    assert!(!seen.contains("exert no force"), "{seen}");
 }
 
 /// Two tanks with a thin wall between them.

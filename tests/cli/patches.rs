@@ -41,6 +41,33 @@ fn a_vent_lets_pressure_out() {
     assert!(stderr(&other).contains("its boundary differs"), "{}", stderr(&other));
 }
 
+/// Faces count whose middles a box holds; that their area is another one than that of the box is told, and what overpressures are counted from.
+#[test]
+fn a_vent_between_planes_is_told() {
+    let at = Scratch::new();
+    let said = |from: f64, more: &str| {
+        let (low, high) = (from, from + 0.5);
+        let vent = format!(
+            "[[boundary.patch]]\nside = \"x_max\"\nmin = [0, {low}, {low}]\nmax = [2, {high}, {high}]\ntype = \"outlet\"\np = 1e5\n\
+             [time]\nmax_steps = 1\n[output]\n{more}\n"
+        );
+        stderr(&solved(&at, &chamber(&vent, "rho = 1.2, p = 1e5", ""), "out", &["--force"]))
+    };
+    let told = said(0.25, "");
+    assert!(told.contains("boundary.patch[0]") && told.contains("0.36 m²") && told.contains("0.25 m²"), "{told}");
+    assert!(!said(0.2, "").contains("m² of the side"));
+    let low = |more: &str| {
+        let case = chamber(
+            "",
+            "rho = 1.2, p = 1e5 }\nregions = [{ max = [1], p = 5e4 }]\n#",
+            "[time]\nmax_steps = 1\n[output]\n",
+        );
+        stderr(&solved(&at, &format!("{case}{more}"), "out", &["--force"]))
+    };
+    assert!(low("maxima = {}").contains("counted from 50000 Pa"), "{}", low("maxima = {}"));
+    assert!(!low("maxima = {}\nambient = 1e5").contains("counted from") && !low("").contains("counted from"));
+}
+
 /// Gas is blown through a nozzle in one wall and leaves through an opening in the opposite one: in the end as much as the nozzle gives.
 #[test]
 fn a_nozzle_blows_what_it_should() {

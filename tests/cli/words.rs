@@ -153,7 +153,9 @@ fn a_reservoir_feeds_what_the_pressure_inside_draws() {
     refused("uniform = { rho = 1", "uniform = { gamma = 1.3, rho = 1", "key boundary.x_min: a reservoir is of one gas");
     refused("\"reservoir\"", "\"reservior\"", "did you mean reservoir?");
     refused("\"reservoir\"", "\"stagnation\"", "did you mean reservoir?");
-    refused("\"reservoir\"", "\"open\"", "did you mean far-field?");
+    for word in ["open", "vent", "atmosphere"] {
+        refused("\"reservoir\"", &format!("\"{word}\""), "did you mean outlet?");
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::picture::ticks::number as short;
 use crate::picture::ticks::part;
 use crate::porosity::divided::{DividedCells, Division};
 use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
-use crate::porosity::resistance::{Resistance, resistance, shadows};
+use crate::porosity::resistance::{Resistance, resistance, shadows, unseen_frontal_area};
 use crate::porosity::shadows::{HIDDEN, Shadows};
 use crate::porosity::snap;
 use crate::porosity::throat::{self, Faces};
@@ -33,6 +33,8 @@ pub struct Wanted {
 pub struct Obstacles {
     /// The obstacles of every cell.
     pub resistance: Option<Resistance>,
+    /// Frontal area along x, y and z in m² that no face shows, if the obstacles are known.
+    pub unseen: [f64; 3],
     /// Their drag.
     pub drag: Option<ObstacleDrag>,
     /// Faces lowered to what passes.
@@ -54,6 +56,7 @@ pub fn obstacles(
     if wanted.resistance || wanted.drag.is_some() {
         let obstacles = progress.stage("resistance", |_| resistance(grid, bodies, result, options));
         warn_of_doubt(bodies, &obstacles, progress);
+        found.unseen = unseen_frontal_area(grid, &result.beta, &obstacles, wanted.faces);
         found.resistance = Some(obstacles);
     }
     let shadows = match &found.resistance {
@@ -184,14 +187,16 @@ pub fn digits_of_areas(bodies: &Bodies) -> i32 {
     if bodies.bodies.iter().any(|body| body.triangles.is_empty()) { 3 } else { 6 }
 }
 
+/// A smaller share of the frontal area than this, without force, is not worth a word: the rims of bodies that are wider than cells.
+const LEAST_UNSEEN: f64 = 0.02;
+
 /// Say how much stands in the way of a flow and exerts no force.
-pub fn warn_of_no_force(bodies: &Bodies, found: &Resistance, progress: &mut Progress) {
-    let area = found.totals.frontal_area;
-    if area.iter().any(|&a| a > 0.0) {
-        let [x, y, z] = area.map(|a| part(a, found.totals.wetted_area, digits_of_areas(bodies)));
+pub fn warn_of_no_force(bodies: &Bodies, (found, unseen): (&Resistance, [f64; 3]), progress: &mut Progress) {
+    if unseen.iter().zip(found.totals.frontal_area).any(|(unseen, all)| *unseen > LEAST_UNSEEN * all) {
+        let [x, y, z] = unseen.map(|a| part(a, found.totals.wetted_area, digits_of_areas(bodies)));
         progress.warn(format!(
-            "{}: {x}, {y}, {z} m² of frontal area along x, y, z lie inside cells and exert no force: [drag] law = \"pdr\" or \"bluff\" gives \
-             them one, law = \"none\" says that it is meant so",
+            "{}: {x}, {y}, {z} m² of frontal area along x, y, z lie inside cells, where no face shows them, and exert no force: [drag] law = \"pdr\" \
+             or \"bluff\" gives them one, law = \"none\" says that it is meant so",
             bodies.files()
         ));
     }

@@ -104,7 +104,7 @@ pub fn meant(typed: &str, known: &[&str]) -> String {
 }
 
 /// Words that others use, and ours.
-const OTHERS_SAY: [(&str, &str); 26] = [
+const OTHERS_SAY: [(&str, &str); 31] = [
     ("pipe", "cylinder"),
     ("tube", "cylinder"),
     ("rod", "cylinder"),
@@ -120,7 +120,12 @@ const OTHERS_SAY: [(&str, &str); 26] = [
     ("mesh", "file"),
     ("outflow", "outlet"),
     ("inflow", "inlet"),
-    ("open", "far-field"),
+    ("open", "outlet"),
+    ("opening", "outlet"),
+    ("vent", "outlet"),
+    ("ambient", "outlet"),
+    ("atmosphere", "outlet"),
+    ("pressure-outlet", "outlet"),
     ("stagnation", "reservoir"),
     ("total-pressure", "reservoir"),
     ("freestream", "far-field"),

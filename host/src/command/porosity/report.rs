@@ -145,10 +145,10 @@ impl Report {
             skipped.push("bound fields: not asked for (--bounds-fields)");
         }
         if obstacles.resistance.is_none() {
-            skipped.push("frontal and wetted areas: not asked for (--resistance)");
+            skipped.push("frontal and wetted areas, walls between planes: not asked for (--resistance)");
         }
         if result.cells.ambiguous == 0 {
-            skipped.push("unions: no cell is shared by bodies");
+            skipped.push("unions: there is none to find in any cell");
         }
         Report {
             version: env!("CARGO_PKG_VERSION"),
@@ -201,7 +201,7 @@ impl Report {
         }
         progress.say(format!("solid volume  {} m³", measure(self.solid_volume)));
         progress.say(format!(
-            "cells         {} open, {} cut, {} closed; {} shared by bodies",
+            "cells         {} open, {} cut, {} closed; {} with a union of bodies to find",
             c.open, c.cut, c.closed, c.ambiguous
         ));
         if let Some(ObstacleReport { totals, .. }) = &self.obstacles {

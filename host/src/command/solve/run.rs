@@ -187,6 +187,7 @@ impl<'a, const D: usize> Run<'a, D> {
     ) -> Result<Self> {
         let output = &file.case.output;
         let ambient = ambient(file, &setup);
+        warn_of_low_ambient(file, ambient, progress);
         let mut maxima = maxima(file, &setup, ambient);
         let fingerprint = fingerprint(&setup, maxima.as_ref(), ambient);
         let watched = Watched::new(file, &setup, progress)?;
@@ -418,6 +419,18 @@ fn duration(seconds: f64) -> String {
 /// The pressure that overpressures are counted from.
 fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> f64 {
     file.case.output.ambient.unwrap_or_else(|| lowest_pressure(&setup.flow))
+}
+
+/// Say that overpressures are counted from less than the pressure around, if no other one was asked for and there are any.
+fn warn_of_low_ambient(file: &CaseFile, ambient: f64, progress: &mut Progress) {
+    let (initial, output) = (&file.case.initial, &file.case.output);
+    let around = initial.uniform.as_ref().and_then(|state| state.p).filter(|p| ambient < *p * (1.0 - 1e-9));
+    if let Some(around) = around.filter(|_| output.ambient.is_none() && output.maxima.is_some()) {
+        let reason = format!(
+            "not given: overpressures are counted from {ambient} Pa, the lowest pressure at the beginning, not from the {around} Pa of initial.uniform"
+        );
+        progress.warn(file.remark("output.ambient", reason));
+    }
 }
 
 /// What the checkpoint of a run must share with it: what decides its flow, and what its largest values are counted from.

@@ -11,6 +11,7 @@ use crate::command::progress::Progress;
 use crate::error::Result;
 use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
+use crate::picture::ticks::number as short;
 use serde::Serialize;
 use voidage_core::flow::{Boundary, Patch, Primitive};
 
@@ -202,6 +203,25 @@ fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
     }
 }
 
+/// A patch whose faces miss its box by more than this share of it is told.
+const MISSED_AREA: f64 = 0.02;
+
+/// The area of the side that the box of a patch holds, and that of the faces that it covers, solids and other patches aside.
+fn areas_of<const D: usize>(patch: &Patch<f64, D>, keys: &StateKeys, edges: &Edges, live: [usize; D]) -> [f64; 2] {
+    let across = edges.across(&live);
+    let mut areas = [across; 2];
+    for (d, &a) in live.iter().enumerate().filter(|(d, _)| *d != patch.axis) {
+        let planes = &edges.0[a];
+        let ends = [planes[0], planes[planes.len() - 1]];
+        let end = |list: &Option<Vec<f64>>, side: usize| {
+            list.as_ref().and_then(|list| list.get(a)).map_or(ends[side], |at| at.clamp(ends[0], ends[1]))
+        };
+        areas[0] *= (end(&keys.max, 1) - end(&keys.min, 0)).max(0.0);
+        areas[1] *= planes[patch.end[d].min(planes.len() - 1)] - planes[patch.first[d].min(planes.len() - 1)];
+    }
+    areas
+}
+
 /// What the patches of a flow came to; those that cover nothing are told.
 pub fn report<const D: usize>(
     file: &CaseFile,
@@ -224,6 +244,15 @@ pub fn report<const D: usize>(
         };
         if !trouble.is_empty() {
             progress.warn(file.remark(&format!("boundary.patch[{n}]"), trouble));
+        }
+        let [asked, covered] = areas_of(patch, keys, edges, live);
+        if area > 0.0 && (covered - asked).abs() > MISSED_AREA * asked {
+            let reason = format!(
+                "the faces whose middles its box holds have {} m² of the side, the box itself {} m²: its sides belong into planes of the grid",
+                short(covered),
+                short(asked)
+            );
+            progress.warn(file.remark(&format!("boundary.patch[{n}]"), reason));
         }
         // Numbers of a box stand for x, y and z, also where one of them is along the axis of the side.
         let numbers = [&keys.min, &keys.max].into_iter().flatten().map(Vec::len).max().unwrap_or(AXES.len());

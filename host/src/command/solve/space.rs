@@ -150,7 +150,7 @@ fn from_scene<const D: usize>(
     // What has a drag of its own has told what it resists; of the others it is asked.
     let all_have_one = bodies.bodies.iter().all(|body| body.porosity > 0.0 || has_own(body));
     if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none() && !all_have_one) {
-        warn_of_no_force(&bodies, resistance, progress);
+        warn_of_no_force(&bodies, (resistance, found.unseen), progress);
     }
     if !silent && wanted.drag.is_none() {
         warn_of_gratings(&bodies, progress);
