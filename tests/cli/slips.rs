@@ -84,6 +84,28 @@ fn lists_of_a_case_hold_nothing_twice() {
     fails(&output, 1, &["line 19, column 1: key porosity: the solids fill the whole grid: there is no gas to flow"]);
 }
 
+/// Units of others in a scene: radians, and millimetres that fill the whole grid.
+#[test]
+fn angles_in_radians_and_pipes_in_millimetres_are_told() {
+    let at = Scratch::new();
+    let said = |solid: &str| {
+        let grid = "[grid]\norigin = [0, 0, 0]\nspacing = [0.5, 0.5, 0.5]\ncells = [4, 4, 4]\n";
+        fs::write(at.file("s.toml"), format!("{grid}[[solid]]\nname = \"one\"\n{solid}\n")).expect("a scene");
+        stderr(&run(&at, &["porosity", "s.toml"]))
+    };
+    let bend = |angle: &str| {
+        said(&format!(
+            "shape = \"torus\"\ncenter = [1, 1, 1]\naxis = \"z\"\nstart = \"x\"\nradius = 0.5\ntube = 0.1\nangle = {angle}"
+        ))
+    };
+    assert!(bend("1.5708").contains("\"one\": angle: 1.5708 is 90° in radians"), "{}", bend("1.5708"));
+    assert!(!bend("90").contains("radians") && !bend("2").contains("radians"));
+    let block = "shape = \"box\"\nmin = [0.6, 0.6, 0.6]\nmax = [1.2, 1.3, 1.4]\nrotate = { axis = \"z\", angle = ";
+    assert!(said(&format!("{block}0.785 }}")).contains("rotate.angle: 0.785 is 45° in radians"));
+    let pipe = "shape = \"cylinder\"\nfrom = [-100, 1, 1]\nto = [200, 1, 1]\nradius = 100";
+    assert!(said(pipe).contains("every cell is closed"), "{}", said(pipe));
+}
+
 #[test]
 fn slips_in_studies_have_lines() {
     let at = Scratch::new();

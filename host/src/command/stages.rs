@@ -141,6 +141,9 @@ pub fn measure(
         let bar = p.bar("porosity", layers);
         porosity::porosity_watched(&grid, bodies, options, &|| bar.step())
     });
+    if result.cells.open == 0 && result.cells.cut == 0 {
+        progress.warn(format!("{}: every cell is closed: nothing is open in the whole grid", bodies.files()));
+    }
     report_leaks(bodies, &result, progress);
     report_sheets(bodies, result.sheets_off_planes, progress);
     if options.leaf != Leaf::Plane && result.subdivided == 0 {

@@ -144,7 +144,7 @@ impl Standing<'_> {
             shape,
             porosity: 0.0,
             drag: OwnDrag::default(),
-            placement: Placement { turn: None, translate: DVec3::ZERO, count: [1; 3], step: DVec3::ZERO },
+            placement: Placement { turn: None, angle: 0.0, translate: DVec3::ZERO, count: [1; 3], step: DVec3::ZERO },
         };
         load::add(&Scene { path: PathBuf::new(), solids: shapes.map(solid).collect(), grid: None }, &mut bodies)?;
         let usual = self.scene.map_or_else(Options::default, |scene| scene.options);

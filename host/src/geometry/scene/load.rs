@@ -32,6 +32,14 @@ pub fn add(scene: &Scene, bodies: &mut Bodies) -> Result<()> {
                 "{scene}: solid \"{name}\": array: its copies along {axis} lie upon each other: step is 0 along {axis}"
             ));
         }
+        for (key, angle) in [("rotate.angle", solid.placement.angle), ("angle", solid.shape.angle())] {
+            if let Some(degrees) = radians_of(angle) {
+                let (scene, name) = (scene.path.display(), &solid.name);
+                bodies.warnings.push(format!(
+                    "{scene}: solid \"{name}\": {key}: {angle} is {degrees}° in radians; angles are in degrees"
+                ));
+            }
+        }
         if solid.porosity == 1.0 && solid.drag.cr.is_none_or(|cr| cr == 0.0) {
             let (scene, name) = (scene.path.display(), &solid.name);
             bodies.warnings.push(format!(
@@ -54,6 +62,15 @@ pub fn add(scene: &Scene, bodies: &mut Bodies) -> Result<()> {
         });
     }
     Ok(())
+}
+
+/// The degrees of an angle that looks like radians: a multiple of 30° or 45° to a thousandth.
+fn radians_of(angle: f64) -> Option<f64> {
+    let degrees = angle.to_degrees();
+    let round = [30.0, 45.0].map(|step| (degrees / step).round() * step);
+    round
+        .into_iter()
+        .find(|round| *round != 0.0 && round.abs() <= 360.0 && (degrees - round).abs() <= 1e-3 * round.abs())
 }
 
 fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<()> {

@@ -14,6 +14,8 @@ pub const MOST_COPIES: usize = 1_000_000;
 pub struct Placement {
     /// Rotation about the solid's own centre, if any.
     pub turn: Option<DMat3>,
+    /// The angle of that, in degrees.
+    pub angle: f64,
     /// Then it is moved by this.
     pub translate: DVec3,
     /// Copies along x, y and z.
@@ -65,11 +67,12 @@ impl Placement {
     /// # Errors
     /// A key of the wrong kind, an axis without direction, more copies than can be.
     pub fn read(keys: &mut StrictTable) -> Result<Self> {
-        let turn = keys.table("rotate")?.map(|mut k| rotation(&mut k)).transpose()?;
+        let rotation = keys.table("rotate")?.map(|mut k| rotation(&mut k)).transpose()?;
+        let (turn, angle) = (rotation.map(|(turn, _)| turn), rotation.map_or(0.0, |(_, angle)| angle));
         let translate = keys.get("translate", table::point)?.unwrap_or(DVec3::ZERO);
         let (count, step) =
             keys.table("array")?.map(|mut k| array(&mut k)).transpose()?.unwrap_or(([1; 3], DVec3::ZERO));
-        Ok(Placement { turn, translate, count, step })
+        Ok(Placement { turn, angle, translate, count, step })
     }
 
     /// Number of copies, the first included.
@@ -97,7 +100,8 @@ impl Placement {
     }
 }
 
-fn rotation(keys: &mut StrictTable) -> Result<DMat3> {
+/// A rotation, and its angle in degrees.
+fn rotation(keys: &mut StrictTable) -> Result<(DMat3, f64)> {
     let axis = keys.need("axis", axis)?;
     let angle = keys.need("angle", table::number)?;
     keys.finish()?;
@@ -105,7 +109,7 @@ fn rotation(keys: &mut StrictTable) -> Result<DMat3> {
     if !(largest > 0.0) {
         return Err(keys.wrong("axis", "has no direction"));
     }
-    Ok(matrix((axis / largest).normalize(), angle))
+    Ok((matrix((axis / largest).normalize(), angle), angle))
 }
 
 /// Three numbers, or the name of a coordinate axis.

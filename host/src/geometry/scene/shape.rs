@@ -169,6 +169,15 @@ impl Shape {
         }
     }
 
+    /// The angle that it has, in degrees; 360 of a shape without.
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        match self {
+            Shape::Torus(TorusShape { angle, .. }) => *angle,
+            _ => 360.0,
+        }
+    }
+
     /// Its name in scene files.
     #[must_use]
     pub fn name(&self) -> &'static str {
