@@ -254,7 +254,16 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &G
         ));
     }
     let outside = |[min, max]: [DVec3; 2]| (min - near).cmpgt(hi).any() || (max + near).cmplt(lo).any();
-    let solids = bodies.solids.iter().filter(|s| outside(s.bounds)).map(|s| format!("solid \"{}\"", s.name));
+    let solid = |s: &SolidSummary| {
+        let own = &bodies.bodies[s.bodies.clone()];
+        let copies = own.chunks((own.len() / s.copies.max(1)).max(1));
+        match copies.filter(|copy| copy.iter().all(|body| outside(body.bounds))).count() {
+            _ if outside(s.bounds) => Some(format!("solid \"{}\"", s.name)),
+            0 => None,
+            count => Some(format!("{count} of the {} copies of solid \"{}\"", s.copies, s.name)),
+        }
+    };
+    let solids = bodies.solids.iter().filter_map(solid);
     let files = bodies.diagnoses.iter().filter(|d| outside(d.bounds)).map(|d| d.file.clone());
     let names: Vec<String> = if bodies.solids.is_empty() { files.collect() } else { solids.collect() };
     if let Some(names) = listed(&names) {
