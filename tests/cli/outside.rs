@@ -46,7 +46,7 @@ fn solids_outside_are_named() {
 fn copies_outside_are_told() {
     let ball = "[[solid]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0.5, 0.5, 0.5]\nradius = 0.1\n";
     let text = said(&format!("{ball}array = {{ count = [3, 1, 1], step = [0.9, 0, 0] }}\n"));
-    assert!(text.contains("1 of the 3 copies of solid \"ball\": outside the grid"), "{text}");
+    assert!(text.contains("2 of the 3 copies of solid \"ball\": outside the grid"), "{text}");
     let text = said(&format!("{ball}array = {{ count = [3, 1, 1], step = [0.2, 0, 0] }}\n"));
     assert!(!text.contains("outside the grid"), "{text}");
     let text = said(&format!("{ball}translate = [5, 0, 0]\narray = {{ count = [2, 1, 1], step = [2, 0, 0] }}\n"));
