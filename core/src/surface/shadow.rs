@@ -42,10 +42,11 @@ pub struct ShadowMemory<'a, R: Real> {
 /// The shadows of the solids in the cells of a layer along x, y and z, `ny*nx` each, x fastest.
 #[derive(Debug)]
 pub struct ShadowSlices<'a, R> {
-    /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it. Zeros before.
+    /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it. Zeros before, or
+    /// what an earlier call has written for the same layer.
     pub share: [&'a mut [R]; 3],
     /// Where, in widths of the cell from its middle, −½ to ½: the mean place of the surface inside, each part counted by its area as seen along the
-    /// axis. Zero where lines that meet solid do so on a side of the cell. Zeros before.
+    /// axis. Zero where lines that meet solid do so on a side of the cell. Zeros before, likewise.
     pub place: [&'a mut [R]; 3],
 }
 

@@ -422,7 +422,7 @@ impl<'a, R: Real> LayerSurface<'a, R> {
         self.cells.cells.get(self.cells.place(cell)?)
     }
 
-    /// The same, to add to it.
+    /// The same, to be changed.
     pub fn cell_mut(&mut self, cell: usize) -> Option<&mut CellSurface<R>> {
         let place = self.cells.place(cell)?;
         self.cells.cells.get_mut(place)

@@ -24,7 +24,7 @@ pub struct Wanted {
     pub drag: Option<(DragLaw, DragCoefficients)>,
     /// What faces mean.
     pub faces: Faces,
-    /// A warning of hidden passages, even if nothing else needs their search.
+    /// Warnings of what a flow does not see: hidden passages, even if nothing else needs their search, and area without force.
     pub warning: bool,
 }
 
@@ -33,7 +33,7 @@ pub struct Wanted {
 pub struct Obstacles {
     /// The obstacles of every cell.
     pub resistance: Option<Resistance>,
-    /// Frontal area along x, y and z in m² that no face shows, if the obstacles are known.
+    /// Frontal area along x, y and z in m² that no face shows, if the obstacles are known and warnings wanted.
     pub unseen: [f64; 3],
     /// Their drag.
     pub drag: Option<ObstacleDrag>,
@@ -56,7 +56,9 @@ pub fn obstacles(
     if wanted.resistance || wanted.drag.is_some() {
         let obstacles = progress.stage("resistance", |_| resistance(grid, bodies, result, options));
         warn_of_doubt(bodies, &obstacles, progress);
-        found.unseen = unseen_frontal_area(grid, &result.beta, &obstacles, wanted.faces);
+        if wanted.warning {
+            found.unseen = unseen_frontal_area(grid, &result.beta, &obstacles, wanted.faces);
+        }
         found.resistance = Some(obstacles);
     }
     let shadows = match &found.resistance {

@@ -84,17 +84,11 @@ fn alone(cells: &[SurfaceCell<f64>]) -> Vec<(usize, u32)> {
 impl Alone {
     /// The cells of a layer that one body has for itself, and all beside such, in ascending order.
     fn cells_about(&self, grid: &Grid<f64>, k: usize) -> Vec<usize> {
-        let [nx, ny, _] = grid.cells();
-        let of_layer = |k: usize| self.0.get(k).into_iter().flatten().map(|(c, _)| *c);
-        let mut found: Vec<usize> = of_layer(k.wrapping_sub(1)).chain(of_layer(k + 1)).collect();
-        for c in of_layer(k) {
-            let (i, j) = (c % nx, c / nx);
-            found.push(c);
-            found.extend((i > 0).then(|| c - 1));
-            found.extend((i + 1 < nx).then_some(c + 1));
-            found.extend((j > 0).then(|| c - nx));
-            found.extend((j + 1 < ny).then_some(c + nx));
-        }
+        let nx = grid.cells()[0];
+        let of_layer = |k: usize| self.0.get(k).into_iter().flatten().map(move |(c, _)| [c % nx, c / nx, k]);
+        let near = [k.wrapping_sub(1), k, k + 1].into_iter().flat_map(of_layer);
+        let about = near.flat_map(|at| std::iter::once(at).chain(neighbours(grid, at)));
+        let mut found: Vec<usize> = about.filter(|at| at[2] == k).map(|[i, j, _]| j * nx + i).collect();
         found.sort_unstable();
         found.dedup();
         found
@@ -102,15 +96,10 @@ impl Alone {
 
     /// The bodies that have the cells beside a cell for themselves, each once.
     fn beside(&self, grid: &Grid<f64>, at: [usize; 3]) -> Vec<u32> {
-        let cells = grid.cells();
-        let mut found = Vec::new();
-        for (axis, up) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
-            let mut next = at;
-            next[axis] = if up { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
-            if next[axis] < cells[axis] {
-                let body = self.body(next[2], next[1] * cells[0] + next[0]);
-                found.extend(body.filter(|body| !found.contains(body)));
-            }
+        let (nx, mut found) = (grid.cells()[0], Vec::new());
+        for [i, j, k] in neighbours(grid, at) {
+            let body = self.body(k, j * nx + i);
+            found.extend(body.filter(|body| !found.contains(body)));
         }
         found
     }
@@ -121,6 +110,16 @@ impl Alone {
         let at = layer.binary_search_by_key(&cell, |(c, _)| *c).ok()?;
         layer.get(at).map(|(_, body)| *body)
     }
+}
+
+/// The cells of the grid that share a side with one.
+fn neighbours(grid: &Grid<f64>, at: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let cells = grid.cells();
+    (0..3).flat_map(|axis| [(axis, false), (axis, true)]).filter_map(move |(axis, up)| {
+        let mut next = at;
+        next[axis] = if up { at[axis] + 1 } else { at[axis].checked_sub(1)? };
+        (next[axis] < cells[axis]).then_some(next)
+    })
 }
 
 /// The form of a body that is known by it alone and not bounded by planes.

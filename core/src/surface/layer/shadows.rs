@@ -22,9 +22,9 @@ impl<V: Vector> Layers<'_, V> {
     }
 
     /// The shadows of the union in the cells of layer `k`, and how many cells hold more than the memory: what is given for them are the blocked
-    /// shares of their sides. `open` holds the layer's open fractions, `cells` what [`Layers::finish_areas`] has finished: where areas
-    /// prove that no surface hides behind what a side of the cell shows, nothing is searched. Of surface that was not kept, pieces are cut again.
-    /// Sheets cast shadows.
+    /// shares of their sides. `open` holds the layer's open fractions; the known surface is that of [`Layers::layer_and_areas`], its areas finished by
+    /// [`Layers::finish_areas`]: where these prove that no surface hides behind what a side of the cell shows, nothing is searched. Pieces that were not
+    /// kept are cut again. Sheets cast shadows.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length, too few lists.

@@ -146,7 +146,7 @@ pub fn setup<const D: usize>(
     let solids =
         (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed, !space::given_otherwise(file)));
     let regions = region_report::report(file, (&flow, &parts), &edges, live, progress)?;
-    let patches = sides::report(file, &flow, &edges, live, progress);
+    let patches = sides::report(file, &flow, &edges, live, progress)?;
     Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, pushed, solids, skipped })
 }
 

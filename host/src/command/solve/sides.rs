@@ -207,17 +207,13 @@ fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
 const MISSED_AREA: f64 = 0.02;
 
 /// The area of the side that the box of a patch holds, and that of the faces that it covers, solids and other patches aside.
-fn areas_of<const D: usize>(patch: &Patch<f64, D>, keys: &StateKeys, edges: &Edges, live: [usize; D]) -> [f64; 2] {
-    let across = edges.across(&live);
-    let mut areas = [across; 2];
+fn areas_of<const D: usize>(patch: &Patch<f64, D>, region: &Region, edges: &Edges, live: [usize; D]) -> [f64; 2] {
+    let mut areas = [edges.across(&live); 2];
     for (d, &a) in live.iter().enumerate().filter(|(d, _)| *d != patch.axis) {
         let planes = &edges.0[a];
-        let ends = [planes[0], planes[planes.len() - 1]];
-        let end = |list: &Option<Vec<f64>>, side: usize| {
-            list.as_ref().and_then(|list| list.get(a)).map_or(ends[side], |at| at.clamp(ends[0], ends[1]))
-        };
-        areas[0] *= (end(&keys.max, 1) - end(&keys.min, 0)).max(0.0);
-        areas[1] *= planes[patch.end[d].min(planes.len() - 1)] - planes[patch.first[d].min(planes.len() - 1)];
+        let [low, high] = region.extent(a).map(|at| at.clamp(planes[0], planes[planes.len() - 1]));
+        areas[0] *= high - low;
+        areas[1] *= planes[patch.end[d]] - planes[patch.first[d]];
     }
     areas
 }
@@ -229,7 +225,7 @@ pub fn report<const D: usize>(
     edges: &Edges,
     live: [usize; D],
     progress: &mut Progress,
-) -> Vec<PatchReport> {
+) -> Result<Vec<PatchReport>> {
     let across = edges.across(&live);
     let mut all = Vec::new();
     for (n, (patch, keys)) in flow.patches.iter().zip(&file.case.boundary.patch).enumerate() {
@@ -245,7 +241,8 @@ pub fn report<const D: usize>(
         if !trouble.is_empty() {
             progress.warn(file.remark(&format!("boundary.patch[{n}]"), trouble));
         }
-        let [asked, covered] = areas_of(patch, keys, edges, live);
+        let region = Region::new(file, &format!("boundary.patch[{n}]"), keys)?;
+        let [asked, covered] = areas_of(patch, &region, edges, live);
         if area > 0.0 && (covered - asked).abs() > MISSED_AREA * asked {
             let reason = format!(
                 "the faces whose middles its box holds have {} m² of the side, the box itself {} m²: its sides belong into planes of the grid",
@@ -271,5 +268,5 @@ pub fn report<const D: usize>(
             area,
         });
     }
-    all
+    Ok(all)
 }
