@@ -542,6 +542,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// One step of `dt`, whatever its stability. Returns what it did.
+    ///
+    /// # Errors
+    /// The state is unphysical, or `dt` is negative or not finite.
     pub fn step(&mut self, dt: R) -> Result<Report<R, D>, Error> {
         self.rate()?;
         let report = self.attempt(dt)?;
@@ -566,6 +569,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// One stable step that does not pass `end`; a step that would need floors is repeated with less.
+    ///
+    /// # Errors
+    /// As [`Flow::stable_dt`] and [`Flow::step`]; `end` lies before the time reached, or one of them is NaN; or a stable step is too short to advance the time.
     pub fn advance(&mut self, cfl: R, end: R) -> Result<R, Error> {
         let longest = self.stable_dt(cfl)?;
         let done = stable_step(self.time, end, longest, |dt| self.attempt(dt))?;
@@ -574,8 +580,15 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         Ok(done.dt)
     }
 
-    /// Stable steps until `end`.
+    /// Stable steps until `end`; none, if that is not after the time reached.
+    ///
+    /// # Errors
+    /// As [`Flow::advance`], and where no step is left to do, too.
     pub fn run(&mut self, cfl: R, end: R) -> Result<(), Error> {
+        // A comparison with NaN would end the loop before it begins.
+        if !(cfl > R::ZERO) || self.time.partial_cmp(&end).is_none() {
+            return Err(Error::Step);
+        }
         while self.time < end {
             self.advance(cfl, end)?;
         }

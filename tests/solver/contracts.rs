@@ -3,7 +3,7 @@
 use voidage::flow::Flow;
 use voidage_core::flow::{
     Boundary, Conserved, Drag, Error, Fields, FieldsMut, Fractions, Gas, Merging, Mesh, Primitive, Problem, Report,
-    Treatment, cluster_scratch, prepare, scratch_needed,
+    Treatment, cluster_scratch, prepare, scratch_needed, stable_step,
 };
 use voidage_tests::euler::hostile::{Calls, any_calls_from_bytes};
 use voidage_tests::euler::property::Source;
@@ -264,8 +264,25 @@ fn a_run_that_cannot_advance_ends_with_an_error() {
     flow.fill(|_| Primitive { density: 1.2, velocity: [0.0; 2], pressure: 1e5 });
     for cfl in [0.0, -0.5, f64::NAN] {
         assert_eq!(flow.run(cfl, 1.0), Err(Error::Step), "CFL number {cfl}");
+        assert_eq!(flow.run(cfl, 0.0), Err(Error::Step), "CFL number {cfl} where no step is left to do");
+        assert_eq!(flow.advance(cfl, 1.0).err(), Some(Error::Step), "CFL number {cfl}");
         assert_eq!((flow.time, flow.steps), (0.0, 0), "CFL number {cfl}");
     }
+    // A time that is no number is neither reached nor passed.
+    assert_eq!(flow.run(0.8, f64::NAN), Err(Error::Step));
+    assert_eq!(flow.advance(0.8, f64::NAN).err(), Some(Error::Step));
+    assert_eq!(flow.advance(0.8, -1.0).err(), Some(Error::Step), "back in time");
+    assert_eq!(flow.step(f64::NAN).err(), Some(Error::Step));
+    let mut asked = 0;
+    let found = stable_step(0.0, f64::NAN, 1e-3, |_| -> Result<Report<f64, 2>, Error> {
+        asked += 1;
+        Ok(Report::new())
+    });
+    assert_eq!((found.err(), asked), (Some(Error::Step), 0));
+    flow.time = f64::NAN;
+    assert_eq!(flow.run(0.8, 1.0), Err(Error::Step));
+    flow.time = 0.0;
+    assert_eq!((flow.time, flow.steps), (0.0, 0));
     // A stable step here is some 1e-4: less than the last digit of the time.
     flow.time = 1e15;
     assert_eq!(flow.run(0.5, 2e15), Err(Error::Stalled));

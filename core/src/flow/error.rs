@@ -51,7 +51,7 @@ pub enum Error {
         /// The axis of the side.
         axis: usize,
     },
-    /// A step that is negative or not finite, or a CFL number that is not positive.
+    /// A step that is negative or not finite, a CFL number that is not positive, or an end of a run that is NaN.
     Step,
     /// A stable step that is too short to advance the time.
     Stalled,
@@ -97,7 +97,9 @@ impl fmt::Display for Error {
                 f.write_str("a reservoir has no place beside a gas of several ratios of specific heats")
             }
             Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
-            Error::Step => f.write_str("the step is negative or not finite, or the CFL number is not positive"),
+            Error::Step => f.write_str(
+                "the step is negative or not finite, the CFL number is not positive, or the end of the run is not a number",
+            ),
             Error::Stalled => f.write_str("a stable step is too short to advance the time"),
             Error::CellFraction { cell } => write!(f, "the open fraction of cell {cell} is not from 0 to 1"),
             Error::FaceFraction { axis, face } => {

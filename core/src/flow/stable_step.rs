@@ -34,13 +34,17 @@ pub struct StableStep<R, const D: usize> {
 /// [`Problem::step`]: crate::flow::Problem::step
 ///
 /// # Errors
-/// Those of `attempt`; and [`Error::Stalled`] before an attempt whose step is too short to advance `time`.
+/// Those of `attempt`; [`Error::Stalled`] before an attempt whose step is too short to advance `time`; and [`Error::Step`] before the first one, if `time` or
+/// `end` is NaN.
 pub fn stable_step<R: Real, const D: usize, E: From<Error>>(
     time: R,
     end: R,
     longest: R,
     mut attempt: impl FnMut(R) -> Result<Report<R, D>, E>,
 ) -> Result<StableStep<R, D>, E> {
+    if end.partial_cmp(&time).is_none() {
+        return Err(Error::Step.into());
+    }
     let left = end - time;
     let (last, mut dt) = match equal_steps(left, longest) {
         Some((steps, dt)) => (steps == R::ONE, dt),
