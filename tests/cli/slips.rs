@@ -432,10 +432,20 @@ fn axes_of_a_grid_are_told_at_their_line() {
             "line 3, column 5: key grid.x: points must ascend: 0 does not lie above 4",
         ),
         ("{ points = [0, nan], cells = [2] }", "points must ascend: nan does not lie above 0"),
+        (
+            "{ points = [0, 1], cells = [-8] }",
+            "line 3, column 5: key grid.x: a segment needs at least one cell, not -8",
+        ),
     ] {
         let (at, grid) = (Scratch::new(), format!("\n[grid]\nx = {x}\n"));
         let told = stderr(&solve(&at, &[&grid, GAS, INITIAL, WALLS, TIME].concat(), "out", &[]));
         assert!(told.contains(said), "{told}");
+    }
+    for wrong in ["0", "-10"] {
+        let cells = format!("\n[grid]\norigin = [0, 0, 0]\nspacing = [1, 1, 1]\ncells = [10, 10, {wrong}]\n");
+        let told = stderr(&solve(&Scratch::new(), &[&cells, GAS, INITIAL, WALLS, TIME].concat(), "out", &[]));
+        let said = format!("line 5, column 18: key grid.cells[2]: must be at least 1, not {wrong}");
+        assert!(told.contains(&said), "{told}");
     }
 }
 

@@ -27,7 +27,8 @@ pub struct GridTable {
     z: Option<AxisSpec>,
     origin: Option<Vec<f64>>,
     spacing: Option<Vec<f64>>,
-    cells: Option<Vec<usize>>,
+    /// Whatever whole numbers were written: what they may be is said here, not by their type.
+    cells: Option<Vec<i64>>,
     /// In place of the grid itself: the file that holds it.
     file: Option<PathBuf>,
 }
@@ -46,7 +47,7 @@ enum AxisSpec {
 #[serde(deny_unknown_fields)]
 pub struct Segments {
     points: Vec<f64>,
-    cells: Vec<usize>,
+    cells: Vec<i64>,
     ratios: Option<Vec<f64>>,
 }
 
@@ -173,15 +174,15 @@ impl GridTable {
                 return Err(wrong(&format!("spacing[{a}]"), format!("takes a finite number above 0, not {h}")));
             }
         }
-        if let Some(a) = cells.iter().position(|&n| n == 0) {
-            return Err(wrong(&format!("cells[{a}]"), "must be at least 1, not 0".into()));
+        if let Some(a) = cells.iter().position(|&n| n < 1) {
+            return Err(wrong(&format!("cells[{a}]"), format!("must be at least 1, not {}", cells[a])));
         }
         few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
             .map_err(|reason| wrong("cells", reason))?;
         Ok(Edges([0, 1, 2].map(|a| match cells.get(a) {
             Some(&n) => {
                 let decimal = decimal(rounding(origin[a], origin[a] + spacing[a] * n as f64));
-                let edge = |i: usize| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64) };
+                let edge = |i: i64| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64) };
                 (0..=n).map(edge).collect()
             }
             None => UNIT_CELL.to_vec(),
@@ -305,8 +306,11 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
     }
     let mut edges = vec![points.first().copied().unwrap_or(0.0)];
     for (ends, (&n, &ratio)) in points.windows(2).zip(cells.iter().zip(&ratios)) {
-        if n == 0 || ratio == 0.0 || !ratio.is_finite() {
-            return Err(format!("a segment needs at least one cell and a ratio other than 0, not {n} and {ratio}"));
+        if n < 1 {
+            return Err(format!("a segment needs at least one cell, not {n}"));
+        }
+        if ratio == 0.0 || !ratio.is_finite() {
+            return Err(format!("a segment needs a ratio other than 0, not {ratio}"));
         }
         let ratio = if ratio < 0.0 { -1.0 / ratio } else { ratio };
         edges.extend((1..=n).map(|i| ends[0] + (ends[1] - ends[0]) * share(i, n, ratio)));
@@ -318,7 +322,7 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
 }
 
 /// Where the `i`-th of `n` cells ends, if lengths grow geometrically and the last is `ratio` times the first.
-fn share(i: usize, n: usize, ratio: f64) -> f64 {
+fn share(i: i64, n: i64, ratio: f64) -> f64 {
     if n == 1 || ratio == 1.0 {
         return i as f64 / n as f64;
     }

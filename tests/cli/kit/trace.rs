@@ -44,6 +44,10 @@ impl<'de> Deserializer<'de> for Ask<'_> {
         visitor.visit_f64(1.0)
     }
 
+    fn deserialize_i64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+        visitor.visit_i64(1)
+    }
+
     fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
         visitor.visit_u64(1)
     }
@@ -101,7 +105,7 @@ impl<'de> Deserializer<'de> for Ask<'_> {
     }
 
     forward_to_deserialize_any! {
-        i8 i16 i32 i64 u16 f32 char bytes byte_buf unit unit_struct newtype_struct tuple_struct map identifier ignored_any
+        i8 i16 i32 u16 f32 char bytes byte_buf unit unit_struct newtype_struct tuple_struct map identifier ignored_any
     }
 }
 
