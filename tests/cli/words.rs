@@ -68,6 +68,29 @@ fn grids_in_json_have_lines() {
     }
     let whole = said(&format!("{begin}  \"z\" : {{ \"points\":[-2.0,2e0] ,\"cells\":[ 4 ]}}\n}}\n"));
     assert!(whole.is_empty(), "{whole}");
+    // JSON has no comments: what other programs write beside the edges is passed over there.
+    let beside = said(&format!("{begin}  \"z\": [-2, 2],\n  \"comment\": \"by hand\",\n  \"nx\": 1\n}}\n"));
+    assert!(beside.is_empty(), "{beside}");
+}
+
+/// TOML has comments: a key that a grid does not have is told there, whatever it is.
+#[test]
+fn other_keys_of_a_grid_in_toml_are_told() {
+    let at = Scratch::new();
+    let grid = at.file("grid.toml");
+    let all = "x = [-2, 2]\ny = [-2, 2]\nz = [-2, 2]\n";
+    for (key, said) in [
+        ("comment", "key comment: not known, ignored; a comment begins with #"),
+        ("name", "key name: not known, ignored"),
+        ("nx", "key nx: not known, ignored"),
+        ("remark", "key remark: not known, ignored"),
+    ] {
+        fs::write(&grid, format!("{all}{key} = \"by hand\"\n")).expect("a grid");
+        let output = ball(&at, &["--grid", grid.to_str().expect("a path")]);
+        let text = stderr(&output);
+        assert!(output.status.success() && text.contains("grid.toml: line 4, column 1: "), "{text}");
+        assert!(text.contains(said), "{text}");
+    }
 }
 
 #[test]

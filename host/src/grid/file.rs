@@ -198,7 +198,7 @@ fn and_are(names: &[&str]) -> String {
 /// Why a grid does not name another file where it may not.
 const FILE_ELSEWHERE: &str = "only the grid of a case of voidage solve may stand in another file: give --grid";
 
-/// Keys that other programs write beside the edges and that say nothing new.
+/// Keys that other programs write beside the edges, in JSON, and that say nothing new.
 const HARMLESS: [&str; 6] = ["nx", "ny", "nz", "uniform", "name", "comment"];
 
 /// A key that is not known, and the key of a grid that lacks it for which it may be a slip of the pen.
@@ -243,14 +243,16 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
             (entry.span.clone(), "this file holds a [grid] among others: a grid file is the grid alone");
         return Err(misfit(&source, (span, reason.into())));
     }
+    let is_harmless = |key: &str| source.is_json() && HARMLESS.contains(&key);
     let strange: Vec<Entry> =
-        entries.extract_if(.., |e| !KEYS.contains(&&e.key[..])).filter(|e| !HARMLESS.contains(&&e.key[..])).collect();
+        entries.extract_if(.., |e| !KEYS.contains(&&e.key[..])).filter(|e| !is_harmless(&e.key)).collect();
     if let Some((entry, key)) = slip(&strange, &entries) {
         let reason = format!("key {} is not known here; did you mean {key}?", entry.key);
         return Err(misfit(&source, (entry.span.clone(), reason)));
     }
     for entry in strange {
-        let meant = meant(&entry.key, &KEYS);
+        let meant =
+            if entry.key == "comment" { "; a comment begins with #".to_owned() } else { meant(&entry.key, &KEYS) };
         let reason = format!("key {}: not known, ignored{meant}", entry.key);
         warnings.push(misfit(&source, (entry.span, reason)).to_string());
     }
