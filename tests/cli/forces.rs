@@ -432,3 +432,35 @@ fn the_last_bits_of_the_porosity_do_not_matter() {
         }
     }
 }
+
+/// Names with commas and quotes head columns in quotes (RFC 4180): those of solids, which stand in another file, of probes and of planes.
+#[test]
+fn names_with_commas_head_columns() {
+    let at = Scratch::new();
+    let scene = cube("tank, north", [0.53, 0.21, 0.17], 0.31) + &cube("3\\\" pipe", [1.43, 0.4, 0.0], 0.2);
+    fs::write(at.file("scene.toml"), scene).expect("written");
+    let output = "[output]\nformats = []\nforces = [\"*\"]\nprobes = [{ name = \"a, b\", at = [2, 0.1, 0.1] }]\n\
+                  monitors = [{ name = 'the \"end\"', x = 2.4 }]\n";
+    let more = |steps: usize| format!("[time]\nmax_steps = {steps}\n{output}");
+    solved(&at, &case(40.0, &more(2)), "out", &["-q"]);
+    solved(&at, &case(40.0, &more(4)), "out", &["-q", "--resume"]);
+    let table = |name: &str| fs::read_to_string(at.file("out").join(name)).expect("a table");
+    for (name, columns) in [
+        ("log.csv", &["\"tank, north force_x\"", "\"3\"\" pipe force_y\"", "others force_z"][..]),
+        ("probes.csv", &["\"a, b rho\"", "\"a, b p\""]),
+        ("monitors.csv", &["\"the \"\"end\"\" mass_flow\""]),
+    ] {
+        let text = table(name);
+        let mut lines = text.lines();
+        let head = lines.next().expect("a head");
+        columns.iter().for_each(|column| assert!(format!(",{head},").contains(&format!(",{column},")), "{head}"));
+        let (mut cells, mut quoted) = (1, false);
+        for c in head.chars() {
+            quoted ^= c == '"';
+            cells += usize::from(c == ',' && !quoted);
+        }
+        assert_eq!(lines.clone().count(), 5, "{name}");
+        assert!(lines.all(|line| line.split(',').count() == cells), "{text}");
+    }
+    assert_eq!(json(&at.file("out/report.json"))["forces"][0]["name"], "tank, north");
+}

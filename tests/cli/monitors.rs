@@ -104,7 +104,7 @@ fn planes_that_are_none_are_refused() {
             "{ name = \"a\", x = 1 }, { name = \"a\", x = 1 }",
             "key output.monitors[1].name: \"a\" is the name of another",
         ),
-        ("{ name = \"a,b\", x = 1 }", "key output.monitors[0].name: needs a name without commas"),
+        ("{ name = \"a\\nb\", x = 1 }", "key output.monitors[0].name: needs a name in one line"),
         ("{ x = 1, min = [0, 1], max = [0, 0] }", "key output.monitors[0].max: must not lie below min: along y"),
     ] {
         let at = Scratch::new();

@@ -4,7 +4,6 @@ use super::case::Case;
 use super::{arrays, places, ranges};
 use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
-use crate::files::csv::needs_quotes;
 use crate::grid::Edges;
 use crate::grid::file;
 use crate::keys::reader::misfit;
@@ -125,8 +124,8 @@ impl CaseFile {
         if name.is_empty() {
             return Err(self.wrong(key, "is empty: give a name, or leave the key out"));
         }
-        if needs_quotes(name) {
-            return Err(self.wrong(key, "needs a name without commas, quotes and line ends"));
+        if name.contains(['\n', '\r']) {
+            return Err(self.wrong(key, "needs a name in one line"));
         }
         match others.any(|other| other == name) {
             true => Err(self.wrong(key, format!("\"{name}\" is the name of another"))),

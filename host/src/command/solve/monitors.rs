@@ -10,6 +10,7 @@ use super::regions::Region;
 use super::setup::Setup;
 use crate::command::progress::Progress;
 use crate::error::Result;
+use crate::files::csv;
 use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
 use crate::words::counted;
@@ -62,7 +63,7 @@ const QUANTITIES: [&str; 4] = ["mass_flow", "volume_flow", "overpressure", "larg
 /// Names of the columns of `monitors.csv`.
 #[must_use]
 pub fn head<const D: usize>(monitors: &[Monitor<D>]) -> String {
-    let of = |m: &Monitor<D>| QUANTITIES.map(|q| format!(",{} {q}", m.report.name)).concat();
+    let of = |m: &Monitor<D>| QUANTITIES.map(|q| format!(",{}", csv::cell(&format!("{} {q}", m.report.name)))).concat();
     format!("step,time{}", monitors.iter().map(of).collect::<String>())
 }
 

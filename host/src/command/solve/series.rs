@@ -12,6 +12,7 @@ use super::solids::{SolidForce, SolidShares};
 use super::table::Table;
 use crate::command::progress::Progress;
 use crate::error::{Error, Result};
+use crate::files::csv;
 use crate::grid::Edges;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -258,7 +259,7 @@ fn probe_head(output: &OutputKeys, mixed: bool) -> String {
     let gamma = mixed.then_some("gamma");
     let of_probe = |name: &str| {
         let columns = ["rho", "u", "v", "w", "p"].into_iter().chain(gamma);
-        columns.map(|q| format!("{name} {q}")).collect::<Vec<_>>().join(",")
+        columns.map(|q| csv::cell(&format!("{name} {q}")).into_owned()).collect::<Vec<_>>().join(",")
     };
     let all = output.probes.iter().enumerate().map(|(n, p)| of_probe(&p.name(n)));
     ["step".to_owned(), "time".to_owned()].into_iter().chain(all).collect::<Vec<_>>().join(",")

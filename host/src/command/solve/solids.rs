@@ -11,6 +11,7 @@
 use super::arrays::position;
 use super::force::{Weights, drags, taken_volume};
 use crate::error::Result;
+use crate::files::csv;
 use crate::flow::Flow;
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
@@ -302,7 +303,9 @@ impl<const D: usize> SolidShares<D> {
     /// Names of the columns of the log.
     #[must_use]
     pub fn head(&self) -> String {
-        self.names.iter().map(|n| format!(",{n} force_x,{n} force_y,{n} force_z")).collect()
+        let columns =
+            |name: &String| ["x", "y", "z"].map(|axis| format!(",{}", csv::cell(&format!("{name} force_{axis}"))));
+        self.names.iter().flat_map(columns).collect()
     }
 
     /// The present forces.

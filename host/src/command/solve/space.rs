@@ -10,7 +10,6 @@ use crate::command::progress::Progress;
 use crate::command::stages;
 use crate::command::streams::{INPUT, is_stream};
 use crate::error::Result;
-use crate::files::csv::needs_quotes;
 use crate::geometry::bodies::{Bodies, Body, OwnDrag};
 use crate::geometry::scene::is_scene;
 use crate::grid::{AXES, Edges};
@@ -179,9 +178,8 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
             }
         };
         for name in more {
-            if needs_quotes(name) || name == OTHERS {
-                let reason =
-                    format!("\"{name}\" cannot head a column: no commas, quotes, line ends, and not \"{OTHERS}\"");
+            if name == OTHERS {
+                let reason = format!("\"{OTHERS}\" heads the columns of all other solids: give this one another name");
                 return Err(file.wrong(&format!("output.forces[{n}]"), reason));
             }
             if !names.iter().any(|known| known == name) {

@@ -1,6 +1,6 @@
 //! Tables as CSV for programs, every digit, and as Markdown and HTML for people.
 
-use crate::files::csv::needs_quotes;
+use crate::files::csv;
 use std::fmt::Write;
 
 /// A value in a table.
@@ -105,10 +105,7 @@ impl Listing {
         let names: Vec<&str> = self.columns.iter().map(|c| c.0).collect();
         let mut text = names.join(",") + "\n";
         for row in &self.rows {
-            let cells = row.iter().map(Cell::exact).map(|cell| match needs_quotes(&cell) {
-                false => cell,
-                true => format!("\"{}\"", cell.replace('"', "\"\"")),
-            });
+            let cells = row.iter().map(|cell| csv::cell(&cell.exact()).into_owned());
             text += &(cells.collect::<Vec<_>>().join(",") + "\n");
         }
         text
