@@ -127,6 +127,24 @@ fn files_of_other_commands() {
     ] {
         assert!(text.contains(words), "'{words}' expected: {text}");
     }
+    // A case names itself, a study and a picture in place of a scene.
+    fs::write(at.file("picture.stl"), b"\x89PNG\r\n\x1a\n, and what follows").expect("written");
+    for (named, place, words) in [
+        ("\"own.toml\"", "key porosity.scene: ", "own.toml: this is a case, not a scene: it has the key gas"),
+        (
+            "[\"scene.toml\", \"study.toml\"]",
+            "key porosity.scene[1]: ",
+            "study.toml: this is a study, not a scene: it has the key method",
+        ),
+        ("\"picture.stl\"", "key porosity.scene: ", "picture.stl: "),
+    ] {
+        let own = at.file("own.toml");
+        fs::write(&own, CASE.replace("[gas]", &format!("[porosity]\nscene = {named}\n[gas]"))).expect("written");
+        let text = said(named, &[&"solve", &own, &"-o", &at.file("out")]);
+        let begin = text.find("own.toml: line 6, column ").expect("the line of the case");
+        let (key, file) = (text.find(place).expect(place), text.rfind(words).expect(words));
+        assert!(begin < key && key < file && text.contains("\n   6 | scene = "), "{text}");
+    }
     fs::write(&scene, format!("{solid}[[grid]]\nx = [0, 1]\n")).expect("written");
     let text = said("g", &[&"porosity", &scene]);
     assert!(text.contains("line 5, column 1: grid takes one table [grid]"), "{text}");

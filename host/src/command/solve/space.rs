@@ -9,7 +9,7 @@ use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_no_
 use crate::command::progress::Progress;
 use crate::command::stages;
 use crate::command::streams::{INPUT, is_stream};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, OwnDrag};
 use crate::geometry::scene::is_scene;
 use crate::grid::{AXES, Edges};
@@ -107,6 +107,17 @@ fn scene_files(file: &CaseFile, Paths(paths): &Paths) -> Result<SceneArgs> {
     Ok(SceneArgs { scene: paths.iter().map(place).collect(), unit: file.case.porosity.unit })
 }
 
+/// What is wrong with a file as a whole, told at the key that names it; what is wrong at a place in a file stays there.
+fn at_its_key(file: &CaseFile, files: &SceneArgs, error: Error) -> Error {
+    let is_whole = error.place.is_none() && error.excerpt.is_none();
+    let names_it = |path: &PathBuf| Some(path) == error.path.as_ref();
+    match files.scene.iter().position(names_it).filter(|_| is_whole) {
+        Some(_) if files.scene.len() == 1 => file.wrong("porosity.scene", error.to_string()),
+        Some(n) => file.wrong(&format!("porosity.scene[{n}]"), error.to_string()),
+        None => error,
+    }
+}
+
 /// The one place where a scene becomes open fractions.
 fn from_scene<const D: usize>(
     file: &CaseFile,
@@ -117,7 +128,8 @@ fn from_scene<const D: usize>(
 ) -> Result<(Space<D>, Vec<Measured<D>>)> {
     let keys = &file.case.porosity;
     // The flow has a grid of its own; that of a scene file is for the scene alone.
-    let (bodies, _) = stages::load(&scene_files(file, scene)?, progress)?;
+    let files = scene_files(file, scene)?;
+    let (bodies, _) = stages::load(&files, progress).map_err(|error| at_its_key(file, &files, error))?;
     let usual = Options::default();
     let options = Options { tol: keys.tol.unwrap_or(usual.tol), depth: keys.depth.unwrap_or(usual.depth), ..usual };
     let (left_out, with_surface) = (file.case.grid.left_out(), Options { resistance: true, ..options });
