@@ -335,3 +335,28 @@ fn cases_that_cannot_be_halved() {
     let output = solve(&at, &fields, "fields", &["--refine-check"]);
     assert!(stderr(&output).contains("porosity.from") && !at.file("fields").exists(), "{}", stderr(&output));
 }
+
+/// A probe in a solid on either grid has no values there: that is said, and null in the report.
+#[test]
+fn probes_in_solids_of_either_grid() {
+    let at = Scratch::new();
+    // Fills cells 12 and 13 of the case, and 6 of half of them; and 9, which is half of 4.
+    let solids = [[0.75, 0.875], [0.5625, 0.625]]
+        .map(|[lo, hi]| format!("[[solid]]\nshape = \"box\"\nmin = [{lo}, -1, -1]\nmax = [{hi}, 2, 2]\n"));
+    fs::write(at.file("walls.toml"), solids.concat()).expect("written");
+    let probes = "{ name = \"both\", at = [0.8, 0.5, 0] }, { name = \"fine\", at = [0.6, 0.5, 0] }, { name = \"none\", at = [0.1, 0.5, 0] }";
+    let case = BLAST.replace("[gas]", "[porosity]\nscene = \"walls.toml\"\nmerge = false\n[gas]");
+    let (begin, _) = case.split_once("probes = ").expect("probes");
+    let output = solved(&at, &format!("{begin}probes = [{probes}]\n"), "out", &["--refine-check"]);
+    let said = crate::kit::stdout(&output);
+    let line = |name: &str| said.lines().find(|l| l.trim_start().starts_with(name)).expect("a line").to_owned();
+    assert!(!said.contains("NaN"), "{said}");
+    assert_eq!(line("both").split_whitespace().collect::<Vec<_>>().join(" "), "both in a solid, on both grids");
+    assert!(line("fine").contains("overpressure in a solid, ") && line("fine").contains("(–)"), "{}", line("fine"));
+    assert!(line("none").contains(" %"), "{}", line("none"));
+    let report = json(&at.file("out/report.json"));
+    let [both, fine, none] = [1, 2, 3].map(|n| &report["refine_check"]["peaks"][n]["overpressure"]);
+    assert!(both["fine"].is_null() && both["coarse"].is_null() && both["change"].is_null(), "{both}");
+    assert!(fine["fine"].is_null() && fine["coarse"].is_number() && fine["change"].is_null(), "{fine}");
+    assert!(none["fine"].is_number() && none["coarse"].is_number() && none["change"].is_number(), "{none}");
+}

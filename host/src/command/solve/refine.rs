@@ -73,9 +73,9 @@ pub struct ComparedPeaks {
 /// A value on the cells of the case and on half of them.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Compared {
-    /// On the cells of the case.
+    /// On the cells of the case; NaN at a point that lies in a solid there, which is null in a file.
     pub fine: f64,
-    /// On half of them.
+    /// On half of them, likewise.
     pub coarse: f64,
     /// (fine − coarse) / fine; none if that is no number.
     pub change: Option<f64>,

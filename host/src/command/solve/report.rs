@@ -332,13 +332,18 @@ fn say_refine_check(RefineCheck { cells: [nx, ny, nz], peaks, .. }: &RefineCheck
     progress.say(format!("refine check  peaks here, on {nx} × {ny} × {nz} cells, and the change between both"));
     let widest = peaks.iter().map(|peak| peak.name.chars().count()).fold(10, usize::max) + 2;
     for peak in peaks {
+        if peak.overpressure.fine.is_nan() && peak.overpressure.coarse.is_nan() {
+            progress.say(format!("  {:<widest$}in a solid, on both grids", peak.name));
+            continue;
+        }
+        let value = |x: f64| if x.is_nan() { "in a solid".to_owned() } else { format!("{x:.4e}") };
         let of = |name: &str, unit: &str, Compared { fine, coarse, change }: Compared| {
             let change = match change {
                 None => "–".to_owned(),
                 Some(c) if c.abs() > 1.0 => "not alike: too coarse, or the wave has not come".to_owned(),
                 Some(c) => format!("{:+.1} %", (1000.0 * c).round() / 10.0 + 0.0),
             };
-            format!("{name} {fine:.4e}, {coarse:.4e} {unit} ({change})")
+            format!("{name} {}, {} {unit} ({change})", value(fine), value(coarse))
         };
         let pressure = of("overpressure", "Pa", peak.overpressure);
         progress.say(format!("  {:<widest$}{pressure}; {}", peak.name, of("impulse", "Pa s", peak.impulse)));
