@@ -23,7 +23,26 @@ extern "C" fn look_at_the_output() {
     }
 }
 
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+unsafe extern "C" {
+    /// Of the C library, which the standard library stands on: what happens at a signal from now on. Any number of a signal and the ways `SIG_DFL` and
+    /// `SIG_IGN` are safe.
+    safe fn signal(number: i32, way: usize) -> usize;
+}
+
+/// A file that may not grow any further (`ulimit -f`) then refuses what is written, and the error is told; the signal itself would end the program at once and
+/// leave what it had begun.
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+fn take_limits_of_files_for_errors() {
+    let (sigxfsz, sig_ign) = (25, 1);
+    signal(sigxfsz, sig_ign);
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "macos")))]
+fn take_limits_of_files_for_errors() {}
+
 fn main() -> ExitCode {
+    take_limits_of_files_for_errors();
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
     let _ = ctrlc::set_handler(|| {
         if interrupt::interrupt() {

@@ -176,6 +176,23 @@ fn a_full_disk_at_the_standard_output() {
     }
 }
 
+/// A file that may not grow any further is an error as a full disk is, and leaves nothing half-written.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_limit_on_the_size_of_files() {
+    let at = Scratch::new();
+    fs::write(at.file("scene.toml"), SCENE).expect("written");
+    for (n, output) in [["--npy", "."], ["-o", "out.vtr"]].into_iter().enumerate() {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "ulimit -f 8; exec \"$0\" \"$@\""]).arg(program());
+        shell.args(["porosity", "scene.toml", "--cells", "30x30x30"]).args(output).current_dir(&at.0);
+        let output = shell.output().expect("the program runs");
+        assert_eq!(output.status.code(), Some(1), "{n}: {}", stderr(&output));
+        assert!(stderr(&output).contains("cannot write: File too large"), "{}", stderr(&output));
+        assert_eq!(at.names(), ["scene.toml"]);
+    }
+}
+
 /// The standard output that is closed, or can only be read, takes no result; without one to print it is not needed.
 #[cfg(target_os = "linux")]
 #[test]
