@@ -85,12 +85,15 @@ fn reports_of_porosity_and_inspect() {
     let skid = fixture("cad_skid.stl");
     let crack = at.file("cracked.stl");
     fs::write(&crack, cracked()).expect("written");
+    let of_file = at.file("of_file.toml");
+    fs::write(&of_file, "[[solid]]\nshape = \"file\"\npath = \"cracked.stl\"\n").expect("written");
     let scene = at.file("scene.toml");
     assert_told(
         "porosity",
         &[
             run("a.json", &[&"porosity", &skid, &scene, &"--spacing", &"0.3", &"--drag", &"pdr"]),
             run("b.json", &[&"porosity", &crack, &"--cells", &"6x6x6"]),
+            run("d.json", &[&"porosity", &of_file, &"--cells", &"6x6x6"]),
         ],
     );
     assert_told("inspect", &[run("c.json", &[&"inspect", &skid, &scene])]);

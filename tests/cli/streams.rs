@@ -308,3 +308,53 @@ fn a_full_standard_error_is_no_failure() {
     assert_eq!(run(&["porosity", scene, "--spacing", "0.5", "-v"]), Some(0));
     assert_eq!(run(&["porosity", scene, "--spacing", "0.5", "--no-such"]), Some(2));
 }
+
+/// Groups of an OBJ that a scene names keep their names, as parts of the solid: those that `output.forces` takes.
+#[test]
+fn parts_of_a_file_are_told_one_by_one() {
+    let at = Scratch::new();
+    let half = |name: &str, y: f64, first: usize| {
+        let [a, b, c, d] = [1, 2, 3, 4].map(|n| n + first);
+        format!(
+            "g {name}\nv 0 {y} 0\nv 1 {y} 0\nv 0 {} 0\nv 0 {y} 1\nf {a} {c} {b}\nf {a} {b} {d}\nf {a} {d} {c}\nf {b} {c} {d}\n",
+            y + 1.0
+        )
+    };
+    let two = half("tank", 0.0, 0) + &half("pump house", 2.0, 4) + &half("tank", 4.0, 8);
+    fs::write(at.file("two.obj"), &two).expect("written");
+    fs::write(at.file("bare.obj"), half("", 0.0, 0).replace("g \n", "")).expect("written");
+    let file = |name: &str, path: &str, more: &str| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = \"file\"\npath = \"{path}\"\n{more}")
+    };
+    let copies = "translate = [0, 0, 5]\narray = { count = [2, 1, 1], step = [3, 0, 0] }\n";
+    let scene = file("yard", "two.obj", "") + &file("rack", "two.obj", copies) + &file("bare", "bare.obj", "");
+    fs::write(at.file("scene.toml"), scene + SCENE).expect("written");
+    let output =
+        voidage(&[&"porosity", &at.file("scene.toml"), &"--spacing", &"1", &"--report", &at.file("r.json"), &"-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report = json(&at.file("r.json"));
+    let solids = report["solids"].as_array().expect("solids");
+    let names: Vec<&str> = solids.iter().filter_map(|s| s["name"].as_str()).collect();
+    assert_eq!(names, ["yard", "rack", "bare", "solid 4"]);
+    let parts = |n: usize| {
+        let parts = solids[n]["parts"].as_array().map_or(&[][..], Vec::as_slice);
+        let of = |p: &serde_json::Value| {
+            (p["name"].as_str().expect("a name").to_owned(), p["volume"].as_f64().expect("a volume"))
+        };
+        parts.iter().map(of).collect::<Vec<_>>()
+    };
+    let told = |n: usize, truth: &[(&str, f64)]| {
+        let found = parts(n);
+        assert_eq!(found.iter().map(|p| &p.0[..]).collect::<Vec<_>>(), truth.iter().map(|p| p.0).collect::<Vec<_>>());
+        assert!(found.iter().zip(truth).all(|(a, b)| (a.1 - b.1).abs() < 1e-12), "{found:?}");
+    };
+    told(0, &[("yard/tank", 1.0 / 3.0), ("yard/pump house", 1.0 / 6.0)]);
+    let copy = |i: usize, part: &str| format!("rack[{i},0,0]/{part}");
+    let of_copies = [copy(0, "tank"), copy(0, "pump house"), copy(1, "tank"), copy(1, "pump house")];
+    told(1, &[0, 1, 2, 3].map(|n| (&of_copies[n][..], if n % 2 == 0 { 1.0 / 3.0 } else { 1.0 / 6.0 })));
+    assert!(solids[2]["parts"].is_null() && solids[3]["parts"].is_null(), "what has no parts has no list of them");
+    let part = &solids[0]["parts"][1];
+    let wetted = 1.5 + 0.75_f64.sqrt();
+    assert!((part["wetted_area"].as_f64().expect("an area") - wetted).abs() < 1e-12, "{part}");
+    assert_eq!(part["bounds"], serde_json::json!([[0.0, 2.0, 0.0], [1.0, 3.0, 1.0]]));
+}

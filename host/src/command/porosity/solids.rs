@@ -2,8 +2,10 @@
 
 use crate::geometry::areas;
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
+use glam::DVec3;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
+use std::ops::Range;
 use voidage_core::surface::surface_area::SurfaceArea;
 
 /// A solid of a scene file, or the bodies of one name in an STL or OBJ file.
@@ -15,13 +17,31 @@ pub(super) struct SolidReport {
     frontal_area: [f64; 3],
     /// ∫ dA in m².
     wetted_area: f64,
+    /// Of a file in a scene, the bodies of each name in it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<PartReport>,
+}
+
+/// The bodies of one name in a file of a scene.
+#[derive(Debug, Clone, Serialize)]
+struct PartReport {
+    /// That of the solid, of its copy if there are several, and that in the file.
+    name: String,
+    /// Sum of their volumes in m³.
+    volume: f64,
+    /// ½ ∫ |n_i| dA along x, y, z in m².
+    frontal_area: [f64; 3],
+    /// ∫ dA in m².
+    wetted_area: f64,
+    /// Lowest and highest corner.
+    bounds: [DVec3; 2],
 }
 
 /// All solids, those of scene files first.
 pub(super) fn solids(bodies: &Bodies) -> Vec<SolidReport> {
     let of_scenes = bodies.solids.iter().cloned().map(|solid| {
-        let own = &bodies.bodies[solid.bodies.clone()];
-        report(bodies, solid, own.iter())
+        let (own, parts) = (&bodies.bodies[solid.bodies.clone()], parts(bodies, &solid));
+        SolidReport { parts, ..report(bodies, solid, own.iter()) }
     });
     let in_scene = |n: usize| bodies.solids.iter().any(|s| s.bodies.contains(&n));
     let files = bodies.diagnoses.iter().filter(|d| !d.body_range.is_empty() && !in_scene(d.body_range.start));
@@ -29,11 +49,11 @@ pub(super) fn solids(bodies: &Bodies) -> Vec<SolidReport> {
     of_scenes.chain(of_files).collect()
 }
 
-/// The bodies of each name in a file, in the order in which the names come first.
-fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = SolidReport> {
+/// The numbers of the bodies of each name among some, in the order in which the names come first.
+fn by_name(bodies: &Bodies, numbers: Range<usize>) -> Vec<(&str, Vec<usize>)> {
     let mut groups: Vec<(&str, Vec<usize>)> = Vec::new();
     let mut known: FxHashMap<&str, usize> = FxHashMap::default();
-    for number in file.body_range.clone() {
+    for number in numbers {
         let name = &bodies.bodies[number].name[..];
         let group = *known.entry(name).or_insert(groups.len());
         if group == groups.len() {
@@ -41,9 +61,33 @@ fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = 
         }
         groups[group].1.push(number);
     }
-    groups.into_iter().map(|(name, numbers)| {
+    groups
+}
+
+/// The bodies of each name that the file of a solid has, copy by copy; none of a solid that is no file.
+fn parts(bodies: &Bodies, solid: &SolidSummary) -> Vec<PartReport> {
+    // Behind the name of the solid stands the place of the copy, if there are several, and then that of the part.
+    let is_part = |name: &str| name.strip_prefix(&solid.name[..]).is_some_and(|rest| rest.contains('/'));
+    let named = if solid.shape == "file" { by_name(bodies, solid.bodies.clone()) } else { Vec::new() };
+    let named = named.into_iter().filter(|(name, _)| is_part(name));
+    let part = |(name, numbers): (&str, Vec<usize>)| {
         let own = || numbers.iter().map(|&n| &bodies.bodies[n]);
-        let bounds = own().map(|b| b.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+        let SurfaceArea { frontal, wetted } = areas_of(bodies, own());
+        PartReport {
+            name: name.to_owned(),
+            volume: own().map(|b| b.volume).sum(),
+            frontal_area: frontal,
+            wetted_area: wetted,
+            bounds: bounds_of(own()),
+        }
+    };
+    named.map(part).collect()
+}
+
+/// The bodies of each name in a file, in the order in which the names come first.
+fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = SolidReport> {
+    by_name(bodies, file.body_range.clone()).into_iter().map(|(name, numbers)| {
+        let own = || numbers.iter().map(|&n| &bodies.bodies[n]);
         let about = SolidSummary {
             scene: file.file.clone(),
             name: name.to_owned(),
@@ -52,14 +96,24 @@ fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = 
             copies: 1,
             bodies: numbers[0]..numbers[numbers.len() - 1] + 1,
             volume: own().map(|b| b.volume).sum(),
-            bounds: bounds.unwrap_or_default(),
+            bounds: bounds_of(own()),
         };
         report(bodies, about, own())
     })
 }
 
 fn report<'a>(bodies: &Bodies, about: SolidSummary, own: impl Iterator<Item = &'a Body>) -> SolidReport {
+    let SurfaceArea { frontal, wetted } = areas_of(bodies, own);
+    SolidReport { about, frontal_area: frontal, wetted_area: wetted, parts: Vec::new() }
+}
+
+/// The areas of some bodies, each alone.
+fn areas_of<'a>(bodies: &Bodies, own: impl Iterator<Item = &'a Body>) -> SurfaceArea<f64> {
     let area = own.map(|body| areas::of_body(body, &bodies.triangles[body.triangles.clone()]));
-    let SurfaceArea { frontal, wetted } = area.fold(SurfaceArea::default(), SurfaceArea::plus);
-    SolidReport { about, frontal_area: frontal, wetted_area: wetted }
+    area.fold(SurfaceArea::default(), SurfaceArea::plus)
+}
+
+/// Lowest and highest corner of some bodies.
+fn bounds_of<'a>(own: impl Iterator<Item = &'a Body>) -> [DVec3; 2] {
+    own.map(|b| b.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or_default()
 }
