@@ -66,6 +66,30 @@ fn a_ball_holds_the_same_on_any_grid() {
     holds(&even(4), "xyz", small, 1.0, 4.0 / 3.0 * PI * 0.04_f64.powi(3));
 }
 
+/// How many cells a region has is told; where they are few for a blast, that is said beside it.
+#[test]
+fn few_cells_in_a_region_are_told() {
+    let at = Scratch::new();
+    let case = |n: usize| {
+        format!(
+            "[grid]\nx = {{ points = [0, 1], cells = [{n}] }}\ny = {{ points = [0, 1], cells = [{n}] }}\n\
+             [gas]\nmodel = \"ideal\"\ngamma = 1.4\n\
+             [initial]\nuniform = {{ rho = 1, p = 1e5 }}\nregions = [{{ center = [0.5, 0.5], radius = 0.2, p = 5e5 }}]\n\
+             [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\n\
+             [time]\nmax_steps = 1\n[output]\nformats = []\n"
+        )
+    };
+    let line = |n: usize| {
+        let said = crate::kit::stdout(&solved(&at, &case(n), &format!("out{n}"), &[]));
+        said.lines().find(|line| line.starts_with("regions[0]")).expect("a line").to_owned()
+    };
+    assert_eq!(
+        line(20),
+        "regions[0]    4.0 cells from its middle to its side: few for a blast, whose peaks come out too low; --refine-check tells by how much"
+    );
+    assert_eq!(line(40), "regions[0]    8.0 cells from its middle to its side");
+}
+
 #[test]
 fn a_disc_an_interval_and_a_box_hold_the_same_on_any_grid() {
     for n in [3, 10, 31] {
