@@ -5,7 +5,8 @@ use std::fs;
 use std::process::{Command, Output, Stdio};
 use std::sync::mpsc::channel;
 use std::time::Duration;
-use voidage::command::progress::Heartbeat;
+use voidage::command::cli::TalkArgs;
+use voidage::command::progress::{Heartbeat, Progress};
 use voidage::picture::ticks::part;
 
 /// `voidage porosity` of a ball with more arguments.
@@ -293,4 +294,25 @@ fn forces_are_written_as_numbers_are() {
                 [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n[time]\nmax_steps = 0\n[output]\nforces = [\"tank\"]\n";
     let said = stdout(&solved(&at, case, "out", &[]));
     assert!(said.contains("\nforce         (12350, 0, 0) N on tank; largest 12350 N at t = 0 s\n"), "{said}");
+}
+
+/// Where there is no terminal a line about a long stage tells how much of it is done, if that is counted, whoever prints it; of stages within each
+/// other it is about the innermost.
+#[test]
+fn a_long_stage_tells_how_much_is_done() {
+    let mut progress = Progress::new(&TalkArgs { quiet: false, verbose: false });
+    let time = Duration::from_secs(21);
+    let said = progress.stage("setup", |p| {
+        let outer = p.so_far("setup");
+        let inner = p.stage("porosity", |p| {
+            let (bar, inner) = (p.bar("porosity", 40), p.so_far("porosity"));
+            let before = inner(time);
+            (0..11).for_each(|_| bar.step());
+            [outer(time), before, inner(time)]
+        });
+        (inner, outer(time))
+    });
+    let line = |words: &str| Some(format!("{words}: 21 s so far"));
+    assert_eq!(said.0, [None, line("porosity 0 %"), line("porosity 27 %")]);
+    assert_eq!(said.1, line("setup"), "the bar of a stage that is over is not that of the next");
 }

@@ -93,12 +93,32 @@ impl LastLine {
     }
 }
 
+/// How many steps of the work at hand there are, none if nobody counts them, and how many are done.
+#[derive(Debug, Default)]
+struct Count {
+    steps: AtomicUsize,
+    done: AtomicUsize,
+}
+
+impl Count {
+    fn begin(&self, steps: usize) {
+        self.done.store(0, Ordering::Relaxed);
+        self.steps.store(steps, Ordering::Relaxed);
+    }
+
+    /// The work by its name, with what is done of it.
+    fn told(&self, name: &str) -> String {
+        let (steps, done) = (self.steps.load(Ordering::Relaxed), self.done.load(Ordering::Relaxed));
+        let percent = (100 * done.min(steps)).checked_div(steps);
+        percent.map_or_else(|| name.to_owned(), |percent| format!("{name} {percent} %"))
+    }
+}
+
 /// How far something has come.
 #[derive(Debug)]
 pub struct Meter {
     name: &'static str,
-    steps: usize,
-    done: AtomicUsize,
+    count: Arc<Count>,
     bar: ProgressBar,
     /// Lines are printed: there is no terminal, and the run is not quiet.
     plain: Option<LastLine>,
@@ -120,12 +140,24 @@ impl Meter {
 
     /// Counts a step that is done.
     pub fn step(&self) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.count.done.fetch_add(1, Ordering::Relaxed);
         self.bar.inc(1);
         if self.plain.is_some() && self.is_due() {
-            self.tell(&format!("{} {} %", self.name, 100 * done / self.steps.max(1)));
+            self.tell(&self.count.told(self.name));
         }
     }
+}
+
+impl Drop for Meter {
+    /// What comes next is not counted by it.
+    fn drop(&mut self) {
+        self.count.begin(0);
+    }
+}
+
+/// That work goes on, and for how long already.
+fn lasting(work: &str, time: Duration) -> String {
+    format!("{}: {:.0} s so far", visible(work), time.as_secs_f64())
 }
 
 /// Tells from time to time, while it lives, that a long piece of work goes on.
@@ -168,6 +200,9 @@ pub struct Progress {
     pub seconds: BTreeMap<&'static str, f64>,
     begun: Instant,
     last_line: LastLine,
+    count: Arc<Count>,
+    /// How many stages there are within each other at the moment.
+    depth: Arc<AtomicUsize>,
 }
 
 impl Progress {
@@ -182,6 +217,8 @@ impl Progress {
             seconds: BTreeMap::new(),
             begun: Instant::now(),
             last_line: LastLine(Arc::new(Mutex::new(Instant::now()))),
+            count: Arc::default(),
+            depth: Arc::default(),
         }
     }
 
@@ -224,13 +261,24 @@ impl Progress {
     /// Tells that `work` goes on, unless the run is quiet, when no other line has been printed for a while, as long as what is returned lives.
     #[must_use]
     pub fn goes_on(&self, work: String) -> Option<Heartbeat> {
+        self.heartbeat(move |time| Some(lasting(&work, time)))
+    }
+
+    /// Prints what there is to say of work that goes on, unless the run is quiet, when no other line has been printed for a while.
+    fn heartbeat(&self, say: impl Fn(Duration) -> Option<String> + Send + 'static) -> Option<Heartbeat> {
         let last = self.last_line.clone();
         let tell = move |time: Duration| {
-            if last.is_older(PAUSE + TICK) {
-                print_aside(&format!("{}: {:.0} s so far", visible(&work), time.as_secs_f64()));
+            if let Some(line) = say(time).filter(|_| last.is_older(PAUSE + TICK)) {
+                print_aside(&line);
             }
         };
         (!self.quiet).then(|| Heartbeat::new(TICK, tell))
+    }
+
+    /// What there is to say of the innermost stage after some time, with what is done of it if that is counted; of another stage there is nothing to say.
+    pub fn so_far(&self, name: &'static str) -> impl Fn(Duration) -> Option<String> + Send + use<> {
+        let (count, depth, own) = (self.count.clone(), self.depth.clone(), self.depth.load(Ordering::Relaxed));
+        move |time| (depth.load(Ordering::Relaxed) == own).then(|| lasting(&count.told(name), time))
     }
 
     /// A bar of `steps` steps on a terminal, else a line from time to time.
@@ -257,16 +305,19 @@ impl Progress {
         bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
         let bar = bar.with_finish(indicatif::ProgressFinish::AndClear);
         let plain = (!self.quiet && !terminal).then(|| self.last_line.clone());
-        Meter { name, steps, done: AtomicUsize::new(0), bar, plain }
+        self.count.begin(steps);
+        Meter { name, count: self.count.clone(), bar, plain }
     }
 
     /// Run a stage and keep its time.
     pub fn stage<T>(&mut self, name: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let begin = Instant::now();
+        self.depth.fetch_add(1, Ordering::Relaxed);
         // On a terminal bars tell how far it is.
-        let watched = if std::io::stderr().is_terminal() { None } else { self.goes_on(name.to_owned()) };
+        let watched = if std::io::stderr().is_terminal() { None } else { self.heartbeat(self.so_far(name)) };
         let result = work(self);
         drop(watched);
+        self.depth.fetch_sub(1, Ordering::Relaxed);
         let seconds = begin.elapsed().as_secs_f64();
         *self.seconds.entry(name).or_default() += seconds;
         if self.verbose {
