@@ -31,6 +31,31 @@ fn bars(at: &Scratch) {
     fs::write(at.file("bars.toml"), (0..11).map(bar).collect::<String>()).expect("written");
 }
 
+/// A resistance of a solid that is tight acts on no gas in the cells that it fills; in those that it fills in part it does.
+#[test]
+fn a_resistance_within_a_tight_solid_is_told() {
+    let at = Scratch::new();
+    let block = |name: &str, from: f64, to: f64, keys: &str| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = \"box\"\nmin = [{from}, 1, -1]\nmax = [{to}, 2, 4]\n{keys}\n")
+    };
+    let told = |scene: &[String], more: &str| {
+        fs::write(at.file("own.toml"), scene.concat()).expect("written");
+        let short = channel("own.toml", more).replace("end = 2", "max_steps = 1");
+        stderr(&solved(&at, &short, "out", &["--force"]))
+    };
+    let words = "with a cr, but with porosity 0: it is tight, and where it fills whole cells its cr has no effect";
+    let text = told(&[block("deck", 5.0, 6.0, "cr = 4"), block("mesh", 7.0, 8.0, "cr = 4")], "");
+    assert!(text.contains(&format!("own.toml: \"deck\" and 1 more {words}; give it a porosity above 0")), "{text}");
+    assert_eq!(text.matches(words).count(), 1, "{text}");
+    for (to, keys) in [(6.0, "cr = 4\nporosity = 0.5"), (5.1, "cr = 4"), (6.0, "cr = 0"), (6.0, "cd = 1")] {
+        let text = told(&[block("deck", 5.0, to, keys)], "");
+        assert!(!text.contains(words), "{keys}: {text}");
+    }
+    // Where another resistance stands in its place that is told instead.
+    let text = told(&[block("deck", 5.0, 6.0, "cr = 4")], "[drag]\ncr = [1, 1, 1]");
+    assert!(!text.contains(words) && text.contains("stands in place of the cd and cr"), "{text}");
+}
+
 /// Bars that cover 36.7 % of the section: by C_D = 2 the closed form is 0.733; for rows the plate of Idelchik loses 1.58. The closed form knows no
 /// contraction, so faces do not see the bars there: with throats the loss is 0.753 if the low faces are lowered and 0.700 if the high ones are.
 #[test]

@@ -1,12 +1,12 @@
 //! The stage of obstacles, shared by `porosity` and `solve`: what stands between the faces of cells, and what it resists.
 
 use super::progress::Progress;
-use crate::geometry::bodies::{Bodies, Body};
+use crate::geometry::bodies::{Bodies, Body, SolidSummary};
 use crate::grid::AXES;
 use crate::picture::ticks::number as short;
 use crate::picture::ticks::part;
 use crate::porosity::divided::{DividedCells, Division};
-use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
+use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag, fill_a_cell};
 use crate::porosity::resistance::{Resistance, resistance, shadows, unseen_frontal_area};
 use crate::porosity::shadows::{HIDDEN, Shadows};
 use crate::porosity::snap;
@@ -78,6 +78,7 @@ pub fn obstacles(
         found.drag = Some(drag);
         warn_of_gratings(bodies, progress);
         warn_of_partly_filled(grid, bodies, progress);
+        warn_of_tight(grid, bodies, options, progress);
     }
     let division = progress.stage("divided", |_| Division::find(grid, bodies, &result.beta, &shadows));
     let told_already = match wanted.faces {
@@ -154,6 +155,22 @@ pub fn warn_of_gratings(bodies: &Bodies, progress: &mut Progress) {
              gives a loss of ½ ρ cr |u| u a metre, u in the pores",
             bodies.files(),
             first.name
+        ));
+    }
+}
+
+/// Say which solids with a resistance of their own are tight and fill cells: there is no gas in these that it could act on.
+fn warn_of_tight(grid: &Grid<f64>, bodies: &Bodies, options: Options, progress: &mut Progress) {
+    let resists =
+        |s: &&SolidSummary| bodies.bodies[s.bodies.clone()].iter().any(|b| b.drag.cr.is_some_and(|cr| cr > 0.0));
+    let tight = bodies.solids.iter().filter(|s| s.porosity == 0.0).filter(resists);
+    let mut filling = tight.filter(|s| fill_a_cell(grid, bodies, s.bodies.clone(), options));
+    if let Some(first) = filling.next() {
+        let others = and_more(filling.count());
+        progress.warn(format!(
+            "{}: \"{}\"{others} with a cr, but with porosity 0: it is tight, and where it fills whole cells its cr has no effect; give it a \
+             porosity above 0",
+            first.scene, first.name
         ));
     }
 }

@@ -13,6 +13,7 @@ use super::resistance::Resistance;
 use super::shadows::{cells, faces_of_cell};
 use super::solid::with_solid_layers;
 use super::solid_layers::SolidLayers;
+use super::windows::Window;
 use super::worker::Workers;
 use super::{FieldSet, Options, Porosity, porosity};
 use crate::geometry::bodies::{Bodies, Body};
@@ -21,6 +22,7 @@ use crate::geometry::repair::weld::bits;
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
+use std::ops::Range;
 use voidage_core::grid::Grid;
 
 /// How frontal area becomes resistance.
@@ -208,6 +210,18 @@ pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Ve
         below = cr;
     }
     sums
+}
+
+/// A cell that is less open than this is full, but for rounding.
+const FULL: f64 = 1e-9;
+
+/// Do some of the bodies, a run of them, fill a whole cell together?
+#[must_use]
+pub fn fill_a_cell(grid: &Grid<f64>, bodies: &Bodies, run: Range<usize>, options: Options) -> bool {
+    let own = bodies.some(|body| run.contains(&body));
+    let Some(window) = own.bounds().and_then(|bounds| Window::around(grid, bounds)) else { return false };
+    let options = Options { bounds: false, areas: false, resistance: false, ..options };
+    porosity(&window.grid(grid), &own, options).beta.v.iter().any(|open| *open < FULL)
 }
 
 /// Edges that turn by less than this belong to a curved surface.
