@@ -585,11 +585,11 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// # Errors
     /// As [`Flow::advance`], and where no step is left to do, too.
     pub fn run(&mut self, cfl: R, end: R) -> Result<(), Error> {
-        // A comparison with NaN would end the loop before it begins.
-        if !(cfl > R::ZERO) || self.time.partial_cmp(&end).is_none() {
+        if !(cfl > R::ZERO) {
             return Err(Error::Step);
         }
-        while self.time < end {
+        // Written so that a time or an end that is NaN is refused by a step.
+        while !(self.time >= end) {
             self.advance(cfl, end)?;
         }
         Ok(())

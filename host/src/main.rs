@@ -38,10 +38,8 @@ fn take_limits_of_files_for_errors() {
     signal(sigxfsz, sig_ign);
 }
 
-#[cfg(not(any(target_os = "linux", target_os = "macos")))]
-fn take_limits_of_files_for_errors() {}
-
 fn main() -> ExitCode {
+    #[cfg(any(target_os = "linux", target_os = "macos"))]
     take_limits_of_files_for_errors();
     // Ctrl-C leaves nothing half-written; without a handler the run goes on as the system does by default.
     let _ = ctrlc::set_handler(|| {

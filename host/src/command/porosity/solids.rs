@@ -39,9 +39,9 @@ struct PartReport {
 
 /// All solids, those of scene files first.
 pub(super) fn solids(bodies: &Bodies) -> Vec<SolidReport> {
-    let of_scenes = bodies.solids.iter().cloned().map(|solid| {
-        let (own, parts) = (&bodies.bodies[solid.bodies.clone()], parts(bodies, &solid));
-        SolidReport { parts, ..report(bodies, solid, own.iter()) }
+    let of_scenes = bodies.solids.iter().map(|solid| {
+        let SurfaceArea { frontal, wetted } = areas_of(bodies, bodies.bodies[solid.bodies.clone()].iter());
+        SolidReport { about: solid.clone(), frontal_area: frontal, wetted_area: wetted, parts: parts(bodies, solid) }
     });
     let in_scene = |n: usize| bodies.solids.iter().any(|s| s.bodies.contains(&n));
     let files = bodies.diagnoses.iter().filter(|d| !d.body_range.is_empty() && !in_scene(d.body_range.start));
@@ -70,50 +70,42 @@ fn parts(bodies: &Bodies, solid: &SolidSummary) -> Vec<PartReport> {
     let is_part = |name: &str| name.strip_prefix(&solid.name[..]).is_some_and(|rest| rest.contains('/'));
     let named = if solid.shape == "file" { by_name(bodies, solid.bodies.clone()) } else { Vec::new() };
     let named = named.into_iter().filter(|(name, _)| is_part(name));
-    let part = |(name, numbers): (&str, Vec<usize>)| {
-        let own = || numbers.iter().map(|&n| &bodies.bodies[n]);
-        let SurfaceArea { frontal, wetted } = areas_of(bodies, own());
-        PartReport {
-            name: name.to_owned(),
-            volume: own().map(|b| b.volume).sum(),
-            frontal_area: frontal,
-            wetted_area: wetted,
-            bounds: bounds_of(own()),
-        }
-    };
-    named.map(part).collect()
+    named.map(|(name, numbers)| part(bodies, name, &numbers)).collect()
+}
+
+/// Some bodies of one name, taken together.
+fn part(bodies: &Bodies, name: &str, numbers: &[usize]) -> PartReport {
+    let own = || numbers.iter().map(|&n| &bodies.bodies[n]);
+    let SurfaceArea { frontal, wetted } = areas_of(bodies, own());
+    PartReport {
+        name: name.to_owned(),
+        volume: own().map(|b| b.volume).sum(),
+        frontal_area: frontal,
+        wetted_area: wetted,
+        bounds: own().map(|b| b.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or_default(),
+    }
 }
 
 /// The bodies of each name in a file, in the order in which the names come first.
 fn of_file<'a>(bodies: &'a Bodies, file: &'a Diagnosis) -> impl Iterator<Item = SolidReport> {
     by_name(bodies, file.body_range.clone()).into_iter().map(|(name, numbers)| {
-        let own = || numbers.iter().map(|&n| &bodies.bodies[n]);
+        let PartReport { name, volume, frontal_area, wetted_area, bounds } = part(bodies, name, &numbers);
         let about = SolidSummary {
             scene: file.file.clone(),
-            name: name.to_owned(),
+            name,
             shape: "file",
             porosity: 0.0,
             copies: 1,
             bodies: numbers[0]..numbers[numbers.len() - 1] + 1,
-            volume: own().map(|b| b.volume).sum(),
-            bounds: bounds_of(own()),
+            volume,
+            bounds,
         };
-        report(bodies, about, own())
+        SolidReport { about, frontal_area, wetted_area, parts: Vec::new() }
     })
-}
-
-fn report<'a>(bodies: &Bodies, about: SolidSummary, own: impl Iterator<Item = &'a Body>) -> SolidReport {
-    let SurfaceArea { frontal, wetted } = areas_of(bodies, own);
-    SolidReport { about, frontal_area: frontal, wetted_area: wetted, parts: Vec::new() }
 }
 
 /// The areas of some bodies, each alone.
 fn areas_of<'a>(bodies: &Bodies, own: impl Iterator<Item = &'a Body>) -> SurfaceArea<f64> {
     let area = own.map(|body| areas::of_body(body, &bodies.triangles[body.triangles.clone()]));
     area.fold(SurfaceArea::default(), SurfaceArea::plus)
-}
-
-/// Lowest and highest corner of some bodies.
-fn bounds_of<'a>(own: impl Iterator<Item = &'a Body>) -> [DVec3; 2] {
-    own.map(|b| b.bounds).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or_default()
 }
