@@ -389,6 +389,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         };
         CellPush {
             sides: std::array::from_fn(|d| [0, 1].map(|side| closed(d, side) * over(d, side))),
+            along: [[[R::ZERO; D]; 2]; D],
             mass: std::array::from_fn(|d| [0, 1].map(|side| passing(d, side))),
             drag: std::array::from_fn(drag),
         }

@@ -124,6 +124,106 @@ fn a_stream_along_a_porous_layer_stays_as_it_is() {
     }
 }
 
+/// Density, velocity along the normal and pressure within a layer of a porosity, of gas that comes with a density and a pressure of 1 and a velocity along the
+/// normal, slower than sound: the same entropy, mass and total enthalpy.
+fn within_layer(porosity: f64, normal_velocity: f64) -> (f64, f64, f64) {
+    let enthalpy = GAMMA / (GAMMA - 1.0);
+    let mut density: f64 = 1.0;
+    for _ in 0..200 {
+        let inside = normal_velocity / (porosity * density);
+        let share = 1.0 + 0.5 * (normal_velocity.powi(2) - inside.powi(2)) / enthalpy;
+        density = share.powf(1.0 / (GAMMA - 1.0));
+    }
+    (density, normal_velocity / (porosity * density), density.powf(GAMMA))
+}
+
+/// A periodic box of a width of 1 with porous layers, and a stream that crosses them.
+struct Layers<const D: usize> {
+    /// Whole numbers, which the layers are normal to.
+    normal: [i32; D],
+    porosity: f64,
+    /// Velocity between the layers.
+    velocity: [f64; D],
+}
+
+impl<const D: usize> Layers<D> {
+    /// What the stream loses of its total pressure in each layer that it crosses, in units of its dynamic pressure, as its entropy tells that rises
+    /// (the sum over the box loses nothing else); and how far the mean velocity between the layers has turned, in units of the speed.
+    fn loss(&self, n: usize, crossings: f64) -> (f64, f64) {
+        let normal = self.normal.map(f64::from);
+        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let solid = |low: [f64; D], high: [f64; D]| {
+            let lowest = self.normal.iter().map(|k| (*k).min(0)).sum::<i32>() - 1;
+            let highest = self.normal.iter().map(|k| (*k).max(0)).sum::<i32>();
+            let layers = (lowest..highest).map(|m| f64::from(m) + 0.3517);
+            let one = |o: f64| half_space(normal, o + 0.3, low, high) - half_space(normal, o, low, high);
+            (1.0 - self.porosity) * layers.map(one).sum::<f64>()
+        };
+        let open = open_fractions([n; D], [0.0; D], 1.0 / n as f64, solid);
+        let boundaries = [[Boundary::Periodic; 2]; D];
+        let mut flow: Flow<f64, D> =
+            Flow::uniform([n; D], [1.0 / n as f64; D], Gas::Ideal { gamma: GAMMA }, boundaries);
+        flow.set_porosity(open.volume.clone(), open.faces, Treatment::default()).unwrap();
+        let unit = normal.map(|x| x / length);
+        let through: f64 = (0..D).map(|d| unit[d] * self.velocity[d]).sum();
+        let (density, inside, pressure) = within_layer(self.porosity, through);
+        for (cell, volume) in open.volume.iter().enumerate() {
+            // Share of the gas of the cell that is in a layer.
+            let share = (1.0 - volume) / (1.0 - self.porosity) * self.porosity / volume;
+            let mix = |a: f64, b: f64| a + share * (b - a);
+            let velocity = std::array::from_fn(|d| self.velocity[d] + share * (inside - through) * unit[d]);
+            flow.set(cell, &Primitive { density: mix(1.0, density), velocity, pressure: mix(1.0, pressure) });
+        }
+        let mass =
+            |flow: &Flow<f64, D>| open.volume.iter().enumerate().map(|(c, v)| v * flow.get(c).density).sum::<f64>();
+        let entropy = |flow: &Flow<f64, D>| {
+            let of = |(c, v): (usize, &f64)| {
+                let w = flow.get(c);
+                v * w.density * (w.pressure / w.density.powf(GAMMA)).ln()
+            };
+            open.volume.iter().enumerate().map(of).sum::<f64>() / mass(flow)
+        };
+        let (at_first, time) = (entropy(&flow), mass(&flow) / (n as f64).powi(D as i32) / length / through.abs());
+        while flow.time < crossings * time {
+            flow.advance(0.8, crossings * time).unwrap();
+        }
+        let clear = |c: &usize| open.volume[*c] > 0.9999;
+        let mean = |d: usize| {
+            let all = (0..flow.len()).filter(clear);
+            all.clone().map(|c| flow.get(c).velocity[d]).sum::<f64>() / all.count() as f64
+        };
+        let speed_sq = self.velocity.iter().map(|u| u * u).sum::<f64>();
+        let turned = (0..D).fold(0.0, |most: f64, d| most.max((mean(d) - self.velocity[d]).abs() / speed_sq.sqrt()));
+        // p0 falls as exp(−s/R): rho T ds over q.
+        let loss = (entropy(&flow) - at_first) / (GAMMA - 1.0) / (0.5 * speed_sq) / crossings;
+        (loss, turned)
+    }
+}
+
+/// The exact flow is steady and loses nothing.
+#[test]
+fn a_stream_through_porous_layers_askew_to_the_grid_keeps_its_total_pressure() {
+    let mut worst = (0.0f64, 0.0f64);
+    let mut check = |of: String, most: f64, (loss, turned): (f64, f64)| {
+        worst = (worst.0.max(loss.abs()), worst.1.max(turned));
+        assert!(loss.abs() < most && turned < 10.0 * most, "{of}: {loss:.5} q, turned by {turned:.5}");
+    };
+    for (normal, degrees) in [([5, 1], 200.0), ([2, 1], 0.0), ([1, 1], 20.0), ([-1, 2], 0.0), ([1, -5], 160.0)] {
+        // Cells at the border of a dense layer count as wider than they are, so that they do not limit the step.
+        for (porosity, mach, most) in [(0.8, 0.1, 1e-3), (0.5, 0.1, 1e-3), (0.5, 0.03, 1e-3), (0.2, 0.03, 0.05)] {
+            let (sin, cos) = f64::to_radians(degrees).sin_cos();
+            let velocity = [cos, sin].map(|u| u * mach * GAMMA.sqrt());
+            let of = format!("{normal:?}, porosity {porosity}, Mach {mach}, stream at {degrees}°");
+            check(of, most, Layers { normal, porosity, velocity }.loss(20, 0.5));
+        }
+    }
+    for normal in [[1, 2, 3], [1, 1, 1], [0, -1, 2]] {
+        let velocity = [0.6, 0.8, 0.2].map(|u: f64| u * 0.1 * GAMMA.sqrt());
+        check(format!("{normal:?}"), 1e-3, Layers { normal, porosity: 0.5, velocity }.loss(12, 0.25));
+    }
+    println!("at most {:.5} q lost in a layer, turned by {:.5}", worst.0, worst.1);
+}
+
 /// A body of porosity `inside` (each cell and face by itself shaken by a share `noise`) that covers a share of a box.
 fn porous(
     n: [usize; 2],
@@ -191,10 +291,30 @@ fn a_porous_body_askew_to_the_grid_costs_little_total_pressure() {
     let about = |x: [f64; 2]| [x[0] - 1.0, x[1] - 0.5];
     let square = porous(n, width, 0.8, 0.0, |low, high| in_square(0.2, 30.0, low, high));
     let round = porous(n, width, 0.8, 0.0, |low, high| disc(0.25, about(low), about(high)));
-    for (name, open, most) in [("square at 30°", square, 0.045), ("disc", round, 0.03)] {
+    for (name, open, most) in [("square at 30°", square, 0.03), ("disc", round, 0.03)] {
         let (found, without_map) = (total_pressure_loss(&open, 0.1), total_pressure_loss(&open, f64::INFINITY));
         println!("{name}: {found:.4} q lost, {without_map:.4} q in the geometric form alone");
-        assert!(found.abs() < most && found < 0.6 * without_map, "{name}: {found} q, without the map {without_map} q");
+        assert!(found.abs() < most && found < 0.4 * without_map, "{name}: {found} q, without the map {without_map} q");
+    }
+}
+
+/// Between walls a layer askew turns the stream, which the walls turn back.
+#[test]
+fn a_porous_layer_askew_across_a_channel_costs_little_total_pressure() {
+    let (n, width) = CHANNEL;
+    for (degrees, most) in [(42.0, 0.015), (60.0, 0.01), (75.0, 0.01)] {
+        let (sin, cos) = f64::to_radians(degrees).sin_cos();
+        let middle = sin * 1.013 - cos * 0.507;
+        let layer = |low: [f64; 2], high: [f64; 2]| {
+            half_space([sin, -cos], middle + 0.15, low, high) - half_space([sin, -cos], middle - 0.15, low, high)
+        };
+        let open = porous(n, width, 0.8, 0.0, layer);
+        let (found, without_map) = (total_pressure_loss(&open, 0.1), total_pressure_loss(&open, f64::INFINITY));
+        println!("layer at {degrees}°: {found:.4} q lost, {without_map:.4} q in the geometric form alone");
+        assert!(
+            found.abs() < most && found < 0.1 * without_map,
+            "{degrees}°: {found} q, without the map {without_map} q"
+        );
     }
 }
 

@@ -26,7 +26,9 @@ fn force<const D: usize>(flow: &Flow<f64, D>) -> ([f64; D], f64) {
         for d in 0..D {
             let area = flow.area(d, at);
             let parts = [-push.sides[d][0] * area, push.sides[d][1] * area, push.drag[d] * flow.volume(at)];
-            for part in parts {
+            let along = (0..D).flat_map(|a| [(a, 0, -1.0), (a, 1, 1.0)]);
+            let along = along.map(|(a, side, sign)| sign * push.along[a][side][d] * flow.area(a, at));
+            for part in parts.into_iter().chain(along) {
                 sum[d] += part;
                 size += part.abs();
             }

@@ -5,7 +5,7 @@
 //! - `cell_walls`: what kind of wall a cell holds, and how far the gas flows along it
 //! - `areas`: open areas along one axis at the cells of a row
 //! - `mark`: the flags from the open fractions
-//! - [`throat`], `jump`: fluxes where the porosity jumps
+//! - [`throat`], `jump`: fluxes where the porosity jumps; `oblique_jump`: across a border askew to the grid
 //! - [`clusters`]: small cells that share one state with a neighbour; `cluster_averages`: that state
 //! - [`mod@prepare`]: all of that in one call
 
@@ -17,5 +17,6 @@ pub mod flags;
 pub mod fractions;
 pub(crate) mod jump;
 pub(crate) mod mark;
+pub(crate) mod oblique_jump;
 pub mod prepare;
 pub mod throat;

@@ -223,6 +223,12 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         lengths.into_iter().try_for_each(|found| fits(expected, found))
     }
 
+    /// The porous space, if it is one.
+    pub(in crate::flow) fn medium(&self) -> Option<Medium<'_, R, D>> {
+        let porosity = self.porosity?;
+        Some(Medium { mesh: self.mesh, porosity, periodic: self.periodic() })
+    }
+
     /// Signal rate of one cell, jumps and merging included.
     pub(in crate::flow) fn cell_rate(&self, field: &Fields<'_, R, D>, cell: usize) -> R {
         let gas = field.gas_at(self.gas, cell);
@@ -231,13 +237,9 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
         let at = self.mesh.coordinates(cell);
         sum::<R, D>(core::array::from_fn(|d| {
             let t = (w.velocity[d].abs() + c) / self.mesh.widths[d][at[d]];
-            match self.porosity {
+            match self.medium() {
                 None => t,
-                Some(porosity) => {
-                    let medium = Medium { mesh: self.mesh, porosity };
-                    let periodic = self.boundaries[d][0].is_periodic();
-                    t * self.openness(&medium.ducts(d, at, periodic), 0)
-                }
+                Some(medium) => t * self.openness(&medium.ducts(d, at), 0),
             }
         }))
     }

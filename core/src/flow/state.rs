@@ -32,6 +32,12 @@ pub(crate) fn sum<R: Real, const D: usize>(t: [R; D]) -> R {
     }
 }
 
+/// The product of two vectors, the same bits in any order of the axes.
+#[inline(always)]
+pub(crate) fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
+    sum::<R, D>(core::array::from_fn(|c| a[c] * b[c]))
+}
+
 /// The components of a vector as seen from axis `d`: the normal one first, then the others in cyclic order.
 #[inline(always)]
 pub(crate) fn rotate<T: Copy, const D: usize>(v: [T; D], d: usize) -> [T; D] {

@@ -290,7 +290,8 @@ fn advance<R: Scalar, const D: usize>(
     if h.lengths == 0 {
         watched.sort_unstable();
     }
-    let none = CellPush { sides: [[R::ZERO; 2]; D], mass: [[R::ZERO; 2]; D], drag: [R::ZERO; D] };
+    let zero = [[R::ZERO; 2]; D];
+    let none = CellPush { sides: zero, along: [[[R::ZERO; D]; 2]; D], mass: zero, drag: [R::ZERO; D] };
     let mut pushes = vec![none; h.length(watched.len())];
     let walls = WatchedWalls { cells: &watched, pushes: &mut pushes, reference: h.number(1.0) };
     let mut whole = new.view_mut();

@@ -1,5 +1,6 @@
 //! Properties of the solver, driven by tests, seeded random input and the fuzzer.
 
+use crate::euler::space::{half_space, open_fractions};
 use voidage::flow::{Field, Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
 use voidage_core::number::real::Real;
@@ -80,7 +81,19 @@ pub fn porosity<R: Real, const D: usize>(s: &mut Source<'_>, n: [usize; D]) -> (
         let count: usize = (0..D).map(|a| n[a] + usize::from(a == d)).product();
         (0..count).map(|_| R::from_f64(s.fraction())).collect()
     });
-    (volume, faces)
+    if D > 1 && s.bits().is_multiple_of(4) { porous_layer(s, n) } else { (volume, faces) }
+}
+
+/// Open fractions of a porous layer between two planes askew to the grid, in cells as wide as high.
+fn porous_layer<R: Real, const D: usize>(s: &mut Source<'_>, n: [usize; D]) -> (Vec<R>, [Vec<R>; D]) {
+    let normal: [f64; D] = std::array::from_fn(|_| 2.0 * s.unit() - 1.0);
+    let offset = (0..D).map(|d| normal[d] * s.unit() * n[d] as f64).sum::<f64>();
+    let (thickness, share) = (s.scale(0.1, 10.0), s.pick(&[0.2, 0.5, 0.9, 0.97]));
+    let open = open_fractions(n, [0.0; D], 1.0, |low, high| {
+        share * (half_space(normal, offset + thickness, low, high) - half_space(normal, offset, low, high))
+    });
+    let to = |fractions: Vec<f64>| fractions.into_iter().map(R::from_f64).collect();
+    (to(open.volume), open.faces.map(to))
 }
 
 /// Any step from a finite physical state ends in one: never a NaN, never a negative density or pressure, never a panic,

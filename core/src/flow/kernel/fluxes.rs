@@ -8,7 +8,7 @@ use crate::flow::kernel::rows::{self, Faces, FluxBlock, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::shocks::{Pressures, fluxes_along_shocks};
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
-use crate::flow::kernel::walls_and_jumps::fluxes_at_breaks;
+use crate::flow::kernel::walls_and_jumps::{changes_apart, fluxes_at_breaks};
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::problem::PressureForm;
 use crate::flow::state::{Conserved, Primitive, rotate_back};
@@ -110,6 +110,8 @@ fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
         &mut work.change[0][slab.changes(0, place)],
         n,
     );
+    let out = &mut work.change[0][slab.changes(0, place)];
+    changes_apart(slab, (0, row), [(flux, m); 2], &|i| inv[i], out);
     if MIXED {
         let carried = |v: usize| Carried { volume: &var(flux, D + 3, m)[v..], capacity: &var(flux, D + 4, m)[v..] };
         let own = &slab.old.capacity[row.start..];
@@ -443,10 +445,13 @@ fn fluxes_under<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
             &mut work.change[d][slab.changes(d, place)],
             n,
         );
+        let mut of_row = at;
+        of_row[d] = below;
+        let row = RowAt { start: mesh.index(of_row), at: of_row };
+        let out = &mut work.change[d][slab.changes(d, place)];
+        changes_apart(slab, (d, row), [(low, n), (high, n)], &|_| inv, out);
         if MIXED {
-            let mut of_row = at;
-            of_row[d] = below;
-            let own = &slab.old.capacity[mesh.index(of_row)..];
+            let own = &slab.old.capacity[row.start..];
             let carried = |flux| Carried { volume: var(flux, D + 3, n), capacity: var(flux, D + 4, n) };
             let out = &mut work.change[d][slab.changes(d, place)][(D + 2) * n..];
             mixed::differences(own, carried(low), carried(high), |_| inv, out);
@@ -504,7 +509,7 @@ fn count_inflow<R: Real, const D: usize, const ENERGY: bool>(
         let open = match &slab.medium {
             None => R::ONE,
             Some(medium) => {
-                let (low, high) = medium.ducts(d, at, slab.periodic[d]).openings(0);
+                let (low, high) = medium.ducts(d, at).openings(0);
                 if side == 0 { low } else { high }
             }
         };

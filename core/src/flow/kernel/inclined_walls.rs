@@ -21,7 +21,7 @@ use crate::flow::porosity::flags::{INCLINED, any_inclined, is};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::problem::PressureForm;
 use crate::flow::riemann::Slowness;
-use crate::flow::state::{Gas, Primitive, sum};
+use crate::flow::state::{Gas, Primitive, dot, sum};
 use crate::number::real::Real;
 
 /// Corrects the half-step states `half` of the cells of a row that an inclined wall cuts and a shock passes. `strength` is scratch of a row.
@@ -89,10 +89,6 @@ fn pressure_at_wall<R: Real, const D: usize, const MIXED: bool>(
     let image = Boundary::Wall.ghost_face(w, 0, false, gas);
     let plain = Slowness { bend: R::ZERO, pace: R::INFINITY };
     (slab.solver.wall)([w, &image], &if MIXED { FaceGas::new(gas) } else { slab.face_gas }, plain)
-}
-
-fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
-    sum::<R, D>(core::array::from_fn(|d| a[d] * b[d]))
 }
 
 /// A wall of the width of the gas of its cell over this number meets all of it. With 1, shocks along walls overshoot by 3.01 % in `turned_tube`, with this number by less than 3.

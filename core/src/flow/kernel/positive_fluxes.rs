@@ -12,6 +12,7 @@ use crate::flow::face_gas::MixedFace;
 use crate::flow::fallback::POSITIVE;
 use crate::flow::kernel::rows::{self, FluxBlock};
 use crate::flow::kernel::slab::Slab;
+use crate::flow::kernel::walls_and_jumps::apart;
 use crate::flow::riemann::{Rusanov, Solver};
 use crate::number::real::Real;
 
@@ -47,6 +48,7 @@ pub(in crate::flow) fn positive_fluxes<R: Real, const D: usize, const ENERGY: bo
         flux.values[n + i] = through(f.momentum[0] - reference[0]);
         for c in 1..D {
             flux.values[(1 + c) * n + i] = through(f.momentum[c]);
+            flux.values[apart(c, D, MIXED) * n + i] = through(f.momentum[c]);
         }
         if ENERGY {
             flux.values[(D + 1) * n + i] = through(f.energy);

@@ -10,7 +10,7 @@ use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use crate::flow::porosity::flags::{KIND, SEALED, SMALL, any_marked, break_high, break_low, is, marked};
+use crate::flow::porosity::flags::{BORDER, KIND, SMALL, any_marked, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
@@ -187,7 +187,7 @@ fn fall_back<R: Real, const D: usize, const MIXED: bool>(
         let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
         let leaves = !(stays(0) && stays(D + 1));
         let asked = asked.is_some_and(|f| f[i] != 0);
-        let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], SEALED));
+        let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], BORDER));
         if leaves || asked || small {
             *first_order_cells += usize::from((leaves || asked) && slab.reported.contains(&i));
             for v in 0..D + 2 + usize::from(MIXED) {
@@ -220,7 +220,7 @@ fn coefficients<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, o
         inv[i] = R::ONE / R::larger(volume[i], least_volume());
     }
     for d in 0..D {
-        let (low, high) = medium.ducts(d, row.at, slab.periodic[d]).rows(n);
+        let (low, high) = medium.ducts(d, row.at).rows(n);
         let (rate, widening) = (&mut of_row.rate[d][..n], &mut of_row.widening[d][..n]);
         let across = if d == 0 { R::ZERO } else { half_dt / mesh.widths[d][row.at[d]] };
         let widths = &mesh.widths[0][..n];
@@ -239,7 +239,7 @@ fn coefficients<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, o
     }
     let marks = &medium.porosity.marks[row.start..][..n];
     for d in 0..D {
-        let ducts = medium.ducts(d, row.at, slab.periodic[d]);
+        let ducts = medium.ducts(d, row.at);
         for i in marked(marks, break_low(d) | break_high(d)) {
             let mut at = row.at;
             at[0] += i;

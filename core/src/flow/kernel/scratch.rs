@@ -86,7 +86,7 @@ impl Sizes {
             rows_padded: if D == 3 { rows + 2 * ROWS_BESIDE } else { 1 },
             layers: if D == 1 { 1 } else { 3 },
             state: if mixed { D + 3 } else { D + 2 },
-            face: if mixed { D + 5 } else { D + 3 },
+            face: if mixed { 2 * D + 4 } else { 2 * D + 2 },
         }
     }
 

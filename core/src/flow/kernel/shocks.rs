@@ -40,7 +40,7 @@ pub(in crate::flow) struct Pressures<'w, R> {
 }
 
 /// Variables of a face state or a flux block at most.
-const MOST: usize = 8;
+const MOST: usize = 10;
 
 /// Row of the window: layer and row.
 pub(in crate::flow) type Place = (isize, isize);

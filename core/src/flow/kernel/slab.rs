@@ -3,10 +3,11 @@
 use crate::flow::face_gas::FaceGas;
 use crate::flow::kernel::scratch::{ROWS_BESIDE, Sizes};
 use crate::flow::kernel::solver_calls::SolverCalls;
+use crate::flow::porosity::cell_walls::Border;
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::throat::ThroatGas;
 use crate::flow::problem::Problem;
-use crate::flow::state::{Fields, Gas};
+use crate::flow::state::{Fields, Gas, rotate};
 use crate::flow::wall_forces::CellPush;
 use crate::number::real::Real;
 use core::cell::Cell;
@@ -130,7 +131,7 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         Slab {
             problem,
             solver,
-            medium: problem.porosity.map(|porosity| Medium { mesh: problem.mesh, porosity }),
+            medium: problem.medium(),
             size: Sizes::new(problem.mesh.cells(), problem.gas.is_mixed()),
             periodic: problem.periodic(),
             weighted: problem.gravity.iter().any(|&g| g != R::ZERO),
@@ -167,6 +168,25 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
             face[d] += side;
             if breaks[side] { self.contraction(d, face) } else { R::ONE }
         })
+    }
+
+    /// How far the slopes in a cell fall to those of a contraction beside its low and its high face along `d`, as far as they break: as the gas passes, at the
+    /// border of a porous body all the way.
+    pub fn flatness(&self, d: usize, at: [usize; D], breaks: [bool; 2]) -> [R; 2] {
+        let shares = self.contractions(d, at, breaks);
+        core::array::from_fn(|side| {
+            let mut face = at;
+            face[d] += side;
+            let on_border = shares[side] < R::ONE && breaks[side] && self.border(d, face).is_some();
+            if on_border { R::ONE } else { shares[side] }
+        })
+    }
+
+    /// The border askew to the grid in the cells beside the low face of a cell along `d`, in the frame of that axis. `at[d]` may be one past the end.
+    pub fn border(&self, d: usize, at: [usize; D]) -> Option<Border<R, D>> {
+        let medium = self.medium.as_ref().filter(|_| D > 1)?;
+        let border = medium.border(d, medium.mesh.beside(d, at, self.periodic[d]))?;
+        Some(Border { normal: rotate(border.normal, d), ..border })
     }
 
     /// The gas of the capacity at a place of a block; the one gas there is, if it is not mixed.

@@ -68,7 +68,7 @@ fn open_areas<R: Real, const D: usize>(
     }
     let marks = &medium.porosity.marks[row.start..][..n];
     for d in 0..D {
-        let ducts = medium.ducts(d, row.at, slab.periodic[d]);
+        let ducts = medium.ducts(d, row.at);
         let (low, high) = ducts.rows(n);
         let open = &mut coefficients.open[d][..n];
         for i in 0..n {

@@ -6,9 +6,12 @@
 
 use crate::flow::kernel::rows::var;
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, Slab};
+use crate::flow::kernel::walls_and_jumps::apart;
 use crate::flow::porosity::areas::Ducts;
+use crate::flow::porosity::cell_walls::Border;
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::problem::PressureForm;
+use crate::flow::state::rotate_back;
 use crate::number::real::Real;
 
 /// Writes what acts at the faces of a row on the walls of watched cells on one side of them, and the mass that passes.
@@ -22,8 +25,13 @@ pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
         let (mut now, face, side) = (push.get(), cells.face + i, usize::from(cells.high));
         now.mass[faces.d][side] = faces.flux.get(face).copied().unwrap_or(R::ZERO);
         if let Some(medium) = &slab.medium {
-            let ducts = medium.ducts(faces.d, faces.at, slab.periodic[faces.d]);
-            now.sides[faces.d][side] = at_face(slab, faces, &ducts, face, cells.high);
+            let ducts = medium.ducts(faces.d, faces.at);
+            let mut own = medium.mesh.coordinates(cells.start + i);
+            let breaks = medium.ducts(faces.d, own).breaks(0, cells.high);
+            own[faces.d] += usize::from(cells.high);
+            let border = if breaks { slab.border(faces.d, own) } else { None };
+            now.sides[faces.d][side] = at_face(slab, faces, (&ducts, &border), face, cells.high);
+            now.along[faces.d][side] = along_border(slab, faces, (&ducts, &border), face, cells.high);
         }
         push.set(now);
     }
@@ -33,11 +41,11 @@ pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
 fn at_face<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     faces: &FaceRow<'_, R, D>,
-    ducts: &Ducts<'_, R>,
+    (ducts, border): (&Ducts<'_, R>, &Option<Border<R, D>>),
     i: usize,
     high: bool,
 ) -> R {
-    let (d, n) = (faces.d, faces.n);
+    let n = faces.n;
     let value = |block: &[R], v: usize| var(block, v, n).get(i).copied().unwrap_or(R::ZERO);
     let open = ducts.face(i);
     let ambient = slab.walls.map_or(R::ZERO, |walls| walls.reference);
@@ -45,19 +53,58 @@ fn at_face<R: Real, const D: usize>(
     // Momentum through the open part of the face and into the walls beside it, as each of the two cells sees it.
     let seen = [value(faces.flux, 1) + open * above[0], value(faces.flux, D + 2) + open * above[1]];
     let own = usize::from(!high);
+    let passes = passing(slab, faces, (ducts, border), i, seen, own);
+    (R::ONE - open) * above[own] + (seen[own] - passes)
+}
+
+/// What passes the open part of a face, of what each of both cells sees.
+fn passing<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    faces: &FaceRow<'_, R, D>,
+    (ducts, border): (&Ducts<'_, R>, &Option<Border<R, D>>),
+    i: usize,
+    seen: [R; 2],
+    own: usize,
+) -> R {
+    let d = faces.d;
     let place = if d == 0 { i } else { faces.at[d] };
     let inside = slab.periodic[d] || (place > 0 && place < slab.problem.mesh.cells()[d]);
-    let passes = if !(open > R::ZERO) {
+    if !(ducts.face(i) > R::ZERO) {
         R::ZERO
     } else if inside {
-        let [left, right] = walls_beside(slab, faces, ducts, i);
+        let [left, right] = match border {
+            // What lies in the cells beside a border meets no wall of it.
+            Some(border) => border.ducts.map(|duct| if duct.is_some() { R::ONE } else { R::ZERO }),
+            None => walls_beside(slab, faces, ducts, i),
+        };
         let sum = left + right;
         // Without any wall the two differ by rounding.
         if sum > R::ZERO { (right * seen[0] + left * seen[1]) / sum } else { seen[own] }
     } else {
         seen[own]
-    };
-    (R::ONE - open) * above[own] + (seen[own] - passes)
+    }
+}
+
+/// The force along x, y, z that the cell on the left (`high`) or right of face `i` gets across the axis of the face.
+fn along_border<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    faces: &FaceRow<'_, R, D>,
+    (ducts, border): (&Ducts<'_, R>, &Option<Border<R, D>>),
+    i: usize,
+    high: bool,
+) -> [R; D] {
+    let mut along = [R::ZERO; D];
+    if border.is_none() {
+        return along;
+    }
+    let own = usize::from(!high);
+    let mixed = slab.problem.gas.is_mixed();
+    for (c, along) in along.iter_mut().enumerate().skip(1) {
+        let value = |v: usize| var(faces.flux, v, faces.n).get(i).copied().unwrap_or(R::ZERO);
+        let seen = [value(1 + c), value(apart(c, D, mixed))];
+        *along = seen[own] - passing(slab, faces, (ducts, border), i, seen, own);
+    }
+    rotate_back(along, faces.d)
 }
 
 /// How much wall the cells on the left and on the right of a face have beside what is open of it: of their ducts; in the paper's form of their volumes.

@@ -5,18 +5,20 @@
 //! would stagnate at a pressure wrong by rho c u. At a jump both cells are flat along the axis and the throat map acts.
 
 use crate::flow::boundary::Boundary;
-use crate::flow::face_gas::FaceGas;
+use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, RowBeside, Three, var};
 use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
+use crate::flow::porosity::cell_walls::Border;
 use crate::flow::porosity::flags::{break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, carried_through, jump_fluxes, mixed_jump_fluxes};
-use crate::flow::porosity::throat::throat_area;
+use crate::flow::porosity::oblique_jump::ObliqueJump;
+use crate::flow::porosity::throat::{ThroatGas, throat_area};
 use crate::flow::problem::PressureForm;
 use crate::flow::riemann::Slowness;
-use crate::flow::state::Primitive;
+use crate::flow::state::{Primitive, dot};
 use crate::number::real::Real;
 
 /// Jump faces of one group, whose fluxes are found side by side. The number changes no result.
@@ -86,7 +88,7 @@ pub(in crate::flow) fn flatten_beside_closed_faces<R: Real, const D: usize, cons
 ) {
     let Some(medium) = &slab.medium else { return };
     let (n, periodic) = (slab.size.n, slab.periodic[d]);
-    let (low, high) = medium.ducts(d, row.at, periodic).rows(n);
+    let (low, high) = medium.ducts(d, row.at).rows(n);
     if low.iter().chain(high).all(|open| *open > R::ZERO) {
         return;
     }
@@ -116,14 +118,14 @@ pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bo
     let n = cells.n;
     let Some(medium) = &slab.medium else { return };
     let marks = &medium.porosity.marks[row.start..][..n];
-    let ducts = medium.ducts(d, row.at, slab.periodic[d]);
+    let ducts = medium.ducts(d, row.at);
     for i in marked(marks, break_low(d) | break_high(d)) {
         let (low, high) = ducts.openings(i);
         let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
         let mut at = row.at;
         at[0] += i;
         // 1 beside a face that is no break.
-        let [a, b] = slab.contractions(d, at, breaks);
+        let [a, b] = slab.flatness(d, at, breaks);
         let share = if breaks == [true; 2] { R::larger(a, b) } else { R::smaller(a, b) };
         let mut blend = |v: usize, slope: R| {
             let own = &mut out[v * n + i];
@@ -225,13 +227,18 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, const MIXED: bo
     mut flux: FluxBlock<'_, R>,
 ) {
     let Some(medium) = &slab.medium else { return };
-    let ducts = medium.ducts(d, at, slab.periodic[d]);
+    let ducts = medium.ducts(d, at);
     let row = BrokenRow { slab, medium, ducts, d, at, states };
     let mut group = [0; LANES];
     let mut count = 0;
     for i in broken {
+        let border = row.border(i);
         if !(row.ducts.face(i) > R::ZERO) {
-            wall_flux::<R, D, MIXED>(&row, i, &mut flux);
+            wall_flux::<R, D, MIXED>(&row, i, border, &mut flux);
+            continue;
+        }
+        if let Some(border) = border {
+            oblique_jump::<R, D>(&row, i, &border, &mut flux);
             continue;
         }
         group[count] = i;
@@ -276,11 +283,25 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
         tightened(self.slab.dt / self.medium.mesh.widths[self.d][cell[self.d]], area, volume, volume)
     }
 
+    /// The border askew to the grid beside a face.
+    fn border(&self, i: usize) -> Option<Border<R, D>> {
+        let mut face = self.at;
+        face[0] = i;
+        self.slab.border(self.d, face)
+    }
+
     /// How far the gas passes a face as a contraction.
     fn contraction(&self, i: usize) -> R {
         let mut face = self.at;
         face[0] = i;
         self.slab.contraction(self.d, face)
+    }
+
+    /// Weight of weak waves at a face: 0 beside a cell where a step went wrong.
+    fn acoustic_weight(&self, i: usize) -> R {
+        let Some(asked) = self.slab.first_order else { return R::ONE };
+        let troubled = self.beside(i).iter().flatten().any(|&c| asked[self.slab.problem.mesh.index(c)] != 0);
+        if troubled { R::ZERO } else { R::ONE }
     }
 }
 
@@ -317,11 +338,7 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
         let pinched = nearly_chokes(machs, [areas[0][l], areas[1][l]]) && row.ducts.pinched(group[l]);
         throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched);
     }
-    let mut acoustic_weight = [R::ONE; LANES];
-    if let Some(asked) = slab.first_order {
-        let troubled = |i: usize| row.beside(i).iter().flatten().any(|&c| asked[slab.problem.mesh.index(c)] != 0);
-        acoustic_weight = group.map(|i| if troubled(i) { R::ZERO } else { R::ONE });
-    }
+    let acoustic_weight = group.map(|i| row.acoustic_weight(i));
     let faces =
         JumpFaces { states, ducts: areas, throat, references: [gather(0, D + 2), gather(1, D + 2)], acoustic_weight };
     let f = if MIXED {
@@ -339,12 +356,88 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     scatter(1, &f.normal[0]);
     for c in 1..D {
         scatter(1 + c, &f.momentum[c]);
+        scatter(apart(c, D, MIXED), &f.momentum[c]);
     }
     scatter(D + 1, &f.energy);
     scatter(D + 2, &f.normal[1]);
     if MIXED {
         let carried = carried_through(&faces.states, &capacities, &f.mass);
         (0..2).for_each(|n| scatter(D + 3 + n, &carried[n]));
+    }
+}
+
+/// Place in a flux block, at a broken face, of the tangential momentum `c`, from 1 on, that the cell on the right gains.
+pub(in crate::flow) const fn apart(c: usize, dimensions: usize, mixed: bool) -> usize {
+    dimensions + 2 + c + if mixed { 2 } else { 0 }
+}
+
+/// The changes `out` of the tangential momentum of the cells of a row whose low faces along axis `d` break: what they gain there is not what those below lose.
+/// `low` and `high` give a variable of the flux block at the cells' faces.
+// Called, not inlined: each kind of step would hold its own.
+#[inline(never)]
+pub(in crate::flow) fn changes_apart<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, row): (usize, RowAt<D>),
+    [low, high]: [(&[R], usize); 2],
+    inv_width: &dyn Fn(usize) -> R,
+    out: &mut [R],
+) {
+    let Some(medium) = slab.medium.as_ref().filter(|_| D > 1) else { return };
+    let (n, mixed) = (slab.size.n, slab.problem.gas.is_mixed());
+    for i in marked(&medium.porosity.marks[row.start..][..n], break_low(d)) {
+        for c in 1..D {
+            let v = 1 + (c + d) % D;
+            let gained = var(low.0, apart(c, D, mixed), low.1)[i];
+            let lost = var(high.0, 1 + c, high.1)[i + usize::from(d == 0)];
+            out[v * n + i] = (lost - gained) * inv_width(i);
+        }
+    }
+}
+
+/// Flux at the jump face `i` of a row, across a border askew to the grid.
+// Called, not inlined, and the same for one gas and for two: there are few such faces.
+#[inline(never)]
+fn oblique_jump<R: Real, const D: usize>(
+    row: &BrokenRow<'_, R, D>,
+    i: usize,
+    border: &Border<R, D>,
+    flux: &mut FluxBlock<'_, R>,
+) {
+    let (slab, n, mixed) = (row.slab, flux.n, row.slab.problem.gas.is_mixed());
+    let states = row.states.map(|s| rows::face_state::<R, D>(s, n, i));
+    let gas = |s: &[R]| if mixed { slab.gas_of::<true>(s, (D + 3) * n + i) } else { slab.problem.gas };
+    let gases = row.states.map(gas);
+    let (left, right) = row.ducts.beside(i, false);
+    let ducts = [border.ducts[0].unwrap_or(left), border.ducts[1].unwrap_or(right)];
+    let mach = |s: usize| dot(border.normal, states[s].velocity) / FaceGas::new(gases[s]).sound_speed(&states[s]);
+    let open = row.ducts.face(i);
+    let pinched = nearly_chokes([mach(0), mach(1)], ducts) && row.ducts.pinched(i);
+    let face = ObliqueJump {
+        states,
+        ducts,
+        open,
+        throat: throat_area(ducts[0], open, ducts[1], pinched),
+        references: row.states.map(|s| s[(D + 2) * n + i]),
+        acoustic_weight: row.acoustic_weight(i),
+        normal: border.normal,
+    };
+    let throats = gases.map(ThroatGas::new);
+    let f = face.flux(&MixedFace(gases.map(FaceGas::new)), throats.each_ref(), slab.solver.throat);
+    let [to_left, to_right] = f.momentum;
+    let mut put = |v: usize, value: R| flux.values[v * n + i] = value;
+    put(0, f.mass);
+    put(D + 1, f.energy);
+    put(D + 2, to_right[0]);
+    put(1, to_left[0]);
+    for c in 1..D {
+        put(1 + c, to_left[c]);
+        put(apart(c, D, mixed), to_right[c]);
+    }
+    if mixed {
+        let up = usize::from(f.mass < R::ZERO);
+        let volume = f.mass / states[up].density;
+        put(D + 3, volume);
+        put(D + 4, volume * row.states[up][(D + 3) * n + i]);
     }
 }
 
@@ -362,23 +455,29 @@ fn nearly_chokes<R: Real>(machs: [R; 2], ducts: [R; 2]) -> bool {
     wide > narrow && (mach >= R::ONE || wide * share > R::from_f64(NEARLY) * narrow)
 }
 
-/// Flux at the closed face `i` of a row: nothing passes, and each side is pushed by its mirror image.
+/// Flux at the closed face `i` of a row: nothing passes, and each side is pushed by its mirror image; where what is closed is askew to the grid, along its
+/// `border`'s normal.
 fn wall_flux<R: Real, const D: usize, const MIXED: bool>(
     row: &BrokenRow<'_, R, D>,
     i: usize,
+    border: Option<Border<R, D>>,
     flux: &mut FluxBlock<'_, R>,
 ) {
     let (problem, medium, d, m) = (row.slab.problem, row.medium, row.d, flux.n);
     let beside = row.beside(i);
     let push = |side: usize| {
         let area = beside[side].map_or(R::ZERO, |cell| match problem.scheme.pressure {
-            PressureForm::Geometric => medium.ducts(d, cell, row.slab.periodic[d]).wall(0),
+            PressureForm::Geometric => medium.ducts(d, cell).wall(0),
             PressureForm::Paper => medium.porosity.volume[medium.mesh.index(cell)],
         });
         if !(area > R::ZERO) {
             return R::ZERO;
         }
-        let w = rows::face_state(row.states[side], m, i);
+        let mut w = rows::face_state(row.states[side], m, i);
+        if let Some(Border { normal, .. }) = border {
+            let through = dot(normal, w.velocity);
+            w.velocity = core::array::from_fn(|c| if c == 0 { through } else { R::ZERO });
+        }
         let gas = row.slab.gas_of::<MIXED>(row.states[side], (D + 3) * m + i);
         let image = Boundary::Wall.ghost_face(&w, d, side == 1, gas);
         let pair: [&Primitive<R, D>; 2] = if side == 0 { [&w, &image] } else { [&image, &w] };
@@ -387,12 +486,22 @@ fn wall_flux<R: Real, const D: usize, const MIXED: bool>(
         let slowness = Slowness { bend: above + above, pace: row.pace(side, i, area) };
         let face_gas = if MIXED { FaceGas::new(gas) } else { row.slab.face_gas };
         let momentum = (row.slab.solver.wall)(pair, &face_gas, slowness);
-        row.contraction(i) * area * (momentum - reference)
+        let share = if border.is_some() { R::ONE } else { row.contraction(i) };
+        share * area * (momentum - reference)
     };
     let (to_left, to_right) = (push(0), push(1));
-    for v in (0..D + 2).chain(D + 3..D + 3 + 2 * usize::from(MIXED)) {
+    let all = (0..D + 2).chain(D + 3..D + 3 + 2 * usize::from(MIXED));
+    for v in all.chain((1..D).map(|c| apart(c, D, MIXED))) {
         flux.values[v * m + i] = R::ZERO;
     }
-    flux.values[m + i] = to_left;
-    flux.values[(D + 2) * m + i] = to_right;
+    let mut along = [R::ZERO; D];
+    along[0] = R::ONE;
+    let along = border.map_or(along, |Border { normal, .. }| normal.map(|n| normal[0] * n));
+    for c in 0..D {
+        flux.values[(1 + c) * m + i] = to_left * along[c];
+    }
+    flux.values[(D + 2) * m + i] = to_right * along[0];
+    for c in 1..D {
+        flux.values[apart(c, D, MIXED) * m + i] = to_right * along[c];
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! The row runs along axis 0; the faces may belong to any axis.
 
-use crate::flow::porosity::flags::{SEALED, SMALL, break_high, break_low, is};
+use crate::flow::porosity::flags::{BORDER, SMALL, break_high, break_low, is};
 use crate::flow::porosity::fractions::{Medium, rounding};
 use crate::flow::porosity::throat::throat_area;
 use crate::number::real::Real;
@@ -29,7 +29,7 @@ pub(crate) struct Ducts<'a, R> {
 
 impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
     /// The faces of axis `d` beside the row of cells from `at` on. `at[d]` may be one past the end: then only the low faces count.
-    pub fn ducts(&self, d: usize, at: [usize; D], periodic: bool) -> Ducts<'a, R> {
+    pub fn ducts(&self, d: usize, at: [usize; D]) -> Ducts<'a, R> {
         let start = self.mesh.index(at);
         Ducts {
             axis: d,
@@ -39,7 +39,7 @@ impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
             place: at[d],
             step: usize::from(d == 0),
             cells: self.mesh.cells()[d],
-            periodic,
+            periodic: self.periodic[d],
             volume: self.porosity.volume.get(start..).unwrap_or_default(),
             marks: self.porosity.marks.get(start..).unwrap_or_default(),
         }
@@ -115,7 +115,8 @@ impl<'a, R: Real> Ducts<'a, R> {
 
     /// Area that a closed face has as a wall of the cell beside it: [`Ducts::width`]; 0 in a sealed cell, where nothing moves.
     pub fn wall(&self, i: usize) -> R {
-        if is(self.marks[i], SEALED) { R::ZERO } else { self.width(i) }
+        // A cell of this kind with both faces closed is sealed, or gas moves along other axes alone.
+        if is(self.marks[i], BORDER) && !(self.duct(i) > R::ZERO) { R::ZERO } else { self.width(i) }
     }
 
     /// `beta_v` of a cell.

@@ -11,6 +11,7 @@
 //! References: M. Berger, A. Giuliani, J. Comput. Phys. 428 (2021) 109820 (state redistribution, threshold one half).
 
 use crate::flow::error::{Error, fits};
+use crate::flow::porosity::flags::{BORDER, is};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE};
 use crate::flow::state::sum;
 use crate::number::real::Real;
@@ -58,14 +59,14 @@ fn equal_up_to<R: Real>(count: usize, this: &[R; REASONS], best: &[R; REASONS]) 
 /// A slice does not fit the mesh, or the mesh has too many cells.
 pub(in crate::flow) fn clusters<R: Real, const D: usize>(
     mesh: &Mesh<'_, R, D>,
-    (volume, faces): (&[R], &[&[R]; D]),
+    porosity: Porosity<'_, R, D>,
     periodic: [bool; D],
     list: &mut [u32],
     parent: &mut [u32],
     scratch: &mut [R],
 ) -> Result<usize, Error> {
     let n = mesh.len();
-    let space = Space::new(mesh, volume, faces, periodic)?;
+    let space = Space::new(mesh, porosity, periodic)?;
     fits(n, list.len())?;
     fits(n, parent.len())?;
     if scratch.len() < cluster_scratch(n) {
@@ -90,17 +91,15 @@ pub(in crate::flow) fn clusters<R: Real, const D: usize>(
 /// The porous space as the search for clusters sees it.
 struct Space<'a, R, const D: usize> {
     medium: Medium<'a, R, D>,
-    periodic: [bool; D],
 }
 
 impl<'a, R: Real, const D: usize> Space<'a, R, D> {
-    fn new(mesh: &Mesh<'a, R, D>, volume: &'a [R], faces: &[&'a [R]; D], periodic: [bool; D]) -> Result<Self, Error> {
-        fits(mesh.len(), volume.len())?;
+    fn new(mesh: &Mesh<'a, R, D>, porosity: Porosity<'a, R, D>, periodic: [bool; D]) -> Result<Self, Error> {
+        fits(mesh.len(), porosity.volume.len())?;
         for d in 0..D {
-            fits(mesh.faces(d), faces[d].len())?;
+            fits(mesh.faces(d), porosity.faces[d].len())?;
         }
-        let porosity = Porosity { volume, faces: *faces, marks: &[] };
-        Ok(Space { medium: Medium { mesh: *mesh, porosity }, periodic })
+        Ok(Space { medium: Medium { mesh: *mesh, porosity, periodic } })
     }
 
     /// Every open face of a cell: its axis, what lies behind it, and its open fraction.
@@ -108,7 +107,7 @@ impl<'a, R: Real, const D: usize> Space<'a, R, D> {
         let mesh = &self.medium.mesh;
         let (at, cells) = (mesh.coordinates(cell), mesh.cells());
         for d in 0..D {
-            let (low, high) = self.medium.ducts(d, at, self.periodic[d]).openings(0);
+            let (low, high) = self.medium.ducts(d, at).openings(0);
             for (open, up) in [(low, false), (high, true)] {
                 if !(open > R::ZERO) {
                     continue;
@@ -118,7 +117,7 @@ impl<'a, R: Real, const D: usize> Space<'a, R, D> {
                 let behind = if at[d] != edge {
                     next[d] = if up { at[d] + 1 } else { at[d] - 1 };
                     Some(next)
-                } else if self.periodic[d] {
+                } else if self.medium.periodic[d] {
                     next[d] = cells[d] - 1 - edge;
                     Some(next)
                 } else {
@@ -237,6 +236,10 @@ impl<'s, R: Real> Search<'s, R> {
             self.root[i] = r;
             let r = r as usize;
             self.held[r] += space.open_volume(i);
+            // What the border of a porous body leaves is enough.
+            if space.medium.porosity.marks.get(i).is_some_and(|&m| is(m, BORDER)) {
+                continue;
+            }
             let own = space.whole(i);
             let wanted = &mut self.wanted[r];
             space.each_face(i, |_, _, open| *wanted = R::larger(open * own, *wanted));

@@ -2,8 +2,9 @@
 
 /// The two bits that say what kind of cell it is; none for a plain one. Ask with [`is`]: a kind may hold the bits of others.
 pub const KIND: u8 = 3 << 6;
-/// Kind of a cell with no open face: nothing happens there.
-pub const SEALED: u8 = 1 << 6;
+/// Kind of a cell with no open face, where nothing happens, and of one with an open face that the border of a porous body askew to the grid crosses: a jump of
+/// porosity at all its faces. Either has no slopes.
+pub const BORDER: u8 = 1 << 6;
 /// Kind of a cell whose own reconstruction stays first order: less open volume than [`crate::flow::porosity::fractions::SMALL_SHARE`] of its largest face.
 pub const SMALL: u8 = 2 << 6;
 /// Kind of a cell that an inclined wall cuts and that is not small.

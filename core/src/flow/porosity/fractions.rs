@@ -111,6 +111,31 @@ impl<'a, R: Real, const D: usize> Mesh<'a, R, D> {
         [if i > 0 { Some(cell(i - 1)) } else { around(n - 1) }, if above { Some(cell(i)) } else { around(0) }]
     }
 
+    /// Whether something holds for a cell and all those around it, corners included.
+    pub(in crate::flow) fn around(
+        &self,
+        at: [usize; D],
+        periodic: [bool; D],
+        holds: impl Fn([usize; D]) -> bool,
+    ) -> bool {
+        (0..3usize.pow(D as u32)).all(|mut step| {
+            let mut cell = at;
+            for (d, place) in cell.iter_mut().enumerate() {
+                let n = self.widths[d].len();
+                *place = match step % 3 {
+                    0 => *place,
+                    1 if *place + 1 < n => *place + 1,
+                    1 if periodic[d] => 0,
+                    2 if *place > 0 => *place - 1,
+                    2 if periodic[d] => n - 1,
+                    _ => return true,
+                };
+                step /= 3;
+            }
+            holds(cell)
+        })
+    }
+
     /// Volume of a cell, its obstacles included; length or area in fewer dimensions; 0 outside the mesh.
     pub fn volume(&self, at: [usize; D]) -> R {
         let mut v = R::ONE;
@@ -152,4 +177,6 @@ pub(in crate::flow) fn least_volume<R: Real>() -> R {
 pub(in crate::flow) struct Medium<'a, R, const D: usize> {
     pub mesh: Mesh<'a, R, D>,
     pub porosity: Porosity<'a, R, D>,
+    /// Axes whose ends are one place.
+    pub periodic: [bool; D],
 }

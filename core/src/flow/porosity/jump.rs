@@ -41,16 +41,16 @@ pub(in crate::flow) struct JumpFlux<R, const D: usize> {
 }
 
 /// One lane, whose states have been carried to the throat.
-struct JumpLane<R, const D: usize> {
-    cell: [Primitive<R, D>; 2],
-    throat: [Primitive<R, D>; 2],
+pub(in crate::flow) struct JumpLane<R, const D: usize> {
+    pub cell: [Primitive<R, D>; 2],
+    pub throat: [Primitive<R, D>; 2],
     /// Areas of the throat, of the ducts, and of the streams that pass.
-    to: R,
-    ducts: [R; 2],
-    passing: [R; 2],
-    references: [R; 2],
+    pub to: R,
+    pub ducts: [R; 2],
+    pub passing: [R; 2],
+    pub references: [R; 2],
     /// Force on the walls beside a stream that chokes, less that of the reference pressure.
-    walls: [R; 2],
+    pub walls: [R; 2],
 }
 
 /// The fluxes through several jump faces; `solve` is the Riemann solver in the throats.
@@ -198,7 +198,11 @@ const STRONG: f64 = 0.6;
 /// of the pressure as a share and the Mach number in the throat; the latter also for `mass_flux`, what weak waves would carry per area of
 /// the throat.
 #[inline(always)]
-fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2], gas: &impl FaceGases<R>) -> R {
+pub(in crate::flow) fn weakness<R: Real, const D: usize>(
+    mass_flux: R,
+    [l, r]: &[Primitive<R, D>; 2],
+    gas: &impl FaceGases<R>,
+) -> R {
     let mach = |w: &Primitive<R, D>, sound: R| {
         R::larger((w.density * w.velocity[0]).abs(), mass_flux.abs()) / (w.density * sound)
     };
@@ -225,7 +229,10 @@ fn weakness<R: Real, const D: usize>(mass_flux: R, [l, r]: &[Primitive<R, D>; 2]
 /// upstream at the velocity and pressure downstream, and so is what it takes to reach the throat; the wave beyond the contact runs in the gas downstream,
 /// which changes its pressure by as much for a change of velocity as before: c/σ in the place of c, σ the share of densities.
 #[inline(always)]
-fn acoustic<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl FaceGases<R>) -> JumpFlux<R, D> {
+pub(in crate::flow) fn acoustic<R: Real, const D: usize>(
+    face: &JumpLane<R, D>,
+    gas: &impl FaceGases<R>,
+) -> JumpFlux<R, D> {
     let sound = [gas.left().sound_speed(&face.cell[0]), gas.right().sound_speed(&face.cell[1])];
     let mass = [0, 1].map(|s| face.ducts[s] * (face.cell[s].density * face.cell[s].velocity[0]));
     let both = face.ducts[0] * face.ducts[1];

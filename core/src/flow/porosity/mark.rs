@@ -1,7 +1,7 @@
 //! Which faces are walls or porosity jumps, and which cells small, sealed or cut by an inclined wall, found once from the open fractions.
 
 use crate::flow::error::{Error, fits};
-use crate::flow::porosity::flags::{INCLINED, SEALED, SMALL, break_high, break_low};
+use crate::flow::porosity::flags::{BORDER, INCLINED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE, rounding};
 use crate::number::real::Real;
 
@@ -49,37 +49,106 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
     for d in 0..D {
         fits(mesh.faces(d), faces[d].len())?;
     }
-    let medium = Medium { mesh: *mesh, porosity: Porosity { volume, faces: *faces, marks: &[] } };
-    let ducts = |d: usize, at: [usize; D]| medium.ducts(d, at, periodic[d]);
-    let widest = |at: [usize; D]| (0..D).fold(R::ZERO, |w, d| R::larger(w, ducts(d, at).duct(0)));
+    let porosity = Porosity { volume, faces: *faces, marks: &[] };
+    let medium = Medium { mesh: *mesh, porosity, periodic };
+    mark_borders(&medium, threshold, marks);
     for cell in 0..marks.len() {
-        let at = mesh.coordinates(cell);
-        let mut bits = 0;
-        for d in 0..D {
-            let own = ducts(d, at);
-            let (low, high) = own.openings(0);
-            let mut above = at;
-            above[d] += 1;
-            for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
-                let (left, right) = own.beside(0, bit == break_high(d));
-                let feels = |c: &[usize; D]| widest(*c) > R::ZERO && is_wall(ducts(d, *c).width(0), threshold);
-                let closed = !(open > R::ZERO) && medium.mesh.beside(d, face, periodic[d]).iter().flatten().any(feels);
-                let inclined = |c: &[usize; D]| medium.holds_wall_at_face(*c, d, open);
-                let breaks = closed || is_jump(left, open, right, threshold);
-                if breaks && !medium.mesh.beside(d, face, periodic[d]).iter().flatten().any(inclined) {
-                    bits |= bit;
-                }
-            }
-        }
-        let widest = widest(at);
-        if !(widest > R::ZERO) {
-            bits |= SEALED;
-        } else if volume[cell] < (R::from_f64(SMALL_SHARE) - rounding::<R>()) * widest {
-            bits |= SMALL;
-        } else if medium.holds_inclined_wall(at) {
-            bits |= INCLINED;
-        }
-        marks[cell] = bits;
+        // The bits of other cells that are looked at say only where borders are.
+        let medium = Medium { porosity: Porosity { marks, ..porosity }, ..medium };
+        let bits = breaks_of(&medium, threshold, mesh.coordinates(cell));
+        marks[cell] |= bits;
+    }
+    for cell in 0..marks.len() {
+        let medium = Medium { porosity: Porosity { marks, ..porosity }, ..medium };
+        let kind = kind_of(&medium, mesh.coordinates(cell));
+        marks[cell] |= kind;
     }
     Ok(())
+}
+
+/// Marks the cells that a border askew to the grid crosses, where the porosity jumps at one of their faces or at one of a cell beside: the stationary wave of a border
+/// acts at all faces of a cell or at none.
+fn mark_borders<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R, marks: &mut [u8]) {
+    // Until all are known: a cell at a border without a jump of its own, and one beside a cell that has one.
+    const ALONE: u8 = INCLINED;
+    const BESIDE: u8 = SMALL;
+    let mesh = &medium.mesh;
+    for (cell, mark) in marks.iter_mut().enumerate() {
+        let at = mesh.coordinates(cell);
+        let jumps = |d: usize| {
+            let own = medium.ducts(d, at);
+            let (low, high) = own.openings(0);
+            [(low, false), (high, true)].into_iter().any(|(open, side)| {
+                let (left, right) = own.beside(0, side);
+                open > R::ZERO && is_jump(left, open, right, threshold)
+            })
+        };
+        *mark = match medium.holds_border(at) {
+            true if (0..D).any(jumps) => BORDER,
+            true => ALONE,
+            false => 0,
+        };
+    }
+    for cell in 0..marks.len() {
+        if marks[cell] == ALONE {
+            let at = mesh.coordinates(cell);
+            let beside = |d: usize, high: bool| {
+                let mut face = at;
+                face[d] += usize::from(high);
+                mesh.beside(d, face, medium.periodic[d]).into_iter().flatten()
+            };
+            let mut around = (0..D).flat_map(|d| beside(d, false).chain(beside(d, true)));
+            if around.any(|c| marks[mesh.index(c)] == BORDER) {
+                marks[cell] = BESIDE;
+            }
+        }
+    }
+    for mark in marks {
+        *mark = if matches!(*mark, BORDER | BESIDE) { BORDER } else { 0 };
+    }
+}
+
+/// Marks of the faces of a cell at which the open space breaks.
+fn breaks_of<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R, at: [usize; D]) -> u8 {
+    let mut bits = 0;
+    for d in 0..D {
+        let own = medium.ducts(d, at);
+        let (low, high) = own.openings(0);
+        let mut above = at;
+        above[d] += 1;
+        for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
+            let (left, right) = own.beside(0, bit == break_high(d));
+            let cells = medium.mesh.beside(d, face, medium.periodic[d]);
+            let feels =
+                |c: &[usize; D]| medium.widest(*c) > R::ZERO && is_wall(medium.ducts(d, *c).width(0), threshold);
+            let inclined = |c: &[usize; D]| medium.holds_wall_at_face(*c, d, open);
+            let on_border =
+                || cells.iter().all(Option::is_some) && cells.iter().flatten().any(|c| medium.on_border(*c));
+            let breaks = if open > R::ZERO {
+                is_jump(left, open, right, threshold) || on_border()
+            } else {
+                cells.iter().flatten().any(feels)
+            };
+            if breaks && !cells.iter().flatten().any(inclined) {
+                bits |= bit;
+            }
+        }
+    }
+    bits
+}
+
+/// The kind of a cell, if it is not marked as one at a border.
+fn kind_of<R: Real, const D: usize>(medium: &Medium<'_, R, D>, at: [usize; D]) -> u8 {
+    let (widest, volume) = (medium.widest(at), medium.open_volume(at));
+    if !(widest > R::ZERO) {
+        BORDER
+    } else if medium.on_border(at) {
+        0
+    } else if volume < (R::from_f64(SMALL_SHARE) - rounding::<R>()) * widest {
+        SMALL
+    } else if medium.holds_inclined_wall(at) {
+        INCLINED
+    } else {
+        0
+    }
 }

@@ -3,7 +3,7 @@
 
 use crate::flow::error::Error;
 use crate::flow::porosity::clusters::{Clusters, clusters};
-use crate::flow::porosity::flags::{KIND, SEALED, SMALL, break_high, break_low, is};
+use crate::flow::porosity::flags::{BORDER, KIND, SMALL, break_high, break_low, is};
 use crate::flow::porosity::fractions::{Mesh, Porosity, SMALL_SHARE};
 use crate::flow::porosity::mark::mark;
 use crate::number::real::Real;
@@ -121,7 +121,8 @@ where
     loop {
         let faces = space.faces.each_ref().map(|f| f.as_ref());
         let (list, parent) = (list.as_mut(), parent.as_mut());
-        space.used = clusters(mesh, (space.volume.as_ref(), &faces), periodic, list, parent, scratch.as_mut())?;
+        let porosity = Porosity { volume: space.volume.as_ref(), faces, marks: space.flags.as_ref() };
+        space.used = clusters(mesh, porosity, periodic, list, parent, scratch.as_mut())?;
         // From here on, whether a cell belongs to a cluster.
         parent.fill(0);
         let found = Clusters(list.get(..space.used).unwrap_or_default());
@@ -192,7 +193,8 @@ impl<V, F: AsMut<[u8]> + AsRef<[u8]>, L, const D: usize> Prepared<V, F, L, D> {
             for cell in members {
                 let at = mesh.coordinates(cell);
                 held += volume[cell] * mesh.volume(at);
-                for d in 0..D {
+                // What a border leaves is enough.
+                for d in (0..D).filter(|_| !is(flags[cell], BORDER)) {
                     for face in mesh.faces_of(d, at) {
                         wanted = R::larger(faces[d][face] * mesh.volume(at), wanted);
                     }
@@ -255,7 +257,14 @@ impl<'a, R: Real, const D: usize> PreparedView<'a, R, D> {
 
     /// Cells with no open face: nothing happens there.
     pub fn sealed_cells(&self) -> usize {
-        self.porosity.marks.iter().filter(|&&m| is(m, SEALED)).count()
+        let open = |cell: usize, d: usize| {
+            let stride: usize = self.cells[..d].iter().product();
+            // A line of faces is one longer than one of cells.
+            let low = cell + cell / (stride * self.cells[d]).max(1) * stride;
+            [low, low + stride].iter().any(|&face| self.porosity.faces[d].get(face).is_some_and(|open| *open > R::ZERO))
+        };
+        let marks = self.porosity.marks.iter().enumerate();
+        marks.filter(|&(cell, &m)| is(m, BORDER) && !(0..D).any(|d| open(cell, d))).count()
     }
 
     /// Open faces where the porosity jumps and the throat map acts.

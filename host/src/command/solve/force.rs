@@ -45,6 +45,8 @@ pub(super) fn taken_volume<const D: usize>(flow: &Flow<f64, D>, cell: usize) -> 
 pub(super) struct Weights<const D: usize> {
     /// For each axis the area, in m², on which the pressure on the walls at the low and at the high side acts.
     pub sides: [[f64; 2]; D],
+    /// Share of what acts along the borders of porous bodies askew to the grid.
+    pub along: f64,
     /// For each axis the volume, in m³, on which the drag acts.
     pub drag: [f64; D],
     /// Volume of gas displaced, in m³.
@@ -57,6 +59,7 @@ impl<const D: usize> Weights<D> {
         let at = flow.coordinates(cell);
         Weights {
             sides: std::array::from_fn(|d| [flow.area(d, at); 2]),
+            along: 1.0,
             drag: [flow.volume(at); D],
             displaced: taken_volume(flow, cell),
         }
@@ -64,11 +67,16 @@ impl<const D: usize> Weights<D> {
 
     /// The force in a cell, in N along each axis.
     pub(super) fn force(&self, flow: &Flow<f64, D>, cell: usize, push: &CellPush<f64, D>) -> [f64; D] {
+        let at = flow.coordinates(cell);
         std::array::from_fn(|d| {
             let [low, high] = [0, 1].map(|side| push.sides[d][side] * self.sides[d][side]);
+            let along = (0..D).fold(0.0, |sum, axis| {
+                let [low, high] = push.along[axis];
+                if high[d] == low[d] { sum } else { sum + (high[d] - low[d]) * flow.area(axis, at) * self.along }
+            });
             let g = flow.gravity[d];
             let weight = if g == 0.0 { 0.0 } else { g * flow.get(cell).density * self.displaced };
-            high - low + push.drag[d] * self.drag[d] - weight
+            high - low + along + push.drag[d] * self.drag[d] - weight
         })
     }
 }

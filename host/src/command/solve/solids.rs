@@ -152,7 +152,7 @@ struct Shares<const D: usize>(BTreeMap<usize, Weights<D>>);
 
 impl<const D: usize> Shares<D> {
     fn of(&mut self, group: usize) -> &mut Weights<D> {
-        self.0.entry(group).or_insert(Weights { sides: [[0.0; 2]; D], drag: [0.0; D], displaced: 0.0 })
+        self.0.entry(group).or_insert(Weights { sides: [[0.0; 2]; D], along: 0.0, drag: [0.0; D], displaced: 0.0 })
     }
 }
 
@@ -255,6 +255,14 @@ impl<const D: usize> Parts<'_, D> {
                     found.of(group).sides[d][side] += share * rest * area;
                 }
             }
+        }
+        let closed = |d: usize, side: usize| {
+            if faces[d][self.flow.face(d, at, side)] < 1.0 { self.flow.area(d, at) } else { 0.0 }
+        };
+        let all: f64 = (0..D).flat_map(|d| [closed(d, 0), closed(d, 1)]).sum();
+        for weights in found.0.values_mut() {
+            let own: f64 = weights.sides.as_flattened().iter().sum();
+            weights.along = if all > 0.0 { own / all } else { 0.0 };
         }
         if weighs {
             let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
