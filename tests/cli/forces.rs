@@ -47,7 +47,7 @@ z_max = "wall"
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Solids across the planes of the grid, touching and overlapping each other, with drag of what is hidden in cells.
+/// Solids across the planes of the grid, touching and overlapping each other, with drag of what is hidden in cells; a porous screen askew to the grid.
 #[test]
 fn forces_on_solids_add_up_to_the_force_on_all() {
     let at = Scratch::new();
@@ -56,6 +56,9 @@ fn forces_on_solids_add_up_to_the_force_on_all() {
         cube("lid", [0.81, 0.33, 0.3], 0.14),
         cube("bar", [1.43, 0.405, 0.0], 0.05),
         cube("pole", [1.61, 0.3, 0.3], 0.2),
+        "[[solid]]\nname = \"screen\"\nshape = \"box\"\nmin = [1.8, -1, -1]\nmax = [2.1, 2, 2]\nporosity = 0.5\n\
+         rotate = { axis = [0.2, 0.3, 1], angle = 35 }\n"
+            .to_owned(),
     ];
     fs::write(at.file("scene.toml"), scene.concat()).expect("written");
     let more = "[drag]\nlaw = \"bluff\"\n[time]\nmax_steps = 40\n[output]\nformats = []\n";

@@ -11,8 +11,8 @@ pub struct CellPush<R, const D: usize> {
     /// fraction, counted from [`WatchedWalls::reference`]. The force along axis d is (high − low) times the area of the cell normal to d; under gravity g
     /// less g_d times the mass of gas that the solids displace.
     pub sides: [[R; 2]; D],
-    /// For the low and the high face of each axis, the force along x, y, z that the borders of porous bodies askew to the grid get at that face, beside what is in
-    /// `sides`: per area of the cell normal to the axis. What the high faces have counts, what the low ones have is taken off.
+    /// For the low and the high face of each axis, the force along x, y, z that the borders of porous bodies askew to the grid get at that face, beside that on what
+    /// is closed of it, which is in `sides`: per area of the cell normal to the axis. What the high faces have counts, what the low ones have is taken off.
     pub along: [[[R; D]; 2]; D],
     /// Mass per time and area of the cell that passes its low and its high face upwards along each axis.
     pub mass: [[R; 2]; D],

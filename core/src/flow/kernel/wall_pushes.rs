@@ -53,8 +53,13 @@ fn at_face<R: Real, const D: usize>(
     // Momentum through the open part of the face and into the walls beside it, as each of the two cells sees it.
     let seen = [value(faces.flux, 1) + open * above[0], value(faces.flux, D + 2) + open * above[1]];
     let own = usize::from(!high);
+    let closed = (R::ONE - open) * above[own];
+    if border.is_some() {
+        // What a border gets beside that may act where the face is open: see `along_border`.
+        return closed;
+    }
     let passes = passing(slab, faces, (ducts, border), i, seen, own);
-    (R::ONE - open) * above[own] + (seen[own] - passes)
+    closed + (seen[own] - passes)
 }
 
 /// What passes the open part of a face, of what each of both cells sees.
@@ -85,7 +90,7 @@ fn passing<R: Real, const D: usize>(
     }
 }
 
-/// The force along x, y, z that the cell on the left (`high`) or right of face `i` gets across the axis of the face.
+/// The force along x, y, z that the walls of the cell on the left (`high`) or right of face `i` get from a border there, beside that on what is closed of the face.
 fn along_border<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     faces: &FaceRow<'_, R, D>,
@@ -99,9 +104,14 @@ fn along_border<R: Real, const D: usize>(
     }
     let own = usize::from(!high);
     let mixed = slab.problem.gas.is_mixed();
-    for (c, along) in along.iter_mut().enumerate().skip(1) {
-        let value = |v: usize| var(faces.flux, v, faces.n).get(i).copied().unwrap_or(R::ZERO);
-        let seen = [value(1 + c), value(apart(c, D, mixed))];
+    for (c, along) in along.iter_mut().enumerate() {
+        let value = |block: &[R], v: usize| var(block, v, faces.n).get(i).copied().unwrap_or(R::ZERO);
+        let right = if c == 0 { D + 2 } else { apart(c, D, mixed) };
+        let mut seen = [value(faces.flux, 1 + c), value(faces.flux, right)];
+        if c == 0 {
+            let ambient = slab.walls.map_or(R::ZERO, |walls| walls.reference);
+            seen = [0, 1].map(|s| seen[s] + ducts.face(i) * (value(faces.states[s], D + 2) - ambient));
+        }
         *along = seen[own] - passing(slab, faces, (ducts, border), i, seen, own);
     }
     rotate_back(along, faces.d)

@@ -256,13 +256,11 @@ impl<const D: usize> Parts<'_, D> {
                 }
             }
         }
-        let closed = |d: usize, side: usize| {
-            if faces[d][self.flow.face(d, at, side)] < 1.0 { self.flow.area(d, at) } else { 0.0 }
-        };
-        let all: f64 = (0..D).flat_map(|d| [closed(d, 0), closed(d, 1)]).sum();
-        for weights in found.0.values_mut() {
-            let own: f64 = weights.sides.as_flattened().iter().sum();
-            weights.along = if all > 0.0 { own / all } else { 0.0 };
+        // What acts along borders is for those who close the faces of the cell.
+        let of = |weights: &Weights<D>| weights.sides.as_flattened().iter().sum::<f64>();
+        let all: f64 = found.0.values().map(of).sum();
+        for weights in found.0.values_mut().filter(|_| all > 0.0) {
+            weights.along = of(weights) / all;
         }
         if weighs {
             let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
