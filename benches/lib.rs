@@ -46,7 +46,26 @@ pub fn porosity_seconds(
     })
 }
 
-fn median(mut times: Vec<f64>) -> f64 {
+/// The word that asks for a single run, in which callgrind counts instructions.
+const ONCE: &str = "once";
+
+/// What the benchmark is asked for, options left out.
+fn words() -> impl Iterator<Item = String> {
+    std::env::args().skip(1).filter(|word| !word.starts_with('-'))
+}
+
+/// Whether each case is to run a single time.
+pub fn once() -> bool {
+    words().any(|word| word == ONCE)
+}
+
+/// Whether a case is asked for: its name holds all words that are asked for.
+pub fn is_asked(name: &str) -> bool {
+    words().all(|word| word == ONCE || name.split([' ', ',']).any(|of_name| of_name == word))
+}
+
+/// The middle of some times; NaN of none.
+pub fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }

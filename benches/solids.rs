@@ -12,16 +12,13 @@ use voidage::geometry::form::Form;
 use voidage::geometry::scene::{self, load};
 use voidage::grid::Edges;
 use voidage::porosity::{Options, porosity};
-use voidage_benches::porosity_seconds;
+use voidage_benches::{is_asked, once, porosity_seconds};
 use voidage_core::convex::shape::Cylinder;
 use voidage_core::solids::torus::TorusShape;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{formulas, sixteen_balls};
 
 const RUNS: usize = 9;
-
-/// The word that asks for a single run.
-const ONCE: &str = "once";
 
 fn main() {
     println!(
@@ -83,14 +80,13 @@ fn elbows(count: usize, oblique: bool, edges: &Edges) -> Bodies {
 }
 
 fn case(name: &str, bodies: impl FnOnce() -> Bodies, edges: &Edges) {
-    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    if words.iter().any(|word| word != ONCE && !name.split([' ', ',']).any(|of_name| of_name == word)) {
+    if !is_asked(name) {
         return;
     }
     let [nx, ny, nz] = edges.cells();
     let bodies = &bodies();
-    if words.iter().any(|word| word == ONCE) {
-        return once(name, bodies, edges);
+    if once() {
+        return run_once(name, bodies, edges);
     }
     let (one, result) = porosity_seconds(bodies, edges, 1, RUNS, Options::default());
     let (two, _) = porosity_seconds(bodies, edges, 2, RUNS, Options::default());
@@ -107,7 +103,7 @@ fn case(name: &str, bodies: impl FnOnce() -> Bodies, edges: &Edges) {
 }
 
 /// One run on one thread, the time of which is printed with a sum of the field.
-fn once(name: &str, bodies: &Bodies, edges: &Edges) {
+fn run_once(name: &str, bodies: &Bodies, edges: &Edges) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let grid = edges.grid(None).expect("a grid");
     let begin = Instant::now();

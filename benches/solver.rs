@@ -3,16 +3,9 @@
 
 use std::time::Instant;
 use voidage::flow::{Flow, Treatment};
+use voidage_benches::{is_asked, median, once};
 use voidage_core::flow::{Boundary, Gas, Primitive};
-use voidage_tests::euler::space::{half_space, open_fractions};
-
-fn median(mut t: Vec<f64>) -> f64 {
-    t.sort_by(f64::total_cmp);
-    t[t.len() / 2]
-}
-
-/// Measured once, not in medians.
-const ONCE: &str = "once";
+use voidage_tests::euler::space::{layer, open_fractions};
 
 #[derive(Clone, Copy)]
 enum Space {
@@ -31,7 +24,7 @@ fn wave<const D: usize>(n: [usize; D], space: Space) -> Flow<f64, D> {
         let normal: [f64; D] = std::array::from_fn(|d| [0.8, 0.5, 0.33][d]);
         let offset = 0.45 * normal.iter().sum::<f64>();
         let open = open_fractions(n, [0.0; D], 1.0 / n[0] as f64, |low, high| {
-            0.5 * (half_space(normal, offset + 0.1, low, high) - half_space(normal, offset, low, high))
+            0.5 * layer(normal, [offset, offset + 0.1], low, high)
         });
         flow.set_porosity(open.volume, open.faces, Treatment::default()).unwrap();
     }
@@ -58,15 +51,13 @@ fn wave<const D: usize>(n: [usize; D], space: Space) -> Flow<f64, D> {
 }
 
 fn measure<const D: usize>(name: &str, n: [usize; D], space: Space) {
-    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    if words.iter().any(|word| word != ONCE && !name.split(' ').any(|of_name| of_name == word)) {
+    if !is_asked(name) {
         return;
     }
-    let once = words.iter().any(|word| word == ONCE);
     let mut flow = wave(n, space);
     flow.run(0.4, 1e-6).unwrap();
     let cells = flow.len() as f64;
-    let (steps, runs) = if once { (2, 1) } else { (((4e6 / cells) as usize).max(2), 7) };
+    let (steps, runs) = if once() { (2, 1) } else { (((4e6 / cells) as usize).max(2), 7) };
     let times: Vec<f64> = (0..runs)
         .map(|_| {
             let start = Instant::now();

@@ -3,7 +3,7 @@
 use voidage::flow::{Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive};
 use voidage_tests::euler::property::{Source, bits};
-use voidage_tests::euler::space::{OpenFractions, between_edges, disc, half_space, open_fractions};
+use voidage_tests::euler::space::{OpenFractions, between_edges, disc, half_space, layer, open_fractions};
 
 const GAMMA: f64 = 1.4;
 
@@ -74,8 +74,8 @@ fn deviation_along_layer<const D: usize>(
 ) -> f64 {
     let offset = normal.iter().sum::<f64>() * 0.4987;
     let open = between_edges(edges, |low, high| {
-        let [behind, before] = [0.0, thickness].map(|t| half_space(normal, offset + t, low, high));
-        share * (before - behind) + if wall { behind } else { 0.0 }
+        let behind = if wall { half_space(normal, offset, low, high) } else { 0.0 };
+        share * layer(normal, [offset, offset + thickness], low, high) + behind
     });
     let speed = mach * GAMMA.sqrt();
     let w = Primitive { density: 1.0, velocity: along.map(|a| speed * a), pressure: 1.0 };
@@ -156,7 +156,7 @@ impl<const D: usize> Layers<D> {
             let lowest = self.normal.iter().map(|k| (*k).min(0)).sum::<i32>() - 1;
             let highest = self.normal.iter().map(|k| (*k).max(0)).sum::<i32>();
             let layers = (lowest..highest).map(|m| f64::from(m) + 0.3517);
-            let one = |o: f64| half_space(normal, o + 0.3, low, high) - half_space(normal, o, low, high);
+            let one = |o: f64| layer(normal, [o, o + 0.3], low, high);
             (1.0 - self.porosity) * layers.map(one).sum::<f64>()
         };
         let open = open_fractions([n; D], [0.0; D], 1.0 / n as f64, solid);
@@ -203,14 +203,13 @@ impl<const D: usize> Layers<D> {
 /// The exact flow is steady and loses nothing.
 #[test]
 fn a_stream_through_porous_layers_askew_to_the_grid_keeps_its_total_pressure() {
-    let mut worst = (0.0f64, 0.0f64);
-    let mut check = |of: String, most: f64, (loss, turned): (f64, f64)| {
-        worst = (worst.0.max(loss.abs()), worst.1.max(turned));
+    let check = |of: String, most: f64, (loss, turned): (f64, f64)| {
+        println!("{of}: {loss:.5} q lost in a layer, turned by {turned:.5}");
         assert!(loss.abs() < most && turned < 10.0 * most, "{of}: {loss:.5} q, turned by {turned:.5}");
     };
     for (normal, degrees) in [([5, 1], 200.0), ([2, 1], 0.0), ([1, 1], 20.0), ([-1, 2], 0.0), ([1, -5], 160.0)] {
-        // Cells at the border of a dense layer count as wider than they are, so that they do not limit the step.
-        for (porosity, mach, most) in [(0.8, 0.1, 1e-3), (0.5, 0.1, 1e-3), (0.5, 0.03, 1e-3), (0.2, 0.03, 0.05)] {
+        // In a layer of 0.2 the stream has 25 times the dynamic pressure.
+        for (porosity, mach, most) in [(0.8, 0.1, 1e-3), (0.5, 0.1, 1e-3), (0.5, 0.03, 1e-3), (0.2, 0.03, 5e-3)] {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
             let velocity = [cos, sin].map(|u| u * mach * GAMMA.sqrt());
             let of = format!("{normal:?}, porosity {porosity}, Mach {mach}, stream at {degrees}°");
@@ -221,7 +220,6 @@ fn a_stream_through_porous_layers_askew_to_the_grid_keeps_its_total_pressure() {
         let velocity = [0.6, 0.8, 0.2].map(|u: f64| u * 0.1 * GAMMA.sqrt());
         check(format!("{normal:?}"), 1e-3, Layers { normal, porosity: 0.5, velocity }.loss(12, 0.25));
     }
-    println!("at most {:.5} q lost in a layer, turned by {:.5}", worst.0, worst.1);
 }
 
 /// A body of porosity `inside` (each cell and face by itself shaken by a share `noise`) that covers a share of a box.
@@ -302,15 +300,16 @@ fn a_porous_body_askew_to_the_grid_costs_little_total_pressure() {
 #[test]
 fn a_porous_layer_askew_across_a_channel_costs_little_total_pressure() {
     let (n, width) = CHANNEL;
-    for (degrees, most) in [(42.0, 0.015), (60.0, 0.01), (75.0, 0.01)] {
+    let all = [(0.8, 42.0, 0.015), (0.8, 60.0, 0.01), (0.8, 75.0, 0.01), (0.5, 42.0, 0.08), (0.5, 75.0, 0.03)];
+    for (porosity, degrees, most) in all {
         let (sin, cos) = f64::to_radians(degrees).sin_cos();
         let middle = sin * 1.013 - cos * 0.507;
-        let layer = |low: [f64; 2], high: [f64; 2]| {
-            half_space([sin, -cos], middle + 0.15, low, high) - half_space([sin, -cos], middle - 0.15, low, high)
-        };
-        let open = porous(n, width, 0.8, 0.0, layer);
+        let across = [middle - 0.15, middle + 0.15];
+        let open = porous(n, width, porosity, 0.0, |low, high| layer([sin, -cos], across, low, high));
         let (found, without_map) = (total_pressure_loss(&open, 0.1), total_pressure_loss(&open, f64::INFINITY));
-        println!("layer at {degrees}°: {found:.4} q lost, {without_map:.4} q in the geometric form alone");
+        println!(
+            "layer of {porosity} at {degrees}°: {found:.4} q lost, {without_map:.4} q in the geometric form alone"
+        );
         assert!(
             found.abs() < most && found < 0.1 * without_map,
             "{degrees}°: {found} q, without the map {without_map} q"

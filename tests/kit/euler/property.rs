@@ -1,6 +1,6 @@
 //! Properties of the solver, driven by tests, seeded random input and the fuzzer.
 
-use crate::euler::space::{half_space, open_fractions};
+use crate::euler::space::{layer, open_fractions};
 use voidage::flow::{Field, Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann};
 use voidage_core::number::real::Real;
@@ -89,9 +89,8 @@ fn porous_layer<R: Real, const D: usize>(s: &mut Source<'_>, n: [usize; D]) -> (
     let normal: [f64; D] = std::array::from_fn(|_| 2.0 * s.unit() - 1.0);
     let offset = (0..D).map(|d| normal[d] * s.unit() * n[d] as f64).sum::<f64>();
     let (thickness, share) = (s.scale(0.1, 10.0), s.pick(&[0.2, 0.5, 0.9, 0.97]));
-    let open = open_fractions(n, [0.0; D], 1.0, |low, high| {
-        share * (half_space(normal, offset + thickness, low, high) - half_space(normal, offset, low, high))
-    });
+    let open =
+        open_fractions(n, [0.0; D], 1.0, |low, high| share * layer(normal, [offset, offset + thickness], low, high));
     let to = |fractions: Vec<f64>| fractions.into_iter().map(R::from_f64).collect();
     (to(open.volume), open.faces.map(to))
 }

@@ -72,6 +72,11 @@ pub fn half_space<const D: usize>(normal: [f64; D], offset: f64, low: [f64; D], 
     sum / ((1..=k).product::<i32>() as f64 * spans.iter().product::<f64>())
 }
 
+/// The share of a box (or of its face) between the planes normal · x = `from` and `to`.
+pub fn layer<const D: usize>(normal: [f64; D], [from, to]: [f64; 2], low: [f64; D], high: [f64; D]) -> f64 {
+    half_space(normal, to, low, high) - half_space(normal, from, low, high)
+}
+
 /// Share of a rectangle (flat along one axis, if any) that lies within `radius` of the origin.
 pub fn disc(radius: f64, low: [f64; 2], high: [f64; 2]) -> f64 {
     let half_chord = |x: f64| (radius * radius - x * x).max(0.0).sqrt();

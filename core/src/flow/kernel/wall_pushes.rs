@@ -30,36 +30,40 @@ pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
             let breaks = medium.ducts(faces.d, own).breaks(0, cells.high);
             own[faces.d] += usize::from(cells.high);
             let border = if breaks { slab.border(faces.d, own) } else { None };
-            now.sides[faces.d][side] = at_face(slab, faces, (&ducts, &border), face, cells.high);
-            now.along[faces.d][side] = along_border(slab, faces, (&ducts, &border), face, cells.high);
+            let (closed, along) = at_face(slab, faces, (&ducts, &border), face, cells.high);
+            (now.sides[faces.d][side], now.along[faces.d][side]) = (closed, along);
         }
         push.set(now);
     }
 }
 
-/// Pressure times closed fraction at face `i` of a row, on the left (`high`) or right of it.
+/// Pressure times closed fraction at face `i` of a row, on the left (`high`) or right of it, and the force along x, y, z that walls there get from a border beside:
+/// it may act where the face is open.
 fn at_face<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     faces: &FaceRow<'_, R, D>,
     (ducts, border): (&Ducts<'_, R>, &Option<Border<R, D>>),
     i: usize,
     high: bool,
-) -> R {
-    let n = faces.n;
+) -> (R, [R; D]) {
+    let (n, own, mixed) = (faces.n, usize::from(!high), slab.problem.gas.is_mixed());
     let value = |block: &[R], v: usize| var(block, v, n).get(i).copied().unwrap_or(R::ZERO);
     let open = ducts.face(i);
     let ambient = slab.walls.map_or(R::ZERO, |walls| walls.reference);
     let above = faces.states.map(|block| value(block, D + 2) - ambient);
-    // Momentum through the open part of the face and into the walls beside it, as each of the two cells sees it.
-    let seen = [value(faces.flux, 1) + open * above[0], value(faces.flux, D + 2) + open * above[1]];
-    let own = usize::from(!high);
+    // Momentum through the open part of the face and into the walls beside it, as each of the two cells sees it, less what passes.
+    let to_walls = |c: usize| {
+        let seen = match c {
+            0 => [value(faces.flux, 1) + open * above[0], value(faces.flux, D + 2) + open * above[1]],
+            _ => [1 + c, apart(c, D, mixed)].map(|v| value(faces.flux, v)),
+        };
+        seen[own] - passing(slab, faces, (ducts, border), i, seen, own)
+    };
     let closed = (R::ONE - open) * above[own];
-    if border.is_some() {
-        // What a border gets beside that may act where the face is open: see `along_border`.
-        return closed;
+    match border {
+        Some(_) => (closed, rotate_back(core::array::from_fn(to_walls), faces.d)),
+        None => (closed + to_walls(0), [R::ZERO; D]),
     }
-    let passes = passing(slab, faces, (ducts, border), i, seen, own);
-    closed + (seen[own] - passes)
 }
 
 /// What passes the open part of a face, of what each of both cells sees.
@@ -88,33 +92,6 @@ fn passing<R: Real, const D: usize>(
     } else {
         seen[own]
     }
-}
-
-/// The force along x, y, z that the walls of the cell on the left (`high`) or right of face `i` get from a border there, beside that on what is closed of the face.
-fn along_border<R: Real, const D: usize>(
-    slab: &Slab<'_, R, D>,
-    faces: &FaceRow<'_, R, D>,
-    (ducts, border): (&Ducts<'_, R>, &Option<Border<R, D>>),
-    i: usize,
-    high: bool,
-) -> [R; D] {
-    let mut along = [R::ZERO; D];
-    if border.is_none() {
-        return along;
-    }
-    let own = usize::from(!high);
-    let mixed = slab.problem.gas.is_mixed();
-    for (c, along) in along.iter_mut().enumerate() {
-        let value = |block: &[R], v: usize| var(block, v, faces.n).get(i).copied().unwrap_or(R::ZERO);
-        let right = if c == 0 { D + 2 } else { apart(c, D, mixed) };
-        let mut seen = [value(faces.flux, 1 + c), value(faces.flux, right)];
-        if c == 0 {
-            let ambient = slab.walls.map_or(R::ZERO, |walls| walls.reference);
-            seen = [0, 1].map(|s| seen[s] + ducts.face(i) * (value(faces.states[s], D + 2) - ambient));
-        }
-        *along = seen[own] - passing(slab, faces, (ducts, border), i, seen, own);
-    }
-    rotate_back(along, faces.d)
 }
 
 /// How much wall the cells on the left and on the right of a face have beside what is open of it: of their ducts; in the paper's form of their volumes.

@@ -361,7 +361,7 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     scatter(D + 1, &f.energy);
     scatter(D + 2, &f.normal[1]);
     if MIXED {
-        let carried = carried_through(&faces.states, &capacities, &f.mass);
+        let carried = carried_through(faces.states.each_ref().map(|w| &w.density), &capacities, &f.mass);
         (0..2).for_each(|n| scatter(D + 3 + n, &carried[n]));
     }
 }
@@ -434,10 +434,10 @@ fn oblique_jump<R: Real, const D: usize>(
         put(apart(c, D, mixed), to_right[c]);
     }
     if mixed {
-        let up = usize::from(f.mass < R::ZERO);
-        let volume = f.mass / states[up].density;
-        put(D + 3, volume);
-        put(D + 4, volume * row.states[up][(D + 3) * n + i]);
+        let densities = states.each_ref().map(|w| core::array::from_ref(&w.density));
+        let capacities = row.states.map(|s| [s[(D + 3) * n + i]]);
+        let carried = carried_through(densities, &capacities, &[f.mass]);
+        (0..2).for_each(|v| put(D + 3 + v, carried[v][0]));
     }
 }
 

@@ -132,13 +132,13 @@ fn with<R: Copy, const L: usize>(mut lanes: [R; L], i: usize, value: R) -> [R; L
 
 /// Volumes that pass faces with these masses, and the capacities that they carry: of the cell upstream, at the density that it has there. Slow gas of
 /// several capacities keeps its pressure with that: the energy that passes is this volume's.
-pub(in crate::flow) fn carried_through<R: Real, const D: usize, const L: usize>(
-    states: &[Primitive<[R; L], D>; 2],
+pub(in crate::flow) fn carried_through<R: Real, const L: usize>(
+    densities: [&[R; L]; 2],
     capacities: &[[R; L]; 2],
     mass: &[R; L],
 ) -> [[R; L]; 2] {
     let upstream = |i: usize| usize::from(mass[i] < R::ZERO);
-    let volume: [R; L] = each(|i| mass[i] / states[upstream(i)].density[i]);
+    let volume: [R; L] = each(|i| mass[i] / densities[upstream(i)][i]);
     [volume, each(|i| volume[i] * capacities[upstream(i)][i])]
 }
 

@@ -1,6 +1,7 @@
 //! Which faces are walls or porosity jumps, and which cells small, sealed or cut by an inclined wall, found once from the open fractions.
 
 use crate::flow::error::{Error, fits};
+use crate::flow::porosity::areas::Ducts;
 use crate::flow::porosity::flags::{BORDER, INCLINED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE, rounding};
 use crate::number::real::Real;
@@ -18,6 +19,13 @@ fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
     let difference = R::larger(most - least, least - face);
     let narrow = exceeds(difference, R::from_f64(3.0) * threshold * most) && is_wall(difference, threshold);
     exceeds(difference, threshold) || narrow
+}
+
+/// Whether the low or high face of a cell is an open one and a jump.
+fn jumps_at<R: Real>(own: &Ducts<'_, R>, high: bool, threshold: R) -> bool {
+    let (openings, (left, right)) = (own.openings(0), own.beside(0, high));
+    let open = if high { openings.1 } else { openings.0 };
+    open > R::ZERO && is_jump(left, open, right, threshold)
 }
 
 /// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
@@ -53,15 +61,11 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
     let medium = Medium { mesh: *mesh, porosity, periodic };
     mark_borders(&medium, threshold, marks);
     for cell in 0..marks.len() {
-        // The bits of other cells that are looked at say only where borders are.
+        // Of other cells it is asked only whether a border crosses them, at faces that are open.
         let medium = Medium { porosity: Porosity { marks, ..porosity }, ..medium };
-        let bits = breaks_of(&medium, threshold, mesh.coordinates(cell));
+        let at = mesh.coordinates(cell);
+        let bits = breaks_of(&medium, threshold, at) | kind_of(&medium, at);
         marks[cell] |= bits;
-    }
-    for cell in 0..marks.len() {
-        let medium = Medium { porosity: Porosity { marks, ..porosity }, ..medium };
-        let kind = kind_of(&medium, mesh.coordinates(cell));
-        marks[cell] |= kind;
     }
     Ok(())
 }
@@ -75,14 +79,7 @@ fn mark_borders<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R
     let mesh = &medium.mesh;
     for (cell, mark) in marks.iter_mut().enumerate() {
         let at = mesh.coordinates(cell);
-        let jumps = |d: usize| {
-            let own = medium.ducts(d, at);
-            let (low, high) = own.openings(0);
-            [(low, false), (high, true)].into_iter().any(|(open, side)| {
-                let (left, right) = own.beside(0, side);
-                open > R::ZERO && is_jump(left, open, right, threshold)
-            })
-        };
+        let jumps = |d: usize| [false, true].into_iter().any(|high| jumps_at(&medium.ducts(d, at), high, threshold));
         *mark = match medium.holds_border(at) {
             true if (0..D).any(jumps) => BORDER,
             true => ALONE,
@@ -117,7 +114,6 @@ fn breaks_of<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R, a
         let mut above = at;
         above[d] += 1;
         for (face, open, bit) in [(at, low, break_low(d)), (above, high, break_high(d))] {
-            let (left, right) = own.beside(0, bit == break_high(d));
             let cells = medium.mesh.beside(d, face, medium.periodic[d]);
             let feels =
                 |c: &[usize; D]| medium.widest(*c) > R::ZERO && is_wall(medium.ducts(d, *c).width(0), threshold);
@@ -125,7 +121,7 @@ fn breaks_of<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R, a
             let on_border =
                 || cells.iter().all(Option::is_some) && cells.iter().flatten().any(|c| medium.on_border(*c));
             let breaks = if open > R::ZERO {
-                is_jump(left, open, right, threshold) || on_border()
+                jumps_at(&own, bit == break_high(d), threshold) || on_border()
             } else {
                 cells.iter().flatten().any(feels)
             };
