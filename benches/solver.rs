@@ -77,9 +77,9 @@ fn measure<const D: usize>(name: &str, n: [usize; D], space: Space) {
 
 fn main() {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();
-    measure("1D 100000", [100_000], Space::Open);
-    measure("2D 512x512", [512, 512], Space::Open);
-    measure("3D 96x96x96", [96, 96, 96], Space::Open);
+    measure("1D 100000 open", [100_000], Space::Open);
+    measure("2D 512x512 open", [512, 512], Space::Open);
+    measure("3D 96x96x96 open", [96, 96, 96], Space::Open);
     measure("3D 96x96x96 betas", [96, 96, 96], Space::Random(0.0));
     measure("3D 96x96x96 betas 5% jumps", [96, 96, 96], Space::Random(0.05));
     measure("2D 512x512 betas 5% jumps", [512, 512], Space::Random(0.05));

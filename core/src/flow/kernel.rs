@@ -3,6 +3,7 @@
 //! - `scratch`: the buffers, cut from the caller's memory
 //! - `rows`: loops over the cells of a row; `mixed`: what comes to them for a mixed gas
 //! - `slab`: what a step reads, and where each row stands in the window
+//! - `contractions`: how far the gas of the cells in the window passes their walls as contractions
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
 //! - `inclined_walls`: the half step beside walls askew to the grid
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
@@ -14,6 +15,7 @@
 //! - `flux_choice`: which solvers and gases of the sweep a program links
 //! - `long_line`: a long line of cells in pieces
 
+pub(crate) mod contractions;
 pub(crate) mod face_fluxes;
 pub(crate) mod flux_choice;
 pub(crate) mod fluxes;

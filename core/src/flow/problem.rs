@@ -248,7 +248,8 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     #[inline(always)]
     pub(in crate::flow) fn openness(&self, ducts: &Ducts<'_, R>, i: usize) -> R {
         let (low, high) = ducts.passages(i);
-        let ratio = R::larger(low, high) / R::larger(ducts.volume(i), least_volume());
+        // Rounded as in the step, which has the inverse at hand.
+        let ratio = R::larger(low, high) * (R::ONE / R::larger(ducts.volume(i), least_volume()));
         if self.clusters.0.is_empty() || !ducts.is_small(i) {
             return ratio;
         }

@@ -1,6 +1,7 @@
 //! Fluxes through the faces of a row along each axis, and the changes that they make in the cells.
 
 use crate::flow::boundary::Boundary;
+use crate::flow::kernel::contractions::Contractions;
 use crate::flow::kernel::face_fluxes::Openings;
 use crate::flow::kernel::mixed::{self, Carried};
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
@@ -77,7 +78,8 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, const ENERGY: bool, con
         let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
         let broken = marked(marks, break_low(0)).chain(last);
         let flux = FluxBlock { values: work.flux, n: m };
-        fluxes_at_breaks::<R, D, MIXED>(slab, 0, row.at, broken, [work.left, work.right], flux);
+        let contractions = Contractions::new(slab, work.contractions);
+        fluxes_at_breaks::<R, D, MIXED>(slab, (0, row.at), contractions, broken, [work.left, work.right], flux);
     }
     let flux = FluxBlock { values: work.flux, n: m };
     positive_fluxes::<R, D, ENERGY, MIXED>(slab, 0, row.at, [work.left, work.right], flux);
@@ -274,7 +276,8 @@ fn fluxes_of_faces<R: Real, const D: usize, const ENERGY: bool, const MIXED: boo
     slab: &Slab<'_, R, D>,
     d: usize,
     at: [usize; D],
-    ([left, right], seen): ([&[R]; 2], Pressures<'_, R>),
+    [left, right]: [&[R]; 2],
+    (seen, contractions): (Pressures<'_, R>, Contractions<'_, R>),
     (flux, pace, strength): (&mut [R], &mut [R], &mut [R]),
 ) {
     let n = slab.size.n;
@@ -310,7 +313,8 @@ fn fluxes_of_faces<R: Real, const D: usize, const ENERGY: bool, const MIXED: boo
     if let Some(medium) = &slab.medium {
         let (start, bit) = if k < cells { (row_of(k), break_low(d)) } else { (row_of(cells - 1), break_high(d)) };
         let broken = marked(&medium.porosity.marks[start..][..n], bit);
-        fluxes_at_breaks::<R, D, MIXED>(slab, d, at, broken, [left, right], FluxBlock { values: flux, n });
+        let flux = FluxBlock { values: flux, n };
+        fluxes_at_breaks::<R, D, MIXED>(slab, (d, at), contractions, broken, [left, right], flux);
     }
     positive_fluxes::<R, D, ENERGY, MIXED>(slab, d, at, [left, right], FluxBlock { values: flux, n });
 }
@@ -416,8 +420,9 @@ fn fluxes_under<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
         ghosts::<R, D, MIXED>(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
     let seen = Pressures { window: work.window, ranges: work.ranges };
+    let contractions = Contractions::new(slab, work.contractions);
     let to = (&mut work.flux[..f], &mut *work.coefficients.pace, &mut *work.strength);
-    fluxes_of_faces::<R, D, ENERGY, MIXED>(slab, d, at, ([below_state, &work.right[..f]], seen), to);
+    fluxes_of_faces::<R, D, ENERGY, MIXED>(slab, d, at, [below_state, &work.right[..f]], (seen, contractions), to);
     let last = mesh.cells()[d];
     for (side, edge, inside) in [(0, 0, 0), (1, last, last - 1)] {
         if at[d] == edge {

@@ -52,10 +52,14 @@ pub(in crate::flow) fn slip_along_walls<R: Real, const D: usize, const MIXED: bo
     // Where the caller asks for first order, nothing but that keeps the state physical.
     let asked = |i: usize| slab.first_order.is_some_and(|f| f[row.start + i] != 0);
     for i in (0..n).filter(|&i| is(marks[i], INCLINED) && !asked(i)) {
+        let passed = passed(strength[i]);
+        if !(passed > R::ZERO) {
+            continue;
+        }
         let mut at = row.at;
         at[0] += i;
         let (normal, reached) = normal_to_wall(medium, at);
-        let share = passed(strength[i]) * reached * left_at_wall(slab, normal, (place, i), seen.window);
+        let share = passed * reached * left_at_wall(slab, normal, (place, i), seen.window);
         if !(share > R::ZERO) {
             continue;
         }

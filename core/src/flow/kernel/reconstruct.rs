@@ -1,5 +1,6 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
+use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
 use crate::flow::kernel::inclined_walls::slip_along_walls;
 use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
@@ -10,7 +11,7 @@ use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use crate::flow::porosity::flags::{BORDER, KIND, SMALL, any_marked, break_high, break_low, is, marked};
+use crate::flow::porosity::flags::{BORDER, KIND, SMALL, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
@@ -27,7 +28,8 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
     work: &mut Work<'_, R, D>,
     first_order_cells: &mut usize,
 ) {
-    coefficients(slab, row, &mut work.coefficients);
+    let contractions = Contractions::new(slab, work.contractions);
+    coefficients(slab, (row, place), contractions, &mut work.coefficients);
     match slab.problem.scheme.limiter {
         Limiter::Steep => slopes::<R, D, Steep, MIXED>(slab, row, place, work),
         Limiter::MonotonizedCentral => slopes::<R, D, MonotonizedCentral, MIXED>(slab, row, place, work),
@@ -90,18 +92,18 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
             (&work.window[slab.block(l, j - 1)], &work.window[slab.block(l, j + 1)], 0)
         };
         let cells = RowBeside { below, here, above, shift, n, padded };
+        let sides = Contractions::new(slab, work.contractions).at_sides(slab, d, (l, j));
         let widths = slab.problem.mesh.widths[d];
         let gravity = slab.problem.gravity[d];
         let out = &mut *work.slope[d];
         if gravity == R::ZERO && slab.even[d] {
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), &cells, &Even, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, &sides), &Even, compliance, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
-            let sides = slab.problem.boundaries[d];
-            let copied = sides.map(|b| b.copies_inside());
+            let copied = slab.problem.boundaries[d].map(|b| b.copies_inside());
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), &cells, &axis, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, &sides), &axis, compliance, out);
         }
     }
 }
@@ -110,7 +112,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
 fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (d, row): (usize, RowAt<D>),
-    cells: &RowBeside<'_, R>,
+    (cells, sides): (&RowBeside<'_, R>, &[AtFaces<'_, R>; 2]),
     axis: &impl Differences<R>,
     compliance: Option<&[R]>,
     out: &mut [R],
@@ -123,7 +125,7 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     if slab.medium.is_some() {
         flatten_beside_closed_faces::<R, D, MIXED>(slab, d, row, out);
         let one = CellSlopes { axis, compliance, limit: limited::<R, S, D> };
-        slopes_at_breaks::<R, D, MIXED>(slab, d, row, cells, &one, out);
+        slopes_at_breaks::<R, D, MIXED>(slab, (d, row), (cells, sides), &one, out);
     }
 }
 
@@ -179,29 +181,35 @@ fn fall_back<R: Real, const D: usize, const MIXED: bool>(
     let (n, padded) = (slab.size.n, slab.size.padded);
     let any_leaves = rows::leaves_physical_set::<R, D>(half, &slope.each_ref().map(|b| &**b), n);
     let asked = slab.first_order.map(|f| &f[row.start..][..n]).filter(|f| f.iter().any(|&b| b != 0));
-    let small = marks.filter(|m| any_marked(m, KIND));
-    if !any_leaves && asked.is_none() && small.is_none() {
+    let flatten = |i: usize, slope: &mut [&mut [R]], half: &mut [R]| {
+        for v in 0..D + 2 + usize::from(MIXED) {
+            half[v * n + i] = here[v * padded + 1 + i];
+            slope.iter_mut().for_each(|s| s[v * n + i] = R::ZERO);
+        }
+    };
+    let small = |i: usize| marks.is_some_and(|m| is(m[i], SMALL) || is(m[i], BORDER));
+    if !any_leaves && asked.is_none() {
+        marked(marks.unwrap_or_default(), KIND).filter(|&i| small(i)).for_each(|i| flatten(i, slope, half));
         return;
     }
     for i in 0..n {
         let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
         let leaves = !(stays(0) && stays(D + 1));
         let asked = asked.is_some_and(|f| f[i] != 0);
-        let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], BORDER));
-        if leaves || asked || small {
+        if leaves || asked || small(i) {
             *first_order_cells += usize::from((leaves || asked) && slab.reported.contains(&i));
-            for v in 0..D + 2 + usize::from(MIXED) {
-                half[v * n + i] = here[v * padded + 1 + i];
-                for d in 0..D {
-                    slope[d][v * n + i] = R::ZERO;
-                }
-            }
+            flatten(i, slope, half);
         }
     }
 }
 
 /// Coefficients of the half step for one row.
-fn coefficients<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, of_row: &mut RowCoefficients<'_, R, D>) {
+fn coefficients<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (row, place): (RowAt<D>, Place),
+    contractions: Contractions<'_, R>,
+    of_row: &mut RowCoefficients<'_, R, D>,
+) {
     let n = slab.size.n;
     let mesh = &slab.problem.mesh;
     let half_dt = R::HALF * slab.dt;
@@ -239,12 +247,10 @@ fn coefficients<R: Real, const D: usize>(slab: &Slab<'_, R, D>, row: RowAt<D>, o
     }
     let marks = &medium.porosity.marks[row.start..][..n];
     for d in 0..D {
-        let ducts = medium.ducts(d, row.at);
+        let (ducts, sides) = (medium.ducts(d, row.at), contractions.at_sides(slab, d, place));
         for i in marked(marks, break_low(d) | break_high(d)) {
-            let mut at = row.at;
-            at[0] += i;
             let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
-            let (low, high) = ducts.sections(i, slab.contractions(d, at, breaks));
+            let (low, high) = ducts.sections(i, contractions_at(&sides, i, breaks));
             let scale = half_dt / mesh.widths[d][row.at[d] + if d == 0 { i } else { 0 }];
             of_row.rate[d][i] = R::HALF * (low + high) * of_row.spare[i] * scale;
             of_row.widening[d][i] = (high - low) * of_row.spare[i] * scale;

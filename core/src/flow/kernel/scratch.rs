@@ -110,13 +110,18 @@ impl Sizes {
             d += 1;
         }
         let metric = product([4 * D + 5, self.n]).saturating_add(product([4, self.m]));
-        let window = window.saturating_add(self.ranges::<D>());
+        let window = window.saturating_add(self.ranges::<D>()).saturating_add(self.contractions::<D>());
         window.saturating_add(row).saturating_add(lagged).saturating_add(changes).saturating_add(metric)
     }
 
     /// Ranges of pressure in the window, two scalars a row.
     const fn ranges<const D: usize>(&self) -> usize {
         if D == 1 { 0 } else { product([2, self.layers, self.rows_padded]) }
+    }
+
+    /// How far gas passes contractions, one scalar a cell of the window and its ghosts.
+    const fn contractions<const D: usize>(&self) -> usize {
+        if D == 1 { 0 } else { product([self.layers, self.rows_padded, self.padded]) }
     }
 
     /// Rows whose changes along axis `d` are kept: those of a layer, until the layer above has come. Along the last axis they are
@@ -140,6 +145,8 @@ pub(in crate::flow) struct Work<'s, R, const D: usize> {
     pub window: &'s mut [R],
     /// The least and the largest pressure of each row of the window; of none in one dimension.
     pub ranges: &'s mut [R],
+    /// How far the gas of each cell of the window passes contractions; of none in one dimension.
+    pub contractions: &'s mut [R],
     pub slope: [&'s mut [R]; D],
     /// Half-step states of the row, and after them the pressures on the walls inside its cells.
     pub half: &'s mut [R],
@@ -195,6 +202,7 @@ impl<'s, R: Real, const D: usize> Work<'s, R, D> {
             below_layer,
             window: arena.take(s.layers * s.rows_padded * v * s.padded),
             ranges: arena.take(s.ranges::<D>()),
+            contractions: arena.take(s.contractions::<D>()),
             slope: arena.axes(v * s.n),
             half: arena.take((v + 1) * s.n),
             left: arena.take(f * s.m),

@@ -45,6 +45,11 @@ const MOST: usize = 10;
 /// Row of the window: layer and row.
 pub(in crate::flow) type Place = (isize, isize);
 
+/// Where a row inside the domain stands.
+pub(in crate::flow) fn place_of<const D: usize>(at: [usize; D]) -> Place {
+    (at[D - 1] as isize, if D == 3 { at[1] as isize } else { 0 })
+}
+
 /// A row of cells: its place, and the indices of its first cell in the mesh.
 pub(in crate::flow) type CellRow<const D: usize> = (Place, [usize; D]);
 
@@ -65,7 +70,7 @@ pub(in crate::flow) fn fluxes_along_shocks<R: Real, const D: usize>(
     flux: &mut [R],
 ) {
     let Some(hlle) = slab.solver.along_shocks.filter(|_| D > 1) else { return };
-    let here: Place = (at[D - 1] as isize, if D == 3 { at[1] as isize } else { 0 });
+    let here = place_of(at);
     let rows = if d == 0 {
         [None, Some((here, at))]
     } else {
@@ -92,6 +97,8 @@ pub(in crate::flow) fn fluxes_along_shocks<R: Real, const D: usize>(
     for (i, strength) in strength.iter().enumerate().filter(|(_, s)| **s > R::from_f64(onset)) {
         let share = if walls.is_some_and(|w| w.inclined(i, d == 0)) {
             passed(*strength)
+        } else if !(*strength > R::from_f64(ONSET)) {
+            continue;
         } else {
             // What jumps at the face itself lies across it: beside steps of a ball of gas under pressure HLLE would smear its contact.
             let above = *strength - jump(left[i], right[i]) - R::from_f64(ONSET);
@@ -125,7 +132,11 @@ impl<'m> Beside<'m> {
     fn inclined(self, i: usize, along: bool) -> bool {
         let marked = |marks: &[u8], i: usize| marks.get(i).is_some_and(|&m| is(m, INCLINED));
         let n = self.below.len();
-        let (below, above) = if along { ((i + n - 1) % n, i % n) } else { (i, i) };
+        // A row closes where its axis is periodic; else the faces at its ends are none of those asked for.
+        let (below, above) = match along {
+            false => (i, i),
+            true => (if i > 0 { i - 1 } else { n - 1 }, if i < n { i } else { 0 }),
+        };
         marked(self.below, below) || marked(self.above, above)
     }
 }
@@ -197,7 +208,11 @@ pub(in crate::flow) fn jumps_along<R: Real, const D: usize>(
     let faces = medium.porosity.faces[e];
     let [low, high] = medium.mesh.faces_of(e, cells).map(|f| &faces[f..][..n]);
     for i in 0..n {
-        let through = |open: R, beyond: R| if open > R::ZERO { jump(here[i], beyond) } else { R::ZERO };
+        // Found in any case, without a branch.
+        let through = |open: R, beyond: R| {
+            let jump = jump(here[i], beyond);
+            if open > R::ZERO { jump } else { R::ZERO }
+        };
         strength[i] = R::larger(strength[i], R::larger(through(low[i], below[i]), through(high[i], above[i])));
     }
 }

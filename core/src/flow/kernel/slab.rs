@@ -150,41 +150,16 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         }
     }
 
-    /// How far the gas passes the low face of a cell along `d` as a contraction, 1, or flows along the walls of a cell beside it, 0.
-    /// `at[d]` may be one past the end.
-    pub fn contraction(&self, d: usize, at: [usize; D]) -> R {
-        let Some(medium) = self.medium.as_ref().filter(|_| D > 1) else { return R::ONE };
-        let of = |cell: [usize; D]| {
-            let index = self.problem.mesh.index(cell);
-            medium.contraction(cell, self.old.momentum.map(|m| m[index]))
-        };
-        medium.mesh.beside(d, at, self.periodic[d]).into_iter().flatten().map(of).fold(R::ONE, R::smaller)
-    }
-
-    /// The same for the low and the high face of a cell, as far as they break.
-    pub fn contractions(&self, d: usize, at: [usize; D], breaks: [bool; 2]) -> [R; 2] {
-        core::array::from_fn(|side| {
-            let mut face = at;
-            face[d] += side;
-            if breaks[side] { self.contraction(d, face) } else { R::ONE }
-        })
-    }
-
-    /// How far the slopes in a cell fall to those of a contraction beside its low and its high face along `d`, as far as they break: as the gas passes, at the
-    /// border of a porous body all the way.
-    pub fn flatness(&self, d: usize, at: [usize; D], breaks: [bool; 2]) -> [R; 2] {
-        let shares = self.contractions(d, at, breaks);
-        core::array::from_fn(|side| {
-            let mut face = at;
-            face[d] += side;
-            let on_border = shares[side] < R::ONE && breaks[side] && self.border(d, face).is_some();
-            if on_border { R::ONE } else { shares[side] }
-        })
-    }
-
     /// The border askew to the grid in the cells beside the low face of a cell along `d`, in the frame of that axis. `at[d]` may be one past the end.
+    #[inline(always)]
     pub fn border(&self, d: usize, at: [usize; D]) -> Option<Border<R, D>> {
         let medium = self.medium.as_ref().filter(|_| D > 1)?;
+        if medium.is_far_from_borders(d, at) { None } else { self.border_beside(medium, d, at) }
+    }
+
+    /// The same, where there may be one.
+    #[inline(never)]
+    fn border_beside(&self, medium: &Medium<'_, R, D>, d: usize, at: [usize; D]) -> Option<Border<R, D>> {
         let border = medium.border(d, medium.mesh.beside(d, at, self.periodic[d]))?;
         Some(Border { normal: rotate(border.normal, d), ..border })
     }

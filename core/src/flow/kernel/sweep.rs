@@ -5,6 +5,7 @@
 //! itself, so that what a sweep keeps stays in a cache. A cell's new state depends on the old field alone, by the same
 //! operations wherever the slab is cut, so slabs advanced by any number of threads give the same bits.
 
+use crate::flow::kernel::contractions::load_contractions;
 use crate::flow::kernel::fluxes::{
     fluxes_across_layers, fluxes_across_rows, fluxes_x, keep_for_layer_above, keep_for_row_above,
 };
@@ -219,15 +220,18 @@ fn load_row<R: Real, const D: usize, const MIXED: bool>(
             rows::put_state(block, s.padded, i, &ghost);
         }
     }
+    let mut outside = false;
     for (d, k) in [(D - 1, l), (1, j)] {
         let across = d > 0 && (d == D - 1 || D == 3);
         if across && !slab.periodic[d] && (k < 0 || k >= slab.problem.mesh.cells()[d] as isize) {
             mirror::<R, D, MIXED>(slab, block, d, k < 0, at);
+            outside = true;
         }
     }
     if D > 1 {
         let range = rows::range(rows::var(block, D + 1, s.padded));
         work.ranges[2 * slab.slot(l, j)..][..2].copy_from_slice(&range);
+        load_contractions(slab, at, outside, &mut work.contractions[slab.slot(l, j) * s.padded..][..s.padded]);
     }
 }
 

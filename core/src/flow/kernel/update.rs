@@ -67,6 +67,7 @@ fn open_areas<R: Real, const D: usize>(
         scale[i] = slab.dt * inv[i];
     }
     let marks = &medium.porosity.marks[row.start..][..n];
+    let clustered = !slab.problem.clusters.0.is_empty();
     for d in 0..D {
         let ducts = medium.ducts(d, row.at);
         let (low, high) = ducts.rows(n);
@@ -74,8 +75,13 @@ fn open_areas<R: Real, const D: usize>(
         for i in 0..n {
             open[i] = R::larger(low[i], high[i]) * inv[i];
         }
-        for i in marked(marks, break_low(d) | break_high(d) | SMALL) {
+        for i in marked(marks, break_low(d) | break_high(d)) {
             open[i] = slab.problem.openness(&ducts, i);
+        }
+        if clustered {
+            for i in marked(marks, SMALL).filter(|&i| is(marks[i], SMALL)) {
+                open[i] = slab.problem.openness(&ducts, i);
+            }
         }
     }
     true

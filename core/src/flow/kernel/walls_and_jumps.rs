@@ -6,7 +6,9 @@
 
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
+use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, RowBeside, Three, var};
+use crate::flow::kernel::shocks::place_of;
 use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
@@ -89,7 +91,9 @@ pub(in crate::flow) fn flatten_beside_closed_faces<R: Real, const D: usize, cons
     let Some(medium) = &slab.medium else { return };
     let (n, periodic) = (slab.size.n, slab.periodic[d]);
     let (low, high) = medium.ducts(d, row.at).rows(n);
-    if low.iter().chain(high).all(|open| *open > R::ZERO) {
+    // One pass without branches: most rows have none.
+    let least = |row: &[R]| row.iter().fold(R::ONE, |least, open| R::smaller(least, *open));
+    if R::smaller(least(low), least(high)) > R::ZERO {
         return;
     }
     let last = slab.problem.mesh.cells()[d] - 1;
@@ -109,9 +113,8 @@ pub(in crate::flow) fn flatten_beside_closed_faces<R: Real, const D: usize, cons
 /// from beyond it: at a wall that value is mirrored, at a jump the slope is 0. Where gas flows along an inclined wall the correction fades out.
 pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
-    d: usize,
-    row: RowAt<D>,
-    cells: &RowBeside<'_, R>,
+    (d, row): (usize, RowAt<D>),
+    (cells, sides): (&RowBeside<'_, R>, &[AtFaces<'_, R>; 2]),
     slopes: &CellSlopes<'_, R>,
     out: &mut [R],
 ) {
@@ -122,10 +125,7 @@ pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bo
     for i in marked(marks, break_low(d) | break_high(d)) {
         let (low, high) = ducts.openings(i);
         let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
-        let mut at = row.at;
-        at[0] += i;
-        // 1 beside a face that is no break.
-        let [a, b] = slab.flatness(d, at, breaks);
+        let [a, b] = flatness(slab, (d, row.at, i), sides, breaks);
         let share = if breaks == [true; 2] { R::larger(a, b) } else { R::smaller(a, b) };
         let mut blend = |v: usize, slope: R| {
             let own = &mut out[v * n + i];
@@ -147,6 +147,24 @@ pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bo
         let slope = slope_at_walls::<R, D>(d, breaks, three, i, slopes);
         (0..D + 2).for_each(|v| blend(v, slope[v]));
     }
+}
+
+/// How far the slopes along axis `d` of cell `i` of the row from `at` on fall to those of a contraction, beside its low and its high face, as far as they
+/// break: as the gas passes, at the border of a porous body all the way. 1 beside a face that is no break.
+fn flatness<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, at, i): (usize, [usize; D], usize),
+    sides: &[AtFaces<'_, R>; 2],
+    breaks: [bool; 2],
+) -> [R; 2] {
+    let shares = contractions_at(sides, i, breaks);
+    core::array::from_fn(|side| {
+        let mut face = at;
+        face[0] += i;
+        face[d] += side;
+        let on_border = shares[side] < R::ONE && slab.border(d, face).is_some();
+        if on_border { R::ONE } else { shares[side] }
+    })
 }
 
 /// Slopes along axis `d` of all variables in cell `i` of a row with a wall on its low side, its high side, or both, where it meets
@@ -220,15 +238,16 @@ pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
 /// are those on the left and on the right.
 pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
-    d: usize,
-    at: [usize; D],
+    (d, at): (usize, [usize; D]),
+    contractions: Contractions<'_, R>,
     broken: impl Iterator<Item = usize>,
     states: [&[R]; 2],
     mut flux: FluxBlock<'_, R>,
 ) {
     let Some(medium) = &slab.medium else { return };
     let ducts = medium.ducts(d, at);
-    let row = BrokenRow { slab, medium, ducts, d, at, states };
+    let contractions = contractions.at_faces(slab, d, place_of(at));
+    let row = BrokenRow { slab, medium, ducts, contractions, d, at, states };
     let mut group = [0; LANES];
     let mut count = 0;
     for i in broken {
@@ -261,6 +280,7 @@ struct BrokenRow<'s, R, const D: usize> {
     slab: &'s Slab<'s, R, D>,
     medium: &'s Medium<'s, R, D>,
     ducts: Ducts<'s, R>,
+    contractions: AtFaces<'s, R>,
     d: usize,
     /// Of the cell above the first face.
     at: [usize; D],
@@ -288,13 +308,6 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
         let mut face = self.at;
         face[0] = i;
         self.slab.border(self.d, face)
-    }
-
-    /// How far the gas passes a face as a contraction.
-    fn contraction(&self, i: usize) -> R {
-        let mut face = self.at;
-        face[0] = i;
-        self.slab.contraction(self.d, face)
     }
 
     /// Weight of weak waves at a face: 0 beside a cell where a step went wrong.
@@ -326,7 +339,7 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     let capacities = [0, 1].map(|s| if MIXED { gather(s, D + 3) } else { [R::ZERO; LANES] });
     let (mut throat, mut areas) = ([R::ZERO; LANES], [[R::ZERO; LANES]; 2]);
     for l in 0..LANES {
-        let (face, contraction) = (row.ducts.face(group[l]), row.contraction(group[l]));
+        let (face, contraction) = (row.ducts.face(group[l]), row.contractions.of(group[l]));
         let (left, right) = row.ducts.beside(group[l], false);
         areas[0][l] = share(face, left, contraction);
         areas[1][l] = share(face, right, contraction);
@@ -384,12 +397,13 @@ pub(in crate::flow) fn changes_apart<R: Real, const D: usize>(
 ) {
     let Some(medium) = slab.medium.as_ref().filter(|_| D > 1) else { return };
     let (n, mixed) = (slab.size.n, slab.problem.gas.is_mixed());
-    for i in marked(&medium.porosity.marks[row.start..][..n], break_low(d)) {
-        for c in 1..D {
-            let v = 1 + (c + d) % D;
-            let gained = var(low.0, apart(c, D, mixed), low.1)[i];
-            let lost = var(high.0, 1 + c, high.1)[i + usize::from(d == 0)];
-            out[v * n + i] = (lost - gained) * inv_width(i);
+    let marks = &medium.porosity.marks[row.start..][..n];
+    for c in 1..D {
+        let gained = &var(low.0, apart(c, D, mixed), low.1)[..n];
+        let lost = &var(high.0, 1 + c, high.1)[usize::from(d == 0)..][..n];
+        let out = &mut out[(1 + (c + d) % D) * n..][..n];
+        for i in marked(marks, break_low(d)) {
+            out[i] = (lost[i] - gained[i]) * inv_width(i);
         }
     }
 }
@@ -486,7 +500,7 @@ fn wall_flux<R: Real, const D: usize, const MIXED: bool>(
         let slowness = Slowness { bend: above + above, pace: row.pace(side, i, area) };
         let face_gas = if MIXED { FaceGas::new(gas) } else { row.slab.face_gas };
         let momentum = (row.slab.solver.wall)(pair, &face_gas, slowness);
-        let share = if border.is_some() { R::ONE } else { row.contraction(i) };
+        let share = if border.is_some() { R::ONE } else { row.contractions.of(i) };
         share * area * (momentum - reference)
     };
     let (to_left, to_right) = (push(0), push(1));

@@ -306,6 +306,17 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         self.porosity.marks.get(self.mesh.index(at)).is_some_and(|&m| is(m, BORDER))
     }
 
+    /// Whether the low face of `at` along `d` stands inside the mesh, between two cells that no border crosses; else there may be one.
+    #[inline(always)]
+    pub fn is_far_from_borders(&self, d: usize, at: [usize; D]) -> bool {
+        let crossed = |cell: usize| self.porosity.marks.get(cell).is_some_and(|&m| is(m, BORDER));
+        let above = self.mesh.index(at);
+        at[d] > 0
+            && at[d] < self.mesh.cells()[d]
+            && !crossed(above)
+            && !crossed(above.wrapping_sub(self.mesh.face_stride(d)))
+    }
+
     /// The border askew to the grid beside a face of axis `d`. None if there is none, and none at a side of the mesh: what stands outside knows no border.
     #[inline(never)]
     pub fn border(&self, d: usize, beside: [Option<[usize; D]>; 2]) -> Option<Border<R, D>> {

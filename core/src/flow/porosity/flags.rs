@@ -34,6 +34,9 @@ pub const fn break_high(d: usize) -> u8 {
     if d < 3 { 2 << (2 * d) } else { 0 }
 }
 
+/// Marks of a break at any face.
+pub const BREAKS: u8 = !KIND;
+
 /// Whether any of the marks holds any of `bits`.
 pub(crate) fn any_marked(marks: &[u8], bits: u8) -> bool {
     marks.iter().fold(0, |a, b| a | b) & bits != 0

@@ -1,0 +1,94 @@
+//! How far the gas of each cell in the window passes the contraction that the cell is, 1, or flows along its walls, 0
+//! ([`Medium::contraction`](crate::flow::porosity::fractions::Medium::contraction)).
+//!
+//! It follows from the old state, and all faces of a cell ask for it: it is found once, when the row comes into the window.
+
+use crate::flow::kernel::shocks::{Place, beside};
+use crate::flow::kernel::slab::Slab;
+use crate::flow::porosity::flags::{BREAKS, marked};
+use crate::number::real::Real;
+
+/// Those of the rows in the window, each with one place more at both ends.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct Contractions<'w, R> {
+    window: &'w [R],
+    padded: usize,
+}
+
+impl<'w, R: Real> Contractions<'w, R> {
+    /// Of a window; in one dimension of an empty one.
+    pub fn new<const D: usize>(slab: &Slab<'_, R, D>, window: &'w [R]) -> Self {
+        Contractions { window, padded: slab.size.padded }
+    }
+
+    /// Of a row; empty where none are kept.
+    fn of_row<const D: usize>(&self, slab: &Slab<'_, R, D>, (l, j): Place) -> &'w [R] {
+        self.window.get(slab.slot(l, j) * self.padded..).unwrap_or_default()
+    }
+
+    /// Beside the low faces, along axis `d`, of the cells of a row, and of the cell after them if the row runs along `d`.
+    pub fn at_faces<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> AtFaces<'w, R> {
+        let here = self.of_row(slab, place);
+        let after = here.get(1..).unwrap_or_default();
+        if d == 0 || D == 1 {
+            return AtFaces { below: here, above: after };
+        }
+        AtFaces { below: self.of_row(slab, beside::<D>(place, d, -1)).get(1..).unwrap_or_default(), above: after }
+    }
+
+    /// The same for the low and for the high faces of the cells of a row.
+    pub fn at_sides<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> [AtFaces<'w, R>; 2] {
+        let low = self.at_faces(slab, d, place);
+        if d == 0 || D == 1 {
+            let after = |row: &'w [R]| row.get(1..).unwrap_or_default();
+            return [low, AtFaces { below: after(low.below), above: after(low.above) }];
+        }
+        [low, self.at_faces(slab, d, beside::<D>(place, d, 1))]
+    }
+}
+
+/// Those of the cells below and above each face of a row.
+#[derive(Clone, Copy)]
+pub(in crate::flow) struct AtFaces<'w, R> {
+    below: &'w [R],
+    above: &'w [R],
+}
+
+impl<R: Real> AtFaces<'_, R> {
+    /// How far the gas passes a face as a contraction, 1, or flows along the walls of a cell beside it, 0.
+    #[inline(always)]
+    pub fn of(&self, face: usize) -> R {
+        let beside = |row: &[R]| row.get(face).copied().unwrap_or(R::ONE);
+        R::smaller(beside(self.below), beside(self.above))
+    }
+}
+
+/// Of the low and of the high face of cell `i` of a row, as far as they break; else 1.
+pub(in crate::flow) fn contractions_at<R: Real>(sides: &[AtFaces<'_, R>; 2], i: usize, breaks: [bool; 2]) -> [R; 2] {
+    core::array::from_fn(|side| if breaks[side] { sides[side].of(i) } else { R::ONE })
+}
+
+/// Finds them for the row of cells from `at` on, which comes into the window at a place; `outside` the domain stands no wall.
+// Called, not inlined: each kind of step would hold its own.
+#[inline(never)]
+pub(in crate::flow) fn load_contractions<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    at: [usize; D],
+    outside: bool,
+    row: &mut [R],
+) {
+    let Some(medium) = &slab.medium else { return };
+    row.fill(R::ONE);
+    if outside {
+        return;
+    }
+    let (n, start) = (slab.size.n, slab.problem.mesh.index(at));
+    for i in marked(&medium.porosity.marks[start..][..n], BREAKS) {
+        let mut cell = at;
+        cell[0] += i;
+        row[1 + i] = medium.contraction(cell, slab.old.momentum.map(|m| m[start + i]));
+    }
+    if slab.periodic[0] {
+        (row[0], row[n + 1]) = (row[n], row[1]);
+    }
+}
