@@ -157,7 +157,14 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         if medium.is_far_from_borders(d, at) { None } else { self.border_beside(medium, d, at) }
     }
 
-    /// The same, where there may be one.
+    /// Whether there is one.
+    #[inline(always)]
+    pub fn has_border(&self, d: usize, at: [usize; D]) -> bool {
+        let Some(medium) = self.medium.as_ref().filter(|_| D > 1) else { return false };
+        !medium.is_far_from_borders(d, at) && medium.has_border(medium.mesh.beside(d, at, self.periodic[d]))
+    }
+
+    /// The border at a face where there may be one.
     #[inline(never)]
     fn border_beside(&self, medium: &Medium<'_, R, D>, d: usize, at: [usize; D]) -> Option<Border<R, D>> {
         let border = medium.border(d, medium.mesh.beside(d, at, self.periodic[d]))?;

@@ -162,7 +162,7 @@ fn flatness<R: Real, const D: usize>(
         let mut face = at;
         face[0] += i;
         face[d] += side;
-        let on_border = shares[side] < R::ONE && slab.border(d, face).is_some();
+        let on_border = shares[side] < R::ONE && slab.has_border(d, face);
         if on_border { R::ONE } else { shares[side] }
     })
 }
@@ -418,11 +418,12 @@ fn oblique_jump<R: Real, const D: usize>(
     flux: &mut FluxBlock<'_, R>,
 ) {
     let (slab, n, mixed) = (row.slab, flux.n, row.slab.problem.gas.is_mixed());
-    let states = row.states.map(|s| rows::face_state::<R, D>(s, n, i));
+    let [left, right] = row.states;
+    let states = [rows::face_state::<R, D>(left, n, i), rows::face_state::<R, D>(right, n, i)];
     let gas = |s: &[R]| if mixed { slab.gas_of::<true>(s, (D + 3) * n + i) } else { slab.problem.gas };
-    let gases = row.states.map(gas);
-    let (left, right) = row.ducts.beside(i, false);
-    let ducts = [border.ducts[0].unwrap_or(left), border.ducts[1].unwrap_or(right)];
+    let gases = [gas(left), gas(right)];
+    let (low, high) = row.ducts.beside(i, false);
+    let ducts = [border.ducts[0].unwrap_or(low), border.ducts[1].unwrap_or(high)];
     let mach = |s: usize| dot(border.normal, states[s].velocity) / FaceGas::new(gases[s]).sound_speed(&states[s]);
     let open = row.ducts.face(i);
     let pinched = nearly_chokes([mach(0), mach(1)], ducts) && row.ducts.pinched(i);
@@ -431,12 +432,13 @@ fn oblique_jump<R: Real, const D: usize>(
         ducts,
         open,
         throat: throat_area(ducts[0], open, ducts[1], pinched),
-        references: row.states.map(|s| s[(D + 2) * n + i]),
+        references: [left[(D + 2) * n + i], right[(D + 2) * n + i]],
         acoustic_weight: row.acoustic_weight(i),
         normal: border.normal,
     };
-    let throats = gases.map(ThroatGas::new);
-    let f = face.flux(&MixedFace(gases.map(FaceGas::new)), throats.each_ref(), slab.solver.throat);
+    let throats = [ThroatGas::new(gases[0]), ThroatGas::new(gases[1])];
+    let of_face = MixedFace([FaceGas::new(gases[0]), FaceGas::new(gases[1])]);
+    let f = face.flux(&of_face, throats.each_ref(), slab.solver.throat);
     let [to_left, to_right] = f.momentum;
     let mut put = |v: usize, value: R| flux.values[v * n + i] = value;
     put(0, f.mass);

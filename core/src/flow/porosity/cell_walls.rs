@@ -324,7 +324,8 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         if D == 1 {
             return None;
         }
-        let areas = [a, b].map(|cell| self.on_border(cell).then(|| self.area_of(cell)));
+        let area = |cell: [usize; D]| if self.on_border(cell) { Some(self.area_of(cell)) } else { None };
+        let areas = [area(a), area(b)];
         let both = match areas {
             [None, None] => return None,
             [Some(one), None] | [None, Some(one)] => one,
@@ -337,6 +338,17 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         let signed = if along < R::ZERO { -length } else { length };
         let duct = |side: usize| areas[side].map(|_| self.duct_askew(if side == 0 { a } else { b }));
         (length > R::ZERO).then(|| Border { normal: both.map(|a| a / signed), ducts: [duct(0), duct(1)] })
+    }
+
+    /// Whether there is such a border.
+    #[inline(never)]
+    pub fn has_border(&self, beside: [Option<[usize; D]>; 2]) -> bool {
+        // A sealed cell, which is marked as the others are, has no walls.
+        let crossed = |cell: [usize; D]| self.on_border(cell) && self.openings_of(cell).iter().any(|(a, b)| a != b);
+        match beside {
+            [Some(a), Some(b)] => crossed(a) || crossed(b),
+            _ => false,
+        }
     }
 
     /// Width of a cell along an axis.

@@ -98,23 +98,23 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         throat: [&ThroatGas<R>; 2],
         solve: ThroatCall<R, D>,
     ) -> ObliqueFlux<R, D> {
-        let sides = [0, 1].map(|s| self.side(s, throat[s]));
+        // Written out: `map` of an array calls a function for what it makes of an element this large.
+        let sides = [self.side(0, throat[0]), self.side(1, throat[1])];
         let chokes = (0..2).any(|s| sides[s].passing < self.ducts[s]);
         let across = self.area(self.throat);
         let size = dot(across, across).sqrt();
         let direction = across.map(|a| a / size);
         // In the throat, the direction of its area first.
-        let at_throat = sides.each_ref().map(|side| {
+        let turn = |side: &Side<R, D>| {
             let t = &side.throat;
             let velocity = turned(plus(side.along, t.velocity[0], self.normal), direction);
             Primitive { density: t.density, velocity, pressure: t.pressure }
-        });
+        };
+        let at_throat = [turn(&sides[0]), turn(&sides[1])];
         let weak = self.weak(&sides, gas);
-        let first = at_throat.each_ref().map(|t| Primitive {
-            density: t.density,
-            velocity: [t.velocity[0]],
-            pressure: t.pressure,
-        });
+        let along =
+            |t: &Primitive<R, D>| Primitive { density: t.density, velocity: [t.velocity[0]], pressure: t.pressure };
+        let first = [along(&at_throat[0]), along(&at_throat[1])];
         let share = if chokes { R::ZERO } else { self.acoustic_weight * weakness(weak.mass / size, &first, gas) };
         if share >= R::ONE {
             return weak;
@@ -125,7 +125,9 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         ObliqueFlux {
             mass: mix(weak.mass, strong.mass),
             energy: mix(weak.energy, strong.energy),
-            momentum: [0, 1].map(|s| core::array::from_fn(|c| mix(weak.momentum[s][c], strong.momentum[s][c]))),
+            momentum: core::array::from_fn(|s| {
+                core::array::from_fn(|c| mix(weak.momentum[s][c], strong.momentum[s][c]))
+            }),
         }
     }
 
@@ -163,16 +165,18 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
 
     /// The fluxes of weak waves, which run along the vector areas.
     fn weak(&self, sides: &[Side<R, D>; 2], gas: &impl FaceGases<R>) -> ObliqueFlux<R, D> {
+        let cell = |s: usize| {
+            let (w, side) = (&self.states[s], &sides[s]);
+            let velocity = [side.mass / (side.size * w.density)];
+            Primitive { density: w.density, velocity, pressure: w.pressure }
+        };
+        let sizes = [sides[0].size, sides[1].size];
         let lane = JumpLane {
-            cell: [0, 1].map(|s| {
-                let (w, side) = (&self.states[s], &sides[s]);
-                let velocity = [side.mass / (side.size * w.density)];
-                Primitive { density: w.density, velocity, pressure: w.pressure }
-            }),
-            throat: sides.each_ref().map(|side| side.throat),
+            cell: [cell(0), cell(1)],
+            throat: [sides[0].throat, sides[1].throat],
             to: self.throat,
-            ducts: sides.each_ref().map(|side| side.size),
-            passing: sides.each_ref().map(|side| side.size),
+            ducts: sizes,
+            passing: sizes,
             references: self.references,
             walls: [R::ZERO; 2],
         };
