@@ -89,8 +89,10 @@ impl Part {
     pub fn plane(&self, n: Axis, coordinate: f64) -> Plane {
         let h = difference(coordinate, self.origin[n]);
         let section = Section { conic: self.curved.conic(n, h), ellipse: self.curved.ellipse(n, h) };
-        let lines = self.ends.each_ref().map(|end| end.as_ref().map(|end| end.line(n, coordinate)));
-        Plane { n, coordinate, h, section, lines }
+        // Written out: `map` of an array of these is not inlined.
+        let line = |end: &Option<End>| end.as_ref().map(|end| end.line(n, coordinate));
+        let [low, high] = &self.ends;
+        Plane { n, coordinate, h, section, lines: [line(low), line(high)] }
     }
 
     /// What the line where two planes meet has inside the curved surface; it runs along axis `m`, the planes in the order of [`Axis::others`].

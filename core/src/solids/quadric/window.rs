@@ -152,7 +152,9 @@ impl Part {
                         stretch.shares = stretch.within(self, n, place[n]);
                     }
                 }
-                Axis::ALL.map(|n| stretch.extent(self, n, stretch.shares).unwrap_or(NOWHERE[0]))
+                let extent = |n: Axis| stretch.extent(self, n, stretch.shares).unwrap_or(NOWHERE[0]);
+                // Written out: `map` of an array calls a function for each of them.
+                [extent(Axis::X), extent(Axis::Y), extent(Axis::Z)]
             }
         };
         Axis::ALL.map(|n| [place[n][0].max(around[n][0]), place[n][1].min(around[n][1])])
