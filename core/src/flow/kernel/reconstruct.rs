@@ -1,6 +1,6 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
-use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
+use crate::flow::kernel::contractions::{Contractions, contractions_at};
 use crate::flow::kernel::inclined_walls::slip_along_walls;
 use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
@@ -11,7 +11,9 @@ use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use crate::flow::porosity::flags::{BORDER, KIND, SMALL, break_high, break_low, is, marked};
+use crate::flow::porosity::flags::{
+    BORDER, KIND, SMALL, any_marked, any_small_or_border, break_high, break_low, is, marked,
+};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
@@ -92,18 +94,18 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
             (&work.window[slab.block(l, j - 1)], &work.window[slab.block(l, j + 1)], 0)
         };
         let cells = RowBeside { below, here, above, shift, n, padded };
-        let sides = Contractions::new(slab, work.contractions).at_sides(slab, d, (l, j));
+        let at_breaks = (Contractions::new(slab, work.contractions), (l, j));
         let widths = slab.problem.mesh.widths[d];
         let gravity = slab.problem.gravity[d];
         let out = &mut *work.slope[d];
         if gravity == R::ZERO && slab.even[d] {
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, &sides), &Even, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &Even, compliance, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let copied = slab.problem.boundaries[d].map(|b| b.copies_inside());
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, &sides), &axis, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &axis, compliance, out);
         }
     }
 }
@@ -112,7 +114,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
 fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (d, row): (usize, RowAt<D>),
-    (cells, sides): (&RowBeside<'_, R>, &[AtFaces<'_, R>; 2]),
+    (cells, at_breaks): (&RowBeside<'_, R>, (Contractions<'_, R>, Place)),
     axis: &impl Differences<R>,
     compliance: Option<&[R]>,
     out: &mut [R],
@@ -125,7 +127,7 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     if slab.medium.is_some() {
         flatten_beside_closed_faces::<R, D, MIXED>(slab, d, row, out);
         let one = CellSlopes { axis, compliance, limit: limited::<R, S, D> };
-        slopes_at_breaks::<R, D, MIXED>(slab, (d, row), (cells, sides), &one, out);
+        slopes_at_breaks::<R, D, MIXED>(slab, (d, row), (cells, at_breaks), &one, out);
     }
 }
 
@@ -189,7 +191,8 @@ fn fall_back<R: Real, const D: usize, const MIXED: bool>(
     };
     let small = |i: usize| marks.is_some_and(|m| is(m[i], SMALL) || is(m[i], BORDER));
     if !any_leaves && asked.is_none() {
-        marked(marks.unwrap_or_default(), KIND).filter(|&i| small(i)).for_each(|i| flatten(i, slope, half));
+        let marks = marks.filter(|m| any_small_or_border(m)).unwrap_or_default();
+        marked(marks, KIND).filter(|&i| small(i)).for_each(|i| flatten(i, slope, half));
         return;
     }
     for i in 0..n {
@@ -246,7 +249,7 @@ fn coefficients<R: Real, const D: usize>(
         }
     }
     let marks = &medium.porosity.marks[row.start..][..n];
-    for d in 0..D {
+    for d in (0..D).filter(|&d| any_marked(marks, break_low(d) | break_high(d))) {
         let (ducts, sides) = (medium.ducts(d, row.at), contractions.at_sides(slab, d, place));
         for i in marked(marks, break_low(d) | break_high(d)) {
             let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];

@@ -8,12 +8,12 @@ use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
 use crate::flow::kernel::rows::{self, Differences, FluxBlock, RowBeside, Three, var};
-use crate::flow::kernel::shocks::place_of;
+use crate::flow::kernel::shocks::{Place, place_of};
 use crate::flow::kernel::slab::{RowAt, Slab, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::cell_walls::Border;
-use crate::flow::porosity::flags::{break_high, break_low, marked};
+use crate::flow::porosity::flags::{any_marked, break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, carried_through, jump_fluxes, mixed_jump_fluxes};
 use crate::flow::porosity::oblique_jump::ObliqueJump;
@@ -114,18 +114,21 @@ pub(in crate::flow) fn flatten_beside_closed_faces<R: Real, const D: usize, cons
 pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (d, row): (usize, RowAt<D>),
-    (cells, sides): (&RowBeside<'_, R>, &[AtFaces<'_, R>; 2]),
+    (cells, (contractions, place)): (&RowBeside<'_, R>, (Contractions<'_, R>, Place)),
     slopes: &CellSlopes<'_, R>,
     out: &mut [R],
 ) {
     let n = cells.n;
     let Some(medium) = &slab.medium else { return };
     let marks = &medium.porosity.marks[row.start..][..n];
-    let ducts = medium.ducts(d, row.at);
+    if !any_marked(marks, break_low(d) | break_high(d)) {
+        return;
+    }
+    let (ducts, sides) = (medium.ducts(d, row.at), contractions.at_sides(slab, d, place));
     for i in marked(marks, break_low(d) | break_high(d)) {
         let (low, high) = ducts.openings(i);
         let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
-        let [a, b] = flatness(slab, (d, row.at, i), sides, breaks);
+        let [a, b] = flatness(slab, (d, row.at, i), &sides, breaks);
         let share = if breaks == [true; 2] { R::larger(a, b) } else { R::smaller(a, b) };
         let mut blend = |v: usize, slope: R| {
             let own = &mut out[v * n + i];

@@ -22,6 +22,12 @@ pub(crate) fn any_inclined(marks: &[u8]) -> bool {
     marks.iter().fold(0, |a, b| a | b & (b << 1)) & 1 << 7 != 0
 }
 
+/// Whether any of the marks is of the kind [`SMALL`] or [`BORDER`].
+pub(crate) fn any_small_or_border(marks: &[u8]) -> bool {
+    // The highest bit of what is left stays where one bit of the kind is set and the other is not.
+    marks.iter().fold(0, |a, b| a | (b ^ (b << 1))) & 1 << 7 != 0
+}
+
 /// Mark of a break at the low face of axis `d`: the porosity jumps there, or the face is closed and so a wall. None for `d` above 2.
 #[inline(always)]
 pub const fn break_low(d: usize) -> u8 {
