@@ -27,7 +27,7 @@ impl<'w, R: Real> Contractions<'w, R> {
     }
 
     /// Beside the low faces, along axis `d`, of the cells of a row, and of the cell after them if the row runs along `d`.
-    pub fn at_faces<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> AtFaces<'w, R> {
+    pub fn at_faces<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> AtFaces<'w, R, D> {
         let here = self.of_row(slab, place);
         let after = here.get(1..).unwrap_or_default();
         if d == 0 || D == 1 {
@@ -37,7 +37,7 @@ impl<'w, R: Real> Contractions<'w, R> {
     }
 
     /// The same for the low and for the high faces of the cells of a row.
-    pub fn at_sides<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> [AtFaces<'w, R>; 2] {
+    pub fn at_sides<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> [AtFaces<'w, R, D>; 2] {
         let low = self.at_faces(slab, d, place);
         if d == 0 || D == 1 {
             let after = |row: &'w [R]| row.get(1..).unwrap_or_default();
@@ -49,22 +49,31 @@ impl<'w, R: Real> Contractions<'w, R> {
 
 /// Those of the cells below and above each face of a row.
 #[derive(Clone, Copy)]
-pub(in crate::flow) struct AtFaces<'w, R> {
+pub(in crate::flow) struct AtFaces<'w, R, const D: usize> {
     below: &'w [R],
     above: &'w [R],
 }
 
-impl<R: Real> AtFaces<'_, R> {
+impl<R: Real, const D: usize> AtFaces<'_, R, D> {
     /// How far the gas passes a face as a contraction, 1, or flows along the walls of a cell beside it, 0.
     #[inline(always)]
     pub fn of(&self, face: usize) -> R {
+        // A line has no walls askew: nothing is compiled for it.
+        if D == 1 {
+            return R::ONE;
+        }
         let beside = |row: &[R]| row.get(face).copied().unwrap_or(R::ONE);
         R::smaller(beside(self.below), beside(self.above))
     }
 }
 
 /// Of the low and of the high face of cell `i` of a row, as far as they break; else 1.
-pub(in crate::flow) fn contractions_at<R: Real>(sides: &[AtFaces<'_, R>; 2], i: usize, breaks: [bool; 2]) -> [R; 2] {
+#[inline(always)]
+pub(in crate::flow) fn contractions_at<R: Real, const D: usize>(
+    sides: &[AtFaces<'_, R, D>; 2],
+    i: usize,
+    breaks: [bool; 2],
+) -> [R; 2] {
     core::array::from_fn(|side| if breaks[side] { sides[side].of(i) } else { R::ONE })
 }
 
@@ -77,7 +86,7 @@ pub(in crate::flow) fn load_contractions<R: Real, const D: usize>(
     outside: bool,
     row: &mut [R],
 ) {
-    let Some(medium) = &slab.medium else { return };
+    let Some(medium) = slab.medium.as_ref().filter(|_| D > 1) else { return };
     row.fill(R::ONE);
     if outside {
         return;

@@ -157,7 +157,7 @@ pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bo
 fn flatness<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, at, i): (usize, [usize; D], usize),
-    sides: &[AtFaces<'_, R>; 2],
+    sides: &[AtFaces<'_, R, D>; 2],
     breaks: [bool; 2],
 ) -> [R; 2] {
     let shares = contractions_at(sides, i, breaks);
@@ -283,7 +283,7 @@ struct BrokenRow<'s, R, const D: usize> {
     slab: &'s Slab<'s, R, D>,
     medium: &'s Medium<'s, R, D>,
     ducts: Ducts<'s, R>,
-    contractions: AtFaces<'s, R>,
+    contractions: AtFaces<'s, R, D>,
     d: usize,
     /// Of the cell above the first face.
     at: [usize; D],
