@@ -28,9 +28,12 @@ impl<'w, R: Real> Contractions<'w, R> {
 
     /// Beside the low faces, along axis `d`, of the cells of a row, and of the cell after them if the row runs along `d`.
     pub fn at_faces<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> AtFaces<'w, R, D> {
+        if D == 1 {
+            return AtFaces { below: &[], above: &[] };
+        }
         let here = self.of_row(slab, place);
         let after = here.get(1..).unwrap_or_default();
-        if d == 0 || D == 1 {
+        if d == 0 {
             return AtFaces { below: here, above: after };
         }
         AtFaces { below: self.of_row(slab, beside::<D>(place, d, -1)).get(1..).unwrap_or_default(), above: after }
@@ -39,7 +42,10 @@ impl<'w, R: Real> Contractions<'w, R> {
     /// The same for the low and for the high faces of the cells of a row.
     pub fn at_sides<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> [AtFaces<'w, R, D>; 2] {
         let low = self.at_faces(slab, d, place);
-        if d == 0 || D == 1 {
+        if D == 1 {
+            return [low; 2];
+        }
+        if d == 0 {
             let after = |row: &'w [R]| row.get(1..).unwrap_or_default();
             return [low, AtFaces { below: after(low.below), above: after(low.above) }];
         }

@@ -11,9 +11,7 @@ use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
-use crate::flow::porosity::flags::{
-    BORDER, KIND, SMALL, any_marked, any_small_or_border, break_high, break_low, is, marked,
-};
+use crate::flow::porosity::flags::{BORDER, SMALL, any_marked, any_small_or_border, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
@@ -183,25 +181,23 @@ fn fall_back<R: Real, const D: usize, const MIXED: bool>(
     let (n, padded) = (slab.size.n, slab.size.padded);
     let any_leaves = rows::leaves_physical_set::<R, D>(half, &slope.each_ref().map(|b| &**b), n);
     let asked = slab.first_order.map(|f| &f[row.start..][..n]).filter(|f| f.iter().any(|&b| b != 0));
-    let flatten = |i: usize, slope: &mut [&mut [R]], half: &mut [R]| {
-        for v in 0..D + 2 + usize::from(MIXED) {
-            half[v * n + i] = here[v * padded + 1 + i];
-            slope.iter_mut().for_each(|s| s[v * n + i] = R::ZERO);
-        }
-    };
-    let small = |i: usize| marks.is_some_and(|m| is(m[i], SMALL) || is(m[i], BORDER));
-    if !any_leaves && asked.is_none() {
-        let marks = marks.filter(|m| any_small_or_border(m)).unwrap_or_default();
-        marked(marks, KIND).filter(|&i| small(i)).for_each(|i| flatten(i, slope, half));
+    let small = marks.filter(|m| any_small_or_border(m));
+    if !any_leaves && asked.is_none() && small.is_none() {
         return;
     }
     for i in 0..n {
         let stays = |v: usize| (0..D).all(|d| half[v * n + i] - R::HALF * slope[d][v * n + i].abs() > R::ZERO);
-        let leaves = !(stays(0) && stays(D + 1));
+        let leaves = any_leaves && !(stays(0) && stays(D + 1));
         let asked = asked.is_some_and(|f| f[i] != 0);
-        if leaves || asked || small(i) {
+        let small = small.is_some_and(|m| is(m[i], SMALL) || is(m[i], BORDER));
+        if leaves || asked || small {
             *first_order_cells += usize::from((leaves || asked) && slab.reported.contains(&i));
-            flatten(i, slope, half);
+            for v in 0..D + 2 + usize::from(MIXED) {
+                half[v * n + i] = here[v * padded + 1 + i];
+                for d in 0..D {
+                    slope[d][v * n + i] = R::ZERO;
+                }
+            }
         }
     }
 }

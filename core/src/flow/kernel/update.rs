@@ -75,13 +75,10 @@ fn open_areas<R: Real, const D: usize>(
         for i in 0..n {
             open[i] = R::larger(low[i], high[i]) * inv[i];
         }
-        for i in marked(marks, break_low(d) | break_high(d)) {
+        let breaks = break_low(d) | break_high(d);
+        let wanted = |&i: &usize| marks[i] & breaks != 0 || is(marks[i], SMALL);
+        for i in marked(marks, if clustered { breaks | SMALL } else { breaks }).filter(wanted) {
             open[i] = slab.problem.openness(&ducts, i);
-        }
-        if clustered {
-            for i in marked(marks, SMALL).filter(|&i| is(marks[i], SMALL)) {
-                open[i] = slab.problem.openness(&ducts, i);
-            }
         }
     }
     true

@@ -400,13 +400,12 @@ pub(in crate::flow) fn changes_apart<R: Real, const D: usize>(
 ) {
     let Some(medium) = slab.medium.as_ref().filter(|_| D > 1) else { return };
     let (n, mixed) = (slab.size.n, slab.problem.gas.is_mixed());
-    let marks = &medium.porosity.marks[row.start..][..n];
-    for c in 1..D {
-        let gained = &var(low.0, apart(c, D, mixed), low.1)[..n];
-        let lost = &var(high.0, 1 + c, high.1)[usize::from(d == 0)..][..n];
-        let out = &mut out[(1 + (c + d) % D) * n..][..n];
-        for i in marked(marks, break_low(d)) {
-            out[i] = (lost[i] - gained[i]) * inv_width(i);
+    for i in marked(&medium.porosity.marks[row.start..][..n], break_low(d)) {
+        for c in 1..D {
+            let v = 1 + (c + d) % D;
+            let gained = var(low.0, apart(c, D, mixed), low.1)[i];
+            let lost = var(high.0, 1 + c, high.1)[i + usize::from(d == 0)];
+            out[v * n + i] = (lost - gained) * inv_width(i);
         }
     }
 }
