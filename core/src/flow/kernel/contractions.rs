@@ -3,8 +3,7 @@
 //!
 //! It follows from the old state, and all faces of a cell ask for it: it is found once, when the row comes into the window.
 
-use crate::flow::kernel::shocks::{Place, beside};
-use crate::flow::kernel::slab::Slab;
+use crate::flow::kernel::slab::{Place, Slab, beside};
 use crate::flow::porosity::flags::{BREAKS, marked};
 use crate::number::real::Real;
 
@@ -21,35 +20,23 @@ impl<'w, R: Real> Contractions<'w, R> {
         Contractions { window, padded: slab.size.padded }
     }
 
-    /// Of a row; empty where none are kept.
-    fn of_row<const D: usize>(&self, slab: &Slab<'_, R, D>, (l, j): Place) -> &'w [R] {
-        self.window.get(slab.slot(l, j) * self.padded..).unwrap_or_default()
+    /// Of a row, from the cell before its first one on, or from a later place; empty where none are kept.
+    fn of_row<const D: usize>(&self, slab: &Slab<'_, R, D>, (l, j): Place, from: usize) -> &'w [R] {
+        // A line has no walls askew: nothing is compiled for it.
+        if D == 1 { &[] } else { self.window.get(slab.slot(l, j) * self.padded + from..).unwrap_or_default() }
     }
 
     /// Beside the low faces, along axis `d`, of the cells of a row, and of the cell after them if the row runs along `d`.
     pub fn at_faces<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> AtFaces<'w, R, D> {
-        if D == 1 {
-            return AtFaces { below: &[], above: &[] };
-        }
-        let here = self.of_row(slab, place);
-        let after = here.get(1..).unwrap_or_default();
-        if d == 0 {
-            return AtFaces { below: here, above: after };
-        }
-        AtFaces { below: self.of_row(slab, beside::<D>(place, d, -1)).get(1..).unwrap_or_default(), above: after }
+        let (before, from) = if d == 0 { (place, 0) } else { (beside::<D>(place, d, -1), 1) };
+        AtFaces { below: self.of_row(slab, before, from), above: self.of_row(slab, place, 1) }
     }
 
     /// The same for the low and for the high faces of the cells of a row.
     pub fn at_sides<const D: usize>(&self, slab: &Slab<'_, R, D>, d: usize, place: Place) -> [AtFaces<'w, R, D>; 2] {
-        let low = self.at_faces(slab, d, place);
-        if D == 1 {
-            return [low; 2];
-        }
-        if d == 0 {
-            let after = |row: &'w [R]| row.get(1..).unwrap_or_default();
-            return [low, AtFaces { below: after(low.below), above: after(low.above) }];
-        }
-        [low, self.at_faces(slab, d, beside::<D>(place, d, 1))]
+        let (after, from) = if d == 0 { (place, 2) } else { (beside::<D>(place, d, 1), 1) };
+        let high = AtFaces { below: self.of_row(slab, place, 1), above: self.of_row(slab, after, from) };
+        [self.at_faces(slab, d, place), high]
     }
 }
 
@@ -64,7 +51,6 @@ impl<R: Real, const D: usize> AtFaces<'_, R, D> {
     /// How far the gas passes a face as a contraction, 1, or flows along the walls of a cell beside it, 0.
     #[inline(always)]
     pub fn of(&self, face: usize) -> R {
-        // A line has no walls askew: nothing is compiled for it.
         if D == 1 {
             return R::ONE;
         }

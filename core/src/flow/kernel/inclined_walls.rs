@@ -15,8 +15,8 @@
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::FaceGas;
 use crate::flow::kernel::rows;
-use crate::flow::kernel::shocks::{PASSED, Place, Pressures, any_jump, beside, jumps_along, passed};
-use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::shocks::{PASSED, Pressures, any_jump, jumps_along, passed};
+use crate::flow::kernel::slab::{Place, RowAt, Slab, beside};
 use crate::flow::porosity::flags::{INCLINED, any_inclined, is};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::problem::PressureForm;

@@ -6,7 +6,7 @@ use crate::flow::kernel::mixed;
 use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::shocks::Pressures;
-use crate::flow::kernel::slab::{RowAt, Slab};
+use crate::flow::kernel::slab::{Place, RowAt, Slab};
 use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
@@ -15,9 +15,6 @@ use crate::flow::porosity::flags::{BORDER, SMALL, any_marked, any_small_or_borde
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
-
-/// Layer and row of the window.
-type Place = (isize, isize);
 
 /// Slopes and half-step states of a row of real cells, which stands in the window at a layer and row. Counts the cells that had to fall
 /// back to first order.

@@ -10,7 +10,7 @@
 
 use crate::flow::kernel::face_fluxes::Openings;
 use crate::flow::kernel::rows::var;
-use crate::flow::kernel::slab::Slab;
+use crate::flow::kernel::slab::{Place, Slab, beside, place_of};
 use crate::flow::kernel::solver_calls::RowCall;
 use crate::flow::porosity::flags::{INCLINED, any_inclined, is};
 use crate::number::real::Real;
@@ -42,21 +42,8 @@ pub(in crate::flow) struct Pressures<'w, R> {
 /// Variables of a face state or a flux block at most.
 const MOST: usize = 10;
 
-/// Row of the window: layer and row.
-pub(in crate::flow) type Place = (isize, isize);
-
-/// Where a row inside the domain stands.
-pub(in crate::flow) fn place_of<const D: usize>(at: [usize; D]) -> Place {
-    (at[D - 1] as isize, if D == 3 { at[1] as isize } else { 0 })
-}
-
 /// A row of cells: its place, and the indices of its first cell in the mesh.
 pub(in crate::flow) type CellRow<const D: usize> = (Place, [usize; D]);
-
-/// Neighbour of a row of the window along an axis above 0.
-pub(in crate::flow) fn beside<const D: usize>((l, j): Place, e: usize, step: isize) -> Place {
-    if e == D - 1 { (l + step, j) } else { (l, j + step) }
-}
 
 /// Gives the faces of a row along or across axis `d` that lie along a strong shock their share of the flux of HLLE; those on sides of the domain, as
 /// closed ones, keep theirs. `at` names the cell above the first face, `states` are those on the left and on the right; `strength` is as long as the row of

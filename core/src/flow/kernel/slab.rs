@@ -22,6 +22,19 @@ pub(in crate::flow) struct RowAt<const D: usize> {
     pub at: [usize; D],
 }
 
+/// Row of the window: layer and row.
+pub(in crate::flow) type Place = (isize, isize);
+
+/// Where a row inside the domain stands.
+pub(in crate::flow) fn place_of<const D: usize>(at: [usize; D]) -> Place {
+    (at[D - 1] as isize, if D == 3 { at[1] as isize } else { 0 })
+}
+
+/// Neighbour of a row of the window along an axis above 0.
+pub(in crate::flow) fn beside<const D: usize>((l, j): Place, e: usize, step: isize) -> Place {
+    if e == D - 1 { (l + step, j) } else { (l, j + step) }
+}
+
 /// What one call advances of a problem, and from where.
 #[derive(Clone)]
 pub(in crate::flow) struct Part<'p, R, const D: usize> {
