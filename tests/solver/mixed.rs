@@ -5,7 +5,7 @@ use voidage_core::flow::{
     AnyGas, Boundary, Error, Feed, Fields, FieldsMut, Gas, Limiter, Mesh, Patch, Primitive, Problem, Riemann,
 };
 use voidage_tests::euler::property::{Source, bits, mixed_step_stays_physical, porosity};
-use voidage_tests::euler::space::{OpenFractions, half_space, open_fractions};
+use voidage_tests::euler::space::{OpenFractions, half_space, layer, open_fractions};
 use voidage_tests::euler::two_gases::{GasSide, TwoGases};
 
 const SOLVERS: [Riemann; 4] = [Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle, Riemann::Rusanov];
@@ -115,9 +115,9 @@ fn a_stream_of_one_velocity_keeps_the_bounds_by_itself() {
     }
 }
 
-fn even_along_a_wall<const D: usize>(n: [usize; D], normal: [f64; D], through: f64, velocity: [f64; D]) {
-    let offset = normal.iter().map(|a| a * through).sum();
-    let open: OpenFractions<D> = open_fractions(n, [0.0; D], 0.1, |low, high| half_space(normal, offset, low, high));
+/// A stream of gases in cells of 0.1 that are partly solid, by every solver: pressure and velocity stay.
+fn stays_even_in<const D: usize>(n: [usize; D], solid: impl Fn([f64; D], [f64; D]) -> f64, velocity: [f64; D]) {
+    let open: OpenFractions<D> = open_fractions(n, [0.0; D], 0.1, solid);
     let side = Boundary::FarField(Primitive { density: 1.0, velocity, pressure: 1.0 });
     for riemann in SOLVERS {
         let mut flow: Flow<f64, D> = Flow::uniform(n, [0.1; D], gas(), [[side; 2]; D]);
@@ -129,10 +129,16 @@ fn even_along_a_wall<const D: usize>(n: [usize; D], normal: [f64; D], through: f
             flow.advance(0.8, f64::MAX).unwrap();
         }
         let error = unevenness(&flow, velocity, 0.0);
-        assert!(error < 1e-12, "{riemann:?} {normal:?} {velocity:?}: {error:e}");
-        assert!(within(&flow) && flow.total.floored == 0, "{riemann:?} {normal:?}");
-        assert!(flow.merged_cells() > 0, "no small cell");
+        assert!(error < 1e-12, "{riemann:?} {velocity:?}: {error:e}");
+        assert!(within(&flow) && flow.total.floored == 0, "{riemann:?} {velocity:?}");
+        let is_small = |beta: &f64| *beta > 0.0 && *beta < 0.1;
+        assert_eq!(flow.merged_cells() > 0, open.volume.iter().any(is_small), "small cells are merged");
     }
+}
+
+/// The scalar product.
+fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
+    (0..D).map(|d| a[d] * b[d]).sum()
 }
 
 /// Cells cut by a plane, small ones among them, along which the gases flow: pressure and velocity stay.
@@ -140,11 +146,31 @@ fn even_along_a_wall<const D: usize>(n: [usize; D], normal: [f64; D], through: f
 fn a_contact_along_an_inclined_wall_keeps_pressure_and_velocity() {
     for degrees in [5.0f64, 30.0, 72.0] {
         let (sin, cos) = degrees.to_radians().sin_cos();
+        let normal = [-sin, cos];
         for mach in [0.1, 2.0] {
-            even_along_a_wall([24, 22], [-sin, cos], 1.17, [mach * cos, mach * sin]);
+            let solid = |low, high| half_space(normal, dot(normal, [1.17; 2]), low, high);
+            stays_even_in([24, 22], solid, [mach * cos, mach * sin]);
         }
     }
-    even_along_a_wall([12, 11, 10], [1.0, 2.0, 3.0], 0.55, [0.3, 0.3, -0.3]);
+    let normal = [1.0, 2.0, 3.0];
+    stays_even_in([12, 11, 10], |low, high| half_space(normal, 0.55 * 6.0, low, high), [0.3, 0.3, -0.3]);
+}
+
+/// Along a porous layer: the gases pass faces at which the porosity jumps, and their Riemann problems there stand in throats.
+#[test]
+fn a_contact_along_a_porous_layer_keeps_pressure_and_velocity() {
+    for degrees in [0.0f64, 5.0, 30.0, 45.0, 72.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let normal = [-sin, cos];
+        let from = dot(normal, [1.17; 2]);
+        for (mach, share) in [(0.1, 0.4), (2.0, 0.4), (0.3, 0.8)] {
+            let solid = |low, high| share * layer(normal, [from, from + 0.35], low, high);
+            stays_even_in([24, 22], solid, [mach * cos, mach * sin]);
+        }
+    }
+    let normal = [1.0, 2.0, 3.0].map(|a| a / f64::sqrt(14.0));
+    let from = 0.55 * 6.0 / f64::sqrt(14.0);
+    stays_even_in([12, 11, 10], |low, high| 0.6 * layer(normal, [from, from + 0.3], low, high), [0.3, 0.3, -0.3]);
 }
 
 /// Tubes with a name, their states, and a time.

@@ -94,6 +94,8 @@ pub trait FaceGases<R: Real>: sealed::Sealed {
     fn upwind(&self, from_left: bool) -> FaceGas<R>;
     /// ½(gamma − 1) by which a jump of velocity raises the mean of the squared speeds of sound; the larger one.
     fn half_gamma_minus_one(&self) -> R;
+    /// Are there two?
+    fn is_mixed(&self) -> bool;
 }
 
 impl<R> sealed::Sealed for FaceGas<R> {}
@@ -117,6 +119,11 @@ impl<R: Real> FaceGases<R> for FaceGas<R> {
     #[inline(always)]
     fn half_gamma_minus_one(&self) -> R {
         self.half_gamma_minus_one
+    }
+
+    #[inline(always)]
+    fn is_mixed(&self) -> bool {
+        false
     }
 }
 
@@ -159,5 +166,10 @@ impl<R: Real> FaceGases<R> for MixedFace<R> {
     #[inline(always)]
     fn half_gamma_minus_one(&self) -> R {
         R::larger(self.0[0].half_gamma_minus_one, self.0[1].half_gamma_minus_one)
+    }
+
+    #[inline(always)]
+    fn is_mixed(&self) -> bool {
+        true
     }
 }

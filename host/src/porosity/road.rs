@@ -101,7 +101,8 @@ impl Roads {
     ) -> Road<'a> {
         let known = self.convex.iter().enumerate().filter(|(body, _)| wanted(*body));
         let bodies: Vec<_> = known.filter_map(|(_, known)| known.as_ref().map(|k| k.body(triangles))).collect();
-        Road { formulas: self.formulas.iter().filter(|f| wanted(f.body)).collect(), ..Road::new(bodies, options) }
+        let formulas = self.formulas.iter().filter(|f| wanted(f.body)).map(|f| (f.bounds, f)).collect();
+        Road { formulas, ..Road::new(bodies, options) }
     }
 }
 
@@ -109,7 +110,8 @@ impl Roads {
 #[derive(Debug)]
 pub struct Road<'a> {
     bodies: Vec<(Aabb<DVec3>, Convex<'a>)>,
-    formulas: Vec<&'a FormulaSolid>,
+    /// With their boxes, as most solids are far from what is looked at.
+    formulas: Vec<(Aabb<DVec3>, &'a FormulaSolid)>,
     rule: SubdivisionRule<f64>,
 }
 
@@ -256,12 +258,12 @@ impl RoadWithLists<'_, '_> {
     fn add_formulas(&mut self, grid: &Grid<f64>, part: formulas::LayerPart, layer: &mut Layer<f64>) {
         let [below, above] = part.planes().map(|n| grid.edges(2)[n]);
         let [x, y] = [0, 1].map(|axis| grid.ends(axis));
-        let near = |f: &&FormulaSolid| {
-            let Aabb { min, max } = f.bounds;
+        let near = |Aabb { min, max }: &Aabb<DVec3>| {
             let z = min.z <= above && max.z >= below;
             z && min.x <= x[1] && max.x >= x[0] && min.y <= y[1] && max.y >= y[0]
         };
-        let mut solids: Vec<&FormulaSolid> = self.road.formulas.iter().copied().filter(near).collect();
+        let formulas = self.road.formulas.iter().filter(|(bounds, _)| near(bounds));
+        let mut solids: Vec<&FormulaSolid> = formulas.map(|(_, f)| *f).collect();
         let mut subdivided: Vec<Convex> = Vec::new();
         let mut memory = std::mem::take(&mut self.lists.formulas);
         memory.shared = 0;
@@ -335,7 +337,7 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
     }
 
     fn boxes(&self) -> impl Iterator<Item = Aabb<DVec3>> {
-        let formulas = self.road.formulas.iter().map(|f| f.bounds);
+        let formulas = self.road.formulas.iter().map(|(bounds, _)| *bounds);
         self.road.bodies.iter().map(|(bounds, _)| *bounds).chain(formulas)
     }
 
@@ -359,15 +361,15 @@ impl OtherBodies<DVec3> for RoadWithLists<'_, '_> {
         wanted: [bool; 7],
     ) -> Option<[Bounds<f64>; 7]> {
         let is_subdivided = self.road.bodies.iter().any(|(bounds, _)| bounds.touches(cell));
-        let solids: Vec<&FormulaSolid> =
-            self.road.formulas.iter().copied().filter(|f| f.bounds.touches(cell)).collect();
+        let near = self.road.formulas.iter().filter(|(bounds, _)| bounds.touches(cell));
+        let solids: Vec<&FormulaSolid> = near.map(|(_, f)| *f).collect();
         (!is_subdivided).then(|| formulas::union_with(&solids, bodies, (cell, wanted), self.road.rule.tol))
     }
 
     fn reach(&mut self, cell: Aabb<DVec3>) -> bool {
         let margin = cell.size() * MARGIN;
         let cell = Aabb { min: cell.min - margin, max: cell.max + margin };
-        let mut formulas = self.road.formulas.iter().filter(|f| f.bounds.touches(cell));
+        let mut formulas = self.road.formulas.iter().filter(|(bounds, _)| bounds.touches(cell)).map(|(_, f)| f);
         if formulas.clone().any(|f| f.torus_may_reach(cell)) {
             return true;
         }

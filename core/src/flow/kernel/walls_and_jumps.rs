@@ -14,7 +14,7 @@ use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::cell_walls::Border;
 use crate::flow::porosity::flags::{any_marked, break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
-use crate::flow::porosity::jump::{JumpFaces, carried_through, jump_fluxes, mixed_jump_fluxes};
+use crate::flow::porosity::jump::{JumpFaces, jump_fluxes, mixed_jump_fluxes};
 use crate::flow::porosity::oblique_jump::ObliqueJump;
 use crate::flow::porosity::throat::{ThroatGas, throat_area};
 use crate::flow::problem::PressureForm;
@@ -376,8 +376,7 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     scatter(D + 1, &f.energy);
     scatter(D + 2, &f.normal[1]);
     if MIXED {
-        let carried = carried_through(faces.states.each_ref().map(|w| &w.density), &capacities, &f.mass);
-        (0..2).for_each(|n| scatter(D + 3 + n, &carried[n]));
+        (0..2).for_each(|v| scatter(D + 3 + v, &f.carried[v]));
     }
 }
 
@@ -451,10 +450,7 @@ fn oblique_jump<R: Real, const D: usize>(
         put(apart(c, D, mixed), to_right[c]);
     }
     if mixed {
-        let densities = states.each_ref().map(|w| core::array::from_ref(&w.density));
-        let capacities = row.states.map(|s| [s[(D + 3) * n + i]]);
-        let carried = carried_through(densities, &capacities, &[f.mass]);
-        (0..2).for_each(|v| put(D + 3 + v, carried[v][0]));
+        (0..2).for_each(|v| put(D + 3 + v, f.carried[v]));
     }
 }
 

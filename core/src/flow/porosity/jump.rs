@@ -38,6 +38,8 @@ pub(in crate::flow) struct JumpFlux<R, const D: usize> {
     pub momentum: [R; D],
     /// Normal momentum that each cell loses (left) or gains (right), less its duct area times its reference pressure.
     pub normal: [R; 2],
+    /// Of a mixed gas, volume per time at the density of the cell upstream, and the capacity that it carries; else zeros.
+    pub carried: [R; 2],
 }
 
 /// One lane, whose states have been carried to the throat.
@@ -66,7 +68,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
     let (walls, acoustic_weight) = chokes(faces, &at, throat);
     let gases = [*gas.left(), *gas.right()];
     let none = [R::ZERO; L];
-    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
+    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2], carried: [none; 2] };
     for i in 0..L {
         let lane = JumpLane {
             cell: [faces.states[0].lane(i), faces.states[1].lane(i)],
@@ -77,7 +79,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
             references: [faces.references[0][i], faces.references[1][i]],
             walls: [walls[0][i], walls[1][i]],
         };
-        let (weak, strong) = (acoustic(&lane, gas), strong_waves(&lane, &solve(&lane.throat, &gases)));
+        let (weak, strong) = (acoustic(&lane, gas), strong_waves(&lane, &solve(&lane.throat, &gases), gas));
         let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
         let flux = weak.blend(&strong, share);
         out.mass[i] = flux.mass;
@@ -87,6 +89,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
         }
         for s in 0..2 {
             out.normal[s][i] = flux.normal[s];
+            out.carried[s][i] = flux.carried[s];
         }
     }
     out
@@ -99,7 +102,7 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize
     solve: ThroatCall<R, D>,
 ) -> JumpFlux<[R; L], D> {
     let none = [R::ZERO; L];
-    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2] };
+    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2], carried: [none; 2] };
     for i in 0..L {
         let one = |all: &[R; L]| [all[i]];
         let state = |w: &Primitive<[R; L], D>| {
@@ -119,6 +122,7 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize
         let f = jump_fluxes::<R, D, 1>(&face, &MixedFace(gases.map(FaceGas::new)), [left, right], solve);
         (out.mass[i], out.energy[i]) = (f.mass[0], f.energy[0]);
         out.normal = [0, 1].map(|s| with(out.normal[s], i, f.normal[s][0]));
+        out.carried = [0, 1].map(|v| with(out.carried[v], i, f.carried[v][0]));
         out.momentum = core::array::from_fn(|c| with(out.momentum[c], i, f.momentum[c][0]));
     }
     out
@@ -130,16 +134,32 @@ fn with<R: Copy, const L: usize>(mut lanes: [R; L], i: usize, value: R) -> [R; L
     lanes
 }
 
-/// Volumes that pass faces with these masses, and the capacities that they carry: of the cell upstream, at the density that it has there. Slow gas of
-/// several capacities keeps its pressure with that: the energy that passes is this volume's.
-pub(in crate::flow) fn carried_through<R: Real, const L: usize>(
-    densities: [&[R; L]; 2],
-    capacities: &[[R; L]; 2],
-    mass: &[R; L],
-) -> [[R; L]; 2] {
-    let upstream = |i: usize| usize::from(mass[i] < R::ZERO);
-    let volume: [R; L] = each(|i| mass[i] / densities[upstream(i)][i]);
-    [volume, each(|i| volume[i] * capacities[upstream(i)][i])]
+/// What weak waves carry of a mixed gas: that of the cell upstream, at the density that it has there. Slow gas of several capacities keeps its pressure with
+/// that: the energy that passes is this volume's.
+fn carried_by_mass<R: Real>(mass: R, densities: [R; 2], gas: &impl FaceGases<R>) -> [R; 2] {
+    if !gas.is_mixed() {
+        return [R::ZERO; 2];
+    }
+    let upstream = usize::from(mass < R::ZERO);
+    let volume = mass / densities[upstream];
+    [volume, volume * gas.upwind(upstream == 0).capacity()]
+}
+
+/// What the flux `f` carries of a mixed gas through a throat of area `to`, from the densities upstream in the cells and in the throat: the volume and the
+/// capacity that belong to the energy of this flux.
+pub(in crate::flow) fn carried_by_flux<R: Real, const D: usize>(
+    f: &Flux<R, D>,
+    to: R,
+    [in_cells, in_throat]: [[R; 2]; 2],
+    gas: &impl FaceGases<R>,
+) -> [R; 2] {
+    if !gas.is_mixed() {
+        return [R::ZERO; 2];
+    }
+    let upstream = usize::from(f.mass < R::ZERO);
+    let area = to * (in_throat[upstream] / in_cells[upstream]);
+    let volume = area * f.velocity;
+    [volume, volume * f.capacity[0] + area * f.capacity[1]]
 }
 
 /// The forces on the walls beside streams that choke, and `acoustic_weight` set to 0 where a stream chokes.
@@ -166,7 +186,11 @@ fn chokes<R: Real, const D: usize, const L: usize>(
 
 /// The fluxes of strong waves, from the flux of the Riemann problem in the throat.
 #[inline(always)]
-fn strong_waves<R: Real, const D: usize>(face: &JumpLane<R, D>, f: &Flux<R, D>) -> JumpFlux<R, D> {
+fn strong_waves<R: Real, const D: usize>(
+    face: &JumpLane<R, D>,
+    f: &Flux<R, D>,
+    gas: &impl FaceGases<R>,
+) -> JumpFlux<R, D> {
     let to = face.to;
     let through = to * f.momentum[0];
     // Impulse rho u² + p on the throat side, and in the cell relative to the reference pressure.
@@ -181,6 +205,7 @@ fn strong_waves<R: Real, const D: usize>(face: &JumpLane<R, D>, f: &Flux<R, D>) 
         energy: to * f.energy,
         momentum: each(|c| to * f.momentum[c]),
         normal: [normal(0), normal(1)],
+        carried: carried_by_flux(f, to, [face.cell.each_ref(), face.throat.each_ref()].map(densities), gas),
     }
 }
 
@@ -265,7 +290,13 @@ pub(in crate::flow) fn acoustic<R: Real, const D: usize>(
         energy: pick(energy_l, energy_r),
         momentum: each(|c| common * pick(l.velocity[c], r.velocity[c])),
         normal: [left, right],
+        carried: carried_by_mass(common, densities(face.cell.each_ref()), gas),
     }
+}
+
+/// Densities on both sides.
+pub(in crate::flow) fn densities<R: Real, const D: usize>([l, r]: [&Primitive<R, D>; 2]) -> [R; 2] {
+    [l.density, r.density]
 }
 
 /// Density of the gas upstream, brought to the pressure downstream, over the density there; both as they are in the throat. 1 where one gas flows steadily.
@@ -295,6 +326,7 @@ impl<R: Real, const D: usize> JumpFlux<R, D> {
             energy: mix(self.energy, other.energy),
             momentum: each(|c| mix(self.momentum[c], other.momentum[c])),
             normal: [mix(self.normal[0], other.normal[0]), mix(self.normal[1], other.normal[1])],
+            carried: [mix(self.carried[0], other.carried[0]), mix(self.carried[1], other.carried[1])],
         }
     }
 }

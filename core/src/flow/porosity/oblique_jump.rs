@@ -8,7 +8,7 @@
 //! a cell leaves it, because the area vector of its walls is along n.
 
 use crate::flow::face_gas::FaceGases;
-use crate::flow::porosity::jump::{JumpLane, ThroatCall, acoustic, weakness};
+use crate::flow::porosity::jump::{JumpLane, ThroatCall, acoustic, carried_by_flux, densities, weakness};
 use crate::flow::porosity::throat::{AtThroat, ThroatGas};
 use crate::flow::riemann::Flux;
 use crate::flow::state::{Primitive, dot};
@@ -38,6 +38,8 @@ pub(in crate::flow) struct ObliqueFlux<R, const D: usize> {
     pub energy: R,
     /// Momentum that each cell loses (left) or gains (right), less its vector area times its reference pressure.
     pub momentum: [[R; D]; 2],
+    /// As for [`JumpFlux`](super::jump::JumpFlux).
+    pub carried: [R; 2],
 }
 
 /// One side of the face.
@@ -120,7 +122,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
             return weak;
         }
         let solved = solve(&at_throat, &[*gas.left(), *gas.right()]);
-        let strong = self.strong(&sides, throat, &at_throat, (size, direction), &solved);
+        let strong = self.strong(&sides, throat, &at_throat, (size, direction), (&solved, gas));
         let mix = |a: R, b: R| if share > R::ZERO { share * a + (R::ONE - share) * b } else { b };
         ObliqueFlux {
             mass: mix(weak.mass, strong.mass),
@@ -128,6 +130,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
             momentum: core::array::from_fn(|s| {
                 core::array::from_fn(|c| mix(weak.momentum[s][c], strong.momentum[s][c]))
             }),
+            carried: core::array::from_fn(|v| mix(weak.carried[v], strong.carried[v])),
         }
     }
 
@@ -138,7 +141,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         gas: [&ThroatGas<R>; 2],
         at_throat: &[Primitive<R, D>; 2],
         (size, direction): (R, [R; D]),
-        f: &Flux<R, D>,
+        (f, face_gas): (&Flux<R, D>, &impl FaceGases<R>),
     ) -> ObliqueFlux<R, D> {
         let momentum = |s: usize| {
             let (w, side, t) = (&self.states[s], &sides[s], &at_throat[s]);
@@ -160,7 +163,12 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
             let sum: [R; D] = core::array::from_fn(|c| at_throat[c] + stream[c]);
             plus(sum, walls * self.normal[0], self.normal)
         };
-        ObliqueFlux { mass: size * f.mass, energy: size * f.energy, momentum: [momentum(0), momentum(1)] }
+        ObliqueFlux {
+            mass: size * f.mass,
+            energy: size * f.energy,
+            momentum: [momentum(0), momentum(1)],
+            carried: carried_by_flux(f, size, [self.states.each_ref(), at_throat.each_ref()].map(densities), face_gas),
+        }
     }
 
     /// The fluxes of weak waves, which run along the vector areas.
@@ -198,6 +206,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
             let momentum = carried.map(|u| f.mass * u);
             plus(momentum, f.mass * change + f.normal[s], side.direction)
         };
-        ObliqueFlux { mass: f.mass, energy: f.energy + f.mass * kinetic, momentum: [momentum(0), momentum(1)] }
+        let (energy, momentum) = (f.energy + f.mass * kinetic, [momentum(0), momentum(1)]);
+        ObliqueFlux { mass: f.mass, energy, momentum, carried: f.carried }
     }
 }
