@@ -14,7 +14,7 @@ use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::cell_walls::Border;
 use crate::flow::porosity::flags::{any_marked, break_high, break_low, marked};
 use crate::flow::porosity::fractions::Medium;
-use crate::flow::porosity::jump::{JumpFaces, jump_fluxes, mixed_jump_fluxes};
+use crate::flow::porosity::jump::{JumpFaces, JumpFlux, jump_fluxes, mixed_jump_fluxes};
 use crate::flow::porosity::oblique_jump::ObliqueJump;
 use crate::flow::porosity::throat::{ThroatGas, throat_area};
 use crate::flow::problem::PressureForm;
@@ -356,27 +356,24 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     let acoustic_weight = group.map(|i| row.acoustic_weight(i));
     let faces =
         JumpFaces { states, ducts: areas, throat, references: [gather(0, D + 2), gather(1, D + 2)], acoustic_weight };
-    let f = if MIXED {
-        mixed_jump_fluxes(&faces, &capacities, slab.solver.throat)
-    } else {
-        jump_fluxes(&faces, &slab.face_gas, [&slab.throat; 2], slab.solver.throat)
-    };
-    let mut scatter = |v: usize, from: &[R; LANES]| {
-        let to = &mut flux.values[v * flux.n..][..flux.n];
-        for (value, &i) in from.iter().zip(&group[..count]) {
-            to[i] = *value;
+    let tell = |l: usize, f: JumpFlux<R, D>| {
+        let mut put = |v: usize, value: R| flux.values[v * flux.n + group[l]] = value;
+        put(0, f.mass);
+        put(1, f.normal[0]);
+        for c in 1..D {
+            put(1 + c, f.momentum[c]);
+            put(apart(c, D, MIXED), f.momentum[c]);
+        }
+        put(D + 1, f.energy);
+        put(D + 2, f.normal[1]);
+        if MIXED {
+            (0..2).for_each(|v| put(D + 3 + v, f.carried[v]));
         }
     };
-    scatter(0, &f.mass);
-    scatter(1, &f.normal[0]);
-    for c in 1..D {
-        scatter(1 + c, &f.momentum[c]);
-        scatter(apart(c, D, MIXED), &f.momentum[c]);
-    }
-    scatter(D + 1, &f.energy);
-    scatter(D + 2, &f.normal[1]);
     if MIXED {
-        (0..2).for_each(|v| scatter(D + 3 + v, &f.carried[v]));
+        mixed_jump_fluxes((&faces, count), &capacities, slab.solver.throat, tell);
+    } else {
+        jump_fluxes((&faces, count), &slab.face_gas, [&slab.throat; 2], slab.solver.throat, tell);
     }
 }
 

@@ -28,7 +28,7 @@ pub(in crate::flow) struct JumpFaces<R, const D: usize, const L: usize> {
     pub acoustic_weight: [R; L],
 }
 
-/// What passes a jump face, areas included. One face, or one per lane.
+/// What passes a jump face, areas included.
 #[derive(Clone, Copy)]
 pub(in crate::flow) struct JumpFlux<R, const D: usize> {
     /// Mass and energy per time.
@@ -55,21 +55,20 @@ pub(in crate::flow) struct JumpLane<R, const D: usize> {
     pub walls: [R; 2],
 }
 
-/// The fluxes through several jump faces; `solve` is the Riemann solver in the throats.
+/// Tells the fluxes through the first `count` of several jump faces; `solve` is the Riemann solver in the throats.
 pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
-    faces: &JumpFaces<R, D, L>,
+    (faces, count): (&JumpFaces<R, D, L>, usize),
     gas: &impl FaceGases<R>,
     throat: [&ThroatGas<R>; 2],
     solve: ThroatCall<R, D>,
-) -> JumpFlux<[R; L], D> {
+    mut tell: impl FnMut(usize, JumpFlux<R, D>),
+) {
     let ([left, right], to) = (&faces.ducts, &faces.throat);
     let side = |s: usize| throat[s].carry_all(&faces.states[s], &faces.ducts[s], to);
     let at = [side(0), side(1)];
     let (walls, acoustic_weight) = chokes(faces, &at, throat);
     let gases = [*gas.left(), *gas.right()];
-    let none = [R::ZERO; L];
-    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2], carried: [none; 2] };
-    for i in 0..L {
+    for i in 0..count.min(L) {
         let lane = JumpLane {
             cell: [faces.states[0].lane(i), faces.states[1].lane(i)],
             throat: [at[0].state.lane(i), at[1].state.lane(i)],
@@ -81,29 +80,18 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
         };
         let (weak, strong) = (acoustic(&lane, gas), strong_waves(&lane, &solve(&lane.throat, &gases), gas));
         let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
-        let flux = weak.blend(&strong, share);
-        out.mass[i] = flux.mass;
-        out.energy[i] = flux.energy;
-        for c in 1..D {
-            out.momentum[c][i] = flux.momentum[c];
-        }
-        for s in 0..2 {
-            out.normal[s][i] = flux.normal[s];
-            out.carried[s][i] = flux.carried[s];
-        }
+        tell(i, weak.blend(&strong, share));
     }
-    out
 }
 
 /// The same where each side has a gas of its own, of these `capacities`: one face after the other.
 pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize>(
-    faces: &JumpFaces<R, D, L>,
+    (faces, count): (&JumpFaces<R, D, L>, usize),
     capacities: &[[R; L]; 2],
     solve: ThroatCall<R, D>,
-) -> JumpFlux<[R; L], D> {
-    let none = [R::ZERO; L];
-    let mut out = JumpFlux { mass: none, energy: none, momentum: [none; D], normal: [none; 2], carried: [none; 2] };
-    for i in 0..L {
+    mut tell: impl FnMut(usize, JumpFlux<R, D>),
+) {
+    for i in 0..count.min(L) {
         let one = |all: &[R; L]| [all[i]];
         let state = |w: &Primitive<[R; L], D>| {
             let w = w.lane(i);
@@ -119,19 +107,9 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize
         let gases = capacities.each_ref().map(|c| Gas::Ideal { gamma: R::ONE + R::ONE / c[i] });
         let throats = gases.map(ThroatGas::new);
         let [left, right] = throats.each_ref();
-        let f = jump_fluxes::<R, D, 1>(&face, &MixedFace(gases.map(FaceGas::new)), [left, right], solve);
-        (out.mass[i], out.energy[i]) = (f.mass[0], f.energy[0]);
-        out.normal = [0, 1].map(|s| with(out.normal[s], i, f.normal[s][0]));
-        out.carried = [0, 1].map(|v| with(out.carried[v], i, f.carried[v][0]));
-        out.momentum = core::array::from_fn(|c| with(out.momentum[c], i, f.momentum[c][0]));
+        let of_face = MixedFace(gases.map(FaceGas::new));
+        jump_fluxes::<R, D, 1>((&face, 1), &of_face, [left, right], solve, |_, flux| tell(i, flux));
     }
-    out
-}
-
-/// Lanes with another value in one of them.
-fn with<R: Copy, const L: usize>(mut lanes: [R; L], i: usize, value: R) -> [R; L] {
-    lanes[i] = value;
-    lanes
 }
 
 /// What weak waves carry of a mixed gas: that of the cell upstream, at the density that it has there. Slow gas of several capacities keeps its pressure with
