@@ -80,7 +80,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
         };
         let (weak, strong) = (acoustic(&lane, gas), strong_waves(&lane, &solve(&lane.throat, &gases), gas));
         let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
-        tell(i, weak.blend(&strong, share));
+        tell(i, weak.blend(&strong, share, gas));
     }
 }
 
@@ -292,7 +292,7 @@ fn share_of_densities<R: Real, const D: usize>(face: &JumpLane<R, D>, gas: &impl
 impl<R: Real, const D: usize> JumpFlux<R, D> {
     /// A share of this flux and the rest of another; 0 and 1 give one of them alone.
     #[inline(always)]
-    fn blend(&self, other: &Self, share: R) -> Self {
+    fn blend(&self, other: &Self, share: R, gas: &impl FaceGases<R>) -> Self {
         let rest = R::ONE - share;
         let mix = |a: R, b: R| {
             let both = share * a + rest * b;
@@ -304,7 +304,7 @@ impl<R: Real, const D: usize> JumpFlux<R, D> {
             energy: mix(self.energy, other.energy),
             momentum: each(|c| mix(self.momentum[c], other.momentum[c])),
             normal: [mix(self.normal[0], other.normal[0]), mix(self.normal[1], other.normal[1])],
-            carried: [mix(self.carried[0], other.carried[0]), mix(self.carried[1], other.carried[1])],
+            carried: each(|v| if gas.is_mixed() { mix(self.carried[v], other.carried[v]) } else { R::ZERO }),
         }
     }
 }
