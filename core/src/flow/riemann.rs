@@ -40,6 +40,15 @@ pub struct Flux<R, const D: usize> {
     pub capacity: [R; 2],
 }
 
+impl<R: Real, const D: usize> Flux<R, D> {
+    /// The volume that passes, and the capacity that it carries; `through` makes what passes a face of what passes a unit of area.
+    #[inline(always)]
+    pub(in crate::flow) fn carried(&self, through: impl Fn(R) -> R) -> [R; 2] {
+        let volume = through(self.velocity);
+        [volume, volume * self.capacity[0] + through(self.capacity[1])]
+    }
+}
+
 /// Which approximate Riemann solver stands at the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

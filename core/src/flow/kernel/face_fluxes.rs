@@ -111,8 +111,7 @@ fn face_loop<R: Real, S: Solver, const D: usize, const ENERGY: bool, const MIXED
             energy[i] = open(f.energy);
         }
         if MIXED {
-            volume[i] = open(f.velocity);
-            carried[i] = volume[i] * f.capacity[0] + open(f.capacity[1]);
+            [volume[i], carried[i]] = f.carried(open);
         }
     }
 }

@@ -55,9 +55,7 @@ pub(in crate::flow) fn positive_fluxes<R: Real, const D: usize, const ENERGY: bo
         }
         flux.values[(D + 2) * n + i] = through(f.momentum[0] - reference[1]);
         if MIXED {
-            let volume = through(f.velocity);
-            flux.values[(D + 3) * n + i] = volume;
-            flux.values[(D + 4) * n + i] = volume * f.capacity[0] + through(f.capacity[1]);
+            [flux.values[(D + 3) * n + i], flux.values[(D + 4) * n + i]] = f.carried(through);
         }
     }
 }

@@ -136,8 +136,7 @@ pub(in crate::flow) fn carried_by_flux<R: Real, const D: usize>(
     }
     let upstream = usize::from(f.mass < R::ZERO);
     let area = to * (in_throat[upstream] / in_cells[upstream]);
-    let volume = area * f.velocity;
-    [volume, volume * f.capacity[0] + area * f.capacity[1]]
+    f.carried(|x| area * x)
 }
 
 /// The forces on the walls beside streams that choke, and `acoustic_weight` set to 0 where a stream chokes.
