@@ -200,7 +200,7 @@ fn rest<R: Scalar, const D: usize>(seed: u64, gas: Gas<R>, riemann: Riemann) {
     }
     // The pressure must come back from the energy alike in all cells; round it once more until it does.
     let start = bits(&flow.state);
-    for limiter in [Limiter::Steep, Limiter::MonotonizedCentral, Limiter::VanLeer] {
+    for limiter in [Limiter::Steep, Limiter::AroraRoe, Limiter::MonotonizedCentral, Limiter::VanLeer] {
         for pressure in [PressureForm::Geometric, PressureForm::Paper] {
             flow.scheme.limiter = limiter;
             flow.scheme.pressure = pressure;

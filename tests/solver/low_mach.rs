@@ -91,6 +91,7 @@ fn a_slow_vortex_keeps_its_energy_however_it_is_computed() {
     // Other limiters, steps, streams, cells.
     for (v, cells, by, turns, least) in [
         (still, [40, 40], (Riemann::HllcLowMach, Limiter::Steep, 0.8), 1.0, 0.9),
+        (still, [40, 40], (Riemann::HllcLowMach, Limiter::AroraRoe, 0.8), 1.0, 0.9),
         (still, [40, 40], (Riemann::HllcLowMach, Limiter::VanLeer, 0.8), 1.0, 0.9),
         (still, [40, 40], (Riemann::HllcLowMach, MC, 0.4), 1.0, 0.9),
         (still, [40, 40], (Riemann::HllcLowMach, MC, 1.0), 1.0, 0.9),

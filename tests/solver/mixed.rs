@@ -9,8 +9,9 @@ use voidage_tests::euler::space::{OpenFractions, half_space, layer, open_fractio
 use voidage_tests::euler::two_gases::{GasSide, TwoGases};
 
 const SOLVERS: [Riemann; 4] = [Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle, Riemann::Rusanov];
-const LIMITERS: [Limiter; 6] = [
+const LIMITERS: [Limiter; 7] = [
     Limiter::Steep,
+    Limiter::AroraRoe,
     Limiter::MonotonizedCentral,
     Limiter::VanLeer,
     Limiter::Minmod,
@@ -406,13 +407,13 @@ fn two_gases_of_one_gamma_are_one_gas() {
 
 /// The largest deviation of the pressure in dynamic pressures while a slug of another gas (or of the same one, equally dense) passes a porous layer at a Mach number,
 /// and the share of the slug that has got lost on its way.
-fn through_a_layer(other: f64, mach: f64, riemann: Riemann) -> [f64; 2] {
+fn through_a_layer(other: f64, mach: f64, (riemann, limiter): (Riemann, Limiter)) -> [f64; 2] {
     const N: usize = 120;
     let mixed = Gas::Mixed { gammas: GAMMAS };
     let u = mach * GAMMAS[0].sqrt();
     let far = |p: f64| Boundary::FarField(Primitive { density: 1.0, velocity: [u], pressure: p });
     let mut flow: Flow<f64, 1> = Flow::uniform([N], [1.0 / N as f64], mixed, [[far(1.0), far(1.0)]]);
-    flow.scheme.riemann = riemann;
+    (flow.scheme.riemann, flow.scheme.limiter) = (riemann, limiter);
     flow.feed_sides = [[GAMMAS[0]; 2]];
     let open = |i: usize| if (48..60).contains(&i) { 0.5 } else { 1.0f64 };
     let faces = (0..=N).map(|f| open(f.min(N - 1)).min(open(f.max(1) - 1))).collect();
@@ -438,7 +439,9 @@ fn through_a_layer(other: f64, mach: f64, riemann: Riemann) -> [f64; 2] {
 
 #[test]
 fn a_slug_of_another_gas_passes_a_porous_layer() {
-    for riemann in [Riemann::Hllc, Riemann::Hlle] {
+    for riemann in
+        [Riemann::Hllc, Riemann::Hlle].map(|riemann| [Limiter::Steep, Limiter::AroraRoe].map(|l| (riemann, l))).concat()
+    {
         for mach in [0.01, 0.1] {
             let [one, _] = through_a_layer(GAMMAS[0], mach, riemann);
             let [two, lost] = through_a_layer(GAMMAS[1], mach, riemann);
@@ -462,7 +465,7 @@ fn gases_at_rest_stay_at_rest_to_the_bit() {
         fill_unevenly(&mut flow, [0.0; 3], seed);
         flow.rate().unwrap();
         let start = bits(&flow.state);
-        for limiter in [Limiter::Steep, Limiter::VanLeer] {
+        for limiter in [Limiter::Steep, Limiter::AroraRoe, Limiter::VanLeer] {
             flow.scheme.limiter = limiter;
             for _ in 0..5 {
                 flow.step(0.01).unwrap();

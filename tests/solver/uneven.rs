@@ -20,7 +20,9 @@ fn grids(cells: usize) -> [(&'static str, Vec<f64>); 3] {
 fn what_is_carried_stays_between() {
     for (name, widths) in grids(64) {
         let length: f64 = widths.iter().sum();
-        for limiter in [Limiter::MonotonizedCentral, Limiter::Steep, Limiter::VanLeer, Limiter::Minmod] {
+        for limiter in
+            [Limiter::MonotonizedCentral, Limiter::Steep, Limiter::AroraRoe, Limiter::VanLeer, Limiter::Minmod]
+        {
             let mut flow: Flow<f64, 1> = Flow::new([widths.clone()], IDEAL, [[Boundary::Periodic; 2]]);
             flow.scheme.limiter = limiter;
             for cell in 0..64 {

@@ -64,6 +64,7 @@ module voidage
   integer(c_int32_t), parameter :: vdg_limiter_minmod = 3
   integer(c_int32_t), parameter :: vdg_limiter_unlimited = 4
   integer(c_int32_t), parameter :: vdg_limiter_first_order = 5
+  integer(c_int32_t), parameter :: vdg_limiter_arora_roe = 6
   integer(c_int32_t), parameter :: vdg_pressure_geometric = 0
   integer(c_int32_t), parameter :: vdg_pressure_paper = 1
 

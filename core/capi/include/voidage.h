@@ -167,6 +167,8 @@ enum {
   VDG_LIMITER_UNLIMITED = 4,
   /* First order. */
   VDG_LIMITER_FIRST_ORDER = 5,
+  /* Of third order for each wave that goes along an axis, as Arora and Roe bound it. */
+  VDG_LIMITER_ARORA_ROE = 6,
 };
 
 /* How the pressure acts in a cell whose faces are not as open as its volume. */

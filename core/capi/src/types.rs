@@ -282,6 +282,8 @@ pub enum Limiter {
     Unlimited = 4,
     /// First order.
     FirstOrder = 5,
+    /// Of third order for each wave that goes along an axis, as Arora and Roe bound it.
+    AroraRoe = 6,
 }
 
 /// How the pressure acts in a cell whose faces are not as open as its volume.

@@ -264,7 +264,7 @@ fn wrong_cases_are_refused_by_name() {
     assert_eq!(refused(Case { gamma: 1.0, ..good }), (Status::Value, "case.gamma", -1, 0));
     assert_eq!(refused(Case { gas: 3, ..good }), (Status::Kind, "case.gas", -1, 0));
     assert_eq!(refused(Case { riemann: -1, ..good }), (Status::Kind, "case.riemann", -1, 0));
-    assert_eq!(refused(Case { limiter: 6, ..good }), (Status::Kind, "case.limiter", -1, 0));
+    assert_eq!(refused(Case { limiter: 7, ..good }), (Status::Kind, "case.limiter", -1, 0));
     assert_eq!(refused(Case { pressure: i32::MAX, ..good }), (Status::Kind, "case.pressure", -1, 0));
     assert_eq!(refused(Case { jump: -1.0, ..good }), (Status::Value, "case.jump", -1, 0));
     assert_eq!(refused(Case { gravity: [0.0, f64::NAN, 0.0], ..good }), (Status::Value, "case.gravity", -1, 1));

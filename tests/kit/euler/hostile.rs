@@ -151,7 +151,13 @@ impl<'s, 'b> Hostile<'s, 'b> {
     fn scheme(&mut self) -> Scheme {
         Scheme {
             riemann: self.s.pick(&[Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle, Riemann::Rusanov]),
-            limiter: self.s.pick(&[Limiter::Steep, Limiter::VanLeer, Limiter::Unlimited, Limiter::FirstOrder]),
+            limiter: self.s.pick(&[
+                Limiter::Steep,
+                Limiter::AroraRoe,
+                Limiter::VanLeer,
+                Limiter::Unlimited,
+                Limiter::FirstOrder,
+            ]),
             pressure: self.s.pick(&[PressureForm::Geometric, PressureForm::Paper]),
         }
     }

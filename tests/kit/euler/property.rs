@@ -148,6 +148,7 @@ fn of_gas_stays_physical<R: Scalar, const D: usize>(s: &mut Source<'_>, n: [usiz
     let mut flow: Flow<R, D> = Flow::new(widths, gas, boundaries);
     flow.scheme.riemann = s.pick(&[Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle, Riemann::Rusanov]);
     flow.scheme.limiter = s.pick(&[
+        Limiter::AroraRoe,
         Limiter::MonotonizedCentral,
         Limiter::VanLeer,
         Limiter::Minmod,

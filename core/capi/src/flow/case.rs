@@ -142,6 +142,7 @@ fn scheme<R>(case: &Case<R>) -> Answer<Scheme> {
         Limiter::Minmod,
         Limiter::Unlimited,
         Limiter::FirstOrder,
+        Limiter::AroraRoe,
     ];
     let forms = [PressureForm::Geometric, PressureForm::Paper];
     Ok(Scheme {

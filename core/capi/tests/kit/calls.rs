@@ -274,7 +274,7 @@ fn flow<R: Api>(s: &mut Source) {
         cr: [array(s, 1, porous), null(), array(s, 2, porous)],
         linear: [null(), array(s, 1, porous), null()],
         riemann: s.kind(4),
-        limiter: s.kind(6),
+        limiter: s.kind(7),
         pressure: s.kind(2),
     };
     for axis in 0..3 {

@@ -10,7 +10,7 @@ use crate::flow::kernel::slab::{Place, RowAt, Slab};
 use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
-use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
+use crate::flow::limiter::{AroraRoe, Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
 use crate::flow::porosity::flags::{BORDER, SMALL, any_marked, any_small_or_border, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
@@ -28,6 +28,7 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
     let contractions = Contractions::new(slab, work.contractions);
     coefficients(slab, (row, place), contractions, &mut work.coefficients);
     match slab.problem.scheme.limiter {
+        Limiter::AroraRoe => slopes::<R, D, AroraRoe, MIXED>(slab, row, place, work),
         Limiter::Steep => slopes::<R, D, Steep, MIXED>(slab, row, place, work),
         Limiter::MonotonizedCentral => slopes::<R, D, MonotonizedCentral, MIXED>(slab, row, place, work),
         Limiter::VanLeer => slopes::<R, D, VanLeer, MIXED>(slab, row, place, work),
@@ -66,7 +67,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
 ) {
     let (n, padded) = (slab.size.n, slab.size.padded);
     let here = &work.window[slab.block(l, j)];
-    let split = S::SPLIT && slab.problem.gas.has_energy();
+    let split = S::BY_WAVES || (S::SPLIT && slab.problem.gas.has_energy());
     if split {
         let inner = |v: usize| &var(here, v, padded)[1..][..n];
         let (rho, p, out) = (inner(0), inner(D + 1), &mut work.coefficients.compliance[..n]);
@@ -78,7 +79,8 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
             rows::compliances(rho, p, |_| gamma, out);
         }
     }
-    let compliance = if split { Some(&*work.coefficients.compliance) } else { None };
+    let of_row = &work.coefficients;
+    let compliance = if split { Some(&*of_row.compliance) } else { None };
     for d in 0..D {
         // The three values along axis d: shifted in the row, the rows beside it, or the layers beside it.
         let (below, above, shift) = if d == 0 {
@@ -94,13 +96,13 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
         let gravity = slab.problem.gravity[d];
         let out = &mut *work.slope[d];
         if gravity == R::ZERO && slab.even[d] {
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &Even, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &Even, (of_row, compliance), out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let copied = slab.problem.boundaries[d].map(|b| b.copies_inside());
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &axis, compliance, out);
+            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &axis, (of_row, compliance), out);
         }
     }
 }
@@ -111,10 +113,16 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     (d, row): (usize, RowAt<D>),
     (cells, at_breaks): (&RowBeside<'_, R>, (Contractions<'_, R>, Place)),
     axis: &impl Differences<R>,
-    compliance: Option<&[R]>,
+    (of_row, compliance): (&RowCoefficients<'_, R, D>, Option<&[R]>),
     out: &mut [R],
 ) {
-    rows::slopes::<R, S, D>(|v| cells.values(v), axis, compliance, out, cells.n);
+    let values = |v| cells.values(v);
+    match compliance {
+        Some(compliance) if S::BY_WAVES => {
+            rows::slopes_by_waves::<R, S, D>(d, values, axis, (compliance, of_row.rate[d]), out, cells.n);
+        }
+        _ => rows::slopes::<R, S, D>(values, axis, compliance, out, cells.n),
+    }
     if MIXED {
         mixed::slopes::<R, S>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);
     }
@@ -217,7 +225,14 @@ fn coefficients<R: Real, const D: usize>(
             }
         }
     }
-    let Some(medium) = &slab.medium else { return };
+    let Some(medium) = &slab.medium else {
+        if slab.problem.scheme.limiter == Limiter::AroraRoe {
+            for d in 1..D {
+                of_row.rate[d][..n].fill(half_dt / mesh.widths[d][row.at[d]]);
+            }
+        }
+        return;
+    };
     let volume = &medium.porosity.volume[row.start..][..n];
     let inv = &mut of_row.spare[..n];
     for i in 0..n {

@@ -13,7 +13,7 @@
 //!
 //! Reference: E. F. Toro, *Riemann Solvers and Numerical Methods for Fluid Dynamics*, 3rd ed., sec. 14.4 (MUSCL-Hancock) and 16.5.
 
-use crate::flow::limiter::Slope;
+use crate::flow::limiter::{Slope, SoundWave};
 use crate::flow::state::{Fields, FieldsMut, Gas, Primitive, each, sum};
 use crate::number::real::Real;
 
@@ -235,6 +235,44 @@ fn one_slope<R: Real, S: Slope>(values: Three<'_, R>, axis: &impl Differences<R>
     let values = fit(values, n);
     for i in 0..n {
         out[i] = Steps::of(values, i).slope(i, axis, S::LIMITED, S::slope);
+    }
+}
+
+/// Slopes of all variables of a row along axis `d`, those of sound by its waves: one goes upward, one downward, and they change the pressure by ± ρ c times the
+/// velocity. `rate` of each cell as in [`half_step`], the `compliance` 1/c² of each; what goes with the gas is as in [`slopes`].
+#[inline(never)]
+pub(crate) fn slopes_by_waves<'a, R: Real, S: Slope, const D: usize>(
+    d: usize,
+    values: impl Fn(usize) -> Three<'a, R>,
+    axis: &impl Differences<R>,
+    (compliance, rate): (&[R], &[R]),
+    out: &mut [R],
+    n: usize,
+) {
+    let (rho, u, p) = (fit(values(0), n), fit(values(1 + d), n), fit(values(D + 1), n));
+    let (compliance, rate) = (&compliance[..n], &rate[..n]);
+    let (out_rho, out_u, out_p, _) = split_mut::<R, D>(out, n);
+    for (c, out_u) in out_u.into_iter().enumerate() {
+        if c != d {
+            one_slope::<R, S>(values(1 + c), axis, out_u);
+            continue;
+        }
+        for i in 0..n {
+            let (speed, sound) = (u.1[i], R::ONE / compliance[i].sqrt());
+            let impedance = rho.1[i] * sound;
+            let of_pressure = Steps::of_pressure(p, rho, i, axis);
+            let of_velocity = Steps::of(u, i);
+            let upward = SoundWave::new(R::TWO * rate[i] * (speed + sound));
+            let downward = SoundWave::new(R::TWO * rate[i] * (speed - sound));
+            let up = of_pressure.without(of_velocity, -impedance).slope(i, axis, true, |a, b| upward.slope(a, b));
+            let down = of_pressure.without(of_velocity, impedance).slope(i, axis, true, |a, b| downward.slope(a, b));
+            out_p[i] = R::HALF * (up + down);
+            out_u[i] = R::HALF * (up - down) / impedance;
+        }
+    }
+    for i in 0..n {
+        let of_entropy = Steps::of(rho, i).without(Steps::of_pressure(p, rho, i, axis), compliance[i]);
+        out_rho[i] = out_p[i] * compliance[i] + of_entropy.slope(i, axis, S::LIMITED, S::entropy_slope);
     }
 }
 

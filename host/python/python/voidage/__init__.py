@@ -18,7 +18,7 @@ _SIDES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
 _KINDS = ("wall", "periodic", "zero-gradient", "far-field", "inlet", "outlet", "reservoir")
 _GASES = ("ideal", "isothermal", "isentropic")
 _RIEMANN = ("hllc", "hlle", "rusanov", "hllc-low-mach")
-_LIMITERS = ("steep", "monotonized-central", "van-leer", "minmod", "unlimited", "first-order")
+_LIMITERS = ("steep", "monotonized-central", "van-leer", "minmod", "unlimited", "first-order", "arora-roe")
 # The words of a case file for two of them.
 _LIMITERS_OF_CASES = {"mc": "monotonized-central", "none": "unlimited"}
 _PRESSURES = ("geometric", "paper")
@@ -160,7 +160,7 @@ class Flow:
 
     beta: the dict of porosity(), or None. boundary: a dict of sides, x_min to z_max, each a dict with type (wall, periodic, zero-gradient,
     far-field, inlet, outlet, reservoir) and rho, u, p, relax as it needs; sides that are not named are walls. cr, linear: arrays of drag along x, y, z,
-    or None. riemann: hllc, hllc-low-mach, hlle, rusanov. limiter: steep, monotonized-central, van-leer, minmod, unlimited or first-order; a case file's
+    or None. riemann: hllc, hllc-low-mach, hlle, rusanov. limiter: steep, monotonized-central, van-leer, minmod, arora-roe, unlimited or first-order; a case file's
     mc is monotonized-central, its none is unlimited. pressure: geometric, paper.
     """
 

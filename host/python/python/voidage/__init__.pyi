@@ -94,7 +94,7 @@ class Flow:
         linear: Sequence[Union[ArrayLike, None]] = ...,
         jump: float = ...,
         riemann: Literal["hllc", "hllc-low-mach", "hlle", "rusanov"] = ...,
-        limiter: Literal["steep", "monotonized-central", "mc", "van-leer", "minmod", "unlimited", "none", "first-order"] = ...,
+        limiter: Literal["steep", "monotonized-central", "mc", "van-leer", "minmod", "unlimited", "none", "first-order", "arora-roe"] = ...,
         pressure: Literal["geometric", "paper"] = ...,
     ) -> None: ...
     def set(

@@ -398,6 +398,8 @@ pub enum LimiterName {
     Steep,
     /// Monotonised central.
     Mc,
+    /// Of third order for each wave, as Arora and Roe bound it.
+    AroraRoe,
     /// Van Leer.
     VanLeer,
     /// Minmod.
@@ -413,6 +415,7 @@ impl LimiterName {
         match self {
             LimiterName::Steep => Limiter::Steep,
             LimiterName::Mc => Limiter::MonotonizedCentral,
+            LimiterName::AroraRoe => Limiter::AroraRoe,
             LimiterName::VanLeer => Limiter::VanLeer,
             LimiterName::Minmod => Limiter::Minmod,
             LimiterName::None => Limiter::Unlimited,

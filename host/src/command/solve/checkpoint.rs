@@ -210,6 +210,7 @@ fn scheme_numbers(scheme: &Scheme) -> [f64; 3] {
         Limiter::VanLeer => 3.0,
         Limiter::Minmod => 4.0,
         Limiter::Unlimited => 5.0,
+        Limiter::AroraRoe => 6.0,
         _ => UNNAMED,
     };
     let pressure = match scheme.pressure {
