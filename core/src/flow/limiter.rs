@@ -39,8 +39,11 @@ pub(crate) trait Slope {
     /// The limiter takes the density apart into the share of the sound waves and the entropy wave.
     const SPLIT: bool = false;
 
-    /// Slopes of pressure and velocity are those of sound waves: [`SoundWave`]. [`Slope::slope`] is for what goes with the gas, and for cells beside walls and jumps.
+    /// Slopes of pressure and velocity are those of sound waves: [`SoundWave`].
     const BY_WAVES: bool = false;
+
+    /// The limiter of what goes with the gas, and of cells beside walls and jumps.
+    type Rest: Slope;
 
     /// The slope of the entropy wave.
     #[inline(always)]
@@ -130,6 +133,8 @@ fn same_sign<R: Real>(a: R, b: R) -> bool {
 const STEEPENING: f64 = 4.0;
 
 impl Slope for Steep {
+    type Rest = Self;
+
     const SPLIT: bool = true;
 
     #[inline(always)]
@@ -151,21 +156,18 @@ impl Slope for Steep {
 }
 
 impl Slope for AroraRoe {
-    const SPLIT: bool = true;
+    type Rest = Steep;
     const BY_WAVES: bool = true;
 
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
-        MonotonizedCentral::slope(a, b)
-    }
-
-    #[inline(always)]
-    fn entropy_slope<R: Real>(a: R, b: R) -> R {
-        Steep::entropy_slope(a, b)
+        Steep::slope(a, b)
     }
 }
 
 impl Slope for MonotonizedCentral {
+    type Rest = Self;
+
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let central = R::HALF * (a + b);
@@ -176,6 +178,8 @@ impl Slope for MonotonizedCentral {
 }
 
 impl Slope for VanLeer {
+    type Rest = Self;
+
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let sum = a + b;
@@ -185,6 +189,8 @@ impl Slope for VanLeer {
 }
 
 impl Slope for Minmod {
+    type Rest = Self;
+
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let size = R::smaller(a.abs(), b.abs());
@@ -194,6 +200,8 @@ impl Slope for Minmod {
 }
 
 impl Slope for Unlimited {
+    type Rest = Self;
+
     const LIMITED: bool = false;
 
     #[inline(always)]

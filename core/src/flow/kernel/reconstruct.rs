@@ -117,19 +117,19 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     out: &mut [R],
 ) {
     let values = |v| cells.values(v);
-    match compliance {
-        Some(compliance) if S::BY_WAVES => {
-            rows::slopes_by_waves::<R, S, D>(d, values, axis, (compliance, of_row.rate[d]), out, cells.n);
-        }
-        _ => rows::slopes::<R, S, D>(values, axis, compliance, out, cells.n),
+    if S::BY_WAVES {
+        let coefficients = (compliance.unwrap_or_default(), &*of_row.rate[d]);
+        rows::slopes_by_waves::<R, S::Rest, D>(d, values, axis, coefficients, out, cells.n);
+    } else {
+        rows::slopes::<R, S, D>(values, axis, compliance, out, cells.n);
     }
     if MIXED {
-        mixed::slopes::<R, S>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);
+        mixed::slopes::<R, S::Rest>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);
     }
     slopes_at_boundaries(slab, d, row, cells.values(1 + d), axis, out);
     if slab.medium.is_some() {
         flatten_beside_closed_faces::<R, D, MIXED>(slab, d, row, out);
-        let one = CellSlopes { axis, compliance, limit: limited::<R, S, D> };
+        let one = CellSlopes { axis, compliance, limit: limited::<R, S::Rest, D> };
         slopes_at_breaks::<R, D, MIXED>(slab, (d, row), (cells, at_breaks), &one, out);
     }
 }
