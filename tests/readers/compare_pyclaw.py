@@ -6,7 +6,7 @@
     python3 tests/readers/compare_pyclaw.py target/release/voidage [--fine 400]
 
 Both get the same cell averages at the beginning, one thread, the MC limiter and their usual steps (0.8 and 0.9 of the stable one); voidage once more
-the limiter `arora-roe`. The error is
+with the limiter `arora-roe`. The error is
 the mean |rho - truth| over the cells. Truth is the exact solution of Sod's tube; else the mean of what both find on `--fine` cells along
 each axis, so that neither is measured against itself alone. Seconds are those of stepping, without start and files.
 """

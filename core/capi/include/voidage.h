@@ -167,7 +167,7 @@ enum {
   VDG_LIMITER_UNLIMITED = 4,
   /* First order. */
   VDG_LIMITER_FIRST_ORDER = 5,
-  /* Of third order for each wave that goes along an axis, as Arora and Roe bound it. */
+  /* Sound by its waves, as far as the Courant number of each allows (Arora and Roe); the rest as by the usual one. */
   VDG_LIMITER_ARORA_ROE = 6,
 };
 

@@ -282,7 +282,7 @@ pub enum Limiter {
     Unlimited = 4,
     /// First order.
     FirstOrder = 5,
-    /// Of third order for each wave that goes along an axis, as Arora and Roe bound it.
+    /// Sound by its waves, as far as the Courant number of each allows (Arora and Roe); the rest as by the usual one.
     AroraRoe = 6,
 }
 

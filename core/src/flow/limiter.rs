@@ -10,7 +10,8 @@ use crate::number::real::Real;
 #[non_exhaustive]
 pub enum Limiter {
     /// That of Arora and Roe for sound, each wave by itself: of third order in space and time where one goes along an axis, bounded by what its
-    /// Courant number allows, so that the peaks of blasts are less clipped. What goes with the gas is as by [`Limiter::Steep`].
+    /// Courant number allows, so that the peaks of blasts are less clipped. What goes with the gas, and cells beside walls and jumps, are as
+    /// by [`Limiter::Steep`].
     AroraRoe,
     /// Monotonised central for pressure and velocity; of the density only the part that goes with the pressure, the rest, the
     /// entropy wave, gets a slope that keeps contacts within a few cells. A barotropic gas has no contacts: there it is the
@@ -38,12 +39,6 @@ pub(crate) trait Slope {
 
     /// The limiter takes the density apart into the share of the sound waves and the entropy wave.
     const SPLIT: bool = false;
-
-    /// Slopes of pressure and velocity are those of sound waves: [`SoundWave`].
-    const BY_WAVES: bool = false;
-
-    /// The limiter of what goes with the gas, and of cells beside walls and jumps.
-    type Rest: Slope;
 
     /// The slope of the entropy wave.
     #[inline(always)]
@@ -116,7 +111,6 @@ impl<R: Real> SoundWave<R> {
     }
 }
 
-pub(crate) struct AroraRoe;
 pub(crate) struct Steep;
 pub(crate) struct MonotonizedCentral;
 pub(crate) struct VanLeer;
@@ -133,8 +127,6 @@ fn same_sign<R: Real>(a: R, b: R) -> bool {
 const STEEPENING: f64 = 4.0;
 
 impl Slope for Steep {
-    type Rest = Self;
-
     const SPLIT: bool = true;
 
     #[inline(always)]
@@ -155,19 +147,7 @@ impl Slope for Steep {
     }
 }
 
-impl Slope for AroraRoe {
-    type Rest = Steep;
-    const BY_WAVES: bool = true;
-
-    #[inline(always)]
-    fn slope<R: Real>(a: R, b: R) -> R {
-        Steep::slope(a, b)
-    }
-}
-
 impl Slope for MonotonizedCentral {
-    type Rest = Self;
-
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let central = R::HALF * (a + b);
@@ -178,8 +158,6 @@ impl Slope for MonotonizedCentral {
 }
 
 impl Slope for VanLeer {
-    type Rest = Self;
-
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let sum = a + b;
@@ -189,8 +167,6 @@ impl Slope for VanLeer {
 }
 
 impl Slope for Minmod {
-    type Rest = Self;
-
     #[inline(always)]
     fn slope<R: Real>(a: R, b: R) -> R {
         let size = R::smaller(a.abs(), b.abs());
@@ -200,8 +176,6 @@ impl Slope for Minmod {
 }
 
 impl Slope for Unlimited {
-    type Rest = Self;
-
     const LIMITED: bool = false;
 
     #[inline(always)]

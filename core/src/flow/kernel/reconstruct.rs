@@ -10,7 +10,7 @@ use crate::flow::kernel::slab::{Place, RowAt, Slab};
 use crate::flow::kernel::walls_and_jumps::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
-use crate::flow::limiter::{AroraRoe, Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
+use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
 use crate::flow::porosity::flags::{BORDER, SMALL, any_marked, any_small_or_border, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
 use crate::flow::state::{Gas, sum};
@@ -28,12 +28,12 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
     let contractions = Contractions::new(slab, work.contractions);
     coefficients(slab, (row, place), contractions, &mut work.coefficients);
     match slab.problem.scheme.limiter {
-        Limiter::AroraRoe => slopes::<R, D, AroraRoe, MIXED>(slab, row, place, work),
-        Limiter::Steep => slopes::<R, D, Steep, MIXED>(slab, row, place, work),
-        Limiter::MonotonizedCentral => slopes::<R, D, MonotonizedCentral, MIXED>(slab, row, place, work),
-        Limiter::VanLeer => slopes::<R, D, VanLeer, MIXED>(slab, row, place, work),
-        Limiter::Minmod => slopes::<R, D, Minmod, MIXED>(slab, row, place, work),
-        Limiter::Unlimited => slopes::<R, D, Unlimited, MIXED>(slab, row, place, work),
+        Limiter::AroraRoe => slopes::<R, D, Steep, MIXED, true>(slab, row, place, work),
+        Limiter::Steep => slopes::<R, D, Steep, MIXED, false>(slab, row, place, work),
+        Limiter::MonotonizedCentral => slopes::<R, D, MonotonizedCentral, MIXED, false>(slab, row, place, work),
+        Limiter::VanLeer => slopes::<R, D, VanLeer, MIXED, false>(slab, row, place, work),
+        Limiter::Minmod => slopes::<R, D, Minmod, MIXED, false>(slab, row, place, work),
+        Limiter::Unlimited => slopes::<R, D, Unlimited, MIXED, false>(slab, row, place, work),
         Limiter::FirstOrder => work.slope.iter_mut().for_each(|s| s.fill(R::ZERO)),
     }
     let n = slab.size.n;
@@ -58,8 +58,8 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
     }
 }
 
-/// Slopes of a row along all axes.
-fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
+/// Slopes of a row along all axes; those of sound `BY_WAVES`, or each variable by itself.
+fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: bool>(
     slab: &Slab<'_, R, D>,
     row: RowAt<D>,
     (l, j): Place,
@@ -67,7 +67,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
 ) {
     let (n, padded) = (slab.size.n, slab.size.padded);
     let here = &work.window[slab.block(l, j)];
-    let split = S::BY_WAVES || (S::SPLIT && slab.problem.gas.has_energy());
+    let split = BY_WAVES || (S::SPLIT && slab.problem.gas.has_energy());
     if split {
         let inner = |v: usize| &var(here, v, padded)[1..][..n];
         let (rho, p, out) = (inner(0), inner(D + 1), &mut work.coefficients.compliance[..n]);
@@ -79,8 +79,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
             rows::compliances(rho, p, |_| gamma, out);
         }
     }
-    let of_row = &work.coefficients;
-    let compliance = if split { Some(&*of_row.compliance) } else { None };
+    let of_row = (&work.coefficients, split.then_some(&*work.coefficients.compliance));
     for d in 0..D {
         // The three values along axis d: shifted in the row, the rows beside it, or the layers beside it.
         let (below, above, shift) = if d == 0 {
@@ -90,25 +89,25 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool>(
         } else {
             (&work.window[slab.block(l, j - 1)], &work.window[slab.block(l, j + 1)], 0)
         };
-        let cells = RowBeside { below, here, above, shift, n, padded };
         let at_breaks = (Contractions::new(slab, work.contractions), (l, j));
+        let cells = (&RowBeside { below, here, above, shift, n, padded }, at_breaks);
         let widths = slab.problem.mesh.widths[d];
         let gravity = slab.problem.gravity[d];
         let out = &mut *work.slope[d];
         if gravity == R::ZERO && slab.even[d] {
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &Even, (of_row, compliance), out);
+            slopes_along::<R, D, S, MIXED, BY_WAVES>(slab, (d, row), cells, &Even, of_row, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let copied = slab.problem.boundaries[d].map(|b| b.copies_inside());
             let half_gravity = R::HALF * gravity;
             let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
-            slopes_along::<R, D, S, MIXED>(slab, (d, row), (&cells, at_breaks), &axis, (of_row, compliance), out);
+            slopes_along::<R, D, S, MIXED, BY_WAVES>(slab, (d, row), cells, &axis, of_row, out);
         }
     }
 }
 
 /// Slopes of a row along one axis, breaks included.
-fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
+fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: bool>(
     slab: &Slab<'_, R, D>,
     (d, row): (usize, RowAt<D>),
     (cells, at_breaks): (&RowBeside<'_, R>, (Contractions<'_, R>, Place)),
@@ -117,19 +116,19 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool>(
     out: &mut [R],
 ) {
     let values = |v| cells.values(v);
-    if S::BY_WAVES {
-        let coefficients = (compliance.unwrap_or_default(), &*of_row.rate[d]);
-        rows::slopes_by_waves::<R, S::Rest, D>(d, values, axis, coefficients, out, cells.n);
+    if BY_WAVES {
+        let coefficients = (&*of_row.compliance, &*of_row.rate[d]);
+        rows::slopes_by_waves::<R, S, D>(d, values, axis, coefficients, out, cells.n);
     } else {
         rows::slopes::<R, S, D>(values, axis, compliance, out, cells.n);
     }
     if MIXED {
-        mixed::slopes::<R, S::Rest>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);
+        mixed::slopes::<R, S>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);
     }
     slopes_at_boundaries(slab, d, row, cells.values(1 + d), axis, out);
     if slab.medium.is_some() {
         flatten_beside_closed_faces::<R, D, MIXED>(slab, d, row, out);
-        let one = CellSlopes { axis, compliance, limit: limited::<R, S::Rest, D> };
+        let one = CellSlopes { axis, compliance, limit: limited::<R, S, D> };
         slopes_at_breaks::<R, D, MIXED>(slab, (d, row), (cells, at_breaks), &one, out);
     }
 }

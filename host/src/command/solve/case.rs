@@ -398,7 +398,7 @@ pub enum LimiterName {
     Steep,
     /// Monotonised central.
     Mc,
-    /// Of third order for each wave, as Arora and Roe bound it.
+    /// Sound by its waves, after Arora and Roe; the rest as steep.
     AroraRoe,
     /// Van Leer.
     VanLeer,
