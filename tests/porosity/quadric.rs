@@ -116,6 +116,13 @@ fn a_huge_capsule_that_cuts_a_face_flat() {
     assert!((found - 0.316992130062978).abs() < 1e-11, "{found}");
 }
 
+/// Lines through a face near the outermost point of an ellipsoid of 4500 cells: the area was off by 1.5e-10, as a quadrature in 50
+/// digits says.
+#[test]
+fn a_face_near_the_outermost_point_of_a_huge_ellipsoid() {
+    agrees(Family::Huge, 11_626_795_322_963_022_375).expect("right areas");
+}
+
 /// Cylinder and half ball meet in the grid, which the capsule holds: their shares of each cell and face are 1 together. By the angle that the half ball
 /// takes up at its centre, cells were off by as much as 10⁻⁴.
 #[test]

@@ -114,7 +114,7 @@ impl Curved {
                 let square = difference_of_squares(*radius, far) - near.value * near.value;
                 symmetric(0.0, square, 1.0)
             }
-            Wall::Ellipsoid(map) => map.span(m, q.map(|q| q.value)),
+            Wall::Ellipsoid(map) => map.span(m, q),
         }
     }
 
@@ -417,19 +417,17 @@ impl UnitMap {
         Axis::ALL.map(|r| self.columns[0][r] * p[0] + self.columns[1][r] * p[1] + self.columns[2][r] * p[2])
     }
 
+    /// As the plane across it in which the line lies farther out has it: near the outermost point that conic is small, and known to the last digits.
     #[inline]
-    fn span(&self, m: Axis, q: P2) -> Span {
+    fn span(&self, m: Axis, q: [Twofold; 2]) -> Span {
         let [u, v] = m.others();
-        let direction = self.columns[m];
-        let at = Axis::ALL.map(|r| self.columns[u][r] * q[0] + self.columns[v][r] * q[1]);
-        let leading = self.form[m][m];
-        let half = direction[0] * at[0] + direction[1] * at[1] + direction[2] * at[2];
-        let aside = Axis::ALL.map(|r| {
-            let [s, t] = r.others();
-            direction[s] * at[t] - direction[t] * at[s]
-        });
-        let aside = Real::sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);
-        let length = Real::sqrt(leading);
-        symmetric(-half / leading, (length - aside) * (length + aside), leading)
+        let first = q[0].value.abs() * self.reach[v] >= q[1].value.abs() * self.reach[u];
+        let (n, out, far, near) = if first { (u, v, q[0], q[1]) } else { (v, u, q[1], q[0]) };
+        let (reach, center, leading) = (self.reach[n], &self.outermost[n], self.form[m][m]);
+        let beside = near.value - center[out] * far.value;
+        let share = difference_of_squares(reach, far) / (reach * reach);
+        let aside = beside * (reach / self.scale);
+        let foot = center[m] * far.value - self.form[m][out] / leading * beside;
+        symmetric(foot, leading * share - aside * aside, leading)
     }
 }
