@@ -6,6 +6,8 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
+use voidage::command::solve::checkpoint::{gas_numbers, scheme_numbers, side_numbers};
+use voidage::voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Riemann, Scheme};
 
 /// Everything at once: inlet, porosity with jumps and small cells, drag, gravity, frames, probes.
 fn wind(time: &str, output: &str) -> String {
@@ -407,4 +409,31 @@ fn a_run_stands_alone_in_its_directory() {
     let log = fs::read_to_string(at.file("out/log.csv")).expect("a log");
     let steps: Vec<&str> = log.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
     assert_eq!(steps, ["0", "3", "6", "7"]);
+}
+
+/// A number that changed would make every checkpoint that exists one of another case.
+#[test]
+fn kinds_keep_their_numbers() {
+    assert_eq!(gas_numbers(&Gas::Ideal { gamma: 1.4 }), [0.0, 1.4]);
+    assert_eq!(gas_numbers(&Gas::Mixed { gammas: [1.25, 1.4] }), [3.0, 1.25, 1.4]);
+    assert_eq!(gas_numbers(&Gas::Isothermal { sound_speed: 340.0 }), [1.0, 340.0]);
+    assert_eq!(gas_numbers(&Gas::Isentropic { gamma: 1.4, density: 1.2, pressure: 1e5 }), [2.0, 1.4, 1.2, 1e5]);
+    let w = Primitive { density: 1.0, velocity: [2.0, 3.0], pressure: 4.0 };
+    let sides = [
+        Boundary::Periodic,
+        Boundary::Wall,
+        Boundary::ZeroGradient,
+        Boundary::FarField(w),
+        Boundary::Inlet(w),
+        Boundary::Outlet { pressure: 1.0 },
+        Boundary::Reservoir { density: 1.0, pressure: 2.0 },
+    ];
+    for (kind, side) in sides.iter().enumerate() {
+        assert_eq!(side_numbers(side)[0], kind as f64, "{side:?}");
+    }
+    assert_eq!(side_numbers(&sides[3])[1..], [1.0, 2.0, 3.0, 4.0]);
+    let scheme = Scheme { riemann: Riemann::Rusanov, limiter: Limiter::Minmod, pressure: PressureForm::Paper };
+    assert_eq!(scheme_numbers(&scheme), [2.0, 4.0, 1.0]);
+    let usual = Scheme { riemann: Riemann::Hllc, limiter: Limiter::FirstOrder, pressure: PressureForm::Geometric };
+    assert_eq!(scheme_numbers(&usual), [0.0; 3]);
 }
