@@ -6,6 +6,7 @@ pub mod convex;
 pub mod corpus;
 pub mod dirty;
 pub mod door;
+pub mod effort;
 pub mod euler;
 pub mod fields;
 pub mod fuzzed;

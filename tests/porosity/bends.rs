@@ -10,6 +10,7 @@ use voidage::porosity::shadows::{cells, faces_of_cell};
 use voidage::porosity::{Options, Porosity, porosity, throat};
 use voidage_core::convex::shape::{Cone, Cylinder};
 use voidage_core::solids::torus::TorusShape;
+use voidage_tests::effort::some;
 use voidage_tests::fields::assert_close;
 use voidage_tests::solids::formulas;
 
@@ -58,7 +59,7 @@ fn met(bend: &TorusShape<DVec3>, lo: DVec3, hi: DVec3, axis: usize) -> f64 {
 
 #[test]
 fn shadows_and_throats_of_bends_agree_with_lines() {
-    for bend in bends() {
+    for bend in some(&bends()) {
         let axis = even(-0.97, 0.4, 5);
         let edges = Edges([axis.clone(), axis.clone(), axis]);
         let grid = edges.grid(None).expect("a grid");
@@ -98,7 +99,7 @@ fn shadows_and_throats_of_bends_agree_with_lines() {
 /// The shadow of a cell is the mean of those of its parts across the axis.
 #[test]
 fn shadows_of_bends_are_the_means_of_their_parts() {
-    for bend in bends() {
+    for bend in some(&bends()) {
         let (coarse, fine) = (even(-0.97, 0.4, 5), even(-0.97, 0.2, 10));
         let (_, whole) = found(&Edges([coarse.clone(), coarse.clone(), coarse.clone()]), &[Form::Torus(bend)]);
         for axis in 0..3 {

@@ -11,6 +11,7 @@ use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::solids::torus::{TorusShape, TorusSolid};
+use voidage_tests::effort::cases;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{cuboid, formulas, scene};
 
@@ -163,7 +164,7 @@ fn volume_about_axis(shape: &TorusShape<DVec3>, lo: DVec3, hi: DVec3, steps: usi
 #[test]
 fn cells_agree_with_quadrature_about_the_axis() {
     let random = &mut Random::new(4);
-    for round in 0..10 {
+    for round in 0..cases(10) {
         let shape = some(random);
         let solid = TorusSolid::new(&shape).expect("a torus of ordinary size");
         let edges = even(7);

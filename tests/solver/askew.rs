@@ -2,6 +2,7 @@
 
 use voidage::flow::{Flow, Scalar, Treatment};
 use voidage_core::flow::{Boundary, Gas, Primitive};
+use voidage_tests::effort::some;
 use voidage_tests::euler::property::{Source, bits};
 use voidage_tests::euler::space::{OpenFractions, between_edges, disc, half_space, layer, open_fractions};
 
@@ -301,7 +302,7 @@ fn a_porous_body_askew_to_the_grid_costs_little_total_pressure() {
 fn a_porous_layer_askew_across_a_channel_costs_little_total_pressure() {
     let (n, width) = CHANNEL;
     let all = [(0.8, 42.0, 0.015), (0.8, 60.0, 0.01), (0.8, 75.0, 0.01), (0.5, 42.0, 0.08), (0.5, 75.0, 0.03)];
-    for (porosity, degrees, most) in all {
+    for (porosity, degrees, most) in some(&all) {
         let (sin, cos) = f64::to_radians(degrees).sin_cos();
         let middle = sin * 1.013 - cos * 0.507;
         let across = [middle - 0.15, middle + 0.15];

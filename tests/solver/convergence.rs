@@ -2,6 +2,7 @@
 
 use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive};
+use voidage_tests::effort::some;
 use voidage_tests::euler::property::Source;
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
@@ -112,7 +113,7 @@ fn slab<const D: usize>(axis: usize, mach: f64) {
 
 #[test]
 fn slabs_lose_no_total_pressure_at_any_mach_number() {
-    for mach in [0.3, 0.1, 0.03, 0.003] {
+    for mach in some(&[0.3, 0.1, 0.03, 0.003]) {
         slab::<1>(0, mach);
     }
     slab::<2>(1, 0.03);

@@ -2,6 +2,7 @@
 
 use voidage::flow::Flow;
 use voidage_core::flow::{Boundary, Gas, Limiter, Primitive, Riemann};
+use voidage_tests::effort::some;
 use voidage_tests::euler::{Riemann as ExactRiemann, State, average_density};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
@@ -74,7 +75,7 @@ const MC: Limiter = Limiter::MonotonizedCentral;
 
 #[test]
 fn a_slow_vortex_keeps_its_energy_at_any_mach_number() {
-    for (mach, odd_even) in [(0.3, 2e-3), (0.03, 5e-3), (0.01, 2.5e-2)] {
+    for (mach, odd_even) in some(&[(0.03, 5e-3), (0.3, 2e-3), (0.01, 2.5e-2)]) {
         let still = Gresho { mach, stream: 0.0 };
         let soft = vortex(still, [40; 2], (Riemann::HllcLowMach, MC, 0.8), 1.0);
         assert!(soft.energy >= 0.94 && soft.energy < 1.0, "Mach {mach}: {soft:?}");
@@ -89,7 +90,7 @@ fn a_slow_vortex_keeps_its_energy_however_it_is_computed() {
     let still = Gresho { mach: 0.05, stream: 0.0 };
     let usual = (Riemann::HllcLowMach, MC, 0.8);
     // Other limiters, steps, streams, cells.
-    for (v, cells, by, turns, least) in [
+    let all = [
         (still, [40, 40], (Riemann::HllcLowMach, Limiter::Steep, 0.8), 1.0, 0.9),
         (still, [40, 40], (Riemann::HllcLowMach, Limiter::AroraRoe, 0.8), 1.0, 0.9),
         (still, [40, 40], (Riemann::HllcLowMach, Limiter::VanLeer, 0.8), 1.0, 0.9),
@@ -100,7 +101,8 @@ fn a_slow_vortex_keeps_its_energy_however_it_is_computed() {
         (still, [40, 160], usual, 1.0, 0.9),
         (Gresho { stream: 1.0, ..still }, [40, 40], usual, 1.0, 0.88),
         (Gresho { stream: -3.0, ..still }, [40, 40], usual, 1.0, 0.8),
-    ] {
+    ];
+    for (v, cells, by, turns, least) in some(&all) {
         let left = vortex(v, cells, by, turns);
         assert!(left.energy > least && left.energy < 1.0, "{cells:?} {by:?} {turns} {}: {left:?}", v.stream);
         assert!(left.odd_even_velocity < 1e-2, "{cells:?} {by:?} {turns} {}: {left:?}", v.stream);

@@ -3,6 +3,7 @@
 use crate::inclined::{GAMMA, stream};
 use voidage::flow::Flow;
 use voidage_core::flow::{Boundary, Gas, Primitive, Riemann};
+use voidage_tests::effort::some;
 use voidage_tests::euler::property::Source;
 
 /// The states before and behind a normal shock of a Mach number along an axis, in a frame in which it moves at `drift`.
@@ -42,7 +43,7 @@ fn motion_along_a_shock<const D: usize>(n: [usize; D], mach: f64, drift: f64, ri
 #[test]
 fn a_shock_along_the_grid_stays_plane() {
     let motion = |riemann, drift, most: f64| {
-        for mach in [3.0, 6.0, 10.0, 20.0] {
+        for mach in some(&[3.0, 6.0, 10.0, 20.0]) {
             let plane = motion_along_a_shock([20, 60], mach, drift, riemann, 1500);
             println!("Mach {mach}, {riemann:?}, drift {drift}: {plane:.1e}");
             assert!(plane < most, "Mach {mach}, {riemann:?}, drift {drift}: {plane}");
@@ -51,7 +52,7 @@ fn a_shock_along_the_grid_stays_plane() {
         println!("in space, {riemann:?}, drift {drift}: {space:.1e}");
         assert!(space < most, "{riemann:?} in space, drift {drift}: {space}");
     };
-    for riemann in [Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle] {
+    for riemann in some(&[Riemann::Hllc, Riemann::HllcLowMach, Riemann::Hlle]) {
         motion(riemann, 0.0, 1e-4);
         motion(riemann, 0.05, 1e-4);
         // Of a shock that moves upstream more is left: 1.2e-4 at Mach 20.

@@ -5,6 +5,7 @@ use voidage::flow::{Flow, Treatment};
 use voidage_core::flow::porosity::throat::ThroatGas;
 use voidage_core::flow::{Boundary, Gas, Primitive};
 use voidage_core::number::real::Real;
+use voidage_tests::effort::some;
 
 /// Total enthalpy; of an isothermal gas the Bernoulli sum in its place.
 fn enthalpy(gas: Gas<f64>, w: &Primitive<f64, 1>) -> f64 {
@@ -194,7 +195,7 @@ fn slug_through_a_layer(open_share: f64, density: f64, mach: f64) -> f64 {
 fn gas_of_another_density_passes_a_layer_without_noise() {
     for open in [0.5, 0.2] {
         for density in [0.1, 0.5, 4.0] {
-            for mach in [0.002, 0.01, 0.03] {
+            for mach in some(&[0.002, 0.01, 0.03]) {
                 let found = slug_through_a_layer(open, density, mach);
                 let bernoulli = (1.0 / (open * open) - 1.0) * f64::max(density, 1.0);
                 println!(
