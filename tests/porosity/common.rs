@@ -169,6 +169,61 @@ fn pairs_of_pipes_to_nine_digits() {
     assert!(met * 3 > cases(300), "{met} pairs met");
 }
 
+/// A pipe along an axis about the unit cube, often flush with places where others are, or of the same radius.
+fn pipe_along(axis: usize, random: &mut Random) -> Exact {
+    let mut place = || if random.below(2) == 0 { 0.25 * random.below(5) as f64 } else { random.between(-0.1, 1.1) };
+    let middle = DVec3::new(place(), place(), place());
+    let mut far = || [0.25, 0.5, 3.0, random.between(0.05, 0.9)][random.below(4)];
+    let (back, ahead) = (far(), far());
+    let radius = [0.125, 0.25, 0.5, random.between(0.02, 0.7)][random.below(4)];
+    let along = DVec3::AXES[axis];
+    Exact::Cylinder(middle - along * back, middle + along * ahead, radius)
+}
+
+/// Pipes along axes of the grid go another way than others: turned by next to nothing they have the same in common. So say chords of faces.
+#[test]
+fn pipes_along_axes_to_nine_digits() {
+    let random = &mut Random::new(12);
+    let (mut met, mut touched) = (0, 0);
+    for case in 0..cases(400) {
+        let first = random.below(3);
+        let others = [(first + 1 + random.below(2)) % 3, random.below(3)];
+        let exact = [first, others[0], others[1]].map(|axis| pipe_along(axis, random));
+        let pair = &exact[..2];
+        let pipes: Vec<QuadricSolid> = pair.iter().map(quadric).collect();
+        let turned = pair.iter().map(|solid| {
+            let Exact::Cylinder(from, to, radius) = *solid else { unreachable!("pipes") };
+            quadric(&Exact::Cylinder(from, to + DVec3::new(1e-14, 1e-14, -1e-14) * (to - from).length(), radius))
+        });
+        let unit = [0.0, 1.0];
+        let [low, high] = excess(&pipes, [unit; 3], 1e-9).expect("two solids");
+        let [least, most] = excess(&turned.collect::<Vec<_>>(), [unit; 3], 1e-9).expect("two solids");
+        assert!(high - low <= 1e-9, "case {case}: {low} to {high} of {pair:?}");
+        let same = low <= most + 1e-12 && least <= high + 1e-12;
+        assert!(same, "case {case}: {low} to {high}, turned {least} to {most} of {pair:?}");
+        met += usize::from(low > 0.0);
+        if case % 16 == 0 {
+            let truth = common_volume(pair, [DVec3::ZERO, DVec3::ONE], 1e-7);
+            assert!((truth - low).abs() <= 1e-6, "case {case}: {low} to {high} instead of {truth} of {pair:?}");
+        }
+        // Two, and three of which two may run along each other.
+        for some in [pair, &exact[..]] {
+            let all: Vec<QuadricSolid> = some.iter().map(quadric).collect();
+            let (n, at) = (random.below(3), random.between(0.01, 0.99));
+            let mut face = [unit; 3];
+            face[n] = [at; 2];
+            let [low, high] = excess(&all, face, 1e-13).expect("few solids");
+            let area = |set: &[Exact]| common_area(set, n, at, [unit; 2], 1e-14);
+            let truth = by_sets(some, area);
+            assert!(high - low <= 1e-11, "case {case}: face {n} at {at}: {low} to {high} of {some:?}");
+            let holds = low - 2e-12 <= truth && truth <= high + 2e-12;
+            assert!(holds, "case {case}: face {n} at {at}: {low} to {high} instead of {truth} of {some:?}");
+            touched += usize::from(low > 0.0);
+        }
+    }
+    assert!(met * 4 > cases(400) && touched * 4 > cases(400), "{met} pairs met, {touched} faces shared");
+}
+
 /// Any three pipes: bounds are as close as asked for, those of the parts of a cell hold what those of the whole do, and so do those of cones that are all
 /// but these pipes, of which sections tell.
 #[test]

@@ -33,7 +33,7 @@
 //! 7. `tangent`: planes between which a part lies in a box
 //! 8. `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
 //!    `polygon`, `moving`, `panels`: polygons in planes that rise, and the volumes that they pass through; `third`: what an ellipse leaves of them; `sample`: what planes tell of a body; `crossing`: what
-//!    two or three pipes have in common of a box, by planes along two axes; `shared`: what several solids share of a cell or face
+//!    two or three pipes have in common of a box, by planes along two axes; `upright`: two pipes along axes of the grid; `shared`: what several solids share of a cell or face
 
 mod aligned;
 mod arc;
@@ -57,6 +57,7 @@ mod spread;
 mod tangent;
 mod third;
 mod twofold;
+mod upright;
 mod wall;
 mod window;
 

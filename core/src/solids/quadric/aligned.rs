@@ -74,8 +74,7 @@ impl<'a> AlignedPipe<'a> {
         let from_origin = |axis: Axis, at: usize| {
             difference(edges[axis].get(at).map_or(f64::NAN, |e| e.to_f64()), self.part.origin[axis])
         };
-        let u_line = |at: Twofold| self.part.curved.span(u, [at, self.section.h]);
-        let v_line = |at: Twofold| self.part.curved.span(v, [self.section.h, at]);
+        let [u_line, v_line] = [u, v].map(|m| move |at: Twofold| self.line(m, at));
         let mut at = [0; 3];
         let mut high = from_origin(v, cells[v].start);
         let mut upper = u_line(high);
@@ -122,6 +121,21 @@ impl<'a> AlignedPipe<'a> {
         // The nearer line holds more.
         let (near, origin) = (if low.value > 0.0 { lower } else { upper }, self.part.origin[u]);
         [origin + near.lo, origin + near.hi]
+    }
+
+    /// What a line along an axis across it has inside.
+    fn line(&self, m: Axis, at: Twofold) -> Span {
+        let h = self.section.h;
+        self.part.curved.span(m, if m == self.along.others()[0] { [at, h] } else { [h, at] })
+    }
+
+    /// The area that it has of a rectangle across it, by its sides from the origin of the part.
+    pub fn area(&self, [x, y]: [P2; 2]) -> f64 {
+        let [u, v] = self.along.others();
+        let [x, y] = [x, y].map(|side| side.map(|value| Twofold { value, rest: 0.0 }));
+        let lines = [y.map(|at| self.line(u, at)), x.map(|at| self.line(v, at))];
+        let [long, wide] = [x, y].map(|[low, high]| high.value - low.value);
+        self.section([x, y], lines).area * (long * wide)
     }
 
     fn section(&self, [u, v]: [[Twofold; 2]; 2], [u_lines, v_lines]: [[Span; 2]; 2]) -> Section {

@@ -50,20 +50,20 @@ const LEAST: f64 = 1.0 / 64.0;
 const NEARLY: f64 = 16.0;
 
 /// Integrals may be off by this share of what is enough.
-const INTEGRALS: f64 = 1.0 / 32.0;
+pub(super) const INTEGRALS: f64 = 1.0 / 32.0;
 
 /// Most steps of Newton's method at one of the ends, and how far from it they begin, as a share of the heights.
 const MOST_STEPS: usize = 8;
 const NEAR_END: f64 = 1.0 / 32.0;
 
 /// Rounding of lengths, as a share of the lengths that they are computed from.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Sides of polygons are off by so many times as much as the lines that they lie on.
-const ROUNDED_SIDES: f64 = 64.0;
+pub(super) const ROUNDED_SIDES: f64 = 64.0;
 
 /// Areas of polygons whose sides are upright to each other are off as if their lines were off by so many times as much as they are.
-const ROUNDED_AREA: f64 = 8.0;
+pub(super) const ROUNDED_AREA: f64 = 8.0;
 
 /// A sample that waits to be reached; and whether the volume between it and the one before is counted.
 struct Reached {

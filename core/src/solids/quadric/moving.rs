@@ -41,6 +41,12 @@ pub(super) struct Area {
     pub speed: f64,
 }
 
+/// The length of a side of a rectangle: a constant, and a multiple of half the width of a strip.
+pub(super) struct Side {
+    pub constant: f64,
+    pub multiple: f64,
+}
+
 fn difference(a: &Sum, b: &Sum) -> Sum {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
 }
@@ -158,6 +164,14 @@ impl Proof {
 }
 
 impl Moving {
+    /// A rectangle between two heights, its sides by both strips.
+    pub fn rectangle(between: P2, [a, b]: &[Side; 2]) -> Self {
+        let mut area = [[0.0; 4]; 4];
+        area[0] = [a.constant * b.constant, 0.0, a.multiple * b.constant, a.constant * b.multiple];
+        area[2][3] = a.multiple * b.multiple;
+        Moving { between, height: 0.0, half: [0.0; 2], sine: 1.0, area, speed: [0.0; 3] }
+    }
+
     /// The polygon at a plane within a range, as far as it is certain to have the same sides; none if sides meet at a small sine, or nothing is
     /// certain.
     pub fn new(known: &Known, range: &Range) -> Option<Self> {

@@ -4,13 +4,15 @@
 //! areas. The square root of the area in which planes cut a convex body is a concave function of the height (Brunn and Minkowski); so chords
 //! between slices are lower bounds and the chords' extensions upper ones, and slices are added where these are apart.
 //!
-//! Pipes along one axis of the grid have the same slice everywhere; two others are looked at by planes along both of them ([`super::crossing`]).
+//! Pipes along one axis of the grid have the same slice everywhere; two others are looked at by planes along both of them ([`super::crossing`]; along
+//! two axes of the grid, [`super::upright`]).
 
 use super::concave::{crossing, lowest, squares};
 use super::crossing::Crossing;
 use super::part::Part;
 use super::slice::{MOST_PARTS, Slice, Window};
 use super::solid::QuadricSolid;
+use super::upright;
 use super::wall::Wall;
 use crate::grid::bounds::Bounds;
 use crate::number::axis::Axis;
@@ -211,16 +213,17 @@ fn common<'a, const N: usize>(
         if all <= 0.25 * enough {
             return [0.0, all];
         }
+        let of_upright = || upright::volume(parts.clone(), extent, enough);
         let of_pipes = || Crossing::volume(parts.clone(), extent, enough);
-        let found = prism::<N>(parts.clone(), extent, enough).or_else(of_pipes);
+        let found = prism::<N>(parts.clone(), extent, enough).or_else(of_upright).or_else(of_pipes);
         return match found {
             Some([low, high]) if high - low <= enough => [low, high],
             Some(found) => narrower(found, volume::<N>(parts, extent, enough)),
             None => volume::<N>(parts, extent, enough),
         };
     };
-    let window = window(extent, n, enough);
-    Slice::<N>::new(parts, window, coordinate).common().area
+    upright::area(parts.clone(), extent, (n, coordinate))
+        .unwrap_or_else(|| Slice::<N>::new(parts, window(extent, n, enough), coordinate).common().area)
 }
 
 /// What two bounds of a number leave of it; the closer ones where they contradict each other by rounding.
