@@ -49,12 +49,25 @@ pub const HIDDEN: f64 = 0.95;
 /// How far the outline of facets may be from that of a curved solid, as a share of the narrowest cell. A shadow in a cell may have two such outlines.
 const FACETS_MISS: f64 = 2.5e-4;
 
+/// Of cells narrower than this share of the usual ones no notice is taken: one thin layer would have all solids made of thousands of facets, everywhere.
+const THIN: f64 = 0.25;
+
 /// A cell hides something if along one axis it blocks this share of its section beyond what its faces show.
 const LEAST_HIDDEN: f64 = 0.02;
 
 /// How far the outline of facets may be from that of a curved solid on a grid, if so many facets may be.
 pub(super) fn facets_miss(grid: &Grid<f64>) -> f64 {
-    FACETS_MISS * narrowest(grid)
+    FACETS_MISS * narrowest(grid).max(THIN * usual_width(grid))
+}
+
+/// Of the middle ones of the widths along each axis the smallest.
+fn usual_width(grid: &Grid<f64>) -> f64 {
+    let middle = |axis: usize| {
+        let mut widths: Vec<f64> = grid.edges(axis).windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let half = widths.len() / 2;
+        *widths.select_nth_unstable_by(half, f64::total_cmp).1
+    };
+    middle(0).min(middle(1)).min(middle(2))
 }
 
 /// Width of the narrowest cell along any axis.
