@@ -88,6 +88,19 @@ fn few_cells_in_a_region_are_told() {
         "regions[0]    4.0 cells from its middle to its side: few for a blast, whose peaks come out too low; --refine-check tells by how much"
     );
     assert_eq!(line(40), "regions[0]    8.0 cells from its middle to its side");
+    // Along an axis from side to side of the grid it has no sides of its own; beyond the grid it has no cells.
+    let told = |region: &str, name: &str| {
+        let case = case(40)
+            .replace("center = [0.5, 0.5], radius = 0.2", region)
+            .replace("y = { points = [0, 1], cells = [40] }", "y = { points = [0, 1], cells = [4] }");
+        let said = crate::kit::stdout(&solved(&at, &case, name, &[]));
+        said.lines().find(|line| line.starts_with("regions[0]")).map(str::to_owned)
+    };
+    assert_eq!(
+        told("min = [0, 0], max = [0.5, 1]", "across").as_deref(),
+        Some("regions[0]    10.0 cells from its middle to its side")
+    );
+    assert_eq!(told("center = [20, 0.5], radius = 0.3", "beyond"), None);
 }
 
 #[test]

@@ -136,8 +136,9 @@ impl Inspection<'_> {
         if !self.solids.is_empty() {
             progress.say("solids of scenes");
             let row = ["name", "shape", "porosity", "copies", "volume [m³]", "box"].map(str::to_owned);
-            progress.say(line(row));
-            self.solids.iter().for_each(|s| progress.say(line(s.row())));
+            let longest = self.solids.iter().map(|s| s.name.chars().count() + 1).fold(18, usize::max);
+            progress.say(line(longest, row));
+            self.solids.iter().for_each(|s| progress.say(line(longest, s.row())));
         }
         progress.say(format!("body boxes that overlap: {}", counted(self.overlapping_boxes, "pair", "pairs")));
         if let Some(t) = self.thin.first() {
@@ -160,9 +161,9 @@ impl SolidSummary {
     }
 }
 
-/// A row of the table of solids.
-fn line([name, shape, porosity, copies, volume, extent]: [String; 6]) -> String {
-    format!("  {name:<18}{shape:<10} {porosity:>8} {copies:>7} {volume:>16}  {extent}")
+/// A row of the table of solids, with so much room for their names.
+fn line(room: usize, [name, shape, porosity, copies, volume, extent]: [String; 6]) -> String {
+    format!("  {name:<room$}{shape:<10} {porosity:>8} {copies:>7} {volume:>16}  {extent}")
 }
 
 /// A box for people.

@@ -239,9 +239,12 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
         return Err(Error::file(path, "a grid is a table: x, y, z; or origin, spacing, cells"));
     };
     if let Some(entry) = entries.iter().find(|e| e.key == "grid") {
-        let (span, reason) =
-            (entry.span.clone(), "this file holds a [grid] among others: a grid file is the grid alone");
-        return Err(misfit(&source, (span, reason.into())));
+        let reason = if entries.len() == 1 {
+            "this file holds its grid as grid: a grid file is what stands in it, without that name"
+        } else {
+            "this file holds a [grid] among others: a grid file is the grid alone"
+        };
+        return Err(misfit(&source, (entry.span.clone(), reason.into())));
     }
     let is_harmless = |key: &str| source.is_json() && HARMLESS.contains(&key);
     let strange: Vec<Entry> =

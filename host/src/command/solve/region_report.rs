@@ -13,7 +13,8 @@ use serde::Serialize;
 /// How well the grid resolves a region.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct RegionReport {
-    /// Radius, or half the smallest extent of a box, in the widest cells that it meets; none if it is not bounded.
+    /// Half the extent along an axis, in the widest cells that it meets there; the smallest of these. Axes along which it reaches from side to side of the grid
+    /// have no part in it: none if all do, or it holds nothing of any cell.
     pub cells_per_radius: Option<f64>,
     /// Volume of the region within the grid, in m³.
     pub volume: f64,
@@ -41,7 +42,8 @@ pub fn report<const D: usize>(
         let shares = region.shares(edges).map_err(|reason| file.wrong(&key, reason))?;
         let holds = shares.iter().map(|&(cell, share)| (cell, Hold { region: n, share }));
         let [volume, open_volume] = volumes(edges, flow.beta_v(), parts, holds);
-        let report = RegionReport { cells_per_radius: cells_per_radius(&region, edges, &live), volume, open_volume };
+        let cells_per_radius = cells_per_radius(&region, edges, &live).filter(|_| !shares.is_empty());
+        let report = RegionReport { cells_per_radius, volume, open_volume };
         let open = open_volume / volume;
         let trouble = match report.cells_per_radius {
             _ if region.is_outside(edges) => "lies outside the grid: it has no effect".to_owned(),
@@ -74,11 +76,14 @@ fn covers_all(shares: &[(usize, f64)], edges: &Edges) -> bool {
     shares.len() == edges.cells().iter().product::<usize>() && shares.iter().all(|&(_, share)| share == 1.0)
 }
 
-/// Radius of a region, or half its smallest extent, in the widest cells that it meets along the axes `live`.
+/// As [`RegionReport::cells_per_radius`], of the axes `live`.
 fn cells_per_radius(region: &Region, edges: &Edges, live: &[usize]) -> Option<f64> {
     let mut per_radius = f64::INFINITY;
     for &a in live {
-        let [from, to] = region.extent(a);
+        let ([from, to], [lo, hi]) = (region.extent(a), edges.bounds());
+        if from <= lo[a] && hi[a] <= to {
+            continue;
+        }
         let met = edges.0[a].windows(2).filter(|e| e[1] > from && e[0] < to);
         let widest = met.map(|e| e[1] - e[0]).fold(0.0, f64::max);
         per_radius = per_radius.min(0.5 * (to - from) / widest);
