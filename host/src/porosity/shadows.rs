@@ -46,7 +46,8 @@ pub struct HiddenPassages {
 /// Blockage of its section that makes a cell between two open faces a hidden passage.
 pub const HIDDEN: f64 = 0.95;
 
-/// How far the outline of facets may be from that of a curved solid, as a share of the narrowest cell. A shadow in a cell may have two such outlines.
+/// How far the outline of facets may be from that of a curved solid, as a share of the narrowest cell that is not thin. A shadow in a cell may have two such
+/// outlines.
 const FACETS_MISS: f64 = 2.5e-4;
 
 /// Of cells narrower than this share of the usual ones no notice is taken: one thin layer would have all solids made of thousands of facets, everywhere.

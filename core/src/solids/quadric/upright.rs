@@ -1,8 +1,9 @@
 //! What pipes along axes of the grid have in common of a box, or of a rectangle across one of these.
 //!
 //! In a plane across an axis, pipes along it have discs, others rectangles: what one disc and any number of rectangles have in common is a rectangle's share
-//! of a disc. What two pipes along different axes have of a box are such areas, added up. A plane along both has a rectangle of them. Along each axis it is as long as the pipe there and the box are, or as the other pipe's strip is wide. Between
-//! heights at which a strip is as wide as that reaches beside its middle, such a length is a constant and a multiple of half the strip's width; so the
+//! of a disc. What two pipes along different axes have of a box are such areas, added up: a plane along both has a rectangle of them. Along each axis it is
+//! as long as the pipe there and the box are, or as the other pipe's strip is wide. Between heights at which a strip is as wide as that reaches beside
+//! its middle, such a length is a constant and a multiple of half the strip's width; so the
 //! volume is an integral with a proved error ([`super::panels`]).
 //!
 //! Rounding moves each side by no more than the noise, as if the body were that much larger or smaller, which is added to the bounds.
