@@ -241,3 +241,35 @@ fn a_window_is_a_way() {
     let closed = told(&one, &scene(&[a, b]));
     assert_eq!(closed.hidden + closed.plane.cells, 1);
 }
+
+/// Rooms of thin walls along the grid: where two walls meet within a cell, no face makes both of them tight. Wherever gas gets out, that is told; a wall that
+/// crosses a plane of the grid divides no cell beside the corner, and was taken for a way around it.
+#[test]
+fn corners_of_rooms() {
+    let mut random = Random::new(31);
+    let (mut leaky, mut tight) = (0, 0);
+    for thickness in [0.2, 0.5, 0.8, 1.05] {
+        for _ in 0..40 {
+            let (lo, hi) = (
+                random.point(DVec3::splat(1.2), DVec3::splat(2.8)),
+                random.point(DVec3::splat(6.2), DVec3::splat(7.8)),
+            );
+            let walls = [0, 1].into_iter().flat_map(|axis| {
+                [lo[axis] - thickness, hi[axis]].map(|at| {
+                    let (mut low, mut high) = (lo - thickness, hi + thickness);
+                    (low[axis], high[axis]) = (at, at + thickness);
+                    (low.z, high.z) = (-1.0, 2.0);
+                    cuboid(low, high)
+                })
+            });
+            let edges = edges([9, 9, 1]);
+            let grid = edges.grid(None).expect("a grid");
+            let found = told(&edges, &scene(&walls.collect::<Vec<_>>()));
+            let outside = reached(&grid, &found.faces[1], [4, 4, 0], 0.05)[0];
+            assert!(!outside || found.throat.cells > 0, "{thickness}: {lo} {hi}");
+            leaky += usize::from(outside);
+            tight += usize::from(!outside && found.throat.cells == 0);
+        }
+    }
+    assert!(leaky > 20 && tight > 20, "{leaky} {tight}");
+}

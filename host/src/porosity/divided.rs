@@ -109,7 +109,7 @@ impl AllParts {
         if reaching.len() < 2 {
             return false;
         }
-        let ways = self.ways_around(grid, n);
+        let ways = self.ways_around(grid, beta, n);
         reaching.iter().any(|&part| ways[part] != ways[reaching[0]])
     }
 
@@ -129,7 +129,7 @@ impl AllParts {
     }
 
     /// For each part of a cell a number, the same for parts that are one in the block of cells around it.
-    fn ways_around(&self, grid: &Grid<f64>, n: usize) -> Vec<usize> {
+    fn ways_around(&self, grid: &Grid<f64>, beta: &FieldSet, n: usize) -> Vec<usize> {
         let block = around(grid, n);
         let parts = block.map(|cell| self.of(cell?));
         let (mut numbers, mut count) = ([0; 27], 0);
@@ -141,11 +141,12 @@ impl AllParts {
         for (axis, step) in [1, 3, 9].into_iter().enumerate() {
             let before_last = (0..27).filter(|place| place / step % 3 < 2);
             for (here, there) in before_last.map(|place| (place, place + step)) {
-                if block[here].is_none() || block[there].is_none() {
-                    continue;
-                }
+                let (Some(cell), Some(_)) = (block[here], block[there]) else { continue };
                 if parts[here].is_none() && parts[there].is_none() {
-                    sets.join(numbers[here], numbers[there]);
+                    // A wall that crosses the plane between two cells divides neither of them.
+                    if open_side(grid, beta, cell, (axis, 1)) {
+                        sets.join(numbers[here], numbers[there]);
+                    }
                     continue;
                 }
                 for (a, b) in shared(parts[here], parts[there], (axis, 1)) {
