@@ -52,7 +52,7 @@ use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
 use voidage_core::surface::layer::Layers;
 use windows::{batches, windows};
-use worker::{Summary, Target, Workers};
+use worker::{Summary, Target, WantedOfLayer, Workers};
 
 /// Bytes that the fields of a grid take, with the lists of triangles by layer and what one thread needs beside them.
 #[must_use]
@@ -222,8 +222,9 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
     let mut beta = FieldSet::new(grid, options.areas);
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let with_surface = with_surface(scene, &convex);
+    let wanted = if with_surface { WantedOfLayer::FractionsAndSurface } else { WantedOfLayer::Fractions };
     let same = |k: usize| last.filter(|last| !last.may_change(grid, bodies, *level, k));
-    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), with_surface)
+    let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), wanted)
         .into_par_iter()
         .enumerate()
         .map(|(k, mut target)| {

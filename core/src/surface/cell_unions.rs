@@ -17,6 +17,8 @@ use heapless::Vec;
 pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
     /// What is kept of the surface of a union for it.
     type Found: KeptSurface<V::Scalar>;
+    /// Are the solid fractions of the cells asked for, too?
+    fn wants_fractions(&self) -> bool;
     /// Is the surface of the union in a cell of the layer asked for?
     fn wants_union(&self, cell: usize) -> bool;
     /// Told from what is known already: where one body alone has surface inside a cell, of which this share is solid. Was that so?
@@ -36,6 +38,10 @@ pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
 
 impl<V: Vector> UnionSums<V> for () {
     type Found = ();
+    #[inline(always)]
+    fn wants_fractions(&self) -> bool {
+        true
+    }
     #[inline(always)]
     fn wants_union(&self, _: usize) -> bool {
         false
@@ -121,7 +127,8 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             resolved.ambiguous += usize::from(at.cell_gap(layer) > V::Scalar::ZERO);
             let open = at.largest_gap(layer);
             let wanted = P::WANTED && wants_union(at, site, layer, pieces);
-            if !(open > known() || wanted) {
+            let narrows = open > known() && (!P::WANTED || pieces.wants_fractions());
+            if !(narrows || wanted) {
                 continue;
             }
             if row.is_none() {
@@ -132,7 +139,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             let places = if wanted { [true; PLACES] } else { at.open_places(layer) };
             let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, places, believed);
             let mut rest = SpareMemory { reals, flags, numbers: row.rest.0, groups: row.rest.1 };
-            if refined.is_none() && open > shared.tol {
+            if refined.is_none() && narrows && open > shared.tol {
                 resolved.divided += 1;
                 refined = divide(shared, site, cell, rest.reborrow());
             }

@@ -21,6 +21,7 @@ mod weighted_areas;
 pub use error::LayerError;
 pub use memory::{LayerMemory, MemoryNeeded};
 pub use report::{CellKinds, LayerReport};
+pub use shadows::ShadowReport;
 pub use slices::LayerSlices;
 pub use surface_areas::{AreaReport, AreaSlices, CellSides, KnownSurface, LayerReports, OpenLayer};
 
@@ -122,12 +123,16 @@ impl<'a, V: Vector> Layers<'a, V> {
         self.bins.groups(k).len()
     }
 
-    /// Pieces of surface for which [`UnionMemory`](crate::surface::union::UnionMemory) should have room: 16 for each body of triangles in the fullest layer,
-    /// for they may all be in one cell; 1024 to 32 768. With less, more cells are divided.
+    /// Pieces of surface for which [`UnionMemory`](crate::surface::union::UnionMemory) should have room: as many as there are triangles in the fullest layer,
+    /// for they may all be in one cell, up to 64 for each body; 1024 to 32 768. With less, more cells are divided.
     #[must_use]
     pub fn union_pieces(&self) -> usize {
-        let most = (0..self.grid.cells()[2]).map(|k| self.bodies_in(k)).max().unwrap_or(0);
-        most.saturating_mul(16).clamp(1 << 10, 1 << 15).next_power_of_two()
+        let in_layer = |k: usize| {
+            let BinsNeeded { numbers, groups } = self.bins.count(k);
+            numbers.min(groups.saturating_mul(64)).max(groups.saturating_mul(16))
+        };
+        let most = (0..self.grid.cells()[2]).map(in_layer).max().unwrap_or(0);
+        most.clamp(1 << 10, 1 << 15).next_power_of_two()
     }
 
     /// Open fractions of layer `k`: 1 open, 0 blocked, the value between its bounds as the options say. `bounds` are those of the same

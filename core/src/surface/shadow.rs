@@ -3,7 +3,7 @@
 //! A line meets solid if it begins inside a solid or meets a face. So the faces are projected along the axis, and so are the boundaries of the solids'
 //! sections with the low side of the cell, which are those edges of faces that lie in it. A sweep over the edges counts both: between two
 //! neighbouring ends and crossings nothing changes places, so areas are sums of trapezoids, exact to rounding, whatever the solids have in
-//! common. Edges between two faces that look the same way cancel before: what is left are outlines. The sweep is that of J. L. Bentley and
+//! common; where edges cross too often, the widths along many lines give the rest of the area. Edges between two faces that look the same way cancel before: what is left are outlines. The sweep is that of J. L. Bentley and
 //! T. A. Ottmann, *Algorithms for Reporting and Counting Geometric Intersections*, IEEE Transactions on Computers C-28, 1979.
 //!
 //! No sweep is needed where a line enters solid at most once: the shadow is then the section with the low side and the area of all faces that are
@@ -31,7 +31,7 @@ const NO_SECTION: f64 = 1e-12;
 pub struct ShadowMemory<'a, R: Real> {
     /// Edges of faces, a third for each axis: 3 to 5 times as many as faces, and as many again in sides of the cell.
     pub edges: &'a mut [ShadowEdge<R>],
-    /// Places of a table that finds the inner edges of surfaces: half as many. With fewer, shadows take longer.
+    /// Places of a table that finds the inner edges of surfaces: as many. With fewer, shadows take longer, and a cell may hold less.
     pub places: &'a mut [u32],
     /// Which triangles reach which cell of a layer; `Layers::shadow_lists_needed` tells how many are always enough.
     pub lists: &'a mut [u32],
@@ -105,15 +105,15 @@ impl<'m, R: Real> Outlines<'m, R> {
                 self.finish_solid();
                 last = face.solid;
             }
-            let [x, y, z] = &mut self.axes;
+            let Outlines { axes: [x, y, z], places } = self;
             if wanted[0] {
-                x.add::<0>(face)?;
+                x.add::<0>(face, places)?;
             }
             if wanted[1] {
-                y.add::<1>(face)?;
+                y.add::<1>(face, places)?;
             }
             if wanted[2] {
-                z.add::<2>(face)?;
+                z.add::<2>(face, places)?;
             }
         }
         self.finish_solid();
@@ -130,28 +130,34 @@ impl<'m, R: Real> Outlines<'m, R> {
         }
     }
 
-    /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid; none if patience is spent.
+    /// The share of the lines along `axis` (0, 1, otherwise 2) that meet solid, and whether that is exact.
     #[inline(never)]
-    pub fn shadow(&mut self, axis: usize) -> Option<R> {
+    pub fn shadow(&mut self, axis: usize) -> Option<(R, bool)> {
         let outline = self.axes.get_mut(axis.min(2))?;
         let count = cancelled(outline.edges.get_mut(..outline.count)?, self.places);
         let count = joined(outline.edges.get_mut(..count)?);
         let edges = outline.edges.get_mut(..count)?;
-        Sweep { edges, count: 0, next: 0, starting: outline.starting }.shadow()
+        Some(Sweep { edges, count: 0, next: 0, starting: outline.starting }.shadow())
     }
 }
 
 impl<R: Real> Outline<'_, R> {
-    fn push(&mut self, edge: Option<ShadowEdge<R>>) -> Option<()> {
-        if let Some(edge) = edge {
-            *self.edges.get_mut(self.count)? = edge;
-            self.count += 1;
+    /// Keep an edge. Where memory is spent, those that cancel give way, unless they are few.
+    fn push(&mut self, edge: Option<ShadowEdge<R>>, places: &mut [u32]) -> Option<()> {
+        let Some(edge) = edge else { return Some(()) };
+        if self.count >= self.edges.len() {
+            self.count = cancelled(self.edges, places);
+            if self.count > self.edges.len() / 2 {
+                return None;
+            }
         }
+        *self.edges.get_mut(self.count)? = edge;
+        self.count += 1;
         Some(())
     }
 
     /// Add the edges of a face as seen along `AXIS`, which is 0, 1 or 2.
-    fn add<const AXIS: usize>(&mut self, face: &ShadowFace<R>) -> Option<()> {
+    fn add<const AXIS: usize>(&mut self, face: &ShadowFace<R>, places: &mut [u32]) -> Option<()> {
         let (u, v) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
         let normal = face.doubled[AXIS];
         // A face that is entered is seen from behind: beyond an edge that leads upwards it begins.
@@ -163,10 +169,10 @@ impl<R: Real> Outline<'_, R> {
             let in_side = !face.sheet && last[AXIS] == R::ZERO && corner[AXIS] == R::ZERO;
             last = corner;
             if normal != R::ZERO {
-                self.push(ShadowEdge::new(a, b, [covering, 0]))?;
+                self.push(ShadowEdge::new(a, b, [covering, 0]), places)?;
             }
             if in_side {
-                self.add_to_section(a, b)?;
+                self.add_to_section(a, b, places)?;
             }
         }
         Some(())
@@ -174,7 +180,7 @@ impl<R: Real> Outline<'_, R> {
 
     /// Add an edge of the section with the low side, the solid to its left. Where a boundary comes in from `u = 0` or goes out there, the section goes
     /// on along it.
-    fn add_to_section(&mut self, a: [R; 2], b: [R; 2]) -> Option<()> {
+    fn add_to_section(&mut self, a: [R; 2], b: [R; 2], places: &mut [u32]) -> Option<()> {
         if a[0] == R::ZERO && b[0] == R::ZERO {
             return Some(());
         }
@@ -184,7 +190,7 @@ impl<R: Real> Outline<'_, R> {
         };
         for edge in [own, along_side(a, 1), along_side(b, -1)] {
             self.section += edge.as_ref().map_or(R::ZERO, ShadowEdge::starting_area);
-            self.push(edge)?;
+            self.push(edge, places)?;
         }
         Some(())
     }

@@ -396,13 +396,31 @@ pub(super) struct LayerSurface<'a, R> {
     owner: Owner,
     pieces: PieceMemory<'a, R>,
     used: PiecesUsed,
+    /// What else is wanted of the layer.
+    pub beside: Beside,
+}
+
+/// What else than areas is wanted of the cells of a layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Beside {
+    /// Their solid fractions, and those of their sides.
+    Fractions,
+    /// Of cells in the planes of whose sides surface lies, solid fractions of the sides as seen from inside.
+    Sides,
+    /// Nothing.
+    Nothing,
 }
 
 impl<'a, R: Real> LayerSurface<'a, R> {
     /// Of no surface yet; pieces are kept as far as the memory goes. `numbers` and `cells` have room for all cells.
-    pub fn new(numbers: &'a mut [u32], cells: &'a mut [CellSurface<R>], pieces: PieceMemory<'a, R>) -> Self {
+    pub fn new(
+        numbers: &'a mut [u32],
+        cells: &'a mut [CellSurface<R>],
+        pieces: PieceMemory<'a, R>,
+        beside: Beside,
+    ) -> Self {
         let cells = CellsWithSurface::new(numbers, cells);
-        LayerSurface { cells, owner: Owner::default(), pieces, used: PiecesUsed::default() }
+        LayerSurface { cells, owner: Owner::default(), pieces, used: PiecesUsed::default(), beside }
     }
 
     /// How many pieces and corners have been kept.

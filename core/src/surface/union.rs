@@ -12,8 +12,10 @@
 //!
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
+mod apart;
 mod bsp;
 mod descent;
+mod extent;
 mod octree;
 mod piece;
 mod planar;
@@ -23,7 +25,9 @@ use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::number::space::{cross, dot, sub, unit};
 use crate::surface::clip::{Polygon, keep};
+use apart::gather;
 use bsp::{Branch, BspMemory, build_bsp};
+use core::ops::Range;
 use descent::{Descent, DescentRule};
 use octree::{Octree, OctreeSize, octree_room};
 use piece::NoProof::{Ambiguous, Full};
@@ -52,6 +56,9 @@ const MOST_ROUNDING: f64 = 1e-3;
 
 /// Where it asks for more than this there is no proof.
 const TOO_THICK: f64 = 1.0 / 64.0;
+
+/// Pieces of one body in a cell, and the parts that its own planes cut them into, for which room is asked for at most.
+const MOST_OF_ONE: usize = 1 << 14;
 
 /// The diagonal of a side of the cell, in its frame: no section of a piece is longer.
 const LONGEST_EDGE: f64 = 1.5;
@@ -82,7 +89,7 @@ pub struct UnionMemory<'a, R: Real> {
     /// Nodes of all trees.
     pub nodes: &'a mut [Node<R>],
     /// Bodies.
-    pub parts: &'a mut [Part],
+    pub parts: &'a mut [Part<R>],
     /// Fragments under way.
     pub fragments: &'a mut [Fragment<R>],
     /// Branches of a tree still to grow.
@@ -121,15 +128,18 @@ impl<R: Real> UnionMemory<'_, R> {
     #[must_use]
     pub const fn needed(pieces: usize) -> UnionNeeded {
         let fourfold = pieces.saturating_mul(4);
+        // Of one body, or of the parts of one polygon under way.
+        let of_one = if fourfold < MOST_OF_ONE { fourfold } else { MOST_OF_ONE };
+        let at_once = if pieces < of_one { pieces } else { of_one };
         let [octants, near] = octree_room(pieces);
         UnionNeeded {
             pieces,
-            split_pieces: fourfold,
-            order: fourfold,
+            split_pieces: of_one,
+            order: of_one,
             nodes: fourfold,
             parts: pieces.div_ceil(4),
-            fragments: pieces,
-            pending: pieces,
+            fragments: at_once,
+            pending: at_once,
             octants,
             near,
         }
@@ -158,7 +168,7 @@ pub struct UnionBuffers<R: Real, const N: usize> {
     split_pieces: [[Piece<R>; 4]; N],
     order: [[u32; 4]; N],
     nodes: [[Node<R>; 4]; N],
-    parts: [Part; N],
+    parts: [Part<R>; N],
     fragments: [Fragment<R>; N],
     pending: [PendingNode; N],
 }
@@ -218,6 +228,8 @@ pub struct CellUnion<'a, R: Real> {
     piece_count: usize,
     node_count: usize,
     octree: OctreeSize,
+    /// The bodies in the octree.
+    in_octree: Range<usize>,
 }
 
 impl<'a, R: Real> CellUnion<'a, R> {
@@ -248,6 +260,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
             piece_count: 0,
             node_count: 0,
             octree: OctreeSize::default(),
+            in_octree: 0..0,
         }
     }
 
@@ -290,7 +303,8 @@ impl<'a, R: Real> CellUnion<'a, R> {
         if self.piece_count == first && uniform == Branch::Open {
             return Ok(());
         }
-        let part = Part { first, end: self.piece_count, root: uniform, below };
+        let part =
+            Part { first, end: self.piece_count, root: uniform, below, number: self.part_count, ..Part::default() };
         *self.space.parts.get_mut(self.part_count).ok_or(Full)? = part;
         self.part_count += 1;
         Ok(())
@@ -321,7 +335,7 @@ impl<'a, R: Real> CellUnion<'a, R> {
             }
         }
         if self.built < self.part_count {
-            (self.built, self.octree) = (self.part_count, OctreeSize::default());
+            (self.built, self.in_octree) = (self.part_count, 0..0);
         }
         Ok(())
     }
@@ -341,20 +355,66 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// [`NoProof`]: divide the cell.
     pub fn cell_and_surface(&mut self, each: &mut dyn FnMut(usize, &Polygon<R>)) -> Result<CellFractions<R>, NoProof> {
         self.build_trees()?;
+        self.tell_apart();
+        let mut sum = CellFractions { cell: R::ZERO, low: [R::ZERO; 3], high: [R::ZERO; 3], error: R::ZERO };
+        let (shift, mut first) = (self.largest_shift(), 0);
+        while let Some(bodies) = self.group_from(first) {
+            first = bodies.end;
+            let CellFractions { cell, low, high, error } = self.group_and_surface(bodies, shift, each)?;
+            sum.cell += cell;
+            sum.low = [0, 1, 2].map(|axis| sum.low[axis] + low[axis]);
+            sum.high = [0, 1, 2].map(|axis| sum.high[axis] + high[axis]);
+            sum.error += error;
+        }
+        let within = |v: R| v.min(R::ONE);
+        let [low, high] = [sum.low, sum.high].map(|sides| sides.map(within));
+        Ok(CellFractions { cell: within(sum.cell), low, high, error: sum.error + shift })
+    }
+
+    /// Put bodies that are not apart one after the other.
+    fn tell_apart(&mut self) {
+        let UnionMemory { pieces, nodes, parts, .. } = &mut self.space;
+        let (parts, thickness) = (parts.get_mut(..self.part_count).unwrap_or_default(), self.frame.thickness);
+        if parts.len() < 2 {
+            return;
+        }
+        for n in 0..parts.len() {
+            let extent = Bodies { parts, pieces, nodes, cells: &self.cells, thickness }.extent(n as u32);
+            if let Some(part) = parts.get_mut(n) {
+                part.extent = extent;
+            }
+        }
+        gather(parts, thickness);
+    }
+
+    /// The bodies of the group that begins with one.
+    fn group_from(&self, first: usize) -> Option<Range<usize>> {
+        let bodies = self.space.parts.get(first..self.part_count)?;
+        let group = bodies.first()?.group;
+        Some(first..first + bodies.iter().take_while(|part| part.group == group).count())
+    }
+
+    /// As [`CellUnion::cell_and_surface`] of some bodies, without what a blur may have changed, `shift`.
+    fn group_and_surface(
+        &mut self,
+        bodies: Range<usize>,
+        shift: R,
+        each: &mut dyn FnMut(usize, &Polygon<R>),
+    ) -> Result<CellFractions<R>, NoProof> {
         let (mut flux, mut moment) = ([R::ZERO; 3], [R::ZERO; 3]);
-        let (mut descent, pieces) = self.descent();
+        let (mut descent, pieces) = self.descent(bodies.clone());
         for (own, part) in descent.parts.iter().enumerate() {
             for Piece { polygon, ball, plane, .. } in pieces.get(part.first..part.end).ok_or(Full)? {
                 let rule = DescentRule { toward: plane.normal, own: Some(own), both_sides: false };
                 descent.send(polygon, *ball, rule, |kept| {
                     integrate(kept, &mut flux, &mut moment);
-                    each(own, kept);
+                    each(part.number, kept);
                 })?;
             }
         }
         let (mut low, mut high, mut volume) = ([R::ZERO; 3], [R::ZERO; 3], [R::ZERO; 3]);
         for axis in 0..3 {
-            low[axis] = self.face(axis, R::ZERO, Limit::Above)?;
+            low[axis] = self.face_of(bodies.clone(), axis, R::ZERO, Limit::Above)?;
             high[axis] = low[axis] - flux[axis];
             volume[axis] = low[axis] - moment[axis];
         }
@@ -364,22 +424,20 @@ impl<'a, R: Real> CellUnion<'a, R> {
         for share in high {
             error = error.max(-share).max(share - R::ONE);
         }
-        let shift = self.largest_shift();
         if !(error <= R::from_f64(MAX_SPREAD).max(self.frame.thickness).max(shift)) {
             return Err(Ambiguous);
         }
-        let error = if error > R::from_f64(ROUNDED) { error + self.open_area(high)? } else { error };
-        let error = error + shift;
+        let error = if error > R::from_f64(ROUNDED) { error + self.open_area(bodies, high)? } else { error };
         let within = |v: R| v.max(R::ZERO).min(R::ONE);
         Ok(CellFractions { cell: within((max + min) * R::HALF), low, high: high.map(within), error })
     }
 
-    /// How much of the union's surface is missing or too much, as its high sides tell: in cells, twice the sum of what they differ by from what the surface
-    /// leads to. A volume is wrong by no more than the area that is, unless pieces of it cancel.
-    fn open_area(&mut self, high: [R; 3]) -> Result<R, NoProof> {
+    /// How much of the surface of a union of bodies is missing or too much, as its high sides tell: in cells, twice the sum of what they differ by from what
+    /// the surface leads to. A volume is wrong by no more than the area that is, unless pieces of it cancel.
+    fn open_area(&mut self, bodies: Range<usize>, high: [R; 3]) -> Result<R, NoProof> {
         let mut sum = R::ZERO;
         for (axis, share) in high.into_iter().enumerate() {
-            sum += (self.face(axis, R::ONE, Limit::Below)? - share).abs();
+            sum += (self.face_of(bodies.clone(), axis, R::ONE, Limit::Below)? - share).abs();
         }
         Ok(R::TWO * sum)
     }
@@ -400,6 +458,11 @@ impl<'a, R: Real> CellUnion<'a, R> {
     /// [`NoProof`], of the workspace or of planes.
     pub fn face(&mut self, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
         self.build_trees()?;
+        self.face_of(0..self.part_count, axis, at, limit)
+    }
+
+    /// The same of some bodies, whose trees there are.
+    fn face_of(&mut self, bodies: Range<usize>, axis: usize, at: R, limit: Limit) -> Result<R, NoProof> {
         let axis = axis.min(2);
         let mut square = Polygon::default();
         for (u, v) in [(R::ZERO, R::ZERO), (R::ONE, R::ZERO), (R::ONE, R::ONE), (R::ZERO, R::ONE)] {
@@ -411,14 +474,17 @@ impl<'a, R: Real> CellUnion<'a, R> {
         toward[axis] = if limit == Limit::Below { -R::ONE } else { R::ONE };
         let mut open = R::ZERO;
         let rule = DescentRule { toward, own: None, both_sides: limit == Limit::Both };
-        self.descent().0.send(&square, Ball::around(&square), rule, |kept| open += kept.doubled_area()[axis])?;
+        self.descent(bodies).0.send(&square, Ball::around(&square), rule, |kept| open += kept.doubled_area()[axis])?;
         Ok((R::ONE - open * R::HALF).max(R::ZERO).min(R::ONE))
     }
 
-    /// What goes down the trees, and all pieces.
-    fn descent(&mut self) -> (Descent<'_, R>, &[Piece<R>]) {
+    /// What goes down the trees of some bodies, and all pieces.
+    fn descent(&mut self, bodies: Range<usize>) -> (Descent<'_, R>, &[Piece<R>]) {
+        if self.in_octree != bodies {
+            (self.octree, self.in_octree) = (OctreeSize::default(), bodies.clone());
+        }
         let UnionMemory { pieces, nodes, parts, fragments, octants, near, .. } = &mut self.space;
-        let (parts, thickness) = (parts.get(..self.part_count).unwrap_or_default(), self.frame.thickness);
+        let (parts, thickness) = (parts.get(bodies).unwrap_or_default(), self.frame.thickness);
         let bodies = Bodies { parts, pieces, nodes, cells: &self.cells, thickness };
         let mut octree = Octree { octants, near, size: &mut self.octree, bodies };
         octree.begin(!self.blurred);

@@ -14,6 +14,7 @@ use crate::porosity::throat::{self, Faces};
 use crate::porosity::{Options, Porosity, levels};
 use crate::words::counted;
 use voidage_core::grid::Grid;
+use voidage_core::surface::layer::ShadowReport;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -105,10 +106,17 @@ fn warn_of_doubt(bodies: &Bodies, found: &Resistance, progress: &mut Progress) {
             totals.max_doubt
         ));
     }
-    if found.shadows.too_full > 0 {
+    let ShadowReport { estimated, too_full } = found.shadows.inexact;
+    if estimated > 0 {
+        progress.warn(format!(
+            "{files}: {} outlines that cross so often that the shadow is an estimate, to a thousandth of the section",
+            counted(estimated, "cell holds", "cells hold")
+        ));
+    }
+    if too_full > 0 {
         progress.warn(format!(
             "{files}: {} too much surface for a shadow; what the faces show stands in its place",
-            counted(found.shadows.too_full, "cell holds", "cells hold")
+            counted(too_full, "cell holds", "cells hold")
         ));
     }
 }
@@ -132,7 +140,7 @@ fn warn_of_divided_cells(bodies: &Bodies, divided: DividedCells, progress: &mut 
     if let Some([i, j, k]) = divided.first {
         progress.warn(format!(
             "{}: {} divided by a wall thinner than a cell that no face closes, the first at cell {i}, {j}, {k} (counted from 0): gas passes through; \
-             walls along the grid, or cells no wider than the wall is thick, are tight",
+             straight walls along the grid, or cells no wider than the wall is thick, are tight",
             bodies.files(),
             counted(divided.cells, "cell is", "cells are")
         ));

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use voidage_core::grid::Grid;
 use voidage_core::grid::fields::ShapeMismatch;
-use voidage_core::surface::layer::{KnownSurface, LayerError, Layers, OpenLayer};
+use voidage_core::surface::layer::{KnownSurface, LayerError, Layers, OpenLayer, ShadowReport};
 use voidage_core::surface::shadow::{ShadowEdge, ShadowFace, ShadowMemory, ShadowSlices};
 
 /// Shadows of the union of bodies in the cells of a grid, `nx*ny*nz`, x fastest.
@@ -24,8 +24,8 @@ pub struct Shadows {
     pub(super) standing: Vec<usize>,
     /// By how much a share may be off where a curved solid stands as facets.
     pub doubt: f64,
-    /// Cells that hold more surface than there is room for: in place of their shadow stands what their faces show.
-    pub too_full: usize,
+    /// Cells whose shadow is an estimate, or that hold more surface than there is room for: then in its place stands what their faces show.
+    pub inexact: ShadowReport,
     /// Hidden passages along x, y and z.
     pub hidden: [HiddenPassages; 3],
     /// What stands in the cells that hide something.
@@ -71,6 +71,23 @@ fn usual_width(grid: &Grid<f64>) -> f64 {
     middle(0).min(middle(1)).min(middle(2))
 }
 
+/// By how much shadows that are estimates may be off.
+const ESTIMATE_MISSES: f64 = 1e-3;
+
+/// By how much a share may be off in cells whose shadows are not exact.
+fn doubt_of(inexact: ShadowReport) -> f64 {
+    match inexact {
+        ShadowReport { too_full: 1.., .. } => 1.0,
+        ShadowReport { estimated: 1.., .. } => ESTIMATE_MISSES,
+        _ => 0.0,
+    }
+}
+
+/// The cells of both.
+fn both(a: ShadowReport, b: ShadowReport) -> ShadowReport {
+    ShadowReport { estimated: a.estimated + b.estimated, too_full: a.too_full + b.too_full }
+}
+
 /// Width of the narrowest cell along any axis.
 fn narrowest(grid: &Grid<f64>) -> f64 {
     let widths = |axis: usize| grid.edges(axis).windows(2).map(|ends| ends[1] - ends[0]);
@@ -99,21 +116,21 @@ impl Shadows {
         let buffers = Mutex::new(Vec::new());
         let layer = |(k, slices): (usize, ShadowSlices<f64>)| {
             let mut own = buffers.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_else(Buffers::new);
-            let too_full = own.layer(layers, k, (&beta.open_layer(grid, k), known[k]), slices);
+            let inexact = own.layer(layers, k, (&beta.open_layer(grid, k), known[k]), slices);
             buffers.lock().unwrap_or_else(PoisonError::into_inner).push(own);
-            too_full
+            inexact
         };
-        let too_full = slices.into_par_iter().enumerate().map(layer).sum();
+        let inexact = slices.into_par_iter().enumerate().map(layer).reduce(ShadowReport::default, both);
         let wanted = facets_miss(grid);
         let miss = bodies.bodies.iter().map(|body| facets::miss_of_body(body, wanted)).fold(0.0, f64::max);
-        let doubt = (2.0 * miss / narrowest(grid)).min(1.0);
+        let doubt = (2.0 * miss / narrowest(grid) + doubt_of(inexact)).min(1.0);
         let kept: Vec<_> = known.iter().map(|(kept, _)| *kept).collect();
         let standing = kept.iter().enumerate().flat_map(|(k, kept)| {
             let with_front = kept.cells.iter().filter(|own| own.area.frontal != [0.0; 3]);
             with_front.map(move |own| k * nx * ny + own.cell as usize)
         });
         let standing = standing.collect();
-        let mut found = Shadows { tau, place, standing, doubt, too_full, ..Shadows::default() };
+        let mut found = Shadows { tau, place, standing, doubt, inexact, ..Shadows::default() };
         found.find_hidden(grid, beta);
         // What hides nearly all of a section is a wall.
         let hiding = found.hiding(grid, beta).into_iter().map(|(cell, hidden)| (cell, hidden <= HIDDEN));
@@ -138,7 +155,9 @@ impl Shadows {
                 *tau += weight * more;
             }
         }
-        self.too_full = self.too_full.max(other.too_full);
+        let [a, b] = [self.inexact, other.inexact];
+        let (estimated, too_full) = (a.estimated.max(b.estimated), a.too_full.max(b.too_full));
+        self.inexact = ShadowReport { estimated, too_full };
         self.doubt = self.doubt.max(other.doubt);
     }
 
@@ -234,18 +253,18 @@ impl Buffers {
     /// Room for so many faces in a cell.
     fn make_room(&mut self, faces: usize) {
         self.edges.resize(3 * faces, ShadowEdge::default());
-        self.places.resize(faces, 0);
+        self.places.resize(2 * faces, 0);
         self.faces.resize(faces, ShadowFace::default());
     }
 
-    /// The shadows of layer `k`; how many of its cells are too full.
+    /// The shadows of layer `k`; how many of its cells have none that is exact.
     fn layer(
         &mut self,
         layers: &Layers<DVec3>,
         k: usize,
         (open, known): (&OpenLayer<f64>, KnownSurface<f64>),
         mut into: ShadowSlices<f64>,
-    ) -> usize {
+    ) -> ShadowReport {
         loop {
             let Buffers { edges, places, lists, faces } = self;
             let memory = ShadowMemory { edges, places, lists, faces };
@@ -254,8 +273,10 @@ impl Buffers {
                     self.lists.resize(expected.max(2 * found), 0);
                 }
                 // The layer again, with more room: what it holds does not depend on what thread had it.
-                Ok(1..) if self.faces.len() < MOST_FACES => self.make_room(4 * self.faces.len()),
-                too_full => return too_full.expect("slices of a layer fit its grid"),
+                Ok(ShadowReport { too_full: 1.., .. }) if self.faces.len() < MOST_FACES => {
+                    self.make_room(4 * self.faces.len());
+                }
+                inexact => return inexact.expect("slices of a layer fit its grid"),
             }
         }
     }

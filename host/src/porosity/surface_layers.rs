@@ -6,7 +6,7 @@ use super::shadows::Shadows;
 use super::solid_layers::SolidLayers;
 use super::surface_fields::SurfaceFields;
 use super::targets::targets;
-use super::worker::{Summary, Workers};
+use super::worker::{Summary, WantedOfLayer, Workers};
 use super::{Options, curved_cells};
 use crate::geometry::bodies::Bodies;
 use glam::DVec3;
@@ -26,7 +26,7 @@ pub fn of_layers(
 ) -> SurfaceFields {
     let mut own = FieldSet::new(grid, true);
     let (workers, road) = (Workers::new(), Road::new(Vec::new(), options));
-    let mut summaries: Vec<Summary> = targets(grid, &mut own, None, true)
+    let mut summaries: Vec<Summary> = targets(grid, &mut own, None, WantedOfLayer::Surface)
         .into_par_iter()
         .enumerate()
         .map(|(k, target)| workers.layer(grid, layers, &road, k, target))

@@ -107,8 +107,19 @@ pub struct Target<'a> {
     pub beta: Slices<'a>,
     /// Lower and upper bounds, if wanted.
     pub bounds: Option<[Slices<'a>; 2]>,
-    /// The surface in cells is wanted; then bodies go by it alone.
-    pub surface: bool,
+    /// Of what.
+    pub wanted: WantedOfLayer,
+}
+
+/// What is wanted of a layer. Where it is surface, bodies go by that alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WantedOfLayer {
+    /// Open fractions.
+    Fractions,
+    /// Open fractions and the surface in cells.
+    FractionsAndSurface,
+    /// The surface in cells; open fractions may be far from the truth.
+    Surface,
 }
 
 /// Bytes of memory that one layer's sums take.
@@ -259,16 +270,17 @@ impl Worker {
                 leaks.push((body, defects.leak));
             }
         };
-        let Target { beta, bounds, surface } = target;
+        let Target { beta, bounds, wanted } = target;
         let (beta, bounds) = (beta.for_core(), bounds.map(|both| both.map(Slices::for_core)));
-        if !surface {
+        if wanted == WantedOfLayer::Fractions {
             let report = layers.zeroed_layer(k, beta, bounds, &mut memory, &mut others, note_leak).expect(FITS);
             return Summary::new(report, &others, leaks);
         }
         let [nx, ny, nz] = grid.cells();
         vecs.make_room(nx * ny, nz);
         let AreaVecs { cells, numbers, kept: Kept { cells: union, sides, pieces, corners } } = &mut *vecs;
-        let areas = AreaSlices { union, sides, cells, numbers, pieces: PieceMemory { pieces, corners } };
+        let (pieces, fractions_known) = (PieceMemory { pieces, corners }, wanted == WantedOfLayer::Surface);
+        let areas = AreaSlices { union, sides, cells, numbers, pieces, fractions_known };
         let (report, areas) = layers.layer_and_areas(k, beta, bounds, areas, &mut memory, note_leak).expect(FITS);
         Summary { areas, kept: vecs.kept(&areas), ..Summary::new(report, &others, leaks) }
     }
@@ -280,7 +292,7 @@ struct UnionVecs {
     split_pieces: Vec<Piece<f64>>,
     order: Vec<u32>,
     nodes: Vec<Node<f64>>,
-    parts: Vec<Part>,
+    parts: Vec<Part<f64>>,
     fragments: Vec<Fragment<f64>>,
     pending: Vec<PendingNode>,
     octants: Vec<Octant<f64>>,
@@ -290,17 +302,16 @@ struct UnionVecs {
 impl UnionVecs {
     /// For so many pieces of all bodies together.
     fn new(most_pieces: usize) -> Self {
-        // Of one body, or of the parts of one polygon under way.
-        let of_one = 4096;
-        let UnionNeeded { pieces, nodes, octants, near, .. } = UnionMemory::<f64>::needed(most_pieces);
+        let UnionNeeded { pieces, split_pieces, order, nodes, fragments, pending, octants, near, .. } =
+            UnionMemory::<f64>::needed(most_pieces);
         UnionVecs {
             pieces: vec![Piece::default(); pieces],
-            split_pieces: vec![Piece::default(); of_one],
-            order: vec![0; of_one],
+            split_pieces: vec![Piece::default(); split_pieces],
+            order: vec![0; order],
             nodes: vec![Node::default(); nodes],
             parts: vec![Part::default(); most_pieces / 2],
-            fragments: vec![Fragment::default(); of_one.min(most_pieces)],
-            pending: vec![PendingNode::default(); of_one],
+            fragments: vec![Fragment::default(); fragments],
+            pending: vec![PendingNode::default(); pending],
             octants: vec![Octant::default(); octants],
             near: vec![0; near],
         }

@@ -67,6 +67,7 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
         cells: cells.get_mut(..at).unwrap_or_default(),
         numbers: numbers.get_mut(..at).unwrap_or_default(),
         pieces: PieceMemory { pieces: &mut pieces, corners: &mut corners },
+        fractions_known: at.is_multiple_of(2),
     };
     let found = layers.layer_and_areas(at, again, None, areas, &mut memory, |_, _| ());
     let (unproved, used) = found.map_or((4, 0), |(_, report)| (report.unproved, report.sides));
@@ -101,7 +102,7 @@ fn shadowed<V: Vector>(
         share: share.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),
         place: place.each_mut().map(|field| field.get_mut(..at).unwrap_or_default()),
     };
-    layers.shadows(at, open, surface, slices.reborrow(), memory).unwrap_or(5)
+    layers.shadows(at, open, surface, slices.reborrow(), memory).map_or(5, |report| report.too_full)
 }
 
 /// In double precision.

@@ -36,7 +36,9 @@ pub(super) fn solid_bounds<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
     shared.others.add(site.grid, site.k, site.areas, layer);
     if groups.len() > usize::from(shared.others.is_empty()) {
         let resolved = cell_unions::resolve(shared, site, layer, spare.reborrow(), pieces);
-        walls::resolve(shared, site, layer, spare);
+        if pieces.wants_fractions() {
+            walls::resolve(shared, site, layer, spare);
+        }
         (report.cells.ambiguous, report.divided) = (resolved.ambiguous, resolved.divided);
     }
     report

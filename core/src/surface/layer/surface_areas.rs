@@ -19,7 +19,7 @@ use crate::surface::error::Defects;
 use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{Refined, known};
 use crate::surface::surface_area::{
-    Bodies, CellPieces, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea,
+    Beside, Bodies, CellPieces, CellSurface, KeptCell, KeptPieces, LayerSurface, PieceMemory, PiecesUsed, SurfaceArea,
     SurfaceCell, UnionSurface,
 };
 use crate::surface::union::{Frame, integrate};
@@ -95,6 +95,8 @@ pub struct AreaSlices<'a, R> {
     pub numbers: &'a mut [u32],
     /// Memory for the pieces of surface, which [`Layers::shadows`] need not cut again; as much as one likes, none will do.
     pub pieces: PieceMemory<'a, R>,
+    /// The open fractions are known otherwise: what is found of them may be farther from the truth than the options allow, which spares time.
+    pub fractions_known: bool,
 }
 
 /// What is told of the porosity of a layer, and of its areas.
@@ -128,13 +130,14 @@ impl<V: Vector> Layers<'_, V> {
         each_body: impl FnMut(usize, Defects<V::Scalar>),
     ) -> Result<LayerReports<V::Scalar>, LayerError> {
         let [nx, ny, _] = self.grid.cells();
-        let AreaSlices { union, sides, cells, numbers, pieces } = areas;
+        let AreaSlices { union, sides, cells, numbers, pieces, fractions_known } = areas;
         for found in [union.len(), sides.len(), cells.len(), numbers.len()] {
             exactly(nx * ny, found)?;
         }
         // Flags of the plane below have then been replaced by those of the plane above.
         let has_top = !beta.top.is_empty();
-        let mut surface = LayerSurface::new(numbers, cells, pieces);
+        let beside = if fractions_known { Beside::Sides } else { Beside::Fractions };
+        let mut surface = LayerSurface::new(numbers, cells, pieces, beside);
         let report = self.measure(k, (beta, bounds), memory, (&mut (), &mut surface), each_body)?;
         let walls = Walls { flags: Fields::within(&self.grid, &mut *memory.has_surface)?, has_top, nx };
         Ok((report, noted(&surface, &walls, union, sides)))
@@ -258,6 +261,10 @@ fn area_of<R: Real>(
 impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
     type Found = UnionSurface<V::Scalar>;
 
+    fn wants_fractions(&self) -> bool {
+        self.beside == Beside::Fractions
+    }
+
     fn wants_union(&self, cell: usize) -> bool {
         let shared = |s: &CellSurface<V::Scalar>| s.bodies == Bodies::Several && s.inside.wetted > V::Scalar::ZERO;
         self.cell(cell).is_some_and(shared)
@@ -285,6 +292,7 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         refined: Option<&Refined<V::Scalar>>,
         mut spare: SpareMemory<V>,
     ) {
+        let wants_sides = self.beside != Beside::Nothing;
         let Some(surface) = self.cell_mut(number) else { return };
         let layers = site.k..site.k + 1;
         let inside = with_effort(shared, site, layers, |shared| parts_of(shared, site, cell, spare.reborrow()));
@@ -292,7 +300,9 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         let middles =
             |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
         let sides = match refined {
-            None if surface.in_plane > V::Scalar::ZERO => divide(shared, site, cell, spare).as_ref().map(middles),
+            None if wants_sides && surface.in_plane > V::Scalar::ZERO => {
+                divide(shared, site, cell, spare).as_ref().map(middles)
+            }
             refined => refined.map(middles),
         };
         surface.union = Some(UnionSurface { area, doubt, sides, exact: false });
@@ -360,7 +370,7 @@ fn parts_of<V: Vector, O: OtherBodies<V>>(
         let part = Site { grid: &grid, bins: &bins, k, areas: true, halvings: site.halvings.checked_sub(3)? };
         layer.clear();
         let (mut numbers, mut cells) = ([0; 4], [CellSurface::default(); 4]);
-        let mut pieces = LayerSurface::new(&mut numbers, &mut cells, PieceMemory::default());
+        let mut pieces = LayerSurface::new(&mut numbers, &mut cells, PieceMemory::default(), Beside::Nothing);
         solid_bounds(shared, &part, &mut layer, &mut scratch, spare.reborrow(), &mut pieces, |_, _| ());
         for (n, surface) in pieces.cells() {
             if layer.lower.cell.get(n).is_none_or(|&lower| lower >= V::Scalar::ONE) {

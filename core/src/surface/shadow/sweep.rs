@@ -3,8 +3,11 @@
 use super::edge::{ShadowEdge, thickness};
 use crate::number::real::Real;
 
-/// A sweep that takes more steps than this, each once an edge that it passes, is given up.
-const MOST_STEPS: usize = 1 << 24;
+/// A sweep takes so many steps, each once an edge that it passes, from one crossing to the next.
+const MOST_STEPS: usize = 1 << 23;
+
+/// On what is left then it stops so often, wherever crossings are.
+const LINES: usize = 1024;
 
 /// A line that sweeps over edges.
 pub(super) struct Sweep<'m, R> {
@@ -18,8 +21,8 @@ pub(super) struct Sweep<'m, R> {
 }
 
 impl<R: Real> Sweep<'_, R> {
-    /// The area that is covered or solid; none if patience is spent.
-    pub fn shadow(&mut self) -> Option<R> {
+    /// The area that is covered or solid, and whether that is exact.
+    pub fn shadow(&mut self) -> (R, bool) {
         let (mut steps, mut v, mut area) = (0_usize, R::ZERO, R::ZERO);
         // The places of the edges crossed so far are known at `v`.
         let mut known = true;
@@ -29,14 +32,27 @@ impl<R: Real> Sweep<'_, R> {
             let top = self.take_met(v, nearest_end);
             self.arrange(v, top, before);
             let stop = self.first_crossing(v, top);
-            area += self.strips(v, stop, top);
+            area += self.width(stop, top) * (stop - v);
             (v, known) = (stop, stop >= top);
             steps += self.count + 1;
-            if steps > MOST_STEPS {
-                return None;
+            if steps > MOST_STEPS && v < R::ONE {
+                return (area + self.along_lines(v), false);
             }
         }
-        Some(area)
+        (area, true)
+    }
+
+    /// What is covered or solid beyond `v`, by its widths along evenly spaced lines.
+    fn along_lines(&mut self, v: R) -> R {
+        let (step, mut sum) = ((R::ONE - v) / R::from_usize(LINES), R::ZERO);
+        for n in 0..LINES {
+            let line = v + step * (R::from_usize(n) + R::HALF);
+            self.drop_passed(line);
+            self.take_met(line, R::INFINITY);
+            self.arrange(line, line, 0);
+            sum += self.width(line, line);
+        }
+        sum * step
     }
 
     /// The crossed edges, in their order.
@@ -138,8 +154,8 @@ impl<R: Real> Sweep<'_, R> {
         stop
     }
 
-    /// What is covered or solid between `v` and `stop`, where no edges change places.
-    fn strips(&self, v: R, stop: R, top: R) -> R {
+    /// The mean width of what is covered or solid from where the edges were put in order to `stop`, where no edges have changed places.
+    fn width(&self, stop: R, top: R) -> R {
         let (mut covering, mut starting, mut width) = (0_i32, self.starting, R::ZERO);
         let mut last = [R::ZERO; 2];
         let mut add = |here: [R; 2], more: [i32; 2]| {
@@ -156,7 +172,7 @@ impl<R: Real> Sweep<'_, R> {
             add([edge.step[0], end], [edge.covering, edge.starting]);
         }
         add([R::ONE; 2], [0; 2]);
-        width * (stop - v)
+        width
     }
 }
 

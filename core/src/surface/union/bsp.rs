@@ -1,5 +1,6 @@
 //! The binary space partition of a cell by the surface of one body.
 
+use super::extent::Extent;
 use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{Piece, Place, Plane, cut};
 use crate::number::real::Real;
@@ -24,11 +25,16 @@ pub struct Node<R: Real> {
 
 /// A body in the cell: its pieces, its tree, and the side from which walls of a face see it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Part {
+pub struct Part<R: Real> {
     pub(super) first: usize,
     pub(super) end: usize,
     pub(super) root: Branch,
     pub(super) below: bool,
+    /// So many bodies were added before it.
+    pub(super) number: usize,
+    pub(super) extent: Extent<R>,
+    /// Bodies of different groups are apart.
+    pub(super) group: usize,
 }
 
 /// A list of pieces still to be made a subtree.

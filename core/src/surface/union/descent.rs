@@ -47,7 +47,7 @@ pub(super) struct DescentRule<R> {
 /// The trees of a cell and the fragments under way, a stack.
 pub(super) struct Descent<'a, R: Real> {
     pub nodes: &'a [Node<R>],
-    pub parts: &'a [Part],
+    pub parts: &'a [Part<R>],
     pub fragments: &'a mut [Fragment<R>],
     pub octree: Octree<'a, R>,
     pub spare: Polygon<R>,
@@ -174,7 +174,7 @@ impl<R: Real> Descent<'_, R> {
 impl<R: Real> Fragment<R> {
     /// Go to the root of the tree of a body, or of the next one after it that the polygon may meet and that is not its own.
     #[inline(always)]
-    fn enter(&mut self, parts: &[Part], octree: &mut Octree<R>, part: usize, own: Option<usize>) {
+    fn enter(&mut self, parts: &[Part<R>], octree: &mut Octree<R>, part: usize, own: Option<usize>) {
         if self.is_cut && parts.len() > FEW {
             self.draw_ball(octree, part);
         }

@@ -6,6 +6,7 @@
 //! A polygon in the plane, or so little inclined to it that much of it is as near as rounding, asks all.
 
 use super::bsp::{Branch, Node, Part};
+use super::extent::Extent;
 use super::piece::{AMBIGUITY_BAND, Piece, Plane, span};
 use crate::number::real::Real;
 use crate::number::space::dot;
@@ -28,7 +29,7 @@ const INCLINED: f64 = 0.01;
 /// What is known of the bodies of a cell.
 #[derive(Clone, Copy)]
 pub(super) struct Bodies<'a, R: Real> {
-    pub parts: &'a [Part],
+    pub parts: &'a [Part<R>],
     pub pieces: &'a [Piece<R>],
     pub nodes: &'a [Node<R>],
     /// Lowest and highest corner of the cell, in its own frame, of bodies that are not marked `below`, and of those that are.
@@ -57,15 +58,27 @@ impl<R: Real> Bodies<'_, R> {
             see(least);
             see(most);
         }
-        let cell = &self.cells[usize::from(part.below)];
-        for corner in 0..8 {
-            let at = [0, 1, 2].map(|axis| cell[corner >> axis & 1][axis]);
-            let distance = plane.distance(at);
-            if self.has_solid(body, at, R::ZERO) {
-                see(distance);
-            }
-        }
+        self.solid_corners(body).for_each(|corner| see(plane.distance(corner)));
         reach
+    }
+
+    /// The extent of the solid of a body in its cell.
+    pub fn extent(&self, body: u32) -> Extent<R> {
+        let mut extent = Extent::default();
+        let Some(part) = self.parts.get(body as usize) else { return extent };
+        for piece in self.pieces.get(part.first..part.end).unwrap_or_default() {
+            piece.polygon.corners().iter().for_each(|corner| extent.see(*corner));
+        }
+        self.solid_corners(body).for_each(|corner| extent.see(corner));
+        extent
+    }
+
+    /// The corners of its cell that a body may fill.
+    fn solid_corners(&self, body: u32) -> impl Iterator<Item = [R; 3]> {
+        let below = self.parts.get(body as usize).is_some_and(|part| part.below);
+        let cell = &self.cells[usize::from(below)];
+        let corners = (0..8).map(|corner| [0, 1, 2].map(|axis| cell[corner >> axis & 1][axis]));
+        corners.filter(move |corner| self.has_solid(body, *corner, R::ZERO))
     }
 
     /// Whether a body may have solid in the cube of a centre and half a width; if unsure, yes.

@@ -93,12 +93,12 @@ impl ObstacleReport {
             sharp_bodies: drag.bodies[1],
             capped: drag.capped,
         });
-        let Shadows { hidden, too_full, .. } = &*found.shadows;
+        let Shadows { hidden, inexact, .. } = &*found.shadows;
         ObstacleReport {
             totals: found.totals,
             hidden_passages: *hidden,
             divided_cells: obstacles.divided,
-            unproved_shadows: *too_full,
+            unproved_shadows: inexact.estimated + inexact.too_full,
             lowered_faces: obstacles.lowered_faces,
             drag,
             congestion,
