@@ -7,8 +7,11 @@
 //! sides of the cell, give the union on its faces; then the divergence theorem gives the volume.
 //! After B. Naylor, J. Amanatides, W. Thibault, *Merging BSP Trees Yields Polyhedral Set Operations*, SIGGRAPH 1990.
 //!
+//! Bodies that some plane tells apart have nothing in common: they are put in groups (`apart`), each group is united alone, and the fractions of all groups
+//! are summed.
+//!
 //! **Proof.** The volume is computed along x, y and z. A piece wrongly kept or dropped leaves the surface of the union open, and
-//! the three then differ. Their spread is reported as [`CellFractions::error`]; beyond [`MAX_SPREAD`] there is no answer.
+//! the three then differ, in each group. Their spread, summed over the groups, is reported as [`CellFractions::error`]; beyond [`MAX_SPREAD`] there is no answer.
 //!
 //! Everything happens in the frame of the cell, 0..1 along each axis, in memory of the caller.
 
