@@ -127,7 +127,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             resolved.ambiguous += usize::from(at.cell_gap(layer) > V::Scalar::ZERO);
             let open = at.largest_gap(layer);
             let wanted = P::WANTED && wants_union(at, site, layer, pieces);
-            let narrows = open > known() && (!P::WANTED || pieces.wants_fractions());
+            let narrows = open > known() && pieces.wants_fractions();
             if !(narrows || wanted) {
                 continue;
             }

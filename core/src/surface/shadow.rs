@@ -3,8 +3,8 @@
 //! A line meets solid if it begins inside a solid or meets a face. So the faces are projected along the axis, and so are the boundaries of the solids'
 //! sections with the low side of the cell, which are those edges of faces that lie in it. A sweep over the edges counts both: between two
 //! neighbouring ends and crossings nothing changes places, so areas are sums of trapezoids, exact to rounding, whatever the solids have in
-//! common; where edges cross too often, the widths along many lines give the rest of the area. Edges between two faces that look the same way cancel before: what is left are outlines. The sweep is that of J. L. Bentley and
-//! T. A. Ottmann, *Algorithms for Reporting and Counting Geometric Intersections*, IEEE Transactions on Computers C-28, 1979.
+//! common; where edges cross too often, the widths along many lines give the rest of the area. Edges between two faces that look the same way
+//! cancel before: what is left are outlines. The sweep is that of J. L. Bentley and T. A. Ottmann, *Algorithms for Reporting and Counting Geometric Intersections*, IEEE Transactions on Computers C-28, 1979.
 //!
 //! No sweep is needed where a line enters solid at most once: the shadow is then the section with the low side and the area of all faces that are
 //! entered, as they are seen along the axis (`CellFaces::passed_once`).

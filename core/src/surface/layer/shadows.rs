@@ -21,9 +21,9 @@ impl<V: Vector> Layers<'_, V> {
         CellLists::needed(&self.bins, &self.grid, k)
     }
 
-    /// The shadows of the union in the cells of layer `k`, and how many of them are not exact. `open` holds the layer's open fractions; the known surface is that of [`Layers::layer_and_areas`], its areas finished by
-    /// [`Layers::finish_areas`]: where these prove that no surface hides behind what a side of the cell shows, nothing is searched. Pieces that were not
-    /// kept are cut again. Sheets cast shadows.
+    /// The shadows of the union in the cells of layer `k`, and how many of them are not exact. `open` holds the layer's open fractions; the known surface
+    /// is that of [`Layers::layer_and_areas`], its areas finished by [`Layers::finish_areas`]: where these prove that no surface hides behind what a side of
+    /// the cell shows, nothing is searched. Pieces that were not kept are cut again. Sheets cast shadows.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, slices of wrong length, too few lists.
