@@ -5,7 +5,7 @@ use voidage::geometry::bodies::Bodies;
 use voidage::geometry::form::Form;
 use voidage::geometry::mesh::Mesh;
 use voidage::grid::Edges;
-use voidage::porosity::divided::{DividedCells, Division};
+use voidage::porosity::divided::{ClosedCells, DividedCells, Division};
 use voidage::porosity::resistance::resistance;
 use voidage::porosity::shadows::{cells, faces_of_cell};
 use voidage::porosity::{FieldSet, Options, porosity, throat};
@@ -30,12 +30,14 @@ fn uneven(count: usize, random: &mut Random) -> Edges {
     }))
 }
 
-/// What is told of a scene: hidden passages and divided cells with faces in planes, divided cells with throats; and the faces of both.
+/// What is told of a scene: hidden passages and divided cells with faces in planes, divided cells with throats, and what is closed of these; and the faces
+/// of all three.
 struct Told {
     hidden: usize,
     plane: DividedCells,
     throat: DividedCells,
-    faces: [FieldSet; 2],
+    closed: ClosedCells,
+    faces: [FieldSet; 3],
 }
 
 fn told(edges: &Edges, bodies: &Bodies) -> Told {
@@ -45,9 +47,10 @@ fn told(edges: &Edges, bodies: &Bodies) -> Told {
     let division = Division::find(&grid, bodies, &result.beta, &shadows);
     let (plane, in_planes) = (division.told(&grid, &result.beta, Some(&shadows)), result.beta.clone());
     throat::lower(&grid, &mut result, &shadows);
-    let throat = division.told(&grid, &result.beta, None);
+    let (throat, throats) = (division.told(&grid, &result.beta, None), result.beta.clone());
+    let closed = division.close(&grid, &mut result, &shadows);
     let hidden = shadows.hidden.iter().map(|hidden| hidden.cells).sum();
-    Told { hidden, plane, throat, faces: [in_planes, result.beta] }
+    Told { hidden, plane, throat, closed, faces: [in_planes, throats, result.beta] }
 }
 
 /// The cells that gas reaches from one by faces that are open by more than `least`.
@@ -88,16 +91,18 @@ fn leaks(grid: &Grid<f64>, faces: &FieldSet, middle: DVec3, normal: DVec3) -> Op
     }
 }
 
-/// Judges a wall that goes through the whole grid; whether it leaks with throats.
+/// Judges a wall that goes through the whole grid, which no longer leaks once it is closed; whether it does with throats.
 fn judge(edges: &Edges, bodies: &Bodies, middle: DVec3, normal: DVec3, name: &str) -> Option<bool> {
     let (grid, found) = (edges.grid(None).expect("a grid"), told(edges, bodies));
-    let [plane, throat] = [0, 1].map(|n| leaks(&grid, &found.faces[n], middle, normal));
+    let [plane, throat, closed] = [0, 1, 2].map(|n| leaks(&grid, &found.faces[n], middle, normal));
     if let Some(leaks) = plane {
         assert_eq!(found.hidden + found.plane.cells > 0, leaks, "{name}: {:?}", found.plane);
     }
     if let Some(leaks) = throat {
         assert_eq!(found.throat.cells > 0, leaks, "{name}: {:?}", found.throat);
     }
+    assert_ne!(closed, Some(true), "{name}: {:?}", found.closed);
+    assert_eq!(found.closed.left.cells, 0, "{name}: {:?}", found.closed);
     throat
 }
 
@@ -242,8 +247,8 @@ fn a_window_is_a_way() {
     assert_eq!(closed.hidden + closed.plane.cells, 1);
 }
 
-/// Rooms of thin walls along the grid: where two walls meet within a cell, no face makes both of them tight. Wherever gas gets out, that is told; a wall that
-/// crosses a plane of the grid divides no cell beside the corner, and was taken for a way around it.
+/// Rooms of thin walls along the grid: where two walls meet within a cell, no throat makes both of them tight. Wherever gas gets out, that is told; a wall that
+/// crosses a plane of the grid divides no cell beside the corner, and was taken for a way around it. Closed, they are tight.
 #[test]
 fn corners_of_rooms() {
     let mut random = Random::new(31);
@@ -265,11 +270,79 @@ fn corners_of_rooms() {
             let edges = edges([9, 9, 1]);
             let grid = edges.grid(None).expect("a grid");
             let found = told(&edges, &scene(&walls.collect::<Vec<_>>()));
-            let outside = reached(&grid, &found.faces[1], [4, 4, 0], 0.05)[0];
+            let outside = |faces: &FieldSet, least| reached(&grid, faces, [4, 4, 0], least)[0];
+            let closed = (outside(&found.faces[2], 0.0), found.closed.left.cells);
+            assert_eq!(closed, (false, 0), "{thickness}: {lo} {hi}");
+            let outside = outside(&found.faces[1], 0.05);
             assert!(!outside || found.throat.cells > 0, "{thickness}: {lo} {hi}");
             leaky += usize::from(outside);
             tight += usize::from(!outside && found.throat.cells == 0);
         }
     }
     assert!(leaky > 20 && tight > 20, "{leaky} {tight}");
+}
+
+/// Six walls around a box, each a body of its own, turned about its middle; the first has a door of half of its width.
+fn room(middle: DVec3, half: DVec3, thickness: f64, turn: DMat3, door: bool) -> Bodies {
+    let walls = (0..6).flat_map(|n| {
+        let (axis, high) = (n / 2, n % 2 == 1);
+        let (mut lo, mut hi) = (-half - thickness, half + thickness);
+        if high {
+            lo[axis] = half[axis];
+        } else {
+            hi[axis] = -half[axis];
+        }
+        let sides = if door && n == 0 {
+            let ([mut a, mut b], far) = ([hi, lo], 0.5 * half.y);
+            (a.y, b.y) = (-far, far);
+            vec![[lo, a], [b, hi]]
+        } else {
+            vec![[lo, hi]]
+        };
+        let turned = move |[lo, hi]: [DVec3; 2]| -> Vec<Triangle> {
+            cuboid(lo, hi).into_iter().map(|t| t.map(|p| middle + turn * p)).collect()
+        };
+        sides.into_iter().map(turned)
+    });
+    scene(&walls.collect::<Vec<_>>())
+}
+
+/// Rooms turned anyhow: gas stays within once they are closed, and a door stays a door.
+#[test]
+fn rooms_turned_anyhow() {
+    let mut random = Random::new(32);
+    let mut leaky = 0;
+    for n in 0..40 {
+        let (middle, half) =
+            (random.point(DVec3::splat(6.5), DVec3::splat(7.5)), random.point(DVec3::splat(2.0), DVec3::splat(3.0)));
+        let (thickness, turn) = (random.between(0.02, 0.6), if n % 4 == 0 { DMat3::IDENTITY } else { random.turn() });
+        let edges = edges([14; 3]);
+        let grid = edges.grid(None).expect("a grid");
+        let name = format!("{n}: {middle}, {half}, {thickness} thick, {turn}");
+        for door in [false, true] {
+            let found = told(&edges, &room(middle, half, thickness, turn, door));
+            let outside = |faces: &FieldSet, least| reached(&grid, faces, [7; 3], least)[0];
+            assert_eq!(found.closed.left.cells, 0, "{name}: {:?}", found.closed);
+            assert_eq!(outside(&found.faces[2], if door { 0.1 } else { 0.05 }), door, "{name}: {:?}", found.closed);
+            leaky += usize::from(!door && outside(&found.faces[1], 0.05));
+        }
+    }
+    assert!(leaky > 20, "{leaky}");
+}
+
+/// Walls of bars with ways between them that are too narrow for points: none is closed.
+#[test]
+fn ways_between_bars_stay() {
+    let edges = edges([5, 5, 5]);
+    for (gap, turn) in [(0.04, 0.0), (0.06, 0.3), (0.1, 0.0), (0.15, 0.5)] {
+        let turn = DMat3::from_rotation_y(turn);
+        let bars = (0..60).map(|n| {
+            let y = -1.0 + 0.2 * f64::from(n);
+            let bar = cuboid(DVec3::new(-0.05, y, -9.0), DVec3::new(0.05, y + 0.2 - gap, 9.0));
+            bar.into_iter().map(|t| t.map(|p| DVec3::new(2.4, 0.0, 2.6) + turn * p)).collect()
+        });
+        let found = told(&edges, &scene(&bars.collect::<Vec<Vec<Triangle>>>()));
+        assert_eq!(found.closed.faces, 0, "{gap}: {:?}", found.closed);
+        assert_eq!(found.faces[1], found.faces[2], "{gap}");
+    }
 }

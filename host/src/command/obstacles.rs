@@ -5,7 +5,7 @@ use crate::geometry::bodies::{Bodies, Body, SolidSummary};
 use crate::grid::AXES;
 use crate::picture::ticks::number as short;
 use crate::picture::ticks::part;
-use crate::porosity::divided::{DividedCells, Division};
+use crate::porosity::divided::{ClosedCells, DividedCells, Division};
 use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag, fill_a_cell};
 use crate::porosity::resistance::{Resistance, resistance, shadows, unseen_frontal_area};
 use crate::porosity::shadows::{HIDDEN, Shadows};
@@ -40,6 +40,8 @@ pub struct Obstacles {
     pub drag: Option<ObstacleDrag>,
     /// Faces lowered to what passes.
     pub lowered_faces: usize,
+    /// Faces closed beside cells that thin walls divide.
+    pub closed_faces: usize,
     /// Cells with gas on two sides of what stands in them, hidden passages not counted again.
     pub divided: DividedCells,
 }
@@ -81,19 +83,18 @@ pub fn obstacles(
         warn_of_partly_filled(grid, bodies, progress);
         warn_of_tight(grid, bodies, options, progress);
     }
-    let division = progress.stage("divided", |_| Division::find(grid, bodies, &result.beta, &shadows));
-    let told_already = match wanted.faces {
-        Faces::Plane => {
-            warn_of_hidden_passages(bodies, &shadows, progress);
-            Some(&*shadows)
+    let (lowered, closed) = progress.stage("divided", |_| {
+        let division = Division::find(grid, bodies, &result.beta, &shadows);
+        match wanted.faces {
+            Faces::Plane => (0, ClosedCells { left: division.told(grid, &result.beta, Some(&shadows)), faces: 0 }),
+            Faces::Throat => (throat::lower(grid, result, &shadows), division.close(grid, result, &shadows)),
         }
-        Faces::Throat => {
-            found.lowered_faces = throat::lower(grid, result, &shadows);
-            None
-        }
-    };
-    found.divided = division.told(grid, &result.beta, told_already);
-    warn_of_divided_cells(bodies, found.divided, progress);
+    });
+    if wanted.faces == Faces::Plane {
+        warn_of_hidden_passages(bodies, &shadows, progress);
+    }
+    warn_of_divided_cells(bodies, (closed.left, wanted.faces), progress);
+    (found.lowered_faces, found.closed_faces, found.divided) = (lowered, closed.faces, closed.left);
     found
 }
 
@@ -136,15 +137,17 @@ fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Pr
 }
 
 /// A cell has one state: the gas on both sides of what divides it is one.
-fn warn_of_divided_cells(bodies: &Bodies, divided: DividedCells, progress: &mut Progress) {
-    if let Some([i, j, k]) = divided.first {
-        progress.warn(format!(
-            "{}: {} divided by a wall thinner than a cell that no face closes, the first at cell {i}, {j}, {k} (counted from 0): gas passes through; \
-             straight walls along the grid, or cells no wider than the wall is thick, are tight",
-            bodies.files(),
-            counted(divided.cells, "cell is", "cells are")
-        ));
-    }
+fn warn_of_divided_cells(bodies: &Bodies, (divided, faces): (DividedCells, Faces), progress: &mut Progress) {
+    let Some([i, j, k]) = divided.first else { return };
+    let cure = match faces {
+        Faces::Plane => "with throat faces such walls are tight",
+        Faces::Throat => "a way through it may be narrower than a sixth of a cell, and smaller cells would tell",
+    };
+    progress.warn(format!(
+        "{}: {} divided by a wall thinner than a cell that no face closes, the first at cell {i}, {j}, {k} (counted from 0): gas passes through; {cure}",
+        bodies.files(),
+        counted(divided.cells, "cell is", "cells are")
+    ));
 }
 
 /// How many others a sentence about the first of them is about.

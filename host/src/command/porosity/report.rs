@@ -64,6 +64,8 @@ struct ObstacleReport {
     unproved_shadows: usize,
     /// Faces lowered to what passes, with `--faces throat`.
     lowered_faces: usize,
+    /// Others closed beside cells that thin walls divide.
+    closed_faces: usize,
     /// With `--drag`.
     #[serde(skip_serializing_if = "Option::is_none")]
     drag: Option<DragReport>,
@@ -100,6 +102,7 @@ impl ObstacleReport {
             divided_cells: obstacles.divided,
             unproved_shadows: inexact.estimated + inexact.too_full,
             lowered_faces: obstacles.lowered_faces,
+            closed_faces: obstacles.closed_faces,
             drag,
             congestion,
         }

@@ -44,8 +44,29 @@ type Blocked = [Points; 3];
 /// The open parts of a cell that are open to a side.
 #[derive(Debug, Clone)]
 pub struct Parts {
-    /// For each part, the points that it has in the low and the high side along x, y and z.
-    sides: Vec<[[u64; 2]; 3]>,
+    parts: Vec<Part>,
+    /// Of the lines along x, y and z.
+    pub lines: [Lines; 3],
+}
+
+/// A part of a cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// The points that it has in the low and the high side along x, y and z, those on the edges of the side, too.
+    sides: [[u64; 2]; 3],
+    /// How many of the 216 points that lie in no side it has.
+    pub inner: u32,
+    /// How many more of them lie in the high half than in the low one, along x, y and z.
+    pub balance: [i32; 3],
+}
+
+/// The lines of points along an axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Lines {
+    /// Which share of those within the section meets solid.
+    pub blocked: f64,
+    /// Do all meet solid, those at the rim of the section, too?
+    pub all_blocked: bool,
 }
 
 /// Where a line between two neighbouring points crosses surface.
@@ -69,7 +90,7 @@ pub struct Hits {
 }
 
 impl Parts {
-    /// Of a cell that these triangles reach, those of a body one after the other; none if there are fewer than two.
+    /// Of a cell that these triangles may reach, those of a body one after the other; none if no surface is between the points.
     pub fn of_cell(cell: Aabb<DVec3>, triangles: impl Iterator<Item = OfBody>, memory: &mut Hits) -> Option<Self> {
         let (places, size) = ([0, 1, 2].map(places), cell.size());
         let Hits { hits, ends } = memory;
@@ -89,24 +110,30 @@ impl Parts {
             }
             open = each(open, solid, |open, solid| open & !solid);
         }
-        let mut sides = Vec::new();
-        while let Some(part) = take_region(&mut open, &IN_SIDES, &blocked) {
-            let part = sides_of(&part);
-            if part.iter().flatten().any(|side| side.count_ones() >= LEAST_POINTS) {
-                sides.push(part);
+        let all_open = open;
+        let mut parts = Vec::new();
+        while let Some(points) = take_region(&mut open, &IN_SIDES, &blocked) {
+            let part = Part::of_points(&points);
+            if part.sides.iter().flatten().any(|side| is_opening(*side)) {
+                parts.push(part);
             }
         }
-        (sides.len() > 1).then_some(Parts { sides })
+        Some(Parts { parts, lines: lines(&blocked, &all_open) })
     }
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.sides.len()
+        self.parts.len()
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Part] {
+        &self.parts
     }
 
     /// Is a part open to a side?
     pub fn touches(&self, part: usize, axis: usize, side: usize) -> bool {
-        self.sides[part][axis][side].count_ones() >= LEAST_POINTS
+        is_opening(self.parts[part].sides[axis][side])
     }
 
     /// Is a side open to this part alone?
@@ -116,8 +143,36 @@ impl Parts {
 
     /// Does a part meet one of the neighbour beyond a side there?
     pub fn meet(&self, part: usize, (next, other): (&Self, usize), axis: usize, side: usize) -> bool {
-        (self.sides[part][axis][side] & next.sides[other][axis][1 - side]).count_ones() >= LEAST_POINTS
+        is_opening(self.parts[part].sides[axis][side] & next.parts[other].sides[axis][1 - side])
     }
+
+    /// The points that some of the parts have in a side, those on its edges, too.
+    pub fn in_side(&self, axis: usize, side: usize, is_wanted: impl Fn(usize) -> bool) -> u64 {
+        let wanted = self.parts.iter().enumerate().filter(|(part, _)| is_wanted(*part));
+        wanted.fold(0, |all, (_, part)| all | part.sides[axis][side])
+    }
+}
+
+impl Part {
+    fn of_points(points: &Points) -> Self {
+        /// The points of a layer in the low half along x and y.
+        const LOW: [u64; 2] = [0x0f0f_0f0f_0f0f_0f0f, 0xffff_ffff];
+        let (mut inner, mut low) = (0, [0; 3]);
+        for (k, layer) in points.iter().enumerate().filter(|(k, _)| (1..ALONG - 1).contains(k)) {
+            let layer = layer & WITHIN_EDGES;
+            inner += layer.count_ones();
+            low[0] += (layer & LOW[0]).count_ones();
+            low[1] += (layer & LOW[1]).count_ones();
+            low[2] += if k < ALONG / 2 { layer.count_ones() } else { 0 };
+        }
+        let balance = low.map(|low| inner as i32 - 2 * low as i32);
+        Part { sides: sides_of(points), inner, balance }
+    }
+}
+
+/// Are so many of these points in a side within its edges that it is open there?
+pub fn is_opening(points: u64) -> bool {
+    (points & WITHIN_EDGES).count_ones() >= LEAST_POINTS
 }
 
 /// Where the points stand along an axis, in cells.
@@ -330,6 +385,22 @@ fn solid_points(hits: &[Hit], ends: &mut [[f64; 2]]) -> (Blocked, Points) {
     (blocked, solid)
 }
 
+/// What of the lines along x, y and z meets solid: what surface crosses, or what lies in solid altogether.
+fn lines(blocked: &Blocked, open: &Points) -> [Lines; 3] {
+    [0, 1, 2].map(|axis| {
+        let all = each(blocked[axis], *open, |blocked, open| blocked | !open);
+        // All that stands in a row, a column or a stack is gathered in its first point.
+        let gather = |steps: [u32; 3]| all.map(|layer| steps.iter().fold(layer, |layer, step| layer | (layer >> step)));
+        let low = match axis {
+            0 => sides_of(&gather([4, 2, 1]))[0][0],
+            1 => sides_of(&gather([32, 16, 8]))[1][0],
+            _ => all.iter().fold(0, |all, layer| all | layer),
+        };
+        let share = |lines: u64| f64::from((lines & WITHIN_EDGES).count_ones()) / f64::from(WITHIN_EDGES.count_ones());
+        Lines { blocked: share(low), all_blocked: low == u64::MAX }
+    })
+}
+
 /// Takes from `points` the region of the first of them that is among `seeds`; none if there are none.
 fn take_region(points: &mut Points, seeds: &Points, blocked: &Blocked) -> Option<Points> {
     /// Points with another one behind them along x.
@@ -365,7 +436,7 @@ fn take_region(points: &mut Points, seeds: &Points, blocked: &Blocked) -> Option
     Some(region)
 }
 
-/// The points of a part in the sides of the cell, without those on their edges; in the sides normal to x as y fastest, else x fastest.
+/// The points of a part in the sides of the cell; in the sides normal to x as y fastest, else x fastest.
 fn sides_of(part: &Points) -> [[u64; 2]; 3] {
     /// One point of each row of a layer, and what brings these together in the highest row.
     const ROWS: u64 = 0x0101_0101_0101_0101;
@@ -373,9 +444,9 @@ fn sides_of(part: &Points) -> [[u64; 2]; 3] {
     let last = ALONG - 1;
     let side = |row: &dyn Fn(u64) -> u64| {
         let rows = part.iter().enumerate().map(|(k, &layer)| (row(layer) & 0xff) << (ALONG * k));
-        rows.sum::<u64>() & WITHIN_EDGES
+        rows.sum::<u64>()
     };
     let x = [0, last].map(|i| side(&|layer| ((layer >> i) & ROWS).wrapping_mul(TOGETHER) >> (ALONG * last)));
     let y = [0, last].map(|j| side(&|layer| layer >> (ALONG * j)));
-    [x, y, [0, last].map(|k| part[k] & WITHIN_EDGES)]
+    [x, y, [0, last].map(|k| part[k])]
 }
