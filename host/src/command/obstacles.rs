@@ -93,6 +93,10 @@ pub fn obstacles(
     if wanted.faces == Faces::Plane {
         warn_of_hidden_passages(bodies, &shadows, progress);
     }
+    if closed.faces > 0 {
+        let faces = counted(closed.faces, "face is", "faces are");
+        progress.say(format!("thin walls    {faces} closed beside cells that walls divide"));
+    }
     warn_of_divided_cells(bodies, (closed.left, wanted.faces), progress);
     (found.lowered_faces, found.closed_faces, found.divided) = (lowered, closed.faces, closed.left);
     found
