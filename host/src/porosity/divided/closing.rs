@@ -1,14 +1,14 @@
 //! Of a cell that a wall divides one side is kept: its faces are closed where that does not meet what is kept of the cells beside it.
 
 use super::cells::{CellParts, SIDES, neighbour};
-use super::parts::{Lines, Part, is_opening};
+use super::parts::{OpenPart, PointLines, is_opening};
 use crate::porosity::Porosity;
 use crate::porosity::fields::FieldSet;
 use crate::porosity::shadows::{Shadows, faces_of_nth_cell, place_of_cell};
 use rayon::prelude::*;
 use voidage_core::grid::Grid;
 
-/// Lines that pass a cell by its shadow, and not by points, are a way that the points do not see: more than this share of them, or more than this if no line
+/// PointLines that pass a cell by its shadow, and not by points, are a way that the points do not see: more than this share of them, or more than this if no line
 /// passes by points.
 const UNSEEN: f64 = 0.3;
 const UNSEEN_IF_ALL_BLOCKED: f64 = 0.03;
@@ -50,12 +50,12 @@ impl<'a> Closing<'a> {
     pub fn close(&self, grid: &Grid<f64>, result: &mut Porosity) -> usize {
         let mut closed = 0;
         for (&n, (axis, side)) in self.cells.iter().flat_map(|n| SIDES.map(|side| (n, side))) {
-            let Some(next) =
-                neighbour(grid, n, axis, side).filter(|&next| [n, next].iter().any(|&n| self.keeps_one_side(n)))
-            else {
+            let next = neighbour(grid, n, axis, side);
+            if ![Some(n), next].into_iter().flatten().any(|n| self.keeps_one_side(n)) {
                 continue;
-            };
-            let [here, there] = [self.in_side(n, (axis, side)), self.in_side(next, (axis, 1 - side))];
+            }
+            let here = self.in_side(n, (axis, side));
+            let there = next.map_or([u64::MAX; 2], |next| self.in_side(next, (axis, 1 - side)));
             let [kept, open] = [0, 1].map(|which| here[which] & there[which]);
             let face = faces_of_nth_cell(grid, axis, n)[side];
             let Porosity { beta, bounds, .. } = result;
@@ -83,10 +83,10 @@ impl<'a> Closing<'a> {
 }
 
 /// Of the parts of a cell that reach beyond it the largest, with those that have a way to it; if none does, the largest of all. Of two that are alike it is the
-/// one towards the middle of the grid. None if a way through the cell may be narrower than the points see.
+/// one towards the middle of the grid. None if all are kept, or if a way through the cell may be narrower than the points see.
 fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, &Shadows), n: usize) -> Option<Kept> {
     let parts = all.of(n).filter(|parts| parts.count() > 1)?;
-    let has_unseen_way = |(Lines { blocked, all_blocked }, tau): (Lines, &Vec<f64>)| {
+    let has_unseen_way = |(PointLines { blocked, all_blocked }, tau): (PointLines, &Vec<f64>)| {
         let unseen = blocked - tau[n];
         unseen > UNSEEN || (all_blocked && unseen > UNSEEN_IF_ALL_BLOCKED)
     };
@@ -103,7 +103,7 @@ fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, 
     let inwards = [0, 1, 2].map(|axis| (count[axis] as i32 - 1 - 2 * at[axis] as i32).signum());
     let side_of = |part: usize| {
         let (mut kept, mut inner, mut inward) = (0, 0, 0);
-        for (other, Part { inner: points, balance, .. }) in parts.all().iter().enumerate() {
+        for (other, OpenPart { inner: points, balance, .. }) in parts.all().iter().enumerate() {
             if ways[other] == ways[part] {
                 kept |= 1 << other;
                 inner += points;
@@ -116,5 +116,6 @@ fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, 
         let is_better = if a.1.abs_diff(b.1) > ALIKE { b.1 > a.1 } else { b.2 > a.2 };
         if is_better { b } else { a }
     };
-    reaching.into_iter().map(side_of).reduce(better).map(|(kept, ..)| kept)
+    let (kept, ..) = reaching.into_iter().map(side_of).reduce(better)?;
+    ((kept.count_ones() as usize) < parts.count()).then_some(kept)
 }

@@ -15,7 +15,7 @@ const WITHIN: f64 = 1e-7;
 /// beside them.
 const MOVED: [f64; 3] = [0.0413, -0.0727, 0.1093];
 
-/// Lines that pass a triangle's edge by less, in cells, cross it; hits that are nearer to each other are at one place.
+/// PointLines that pass a triangle's edge by less, in cells, cross it; hits that are nearer to each other are at one place.
 const NEAR: f64 = 1e-9;
 
 /// Points of the 36 that a part needs in a side to be open there: 5 % of it.
@@ -44,14 +44,14 @@ type Blocked = [Points; 3];
 /// The open parts of a cell that are open to a side.
 #[derive(Debug, Clone)]
 pub struct Parts {
-    parts: Vec<Part>,
+    parts: Vec<OpenPart>,
     /// Of the lines along x, y and z.
-    pub lines: [Lines; 3],
+    pub lines: [PointLines; 3],
 }
 
 /// A part of a cell.
 #[derive(Debug, Clone, Copy)]
-pub struct Part {
+pub struct OpenPart {
     /// The points that it has in the low and the high side along x, y and z, those on the edges of the side, too.
     sides: [[u64; 2]; 3],
     /// How many of the 216 points that lie in no side it has.
@@ -62,7 +62,7 @@ pub struct Part {
 
 /// The lines of points along an axis.
 #[derive(Debug, Clone, Copy)]
-pub struct Lines {
+pub struct PointLines {
     /// Which share of those within the section meets solid.
     pub blocked: f64,
     /// Do all meet solid, those at the rim of the section, too?
@@ -113,7 +113,7 @@ impl Parts {
         let all_open = open;
         let mut parts = Vec::new();
         while let Some(points) = take_region(&mut open, &IN_SIDES, &blocked) {
-            let part = Part::of_points(&points);
+            let part = OpenPart::of_points(&points);
             if part.sides.iter().flatten().any(|side| is_opening(*side)) {
                 parts.push(part);
             }
@@ -127,7 +127,7 @@ impl Parts {
     }
 
     /// All of them.
-    pub fn all(&self) -> &[Part] {
+    pub fn all(&self) -> &[OpenPart] {
         &self.parts
     }
 
@@ -153,7 +153,7 @@ impl Parts {
     }
 }
 
-impl Part {
+impl OpenPart {
     fn of_points(points: &Points) -> Self {
         /// The points of a layer in the low half along x and y.
         const LOW: [u64; 2] = [0x0f0f_0f0f_0f0f_0f0f, 0xffff_ffff];
@@ -166,7 +166,7 @@ impl Part {
             low[2] += if k < ALONG / 2 { layer.count_ones() } else { 0 };
         }
         let balance = low.map(|low| inner as i32 - 2 * low as i32);
-        Part { sides: sides_of(points), inner, balance }
+        OpenPart { sides: sides_of(points), inner, balance }
     }
 }
 
@@ -386,7 +386,7 @@ fn solid_points(hits: &[Hit], ends: &mut [[f64; 2]]) -> (Blocked, Points) {
 }
 
 /// What of the lines along x, y and z meets solid: what surface crosses, or what lies in solid altogether.
-fn lines(blocked: &Blocked, open: &Points) -> [Lines; 3] {
+fn lines(blocked: &Blocked, open: &Points) -> [PointLines; 3] {
     [0, 1, 2].map(|axis| {
         let all = each(blocked[axis], *open, |blocked, open| blocked | !open);
         // All that stands in a row, a column or a stack is gathered in its first point.
@@ -397,7 +397,7 @@ fn lines(blocked: &Blocked, open: &Points) -> [Lines; 3] {
             _ => all.iter().fold(0, |all, layer| all | layer),
         };
         let share = |lines: u64| f64::from((lines & WITHIN_EDGES).count_ones()) / f64::from(WITHIN_EDGES.count_ones());
-        Lines { blocked: share(low), all_blocked: low == u64::MAX }
+        PointLines { blocked: share(low), all_blocked: low == u64::MAX }
     })
 }
 
