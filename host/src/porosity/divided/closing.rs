@@ -8,7 +8,7 @@ use crate::porosity::shadows::{Shadows, faces_of_nth_cell, place_of_cell};
 use rayon::prelude::*;
 use voidage_core::grid::Grid;
 
-/// PointLines that pass a cell by its shadow, and not by points, are a way that the points do not see: more than this share of them, or more than this if no line
+/// Lines that pass a cell by its shadow, and not by points, are a way that the points do not see: more than this share of them, or more than this if no line
 /// passes by points.
 const UNSEEN: f64 = 0.3;
 const UNSEEN_IF_ALL_BLOCKED: f64 = 0.03;

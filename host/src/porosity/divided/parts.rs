@@ -15,7 +15,7 @@ const WITHIN: f64 = 1e-7;
 /// beside them.
 const MOVED: [f64; 3] = [0.0413, -0.0727, 0.1093];
 
-/// PointLines that pass a triangle's edge by less, in cells, cross it; hits that are nearer to each other are at one place.
+/// Lines that pass a triangle's edge by less, in cells, cross it; hits that are nearer to each other are at one place.
 const NEAR: f64 = 1e-9;
 
 /// Points of the 36 that a part needs in a side to be open there: 5 % of it.
