@@ -101,6 +101,10 @@ fn few_cells_in_a_region_are_told() {
         Some("regions[0]    10.0 cells from its middle to its side")
     );
     assert_eq!(told("center = [20, 0.5], radius = 0.3", "beyond"), None);
+    // A cloud of the pressure around it is none.
+    let cloud = case(20).replace("p = 5e5", "p = 1e5, rho = 3");
+    let said = crate::kit::stdout(&solved(&at, &cloud, "cloud", &[]));
+    assert!(said.lines().any(|line| line == "regions[0]    4.0 cells from its middle to its side"), "{said}");
 }
 
 #[test]

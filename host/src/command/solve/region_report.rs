@@ -20,6 +20,9 @@ pub struct RegionReport {
     pub volume: f64,
     /// What of it is no solid, in m³.
     pub open_volume: f64,
+    /// May a blast start from it? Not where it has the pressure of what is around it.
+    #[serde(skip)]
+    pub may_blast: bool,
 }
 
 /// Of a region that is less open than this, it is said how much is.
@@ -43,7 +46,10 @@ pub fn report<const D: usize>(
         let holds = shares.iter().map(|&(cell, share)| (cell, Hold { region: n, share }));
         let [volume, open_volume] = volumes(edges, flow.beta_v(), parts, holds);
         let cells_per_radius = cells_per_radius(&region, edges, &live).filter(|_| !shares.is_empty());
-        let report = RegionReport { cells_per_radius, volume, open_volume };
+        let initial = &file.case.initial;
+        let around = initial.uniform.as_ref().and_then(|uniform| uniform.p);
+        let may_blast = around.is_none() || initial.regions[n].p != around;
+        let report = RegionReport { cells_per_radius, volume, open_volume, may_blast };
         let open = open_volume / volume;
         let trouble = match report.cells_per_radius {
             _ if region.is_outside(edges) => "lies outside the grid: it has no effect".to_owned(),
@@ -53,7 +59,7 @@ pub fn report<const D: usize>(
                 let percent = 100.0 * open;
                 format!("is {percent:.2} % open, the rest is solid: its mass and energy are those of the open part")
             }
-            _ if file.case.initial.uniform.is_some() && covers_all(&shares, edges) => {
+            _ if initial.uniform.is_some() && covers_all(&shares, edges) => {
                 "covers the whole grid: nothing remains of initial.uniform, and overpressures count from the pressure of the region unless \
                  output.ambient says another"
                     .to_owned()

@@ -273,7 +273,8 @@ impl Report {
             if let Some(cells) = region.cells_per_radius {
                 let key = format!("regions[{n}]");
                 // As many as are printed count.
-                let few = if (10.0 * cells).round() < 10.0 * ENOUGH_CELLS { FEW_CELLS } else { "" };
+                let is_few = region.may_blast && (10.0 * cells).round() < 10.0 * ENOUGH_CELLS;
+                let few = if is_few { FEW_CELLS } else { "" };
                 progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side{few}"));
             }
         }
