@@ -271,7 +271,7 @@ fn corners_of_rooms() {
             let grid = edges.grid(None).expect("a grid");
             let found = told(&edges, &scene(&walls.collect::<Vec<_>>()));
             let outside = |faces: &FieldSet, least| reached(&grid, faces, [4, 4, 0], least)[0];
-            let closed = (outside(&found.faces[2], 0.0), found.closed.left.cells);
+            let closed = (outside(&found.faces[2], 0.05), found.closed.left.cells);
             assert_eq!(closed, (false, 0), "{thickness}: {lo} {hi}");
             let outside = outside(&found.faces[1], 0.05);
             assert!(!outside || found.throat.cells > 0, "{thickness}: {lo} {hi}");

@@ -20,6 +20,7 @@ use closing::Closing;
 use near::Near;
 use parts::{Hits, Parts};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use voidage_core::grid::Grid;
 
 /// Cells that are divided.
@@ -77,12 +78,12 @@ impl Division {
 
     /// Closes what walls thinner than a cell leave open, once the faces of `result` are lowered to the throat. Of each cell that such a wall divides the
     /// largest part is kept, with those that have a way to it: a face by which only other parts of two cells meet is closed. Cells where lines pass
-    /// by the exact shadow that the points do not see are kept whole. Runs in the current rayon pool.
+    /// by the exact shadow that the points do not see are kept whole. Only walls are closed that let gas pass somewhere. Runs in the current rayon pool.
     pub fn close(&self, grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> ClosedCells {
         let (parts, candidates) = self.parts(grid, |_| false);
         let mut leaking: Vec<usize> =
             candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, &result.beta, n)).collect();
-        let cells: Vec<usize> = self.hiding.iter().map(|(n, _)| *n).filter(|&n| parts.is_divided(n)).collect();
+        let cells = along_walls(grid, &parts, &leaking);
         let closing = Closing::new(grid, (&parts, &cells), (&result.beta, shadows));
         leaking.retain(|&n| !closing.keeps_one_side(n));
         ClosedCells { faces: closing.close(grid, result), left: told(grid, &leaking) }
@@ -112,6 +113,17 @@ impl Division {
         found.into_iter().flatten().for_each(|(n, parts)| all.add(n, parts));
         cells.iter().copied().filter(|&n| all.is_divided(n)).collect()
     }
+}
+
+/// Some divided cells, those that are divided among the 26 around them, and so on, in ascending order.
+fn along_walls(grid: &Grid<f64>, parts: &CellParts, cells: &[usize]) -> Vec<usize> {
+    let (mut found, mut stack) = (BTreeSet::new(), cells.to_vec());
+    while let Some(n) = stack.pop() {
+        if found.insert(n) {
+            stack.extend(around(grid, n).into_iter().flatten().filter(|&next| parts.is_divided(next)));
+        }
+    }
+    found.into_iter().collect()
 }
 
 /// So many cells, in ascending order.
