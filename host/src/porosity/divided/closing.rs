@@ -8,12 +8,13 @@ use crate::porosity::shadows::{Shadows, faces_of_nth_cell, place_of_cell};
 use rayon::prelude::*;
 use voidage_core::grid::Grid;
 
-/// Lines that pass a cell by its shadow, and not by points, are a way that the points do not see: more than this share of them, or more than this if no line
-/// passes by points.
+/// Lines that pass a cell by its shadow, and not by points, are a way that the points do not see if they are more than this share of its section.
 const UNSEEN: f64 = 0.3;
+
+/// The same where no line of points passes.
 const UNSEEN_IF_ALL_BLOCKED: f64 = 0.03;
 
-/// A face that is open by less may be so where no point is.
+/// A face that is open by less may be so where no point is, and belong to either side.
 const UNSEEN_OPENING: f64 = 0.1;
 
 /// Two sides of a wall are alike in size if they differ by no more of the 216 points of a cell.
@@ -31,7 +32,7 @@ pub struct Closing<'a> {
 }
 
 impl<'a> Closing<'a> {
-    /// Of cells in ascending order, some of which may not be divided; `beta` holds the open fractions of faces.
+    /// Of divided cells in ascending order; `beta` holds the open fractions of faces.
     pub fn new(
         grid: &Grid<f64>,
         (parts, cells): (&'a CellParts, &'a [usize]),
