@@ -33,6 +33,13 @@ pub struct DividedCells {
     pub first: Option<[usize; 3]>,
 }
 
+impl DividedCells {
+    /// Cells in ascending order.
+    fn of(grid: &Grid<f64>, cells: &[usize]) -> Self {
+        DividedCells { cells: cells.len(), first: cells.first().map(|&n| place_of_cell(grid, n)) }
+    }
+}
+
 /// What was done so that thin walls are tight.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ClosedCells {
@@ -71,26 +78,23 @@ impl Division {
     #[must_use]
     pub fn told(&self, grid: &Grid<f64>, beta: &FieldSet, shadows: Option<&Shadows>) -> DividedCells {
         let is_passage = |n| shadows.is_some_and(|shadows| shadows.largest_hidden(grid, beta, n) > HIDDEN);
-        let (parts, candidates) = self.parts(grid, is_passage);
-        let found: Vec<usize> = candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, beta, n)).collect();
-        told(grid, &found)
+        let (_, leaking) = self.leaking(grid, beta, is_passage);
+        DividedCells::of(grid, &leaking)
     }
 
     /// Closes what walls thinner than a cell leave open, once the faces of `result` are lowered to the throat. Of each cell that such a wall divides the
     /// largest part is kept, with those that have a way to it: a face by which only other parts of two cells meet is closed. Cells where lines pass
     /// by the exact shadow that the points do not see are kept whole. Only walls are closed that let gas pass somewhere. Runs in the current rayon pool.
     pub fn close(&self, grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> ClosedCells {
-        let (parts, candidates) = self.parts(grid, |_| false);
-        let mut leaking: Vec<usize> =
-            candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, &result.beta, n)).collect();
+        let (parts, mut leaking) = self.leaking(grid, &result.beta, |_| false);
         let cells = along_walls(grid, &parts, &leaking);
         let closing = Closing::new(grid, (&parts, &cells), (&result.beta, shadows));
         leaking.retain(|&n| !closing.keeps_one_side(n));
-        ClosedCells { faces: closing.close(grid, result), left: told(grid, &leaking) }
+        ClosedCells { faces: closing.close(grid, result), left: DividedCells::of(grid, &leaking) }
     }
 
-    /// The parts of all cells that may let gas pass but for some that are told already, and of those beside them; and which of the former are divided.
-    fn parts(&self, grid: &Grid<f64>, is_told: impl Fn(usize) -> bool) -> (CellParts, Vec<usize>) {
+    /// The parts of all cells that may let gas pass but for some that are told already, and of those beside them; and which of the former let it pass.
+    fn leaking(&self, grid: &Grid<f64>, beta: &FieldSet, is_told: impl Fn(usize) -> bool) -> (CellParts, Vec<usize>) {
         let first = self.hiding.iter().filter(|(n, hidden)| *hidden >= LEAST_HIDDEN && !is_told(*n));
         let first: Vec<usize> = first.map(|(n, _)| *n).collect();
         let mut parts = CellParts::none(grid);
@@ -100,7 +104,8 @@ impl Division {
         let others = self.hiding.iter().map(|(n, _)| *n).filter(|n| first.binary_search(n).is_err());
         let beside: Vec<usize> = others.filter(|&n| is_beside(n)).collect();
         self.add(grid, &mut parts, &beside);
-        (parts, candidates)
+        let leaking = candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, beta, n)).collect();
+        (parts, leaking)
     }
 
     /// Adds those of some cells, and tells the cells that are divided.
@@ -124,9 +129,4 @@ fn along_walls(grid: &Grid<f64>, parts: &CellParts, cells: &[usize]) -> Vec<usiz
         }
     }
     found.into_iter().collect()
-}
-
-/// So many cells, in ascending order.
-fn told(grid: &Grid<f64>, cells: &[usize]) -> DividedCells {
-    DividedCells { cells: cells.len(), first: cells.first().map(|&n| place_of_cell(grid, n)) }
 }

@@ -73,7 +73,7 @@ impl CellParts {
     pub fn ways_around(&self, grid: &Grid<f64>, beta: &FieldSet, n: usize) -> Vec<usize> {
         let block = around(grid, n);
         let parts = block.map(|cell| self.of(cell?));
-        let is_divided = parts.map(|parts| parts.is_some_and(|parts| parts.count() > 1));
+        let is_divided = block.map(|cell| cell.is_some_and(|cell| self.is_divided(cell)));
         let is_open = |place: usize| block[place].is_some() && parts[place].is_none_or(|parts| parts.count() > 0);
         let (mut numbers, mut count) = ([0; 27], 0);
         for place in 0..27 {

@@ -20,8 +20,8 @@ const UNSEEN_OPENING: f64 = 0.1;
 /// Two sides of a wall are alike in size if they differ by no more of the 216 points of a cell.
 const ALIKE: u32 = 12;
 
-/// The parts of a cell that are kept, as bits; all bits where all are, or where a cell has more parts than bits.
-type Kept = u64;
+/// The parts of a cell that are kept, as bits; none where all are.
+type Kept = Option<u64>;
 
 /// Cells that walls divide, and what of each is kept.
 pub struct Closing<'a> {
@@ -38,13 +38,13 @@ impl<'a> Closing<'a> {
         (parts, cells): (&'a CellParts, &'a [usize]),
         (beta, shadows): (&FieldSet, &Shadows),
     ) -> Self {
-        let keep = |&n: &usize| side_to_keep(grid, parts, (beta, shadows), n).unwrap_or(Kept::MAX);
+        let keep = |&n: &usize| side_to_keep(grid, parts, (beta, shadows), n);
         Closing { parts, cells, kept: cells.par_iter().map(keep).collect() }
     }
 
     /// Is one side of a cell kept?
     pub fn keeps_one_side(&self, n: usize) -> bool {
-        self.kept_of(n) != Kept::MAX
+        self.kept_of(n).is_some()
     }
 
     /// Closes the faces by which hardly anything but what is not kept of two cells meets; how many were open.
@@ -72,26 +72,26 @@ impl<'a> Closing<'a> {
     }
 
     fn kept_of(&self, n: usize) -> Kept {
-        self.cells.binary_search(&n).map_or(Kept::MAX, |at| self.kept[at])
+        self.kept[self.cells.binary_search(&n).ok()?]
     }
 
     /// The points in a side of what is kept of a cell, and of all that is open of it.
     fn in_side(&self, n: usize, (axis, side): (usize, usize)) -> [u64; 2] {
         let Some(parts) = self.parts.of(n) else { return [u64::MAX; 2] };
-        let (kept, all) = (self.kept_of(n), parts.in_side(axis, side, |_| true));
-        [if kept == Kept::MAX { all } else { parts.in_side(axis, side, |part| kept & 1 << part != 0) }, all]
+        let all = parts.in_side(axis, side, |_| true);
+        [self.kept_of(n).map_or(all, |kept| parts.in_side(axis, side, |part| kept & 1 << part != 0)), all]
     }
 }
 
 /// Of the parts of a cell that reach beyond it the largest, with those that have a way to it; if none does, the largest of all. Of two that are alike it is the
-/// one towards the middle of the grid. None if all are kept, or if a way through the cell may be narrower than the points see.
-fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, &Shadows), n: usize) -> Option<Kept> {
-    let parts = all.of(n).filter(|parts| parts.count() > 1)?;
+/// one towards the middle of the grid. All are kept if a way through the cell may be narrower than the points see, or if there are more parts than bits.
+fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, &Shadows), n: usize) -> Kept {
+    let parts = all.of(n)?;
     let has_unseen_way = |(PointLines { blocked, all_blocked }, tau): (PointLines, &Vec<f64>)| {
         let unseen = blocked - tau[n];
         unseen > UNSEEN || (all_blocked && unseen > UNSEEN_IF_ALL_BLOCKED)
     };
-    if parts.count() > Kept::BITS as usize || parts.lines.into_iter().zip(&shadows.tau).any(has_unseen_way) {
+    if parts.count() > u64::BITS as usize || parts.lines.into_iter().zip(&shadows.tau).any(has_unseen_way) {
         return None;
     }
     let ways = all.ways_around(grid, beta, n);
@@ -103,7 +103,7 @@ fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, 
     // Towards the middle of the grid.
     let inwards = [0, 1, 2].map(|axis| (count[axis] as i32 - 1 - 2 * at[axis] as i32).signum());
     let side_of = |part: usize| {
-        let (mut kept, mut inner, mut inward) = (0, 0, 0);
+        let (mut kept, mut inner, mut inward) = (0_u64, 0, 0);
         for (other, OpenPart { inner: points, balance, .. }) in parts.all().iter().enumerate() {
             if ways[other] == ways[part] {
                 kept |= 1 << other;
@@ -113,7 +113,7 @@ fn side_to_keep(grid: &Grid<f64>, all: &CellParts, (beta, shadows): (&FieldSet, 
         }
         (kept, inner, inward)
     };
-    let better = |a: (Kept, u32, i32), b: (Kept, u32, i32)| {
+    let better = |a: (u64, u32, i32), b: (u64, u32, i32)| {
         let is_better = if a.1.abs_diff(b.1) > ALIKE { b.1 > a.1 } else { b.2 > a.2 };
         if is_better { b } else { a }
     };
