@@ -164,6 +164,12 @@ fn surface_that_others_hide_does_not_count() {
     check(&boxes, [0.5 * (3.0 * (0.16 + 0.12) + 2.0 * 0.04), aside, aside]);
     boxes.bodies.reverse();
     check(&boxes, [0.5 * (3.0 * (0.16 + 0.12) + 2.0 * 0.04), aside, aside]);
+    // A panel without thickness through the block, which shows a fifth of a metre on both sides.
+    let corner = |x: f64, y: f64| DVec3::new(x, y, 0.5);
+    let [a, b, c, d] = [corner(0.1, 0.4), corner(0.9, 0.4), corner(0.9, 0.6), corner(0.1, 0.6)];
+    let mut with_panel = scene(&[cuboid(DVec3::splat(0.3), DVec3::splat(0.7)), vec![[a, b, c], [a, c, d]]]);
+    with_panel.bodies[1].drag.cd = Some(5.0);
+    check(&with_panel, [2.0 * 0.16, 2.0 * 0.16, 2.0 * 0.16 + 5.0 * 2.0 * 0.04]);
 }
 
 /// The table of congestion of some zones.

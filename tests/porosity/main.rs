@@ -23,6 +23,7 @@ mod quadric;
 mod rings;
 mod scenes;
 mod shadows;
+mod sheets;
 mod subdivide;
 mod torus;
 mod torus_points;

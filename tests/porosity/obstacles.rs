@@ -14,13 +14,13 @@ use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, formulas, scene, turned_box};
 
 /// `cells` cells along each axis from `lo` to `hi`.
-fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
+pub(super) fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
     let axis: Vec<f64> = (0..=cells).map(|n| lo + (hi - lo) * n as f64 / cells as f64).collect();
     Edges([axis.clone(), axis.clone(), axis])
 }
 
 /// The obstacles, found on the way to porosity and after it: both are the same to the bit, and so is the porosity.
-fn obstacles(edges: &Edges, bodies: &Bodies) -> Resistance {
+pub(super) fn obstacles(edges: &Edges, bodies: &Bodies) -> Resistance {
     let grid = edges.grid(None).expect("a grid");
     let (after, asked) = (Options::default(), Options { resistance: true, ..Options::default() });
     let [without, with] = [after, asked].map(|options| porosity(&grid, bodies, options));
@@ -31,14 +31,16 @@ fn obstacles(edges: &Edges, bodies: &Bodies) -> Resistance {
     found
 }
 
-type Cuboid = [[u8; 3]; 2];
+pub(super) type Cuboid = [[u8; 3]; 2];
+
+/// Does a box hold a cell of the lattice?
+pub(super) fn is_solid(boxes: &[Cuboid], at: [i32; 3]) -> bool {
+    boxes.iter().any(|[lo, hi]| (0..3).all(|a| i32::from(lo[a]) <= at[a] && at[a] < i32::from(hi[a])))
+}
 
 /// Area of the union of boxes on a lattice normal to each axis, both sides counted, from which of the lattice's cells are solid.
-fn lattice_area(boxes: &[Cuboid]) -> [f64; 3] {
-    let solid = |at: [i32; 3]| {
-        let holds = |[lo, hi]: &Cuboid| (0..3).all(|a| i32::from(lo[a]) <= at[a] && at[a] < i32::from(hi[a]));
-        boxes.iter().any(holds)
-    };
+pub(super) fn lattice_area(boxes: &[Cuboid]) -> [f64; 3] {
+    let solid = |at: [i32; 3]| is_solid(boxes, at);
     let mut area = [0.0; 3];
     for cell in 0..16 * 16 * 16 {
         let at = [cell % 16 - 1, cell / 16 % 16 - 1, cell / 256 - 1];
@@ -51,7 +53,7 @@ fn lattice_area(boxes: &[Cuboid]) -> [f64; 3] {
     area
 }
 
-fn triangles([lo, hi]: &Cuboid) -> Vec<Triangle> {
+pub(super) fn triangles([lo, hi]: &Cuboid) -> Vec<Triangle> {
     let corner = |p: &[u8; 3]| DVec3::from_array(p.map(f64::from));
     cuboid(corner(lo), corner(hi))
 }

@@ -9,7 +9,7 @@ use crate::surface::division::{Shared, Site, SpareMemory, divide};
 use crate::surface::other_bodies::OtherBodies;
 use crate::surface::refined::{At, PLACES, Refined, TOP, known, narrow};
 use crate::surface::surface_area::{KeptSurface, PieceSums, SurfaceArea};
-use crate::surface::union::{CellUnion, NoProof, PlanarParts, UnionMemory};
+use crate::surface::union::{CellUnion, Frame, NoProof, PlanarParts, UnionMemory};
 use core::ops::Range;
 use heapless::Vec;
 
@@ -34,6 +34,10 @@ pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
         refined: Option<&Refined<V::Scalar>>,
         spare: SpareMemory<V>,
     );
+    /// The pieces of sheets inside a cell of which bodies may hide some; none where it is not asked what they leave of them.
+    fn sheets(&self, cell: usize) -> Option<impl Iterator<Item = &[[V::Scalar; 3]]> + Clone>;
+    /// What the bodies leave of the sheets inside a cell.
+    fn set_free_sheets(&mut self, cell: usize, free: SurfaceArea<V::Scalar>);
 }
 
 impl<V: Vector> UnionSums<V> for () {
@@ -62,6 +66,12 @@ impl<V: Vector> UnionSums<V> for () {
         _: SpareMemory<V>,
     ) {
     }
+    #[inline(always)]
+    fn sheets(&self, _: usize) -> Option<impl Iterator<Item = &[[V::Scalar; 3]]> + Clone> {
+        None::<core::iter::Empty<_>>
+    }
+    #[inline(always)]
+    fn set_free_sheets(&mut self, _: usize, _: SurfaceArea<V::Scalar>) {}
 }
 
 /// A try for a union that gives no proof costs as much as sorting so many times its triangles. Where bodies miss each other by rounding, or wind around
@@ -128,13 +138,20 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             let open = at.largest_gap(layer);
             let wanted = P::WANTED && wants_union(at, site, layer, pieces);
             let narrows = open > known() && pieces.wants_fractions();
-            if !(narrows || wanted) {
+            let has_sheets = P::WANTED && pieces.sheets(at.cell()).is_some();
+            if !(narrows || wanted || has_sheets) {
                 continue;
             }
             if row.is_none() {
                 row = Row::new(site.bins, site.k, [lo, hi], (&mut *numbers, &mut *groups));
             }
             let (Some(row), Some(cell)) = (&mut row, site.grid.cell_box([i, j, site.k])) else { continue };
+            if has_sheets && let Some(free) = free_sheets(shared, site, (at.cell(), cell), row, pieces) {
+                pieces.set_free_sheets(at.cell(), free);
+            }
+            if !(narrows || wanted) {
+                continue;
+            }
             let believed = |u: &Refined<_>| at.agrees(layer, u, site.areas);
             let places = if wanted { [true; PLACES] } else { at.open_places(layer) };
             let (mut refined, surface) = union::<_, _, P>(shared, site, cell, row, places, believed);
@@ -154,6 +171,26 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
         }
     }
     resolved
+}
+
+/// What the bodies in a cell leave of the sheets there, if that has a proof.
+fn free_sheets<V: Vector, O, P: UnionSums<V>>(
+    shared: &mut Shared<V, O>,
+    site: &Site<V>,
+    (number, cell): (usize, Aabb<V>),
+    row: &Row<V>,
+    pieces: &P,
+) -> Option<SurfaceArea<V::Scalar>> {
+    let (frame, across) = (Frame::of(cell), side_areas(cell));
+    let sheets = pieces.sheets(number)?.map(|corners| frame.framed_polygon(corners));
+    with_least_blur(shared.tol, |blur| {
+        let mut bodies = bodies_in(shared.union.reborrow(), site, cell, row, blur)?;
+        let (error, mut sum) = (bodies.cell()?.error, SurfaceArea::default());
+        for sheet in sheets.clone() {
+            bodies.free_parts(&sheet, |part| sum = sum.plus(SurfaceArea::of_framed(part, across)))?;
+        }
+        Ok((sum, error))
+    })
 }
 
 /// Is the surface of the union in a cell asked for? If one body fills it, or has all surface in it, that is told at once.
@@ -274,8 +311,7 @@ fn union_of_triangles<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
         let mut surface = P::Found::default();
         let found = bodies.cell_and_surface(&mut |_, kept| {
             if P::WANTED {
-                let ([x, y, z], across) = (kept.doubled_area(), side_areas(cell));
-                surface.keep(SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]));
+                surface.keep(SurfaceArea::of_framed(kept, side_areas(cell)));
             }
         })?;
         if P::WANTED {

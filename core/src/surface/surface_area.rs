@@ -36,6 +36,13 @@ impl<R: Real> SurfaceArea<R> {
         SurfaceArea { frontal: doubled.map(|d| d.abs() * quarter), wetted: (x * x + y * y + z * z).sqrt() * R::HALF }
     }
 
+    /// Of a plane polygon in the frame of a cell with sides of these areas.
+    #[inline(always)]
+    pub(super) fn of_framed(polygon: &Polygon<R>, sides: [R; 3]) -> Self {
+        let [x, y, z] = polygon.doubled_area();
+        Self::of_polygon([x * sides[0], y * sides[1], z * sides[2]])
+    }
+
     /// The sum of both.
     #[must_use]
     #[inline(always)]
@@ -80,8 +87,12 @@ pub struct CellSurface<R> {
     pub(super) inside: SurfaceArea<R>,
     /// Wetted area in the planes of its faces.
     pub(super) in_plane: R,
-    /// Of sheets without volume, both sides.
+    /// Of sheets without volume, both sides, inside the cell.
     pub(super) sheets: SurfaceArea<R>,
+    /// Wetted area of sheets in the planes of its faces.
+    pub(super) sheets_in_plane: R,
+    /// What the bodies with volume leave of the sheets inside the cell, if that is known.
+    pub(super) free_sheets: Option<SurfaceArea<R>>,
     /// Those with surface inside or in the planes of its faces.
     pub(super) bodies: Bodies,
     /// Those with surface inside.
@@ -98,18 +109,48 @@ impl<R: Real> CellSurface<R> {
     /// The sum over all bodies, whether they overlap or not.
     pub(super) fn sum(&self) -> SurfaceArea<R> {
         let SurfaceArea { frontal, wetted } = self.inside.plus(self.sheets);
-        SurfaceArea { frontal, wetted: wetted + self.in_plane }
+        SurfaceArea { frontal, wetted: wetted + self.in_planes() }
+    }
+
+    /// Wetted area in the planes of the cell's faces, of all bodies and sheets added up.
+    pub(super) fn in_planes(&self) -> R {
+        self.in_plane + self.sheets_in_plane
+    }
+
+    /// Are there sheets?
+    pub(super) fn has_sheets(&self) -> bool {
+        self.sheets.wetted > R::ZERO || self.sheets_in_plane > R::ZERO
+    }
+
+    /// May bodies with volume hide a part of the sheets inside the cell? Without surface in it they fill it or leave it open.
+    pub(super) fn may_hide_sheets(&self) -> bool {
+        self.sheets.wetted > R::ZERO && self.inside.wetted > R::ZERO
+    }
+
+    /// What the bodies leave of the sheets inside the cell, and how much of its wetted area is in doubt.
+    pub(super) fn seen_sheets(&self) -> (SurfaceArea<R>, R) {
+        match self.free_sheets {
+            Some(free) => (free, R::ZERO),
+            None if self.may_hide_sheets() => (self.sheets, self.sheets.wetted),
+            None => (self.sheets, R::ZERO),
+        }
+    }
+
+    /// Is the surface of the union of the bodies asked for, or what is solid on the cell's sides?
+    pub(super) fn wants_union(&self) -> bool {
+        self.inside.wetted > R::ZERO && (self.bodies == Bodies::Several || self.sheets_in_plane > R::ZERO)
     }
 
     /// What the union of the bodies with volume has inside the cell, as far as it is known.
     pub(super) fn of_union(&self) -> UnionSurface<R> {
         let alone = UnionSurface { area: self.inside, ..UnionSurface::default() };
-        match self.bodies {
-            Bodies::Several if self.inside.wetted > R::ZERO => {
-                self.union.unwrap_or(UnionSurface { doubt: self.inside.wetted, ..alone })
-            }
+        match (self.union, self.bodies) {
+            (Some(found), _) => found,
             // Without surface inside, a cell that is not closed is open up to its sides.
-            Bodies::Several => UnionSurface { exact: true, sides: Some([[R::ZERO; 2]; 3]), ..alone },
+            _ if !(self.inside.wetted > R::ZERO) => {
+                UnionSurface { exact: true, sides: Some([[R::ZERO; 2]; 3]), ..alone }
+            }
+            (_, Bodies::Several) => UnionSurface { doubt: self.inside.wetted, ..alone },
             _ => UnionSurface { exact: true, ..alone },
         }
     }
@@ -189,7 +230,7 @@ impl<R: Real> PieceMemory<'_, R> {
 pub struct SurfaceCell<R> {
     /// Its number in the layer, x fastest.
     pub cell: u32,
-    /// Areas of the union in it, in the unit of the grid. Sheets count as they are.
+    /// Areas of the union in it, in the unit of the grid. Of sheets counts what lies outside all bodies, whatever other sheets cover.
     pub area: SurfaceArea<R>,
     /// What has been kept of it.
     pub kept: KeptCell,
@@ -275,7 +316,7 @@ impl<'a, R> KeptPieces<'a, R> {
 }
 
 /// The last piece of a cell, and those before it.
-fn list(pieces: &[KeptPiece], last: CellPieces) -> impl Iterator<Item = &KeptPiece> {
+fn list(pieces: &[KeptPiece], last: CellPieces) -> impl Iterator<Item = &KeptPiece> + Clone {
     let mut at = last;
     core::iter::from_fn(move || {
         let CellPieces::Last(number) = at else { return None };
@@ -454,6 +495,13 @@ impl<'a, R: Real> LayerSurface<'a, R> {
         let pieces = list(self.pieces.pieces, surface.kept).filter(|piece| !piece.owner.sheet);
         Some((surface, pieces.map_while(|piece| piece.corners_in(self.pieces.corners))))
     }
+
+    /// The pieces of sheets inside a cell; none if they are not all known.
+    pub fn sheets_in(&self, cell: usize) -> Option<impl Iterator<Item = &[[R; 3]]> + Clone> {
+        let surface = self.cell(cell).filter(|surface| surface.kept != CellPieces::Incomplete)?;
+        let pieces = list(self.pieces.pieces, surface.kept).filter(|piece| piece.owner.sheet);
+        Some(pieces.map_while(|piece| piece.corners_in(self.pieces.corners)))
+    }
 }
 
 impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
@@ -478,7 +526,7 @@ impl<R: Real> PieceSums<R> for LayerSurface<'_, R> {
         let area = SurfaceArea::of_polygon(doubled_area);
         match (sheet, place) {
             (true, Place::Inside) => cell.sheets = cell.sheets.plus(area),
-            (true, Place::InPlane) => cell.sheets.wetted += area.wetted,
+            (true, Place::InPlane) => cell.sheets_in_plane += area.wetted,
             (false, Place::Inside) => cell.inside = cell.inside.plus(area),
             (false, Place::InPlane) => cell.in_plane += area.wetted,
             (_, Place::Top) => cell.wall_on_top = true,

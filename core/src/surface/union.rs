@@ -23,6 +23,7 @@ mod octree;
 mod piece;
 mod planar;
 mod separate;
+mod sheets;
 
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
@@ -543,6 +544,15 @@ impl<R: Real> Frame<R> {
     pub fn framed(&self, p: [R; 3]) -> [R; 3] {
         let d = sub(p, self.origin);
         [d[0] / self.scale[0], d[1] / self.scale[1], d[2] / self.scale[2]]
+    }
+
+    /// A polygon as seen from the cell.
+    pub fn framed_polygon(&self, corners: &[[R; 3]]) -> Polygon<R> {
+        let mut polygon = Polygon::default();
+        for corner in corners {
+            polygon.push(self.framed(*corner));
+        }
+        polygon
     }
 
     /// The part of a triangle inside the cell `lo..hi`, in the frame; false if there is none. Cut along z, y, x as in [`crate::surface::cells`].

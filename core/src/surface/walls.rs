@@ -79,11 +79,13 @@ fn wall<V: Vector, O: OtherBodies<V>>(
     if sides.iter().filter(|side| side.thin.is_none()).any(|side| rounds_much(side.cell)) {
         return Bounds::UNKNOWN;
     }
-    // What a sheet blocks beyond the solids is not known here.
-    if sides.iter().any(|side| site.bins.groups(side.k).iter().any(|g| g.sheet && side.touches(g))) {
-        return Bounds::UNKNOWN;
+    let has_others = sides.iter().any(|side| shared.others.reach(side.cell));
+    if sides.iter().any(|side| site.bins.groups(side.k).iter().any(|g| g.is_sheet() && side.touches(g))) {
+        // What a sheet blocks beyond solids by formula is not known here.
+        let known = if has_others { None } else { wall_with_sheets(shared, site.bins, axis, &sides) };
+        return known.unwrap_or(Bounds::UNKNOWN);
     }
-    let whole = if sides.iter().any(|side| shared.others.reach(side.cell)) {
+    let whole = if has_others {
         wall_with_others(shared, site.bins, axis, &sides)
     } else {
         whole_wall(shared, site.bins, axis, &sides)
@@ -101,6 +103,35 @@ fn whole_wall<V: Vector, O>(
     with_least_blur(shared.tol, |blur| {
         let (closed, error) = wall_union(&mut shared.union, bins, axis, sides, blur)?;
         Ok((Bounds::around(closed, error), error))
+    })
+}
+
+/// The union on a face with walls of bodies and sheets: of these what the bodies leave open, and of several at least what one covers and at most what all do.
+fn wall_with_sheets<V: Vector, O>(
+    shared: &mut Shared<V, O>,
+    bins: &Bins<V>,
+    axis: usize,
+    sides: &[WallSide<V>; 2],
+) -> Option<Bounds<V::Scalar>> {
+    let [_, above] = sides;
+    let plane = *above.cell.min.to_array().get(axis)?;
+    with_least_blur(shared.tol, |blur| {
+        let (closed, error) = wall_union(&mut shared.union, bins, axis, sides, blur)?;
+        let mut bodies = gather(&mut shared.union, bins, sides, blur)?;
+        let (mut largest, mut sum) = (V::Scalar::ZERO, V::Scalar::ZERO);
+        for group in bins.groups(above.k).iter().filter(|group| group.is_sheet() && above.touches(group)) {
+            let triangles = bins.triangles(group);
+            let mut own = V::Scalar::ZERO;
+            for triangle in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
+                if triangle.iter().all(|corner| corner.to_array().get(axis) == Some(&plane)) {
+                    own += bodies.free_share(axis, triangle)?;
+                }
+            }
+            // Both sides of it are there.
+            own = (own * V::Scalar::HALF).min(V::Scalar::ONE - closed);
+            (largest, sum) = (largest.max(own), sum + own);
+        }
+        Ok((Bounds { lower: closed + largest, upper: closed + sum }.widened(error), error))
     })
 }
 
@@ -181,7 +212,7 @@ fn gather<'u, V: Vector>(
         None => CellUnion::new(memory.reborrow(), first.cell, blur),
     };
     for side in sides {
-        for group in bins.groups(side.k).iter().filter(|g| side.touches(g)) {
+        for group in bins.groups(side.k).iter().filter(|g| !g.is_sheet() && side.touches(g)) {
             union.add(side.cell, side.below, bins.triangles(group), bins.ids(group).iter().copied())?;
         }
     }

@@ -13,7 +13,6 @@ use crate::grid::fields::{Fields, exactly};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
 use crate::surface::cell_unions::{UnionSums, side_areas};
-use crate::surface::clip::Polygon;
 use crate::surface::division::{Shared, Site, SpareMemory, divide, with_effort};
 use crate::surface::error::Defects;
 use crate::surface::other_bodies::OtherBodies;
@@ -200,7 +199,7 @@ impl Walls<'_> {
             is_wall(flags.y, c) || is_wall(flags.y, c + self.nx),
             self.has_top || cell.wall_on_top || is_wall(flags.z, c),
         ];
-        let bodies = if cell.sheets.wetted > R::ZERO { Bodies::Several } else { cell.bodies };
+        let bodies = if cell.has_sheets() { Bodies::Several } else { cell.bodies };
         KeptCell { pieces: cell.kept, walls, bodies, entered_once: false }
     }
 }
@@ -238,18 +237,19 @@ fn area_of<R: Real>(
         return sum;
     }
     report.sum = report.sum.plus(sum);
-    if surface.bodies != Bodies::Several {
+    let is_of_one = surface.bodies == Bodies::None || (surface.bodies != Bodies::Several && !surface.has_sheets());
+    if is_of_one {
         return sum;
     }
-    let found = surface.of_union();
-    let mut area = found.area.plus(surface.sheets);
-    if found.doubt > R::ZERO {
+    let (found, (sheets, in_sheets)) = (surface.of_union(), surface.seen_sheets());
+    let (mut area, doubt) = (found.area.plus(sheets), found.doubt + in_sheets);
+    if doubt > R::ZERO {
         report.unproved += 1;
-        report.max_doubt = report.max_doubt.max(found.doubt);
+        report.max_doubt = report.max_doubt.max(doubt);
     }
-    let solid = found.sides.filter(|_| surface.in_plane > R::ZERO);
+    let solid = found.sides.filter(|_| surface.in_planes() > R::ZERO);
     if solid.is_none() {
-        area.wetted += surface.in_plane;
+        area.wetted += surface.in_planes();
     }
     if let Some(place) = sides.get_mut(report.sides).filter(|_| solid.is_some() || !found.exact) {
         *place = CellSides { cell: c as u32, exact: found.exact, solid };
@@ -266,13 +266,23 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
     }
 
     fn wants_union(&self, cell: usize) -> bool {
-        let shared = |s: &CellSurface<V::Scalar>| s.bodies == Bodies::Several && s.inside.wetted > V::Scalar::ZERO;
-        self.cell(cell).is_some_and(shared)
+        self.cell(cell).is_some_and(CellSurface::wants_union)
+    }
+
+    fn sheets(&self, cell: usize) -> Option<impl Iterator<Item = &[[V::Scalar; 3]]> + Clone> {
+        self.cell(cell).filter(|surface| surface.may_hide_sheets())?;
+        self.sheets_in(cell)
+    }
+
+    fn set_free_sheets(&mut self, cell: usize, free: SurfaceArea<V::Scalar>) {
+        if let Some(surface) = self.cell_mut(cell) {
+            surface.free_sheets = Some(free);
+        }
     }
 
     fn settle(&mut self, (number, cell): (usize, Aabb<V>), solid: V::Scalar) -> bool {
         let Some((surface, pieces)) = self.of_one(number) else { return false };
-        let sides = (surface.in_plane > V::Scalar::ZERO).then(|| sides_of_one(cell, pieces, solid));
+        let sides = (surface.in_planes() > V::Scalar::ZERO).then(|| sides_of_one(cell, pieces, solid));
         let found = UnionSurface { area: surface.inside, exact: true, sides, ..UnionSurface::default() };
         UnionSums::<V>::set_union(self, number, found);
         true
@@ -300,7 +310,7 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         let middles =
             |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
         let sides = match refined {
-            None if wants_sides && surface.in_plane > V::Scalar::ZERO => {
+            None if wants_sides && surface.in_planes() > V::Scalar::ZERO => {
                 divide(shared, site, cell, spare).as_ref().map(middles)
             }
             refined => refined.map(middles),
@@ -320,14 +330,10 @@ fn sides_of_one<'p, V: Vector>(
 where
     V::Scalar: 'p,
 {
-    let (frame, mut polygon) = (Frame::of(cell), Polygon::default());
+    let frame = Frame::of(cell);
     let (mut flux, mut moment) = ([V::Scalar::ZERO; 3], [V::Scalar::ZERO; 3]);
     for corners in pieces {
-        polygon.clear();
-        for corner in corners {
-            polygon.push(frame.framed(*corner));
-        }
-        integrate(&polygon, &mut flux, &mut moment);
+        integrate(&frame.framed_polygon(corners), &mut flux, &mut moment);
     }
     [0, 1, 2].map(|axis| {
         let low = solid + moment[axis];

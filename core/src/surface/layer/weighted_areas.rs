@@ -48,7 +48,7 @@ impl<V: Vector> Layers<'_, V> {
     }
 
     /// Replaces such sums in those cells that are `wanted` by the same over the surface of the union, each part with the weights of the body that it is of; where
-    /// all bodies in a cell have the same weights, or their union has no proof, or sheets reach it, the sums stay.
+    /// all bodies in a cell have the same weights, or their union has no proof, the sums stay.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, a slice of wrong length, memory of another grid.
@@ -72,9 +72,9 @@ impl<V: Vector> Layers<'_, V> {
                     row = Row::new(&self.bins, k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
                 }
                 let Some(row) = &row else { continue };
-                let is_plain = !self.bins.groups(k).iter().any(|group| group.sheet && reaches(group, cell));
-                if is_plain && weights_differ(row, cell, weights) {
-                    let place = (&self.bins, row, cell);
+                let around = Around { bins: &self.bins, k, row };
+                if around.weights_differ(cell, weights) {
+                    let place = (around, cell);
                     let (limits, mut left) = ((self.options.tol, MOST_LEVELS), MOST_EFFORT);
                     *sum = in_parts(union.reborrow(), place, weights, limits, &mut left).unwrap_or(*sum);
                 }
@@ -90,25 +90,50 @@ fn reaches<V: Vector>(group: &Group<V>, cell: Aabb<V>) -> bool {
     of(V::x) && of(V::y) && of(V::z)
 }
 
-/// Have two bodies that may reach a cell different weights?
-fn weights_differ<V: Vector, const N: usize>(row: &Row<V>, cell: Aabb<V>, weights: &[[V::Scalar; N]]) -> bool {
-    let mut here = row.groups.iter().filter(|group| reaches(group, cell)).map(|group| weights.get(group.body as usize));
-    let first = here.next();
-    here.any(|other| Some(other) != first)
+/// The bodies with volume in a row of cells of a layer, and the sheets of the layer.
+#[derive(Clone, Copy)]
+struct Around<'a, V> {
+    bins: &'a Bins<'a, V>,
+    k: usize,
+    row: &'a Row<'a, V>,
+}
+
+impl<'a, V: Vector> Around<'a, V> {
+    /// Bodies with volume whose boxes reach a cell.
+    fn bodies(self, cell: Aabb<V>) -> impl Iterator<Item = &'a Group<V>> {
+        self.row.groups.iter().filter(move |group| reaches(group, cell))
+    }
+
+    /// Sheets whose boxes reach a cell.
+    fn sheets(self, cell: Aabb<V>) -> impl Iterator<Item = &'a Group<V>> {
+        self.bins.groups(self.k).iter().filter(move |group| group.is_sheet() && reaches(group, cell))
+    }
+
+    /// The triangles that may reach a cell.
+    fn triangle_count(self, cell: Aabb<V>) -> usize {
+        let of_bodies: usize = self.bodies(cell).map(|group| self.row.ids(group).len()).sum();
+        of_bodies + self.sheets(cell).map(|group| self.bins.ids(group).len()).sum::<usize>()
+    }
+
+    /// Have two bodies that may reach a cell different weights?
+    fn weights_differ<const N: usize>(self, cell: Aabb<V>, weights: &[[V::Scalar; N]]) -> bool {
+        let mut here = self.bodies(cell).chain(self.sheets(cell)).map(|group| weights.get(group.body as usize));
+        let first = here.next();
+        here.any(|other| Some(other) != first)
+    }
 }
 
 /// The weighted areas of the surface of the union in a cell; where that has no proof, in its parts, so many levels of them, while triangles are `left` to be
 /// looked at. Calls itself, once a level.
 fn in_parts<V: Vector, const N: usize>(
     mut memory: UnionMemory<V::Scalar>,
-    (bins, row, cell): (&Bins<V>, &Row<V>, Aabb<V>),
+    (around, cell): (Around<V>, Aabb<V>),
     weights: &[[V::Scalar; N]],
     (tol, levels): (V::Scalar, u32),
     left: &mut usize,
 ) -> Option<Weighted<V::Scalar, N>> {
-    let triangles: usize = row.groups.iter().filter(|group| reaches(group, cell)).map(|g| row.ids(g).len()).sum();
-    *left = left.checked_sub(triangles)?;
-    let whole = with_least_blur(tol, |blur| of_union(memory.reborrow(), (bins, row, cell), blur, weights));
+    *left = left.checked_sub(around.triangle_count(cell))?;
+    let whole = with_least_blur(tol, |blur| of_union(memory.reborrow(), (around, cell), blur, weights));
     if whole.is_some() {
         return whole;
     }
@@ -122,7 +147,7 @@ fn in_parts<V: Vector, const N: usize>(
             V::new(x, y, z)
         };
         let part = Aabb { min: corner(lo, cut), max: corner(cut, hi) };
-        let found = in_parts(memory.reborrow(), (bins, row, part), weights, (tol, levels), left)?;
+        let found = in_parts(memory.reborrow(), (around, part), weights, (tol, levels), left)?;
         for (sum, found) in sums.iter_mut().zip(found) {
             *sum = [0, 1, 2].map(|n| sum[n] + found[n]);
         }
@@ -148,16 +173,17 @@ fn fills<V: Vector>(bins: &Bins<V>, row: &Row<V>, group: &Group<V>, cell: Aabb<V
     leaving > V::Scalar::ONE
 }
 
-/// The weighted areas of the surface of the union in a cell, and the error of that.
+/// The weighted areas of the surface of the union in a cell, and of the sheets outside it, and the error of that.
 fn of_union<V: Vector, const N: usize>(
     memory: UnionMemory<V::Scalar>,
-    (bins, row, cell): (&Bins<V>, &Row<V>, Aabb<V>),
+    (around, cell): (Around<V>, Aabb<V>),
     blur: V::Scalar,
     weights: &[[V::Scalar; N]],
 ) -> Result<(Weighted<V::Scalar, N>, V::Scalar), NoProof> {
+    let Around { bins, row, .. } = around;
     let mut union = CellUnion::new(memory, cell, blur);
     let mut bodies: Vec<u32, MOST_BODIES> = Vec::new();
-    for group in row.groups.iter().filter(|group| reaches(group, cell)) {
+    for group in around.bodies(cell) {
         let before = union.part_count();
         union.add(cell, false, bins.triangles(group), row.ids(group).iter().copied())?;
         if union.part_count() > before {
@@ -168,11 +194,21 @@ fn of_union<V: Vector, const N: usize>(
     }
     let (across, mut sums) = (side_areas(cell), [[V::Scalar::ZERO; 3]; N]);
     let found = union.cell_and_surface(&mut |own, kept| {
-        let [x, y, z] = kept.doubled_area();
-        let area = SurfaceArea::of_polygon([x * across[0], y * across[1], z * across[2]]).frontal;
+        let area = SurfaceArea::of_framed(kept, across).frontal;
         if let Some(weights) = bodies.get(own).and_then(|&body| weights.get(body as usize)) {
             add_weighted(&mut sums, weights, area);
         }
     })?;
+    let (frame, mut scratch, mut piece) = (Frame::of(cell), Default::default(), Polygon::default());
+    for group in around.sheets(cell) {
+        let (triangles, Some(weights)) = (bins.triangles(group), weights.get(group.body as usize)) else { continue };
+        for corners in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
+            if frame.inside(&corners.map(Vector::to_array), cell, &mut scratch, &mut piece).is_some() {
+                union.free_parts(&piece, |part| {
+                    add_weighted(&mut sums, weights, SurfaceArea::of_framed(part, across).frontal);
+                })?;
+            }
+        }
+    }
     Ok((sums, found.error))
 }
