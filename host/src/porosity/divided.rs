@@ -50,27 +50,33 @@ pub struct ClosedCells {
 }
 
 /// A cell is looked at if along one axis it blocks this share of its section beyond what its faces show: a wall that divides it does. A neighbour of a
-/// divided cell is looked at if it hides anything: the corner of a cell that the wall cuts off.
+/// divided cell is looked at if anything stands in it: the corner of a cell that the wall cuts off, the end of one wall at another.
 const LEAST_HIDDEN: f64 = 0.25;
 
 /// The cells of a grid that surface may divide.
 #[derive(Debug)]
 pub struct Division {
     near: Near,
-    /// Cells that hide something in ascending order, and how much.
-    hiding: Vec<(usize, f64)>,
+    /// Cells that hide enough in ascending order.
+    first: Vec<usize>,
+    /// Those around them in which something stands.
+    beside: Vec<usize>,
 }
 
 impl Division {
     /// Of solid bodies with known shadows; `beta` holds open fractions in the planes of faces. Porous bodies divide nothing.
     #[must_use]
     pub fn find(grid: &Grid<f64>, bodies: &Bodies, beta: &FieldSet, shadows: &Shadows) -> Self {
-        let mut hiding = shadows.hiding(grid, beta);
-        if hiding.iter().all(|(_, hidden)| *hidden < LEAST_HIDDEN) {
-            hiding.clear();
-        }
-        let cells = hiding.iter().map(|(n, _)| *n).collect();
-        Division { near: Near::new(grid, bodies, cells, &shadows.triangles), hiding }
+        let standing = shadows.hiding(grid, beta);
+        let first: Vec<usize> =
+            standing.iter().filter(|(_, hidden)| *hidden >= LEAST_HIDDEN).map(|(n, _)| *n).collect();
+        let mut is_near = vec![false; if first.is_empty() { 0 } else { grid.cell_count() }];
+        first.iter().flat_map(|&n| around(grid, n)).flatten().for_each(|n| is_near[n] = true);
+        let beside = standing.iter().filter(|(n, hidden)| *hidden < LEAST_HIDDEN && is_near.get(*n) == Some(&true));
+        let beside: Vec<usize> = beside.map(|(n, _)| *n).collect();
+        let mut cells = [&first[..], &beside].concat();
+        cells.sort_unstable();
+        Division { near: Near::new(grid, bodies, cells, &shadows.triangles), first, beside }
     }
 
     /// The cells that let gas pass with the open fractions `beta` of faces, which may have been lowered since; without those that are hidden passages
@@ -95,15 +101,18 @@ impl Division {
 
     /// The parts of all cells that may let gas pass but for some that are told already, and of those beside them; and which of the former let it pass.
     fn leaking(&self, grid: &Grid<f64>, beta: &FieldSet, is_told: impl Fn(usize) -> bool) -> (CellParts, Vec<usize>) {
-        let first = self.hiding.iter().filter(|(n, hidden)| *hidden >= LEAST_HIDDEN && !is_told(*n));
-        let first: Vec<usize> = first.map(|(n, _)| *n).collect();
+        let (told, first): (Vec<usize>, Vec<usize>) = self.first.iter().partition(|n| is_told(**n));
         let mut parts = CellParts::none(grid);
-        let candidates = self.add(grid, &mut parts, &first);
-        // Of their neighbours only the parts count.
-        let is_beside = |n: usize| around(grid, n).into_iter().flatten().any(|cell| parts.is_divided(cell));
-        let others = self.hiding.iter().map(|(n, _)| *n).filter(|n| first.binary_search(n).is_err());
-        let beside: Vec<usize> = others.filter(|&n| is_beside(n)).collect();
-        self.add(grid, &mut parts, &beside);
+        let mut candidates = self.add(grid, &mut parts, &first);
+        let near = |parts: &CellParts, cells: &[usize]| {
+            let is_beside = |n: &usize| around(grid, *n).into_iter().flatten().any(|cell| parts.is_divided(cell));
+            cells.iter().copied().filter(is_beside).collect::<Vec<usize>>()
+        };
+        let (told, beside) = (near(&parts, &told), near(&parts, &self.beside));
+        // Of those that are told only the parts count.
+        self.add(grid, &mut parts, &told);
+        candidates.extend(self.add(grid, &mut parts, &beside));
+        candidates.sort_unstable();
         let leaking = candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, beta, n)).collect();
         (parts, leaking)
     }

@@ -53,9 +53,6 @@ const FACETS_MISS: f64 = 2.5e-4;
 /// Of cells narrower than this share of the usual ones no notice is taken: one thin layer would have all solids made of thousands of facets, everywhere.
 const THIN: f64 = 0.25;
 
-/// A cell hides something if along one axis it blocks this share of its section beyond what its faces show.
-const LEAST_HIDDEN: f64 = 0.02;
-
 /// How far the outline of facets may be from that of a curved solid on a grid, if so many facets may be.
 pub(super) fn facets_miss(grid: &Grid<f64>) -> f64 {
     FACETS_MISS * narrowest(grid).max(THIN * usual_width(grid))
@@ -166,13 +163,10 @@ impl Shadows {
         self.hidden = [0, 1, 2].map(|axis| self.hidden_along(grid, axis, beta));
     }
 
-    /// The cells that are not closed and hide something, in ascending order, with the largest share of its section that each hides along an axis.
+    /// The cells in which something stands and that are not closed, in ascending order, with the largest share of its section that each hides along an axis.
     pub(super) fn hiding(&self, grid: &Grid<f64>, beta: &FieldSet) -> Vec<(usize, f64)> {
-        let [x, y, z] = &self.tau;
-        // No more can be hidden than is blocked.
-        let may_hide = |n: usize| beta.v[n] > 0.0 && [x[n], y[n], z[n]].iter().any(|tau| *tau >= LEAST_HIDDEN);
-        let standing = self.standing.iter().filter(|n| may_hide(**n));
-        standing.map(|&n| (n, self.largest_hidden(grid, beta, n))).filter(|(_, share)| *share >= LEAST_HIDDEN).collect()
+        let standing = self.standing.iter().filter(|n| beta.v[**n] > 0.0);
+        standing.map(|&n| (n, self.largest_hidden(grid, beta, n))).collect()
     }
 
     fn hidden_along(&self, grid: &Grid<f64>, axis: usize, beta: &FieldSet) -> HiddenPassages {
