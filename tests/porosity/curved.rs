@@ -136,6 +136,33 @@ fn ends_in_planes() {
     assert_close(union, truth, 1e-12, "ends");
 }
 
+/// The same of ends at decimal coordinates, between which the unit vector along the solid may miss 1 by rounding, and of bends whose ends lie in planes.
+#[test]
+fn ends_at_decimals_in_planes() {
+    let decimal = |n: i32| f64::from(n) / 10.0;
+    let z: Vec<f64> = (-1..=31).map(decimal).collect();
+    let across: Vec<f64> = (0..=2).map(|n| 0.15 * f64::from(n)).collect();
+    let at = |height: f64| DVec3::new(0.152, 0.148, height);
+    for (from, to) in (0..30).flat_map(|from| (from + 1..31).map(move |to| (from, to))) {
+        for axis in 0..3 {
+            let order = |p: DVec3| DVec3::from_array([0, 1, 2].map(|n| p[(n + 5 - axis) % 3]));
+            let edges = Edges([0, 1, 2].map(|n| if n == axis { z.clone() } else { across.clone() }));
+            let ends = [from, to].map(|n| order(at(decimal(n))));
+            let form = match (from + to) % 2 {
+                0 => Form::Cylinder(Cylinder::new(ends[0], ends[1], 0.12)),
+                _ => Form::Cone(Cone::truncated(ends[0], ends[1], 0.12, 0.05)),
+            };
+            let own = areas::of_form(&form).expect("a curved solid");
+            let found = obstacles(&edges, &formulas(&[form])).totals;
+            // Of a cone that stands upright the ring around the smaller end is seen along it.
+            let ring = if (from + to) % 2 == 0 { 0.0 } else { 0.5 * PI * (0.12 * 0.12 - 0.05 * 0.05) };
+            let seen = found.frontal_area[axis];
+            assert!((seen - ring).abs() < 1e-12, "{from} to {to} along {axis}: {seen} {ring}");
+            assert!((found.wetted_area - own.wetted).abs() < 1e-11, "{from} to {to} along {axis}: {found:?} {own:?}");
+        }
+    }
+}
+
 /// In single precision far from the origin nothing is lost but what the coordinates have lost.
 #[test]
 fn far_and_in_single_precision() {

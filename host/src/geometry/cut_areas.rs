@@ -23,7 +23,7 @@ const MOST_HALVINGS: u32 = 40;
 /// Planes are parallel if the square of the sine of their angle is less.
 const PARALLEL: f64 = 1e-28;
 
-/// An end this near to a plane, as a share of the box, lies in it.
+/// An end all of which is this near to a plane, as a share of the box, lies in it.
 const IN_PLANE: f64 = 1e-12;
 
 /// Areas along x, y and z, not yet halved, and the wetted area.
@@ -220,7 +220,11 @@ impl Quadric {
     /// Of a flat end in the plane of a side of the box, the axis across it, and whether its normal points into the box.
     fn side(&self, size: DVec3) -> Option<(usize, bool)> {
         let normal = self.normal?;
-        let axis = (0..3).find(|&axis| normal[axis].abs() >= 1.0 - IN_PLANE * IN_PLANE)?;
+        let axis = (0..3).find(|&axis| {
+            // Its height over the plane across the axis; a unit vector along that may miss 1 by rounding.
+            let tilt = normal[(axis + 1) % 3].hypot(normal[(axis + 2) % 3]);
+            tilt * self.axes[0].length() <= IN_PLANE * size[axis]
+        })?;
         let near = |at: f64| (self.origin[axis] - at).abs() <= IN_PLANE * size[axis];
         if near(0.0) {
             Some((axis, normal[axis] > 0.0))
