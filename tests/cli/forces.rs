@@ -90,6 +90,9 @@ fn forces_on_solids_add_up_to_the_force_on_all() {
                 assert_eq!(solid["force"][a].as_f64().expect("a number"), logged, "{name}");
             }
         }
+        // Resumed with no step left, nothing changes.
+        solved(&at, &case(40.0, &format!("{more}forces = {names}\n{scheme}")), names, &["-q", "--resume"]);
+        assert_eq!(json(&at.file(names).join("report.json"))["forces"], report["forces"], "{names}");
     }
 }
 

@@ -66,6 +66,36 @@ fn a_ball_holds_the_same_on_any_grid() {
     holds(&even(4), "xyz", small, 1.0, 4.0 / 3.0 * PI * 0.04_f64.powi(3));
 }
 
+/// Gas that begins beyond a wall is told: a wall within a cell leaves that to one side of it, with what a region has on the other.
+#[test]
+fn gas_beyond_a_thin_wall_is_told() {
+    let at = Scratch::new();
+    let said = |wall: [f64; 2], region: [f64; 2]| {
+        let [low, high] = wall;
+        let scene =
+            format!("[[solid]]\nname = \"wall\"\nshape = \"box\"\nmin = [{low}, -1, -1]\nmax = [{high}, 2, 2]\n");
+        fs::write(at.file("scene.toml"), scene).expect("written");
+        let [from, to] = region;
+        let sides: String = ["x", "y", "z"].map(|a| format!("{a}_min = \"wall\"\n{a}_max = \"wall\"\n")).concat();
+        let case = format!(
+            "[grid]\norigin = [0, 0, 0]\nspacing = [0.1, 0.1, 0.1]\ncells = [20, 3, 3]\n[porosity]\nscene = \"scene.toml\"\n\
+             [drag]\nlaw = \"none\"\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n\
+             [initial]\nuniform = {{ rho = 1.2, p = 1e5 }}\nregions = [{{ min = [{from}, 0, 0], max = [{to}, 1, 1], p = 5e5 }}]\n\
+             [boundary]\n{sides}[time]\nmax_steps = 1\n[output]\nformats = []\n"
+        );
+        stderr(&solved(&at, &case, "out", &["--force"]))
+    };
+    let is_told = |said: &str| said.contains("initial.regions[0]") && said.contains("is on the other side");
+    let up = said([1.22, 1.24], [0.0, 1.22]);
+    assert!(is_told(&up) && up.contains("in 9 cells, the first at (1.25, 0.05, 0.05) m, 1.64 % of its gas"), "{up}");
+    let down = said([0.76, 0.78], [0.78, 2.0]);
+    assert!(is_told(&down) && down.contains("the first at (0.75, 0.05, 0.05) m"), "{down}");
+    for (wall, region) in [([1.22, 1.24], [0.0, 1.2]), ([1.15, 1.35], [0.0, 1.15]), ([1.15, 1.35], [0.0, 1.25])] {
+        let said = said(wall, region);
+        assert!(!is_told(&said), "{wall:?} {region:?}: {said}");
+    }
+}
+
 /// How many cells a region has is told; where they are few for a blast, that is said beside it.
 #[test]
 fn few_cells_in_a_region_are_told() {

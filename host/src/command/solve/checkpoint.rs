@@ -21,8 +21,10 @@ use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primit
 /// First bytes of the file; the last is the version of the layout.
 const MAGIC: &[u8; 8] = b"VOIDAGE\x05";
 
-/// Values of a watched cell for each axis.
-const WATCHED: usize = 5;
+/// Values of a watched cell: two sides, two masses and a drag for each axis, and all parts of what acts along two sides.
+const fn watched(dimensions: usize) -> usize {
+    (5 + 2 * dimensions) * dimensions
+}
 
 /// Name of the file in the output directory.
 pub const NAME: &str = "checkpoint.bin";
@@ -252,7 +254,7 @@ pub fn write<const D: usize>(
         journal: journal.clone(),
         values: columns(&flow.state).map(<[f64]>::len).sum(),
         maxima: maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum(),
-        walls: flow.watched_walls().1.len() * WATCHED * D,
+        walls: flow.watched_walls().1.len() * watched(D),
         time,
         steps,
         repeated,
@@ -274,7 +276,8 @@ pub fn write<const D: usize>(
         flow.watched_walls().1.iter().try_for_each(|push| {
             write_f64(&mut out, push.sides.as_flattened())?;
             write_f64(&mut out, push.mass.as_flattened())?;
-            write_f64(&mut out, &push.drag)
+            write_f64(&mut out, &push.drag)?;
+            write_f64(&mut out, push.along.as_flattened().as_flattened())
         })?;
         let sum = out.hasher.finalize();
         out.inner.write_all(&sum.to_le_bytes())
@@ -320,11 +323,12 @@ pub fn resume<const D: usize>(
         array.iter_mut().zip(values.by_ref()).for_each(|(into, from)| *into = from);
     }
     let mut pushes = setup.flow.watched_walls().1.to_vec();
-    let same_walls = pushes.len() * WATCHED * D == header.walls;
+    let same_walls = pushes.len() * watched(D) == header.walls;
     if same_walls {
         for push in &mut pushes {
             let sides = push.sides.as_flattened_mut().iter_mut();
-            let into = sides.chain(push.mass.as_flattened_mut()).chain(&mut push.drag);
+            let along = push.along.as_flattened_mut().as_flattened_mut();
+            let into = sides.chain(push.mass.as_flattened_mut()).chain(&mut push.drag).chain(along);
             into.zip(values.by_ref()).for_each(|(into, from)| *into = from);
         }
         setup.flow.restore_walls(&pushes);

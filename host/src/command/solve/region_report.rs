@@ -2,6 +2,7 @@
 
 use super::arrays::index;
 use super::case_file::CaseFile;
+use super::cut_off;
 use super::open_parts::{Hold, OpenParts};
 use super::regions::Region;
 use crate::command::progress::Progress;
@@ -69,7 +70,9 @@ pub fn report<const D: usize>(
             }
             _ => String::new(),
         };
-        if !trouble.is_empty() {
+        let held = |cell, share| parts.held(cell, Hold { region: n, share });
+        let cut_off = if may_blast { cut_off::told(flow, &shares, edges, held) } else { None };
+        for trouble in cut_off.into_iter().chain((!trouble.is_empty()).then_some(trouble)) {
             progress.warn(file.remark(&key, trouble));
         }
         all.push(report);
