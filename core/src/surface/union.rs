@@ -476,10 +476,23 @@ impl<'a, R: Real> CellUnion<'a, R> {
         }
         let mut toward = [R::ZERO; 3];
         toward[axis] = if limit == Limit::Below { -R::ONE } else { R::ONE };
-        let mut open = R::ZERO;
         let rule = DescentRule { toward, own: None, both_sides: limit == Limit::Both };
-        self.descent(bodies).0.send(&square, Ball::around(&square), rule, |kept| open += kept.doubled_area()[axis])?;
+        let open = self.doubled_open(bodies, &square, rule, axis)?;
         Ok((R::ONE - open * R::HALF).max(R::ZERO).min(R::ONE))
+    }
+
+    /// Twice the open area of a polygon on a side of the cell normal to `axis`, where some bodies have their trees.
+    #[inline(never)]
+    fn doubled_open(
+        &mut self,
+        bodies: Range<usize>,
+        polygon: &Polygon<R>,
+        rule: DescentRule<R>,
+        axis: usize,
+    ) -> Result<R, NoProof> {
+        let (mut open, axis) = (R::ZERO, axis.min(2));
+        self.descent(bodies).0.send(polygon, Ball::around(polygon), rule, |kept| open += kept.doubled_area()[axis])?;
+        Ok(open)
     }
 
     /// What goes down the trees of some bodies, and all pieces.

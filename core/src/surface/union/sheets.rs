@@ -53,11 +53,8 @@ impl<R: Real> CellUnion<'_, R> {
         self.build_trees()?;
         let mut toward = [R::ZERO; 3];
         toward[axis] = R::ONE;
-        let (rule, mut free) = (DescentRule { toward, own: None, both_sides: true }, R::ZERO);
-        let ball = Ball::around(&polygon);
-        self.descent(0..self.part_count)
-            .0
-            .send(&polygon, ball, rule, |part| free += part.doubled_area()[axis].abs())?;
-        Ok(free * R::HALF)
+        let rule = DescentRule { toward, own: None, both_sides: true };
+        let free = self.doubled_open(0..self.part_count, &polygon, rule, axis)?;
+        Ok(free.abs() * R::HALF)
     }
 }
