@@ -80,16 +80,16 @@ fn wall<V: Vector, O: OtherBodies<V>>(
         return Bounds::UNKNOWN;
     }
     let has_others = sides.iter().any(|side| shared.others.reach(side.cell));
-    if sides.iter().any(|side| site.bins.groups(side.k).iter().any(|g| g.is_sheet() && side.touches(g))) {
+    let has_sheets = sides.iter().any(|side| site.bins.groups(side.k).iter().any(|g| g.is_sheet() && side.touches(g)));
+    let whole = match (has_others, has_sheets) {
         // What a sheet blocks beyond solids by formula is not known here.
-        let known = if has_others { None } else { wall_with_sheets(shared, site.bins, axis, &sides) };
-        return known.unwrap_or(Bounds::UNKNOWN);
-    }
-    let whole = if has_others {
-        wall_with_others(shared, site.bins, axis, &sides)
-    } else {
-        whole_wall(shared, site.bins, axis, &sides)
+        (true, true) => return Bounds::UNKNOWN,
+        (true, false) => wall_with_others(shared, site.bins, axis, &sides),
+        (false, _) => whole_wall(shared, site.bins, axis, &sides),
     };
+    if has_sheets {
+        return whole.unwrap_or(Bounds::UNKNOWN);
+    }
     whole.or_else(|| divided_wall(shared, site, axis, &sides, spare)).unwrap_or(Bounds::UNKNOWN)
 }
 
@@ -102,37 +102,34 @@ fn whole_wall<V: Vector, O>(
 ) -> Option<Bounds<V::Scalar>> {
     with_least_blur(shared.tol, |blur| {
         let (closed, error) = wall_union(&mut shared.union, bins, axis, sides, blur)?;
-        Ok((Bounds::around(closed, error), error))
+        Ok((closed.widened(error), error))
     })
 }
 
-/// The union on a face with walls of bodies and sheets: of these what the bodies leave open, and of several at least what one covers and at most what all do.
-fn wall_with_sheets<V: Vector, O>(
-    shared: &mut Shared<V, O>,
+/// What the sheets in the plane of a face cover beside the bodies on both sides, which close a share of it: at least what one of them does, and at most what all
+/// do.
+fn covered_by_sheets<V: Vector>(
+    bodies: &mut CellUnion<V::Scalar>,
     bins: &Bins<V>,
     axis: usize,
-    sides: &[WallSide<V>; 2],
-) -> Option<Bounds<V::Scalar>> {
-    let [_, above] = sides;
-    let plane = *above.cell.min.to_array().get(axis)?;
-    with_least_blur(shared.tol, |blur| {
-        let (closed, error) = wall_union(&mut shared.union, bins, axis, sides, blur)?;
-        let mut bodies = gather(&mut shared.union, bins, sides, blur)?;
-        let (mut largest, mut sum) = (V::Scalar::ZERO, V::Scalar::ZERO);
-        for group in bins.groups(above.k).iter().filter(|group| group.is_sheet() && above.touches(group)) {
-            let triangles = bins.triangles(group);
-            let mut own = V::Scalar::ZERO;
-            for triangle in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
-                if triangle.iter().all(|corner| corner.to_array().get(axis) == Some(&plane)) {
-                    own += bodies.free_share(axis, triangle)?;
-                }
+    above: &WallSide<V>,
+    closed: V::Scalar,
+) -> Result<Bounds<V::Scalar>, NoProof> {
+    let plane = above.cell.min.to_array().get(axis).copied();
+    let mut covered = Bounds::<V::Scalar>::OPEN;
+    for group in bins.groups(above.k).iter().filter(|group| group.is_sheet() && above.touches(group)) {
+        let triangles = bins.triangles(group);
+        let mut own = V::Scalar::ZERO;
+        for triangle in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
+            if triangle.iter().all(|corner| corner.to_array().get(axis).copied() == plane) {
+                own += bodies.free_share(axis, triangle)?;
             }
-            // Both sides of it are there.
-            own = (own * V::Scalar::HALF).min(V::Scalar::ONE - closed);
-            (largest, sum) = (largest.max(own), sum + own);
         }
-        Ok((Bounds { lower: closed + largest, upper: closed + sum }.widened(error), error))
-    })
+        // Both sides of it are there.
+        own = (own * V::Scalar::HALF).min(V::Scalar::ONE - closed);
+        (covered.lower, covered.upper) = (covered.lower.max(own), covered.upper + own);
+    }
+    Ok(covered)
 }
 
 /// The union with other bodies on a face with walls, where those of triangles have few planes on both sides.
@@ -177,7 +174,7 @@ fn divided_wall<V: Vector, O: OtherBodies<V>>(
     parts.planes.get(axis).map(|planes| planes[1])
 }
 
-/// The closed fraction of a face with walls and its error. Each side alone must have a proof, and what both close together lies
+/// Bounds of the closed fraction of a face with walls, apart where several sheets lie in its plane, and their error. Each side alone must have a proof, and what both close together lies
 /// between the larger of their shares and the sum.
 fn wall_union<V: Vector>(
     memory: &mut UnionMemory<V::Scalar>,
@@ -185,7 +182,7 @@ fn wall_union<V: Vector>(
     axis: usize,
     sides: &[WallSide<V>; 2],
     blur: V::Scalar,
-) -> Result<(V::Scalar, V::Scalar), NoProof> {
+) -> Result<(Bounds<V::Scalar>, V::Scalar), NoProof> {
     let zero = V::Scalar::ZERO;
     let (mut least, mut most, mut error) = (zero, zero, zero);
     for side in sides {
@@ -194,9 +191,15 @@ fn wall_union<V: Vector>(
         let closed = shares[axis.min(2)];
         (least, most, error) = (least.max(closed), most + closed, error.max(union.error));
     }
-    let closed = gather(memory, bins, sides, blur)?.face(axis, V::Scalar::ONE, Limit::Both)?;
+    let mut bodies = gather(memory, bins, sides, blur)?;
+    let closed = bodies.face(axis, V::Scalar::ONE, Limit::Both)?;
     let slack = error + rounding();
-    if closed >= least - slack && closed <= most + slack { Ok((closed, error)) } else { Err(NoProof::Ambiguous) }
+    if !(closed >= least - slack && closed <= most + slack) {
+        return Err(NoProof::Ambiguous);
+    }
+    let [_, above] = sides;
+    let covered = covered_by_sheets(&mut bodies, bins, axis, above, closed)?;
+    Ok((Bounds { lower: closed + covered.lower, upper: closed + covered.upper }, error))
 }
 
 /// All surface of some boxes beside a face, in the frame of the first.

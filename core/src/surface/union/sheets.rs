@@ -42,6 +42,10 @@ impl<R: Real> CellUnion<'_, R> {
             polygon.push(corner);
         }
         for across in (0..3).filter(|&across| across != axis) {
+            let (min, max) = polygon.extent(across);
+            if !(min < R::ONE && max > R::ZERO) {
+                return Ok(R::ZERO);
+            }
             for (at, above) in [(R::ZERO, true), (R::ONE, false)] {
                 keep(&polygon, across, at, above, &mut kept);
                 core::mem::swap(&mut polygon, &mut kept);
