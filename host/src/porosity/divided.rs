@@ -13,9 +13,9 @@ mod parts;
 
 use super::Porosity;
 use super::fields::FieldSet;
-use super::shadows::{HIDDEN, Shadows, place_of_cell};
+use super::shadows::{HIDDEN, LEAST_HIDDEN, Shadows, around, place_of_cell};
 use crate::geometry::bodies::Bodies;
-use cells::{CellParts, around};
+use cells::CellParts;
 use closing::Closing;
 use near::Near;
 use parts::{Hits, Parts};
@@ -49,17 +49,13 @@ pub struct ClosedCells {
     pub left: DividedCells,
 }
 
-/// A cell is looked at if along one axis it blocks this share of its section beyond what its faces show: a wall that divides it does. A neighbour of a
-/// divided cell is looked at if anything stands in it: the corner of a cell that the wall cuts off, the end of one wall at another.
-const LEAST_HIDDEN: f64 = 0.25;
-
 /// The cells of a grid that surface may divide.
 #[derive(Debug)]
 pub struct Division {
     near: Near,
-    /// Cells that hide enough in ascending order.
+    /// Cells that hide enough to be divided, in ascending order.
     first: Vec<usize>,
-    /// Those around them in which something stands.
+    /// Those around them in which something stands: the corner of a cell that a wall cuts off, the end of one wall at another.
     beside: Vec<usize>,
 }
 
@@ -67,15 +63,10 @@ impl Division {
     /// Of solid bodies with known shadows; `beta` holds open fractions in the planes of faces. Porous bodies divide nothing.
     #[must_use]
     pub fn find(grid: &Grid<f64>, bodies: &Bodies, beta: &FieldSet, shadows: &Shadows) -> Self {
-        let standing = shadows.hiding(grid, beta);
-        let first: Vec<usize> =
-            standing.iter().filter(|(_, hidden)| *hidden >= LEAST_HIDDEN).map(|(n, _)| *n).collect();
-        let mut is_near = vec![false; if first.is_empty() { 0 } else { grid.cell_count() }];
-        first.iter().flat_map(|&n| around(grid, n)).flatten().for_each(|n| is_near[n] = true);
-        let beside = standing.iter().filter(|(n, hidden)| *hidden < LEAST_HIDDEN && is_near.get(*n) == Some(&true));
-        let beside: Vec<usize> = beside.map(|(n, _)| *n).collect();
-        let mut cells = [&first[..], &beside].concat();
-        cells.sort_unstable();
+        let hiding = shadows.hiding(grid, beta);
+        let cells = hiding.iter().map(|(n, _)| *n).collect();
+        let (first, beside): (Vec<_>, Vec<_>) = hiding.into_iter().partition(|(_, hidden)| *hidden >= LEAST_HIDDEN);
+        let [first, beside] = [first, beside].map(|cells| cells.into_iter().map(|(n, _)| n).collect());
         Division { near: Near::new(grid, bodies, cells, &shadows.triangles), first, beside }
     }
 

@@ -53,6 +53,9 @@ const FACETS_MISS: f64 = 2.5e-4;
 /// Of cells narrower than this share of the usual ones no notice is taken: one thin layer would have all solids made of thousands of facets, everywhere.
 const THIN: f64 = 0.25;
 
+/// A cell may be divided if along one axis it blocks this share of its section beyond what its faces show: a wall that divides it does.
+pub(super) const LEAST_HIDDEN: f64 = 0.25;
+
 /// How far the outline of facets may be from that of a curved solid on a grid, if so many facets may be.
 pub(super) fn facets_miss(grid: &Grid<f64>) -> f64 {
     FACETS_MISS * narrowest(grid).max(THIN * usual_width(grid))
@@ -163,10 +166,16 @@ impl Shadows {
         self.hidden = [0, 1, 2].map(|axis| self.hidden_along(grid, axis, beta));
     }
 
-    /// The cells in which something stands and that are not closed, in ascending order, with the largest share of its section that each hides along an axis.
+    /// The cells that hide [`LEAST_HIDDEN`] or more, and those around them in which something stands, without closed ones, in ascending order, with the largest
+    /// share of its section that each hides along an axis.
     pub(super) fn hiding(&self, grid: &Grid<f64>, beta: &FieldSet) -> Vec<(usize, f64)> {
         let standing = self.standing.iter().filter(|n| beta.v[**n] > 0.0);
-        standing.map(|&n| (n, self.largest_hidden(grid, beta, n))).collect()
+        let mut found: Vec<(usize, f64)> = standing.map(|&n| (n, self.largest_hidden(grid, beta, n))).collect();
+        let enough: Vec<usize> = found.iter().filter(|(_, hidden)| *hidden >= LEAST_HIDDEN).map(|(n, _)| *n).collect();
+        let mut is_near = vec![false; if enough.is_empty() { 0 } else { grid.cell_count() }];
+        enough.into_iter().flat_map(|n| around(grid, n)).flatten().for_each(|n| is_near[n] = true);
+        found.retain(|(n, _)| is_near.get(*n) == Some(&true));
+        found
     }
 
     fn hidden_along(&self, grid: &Grid<f64>, axis: usize, beta: &FieldSet) -> HiddenPassages {
@@ -187,6 +196,16 @@ impl Shadows {
         let along = |axis: usize| hidden_share(grid, axis, self.tau[axis][n], beta, n);
         along(0).max(along(1)).max(along(2))
     }
+}
+
+/// A cell and those around it, x fastest; none beyond the grid.
+pub fn around(grid: &Grid<f64>, n: usize) -> [Option<usize>; 27] {
+    let ([i, j, k], [nx, ny, nz]) = (place_of_cell(grid, n), grid.cells());
+    std::array::from_fn(|place| {
+        let (i, j, k) = (i + place % 3, j + place / 3 % 3, k + place / 9);
+        let is_inside = (1..=nx).contains(&i) && (1..=ny).contains(&j) && (1..=nz).contains(&k);
+        is_inside.then(|| ((k - 1) * ny + (j - 1)) * nx + (i - 1))
+    })
 }
 
 /// Positions of the low and the high face of a cell along an axis.

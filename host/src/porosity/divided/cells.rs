@@ -3,7 +3,7 @@
 use super::parts::Parts;
 use crate::geometry::repair::sets::Sets;
 use crate::porosity::fields::FieldSet;
-use crate::porosity::shadows::{faces_of_nth_cell, place_of_cell};
+use crate::porosity::shadows::{around, faces_of_nth_cell, place_of_cell};
 use voidage_core::grid::Grid;
 
 /// A face is open from this open fraction on.
@@ -129,16 +129,6 @@ pub fn neighbour(grid: &Grid<f64>, n: usize, axis: usize, side: usize) -> Option
 
 /// Where a cell stands among those around it.
 const MIDDLE: usize = 13;
-
-/// A cell and those around it, x fastest; none beyond the grid.
-pub fn around(grid: &Grid<f64>, n: usize) -> [Option<usize>; 27] {
-    let ([i, j, k], [nx, ny, nz]) = (place_of_cell(grid, n), grid.cells());
-    std::array::from_fn(|place| {
-        let (i, j, k) = (i + place % 3, j + place / 3 % 3, k + place / 9);
-        let is_inside = (1..=nx).contains(&i) && (1..=ny).contains(&j) && (1..=nz).contains(&k);
-        is_inside.then(|| ((k - 1) * ny + (j - 1)) * nx + (i - 1))
-    })
-}
 
 fn open_side(grid: &Grid<f64>, beta: &FieldSet, n: usize, (axis, side): (usize, usize)) -> bool {
     beta.faces(axis)[faces_of_nth_cell(grid, axis, n)[side]] >= OPEN
