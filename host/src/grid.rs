@@ -23,6 +23,9 @@ pub enum GridSpec {
     Spacing(f64, Option<[DVec3; 2]>),
 }
 
+/// Share of a cell by which edges that are written in two ways may differ.
+const SAME_PLACE: f64 = 1e-6;
+
 /// Cell edges along x, y and z.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Edges(pub [Vec<f64>; 3]);
@@ -64,6 +67,32 @@ impl Edges {
     /// The edges as a grid; or where they make none, and why.
     pub(crate) fn explained(&self) -> std::result::Result<Grid<'_, f64>, (String, String)> {
         Grid::new(&self.0[0], &self.0[1], &self.0[2]).map_err(|error| explain(error, &self.0))
+    }
+
+    /// The text of a grid file with these edges, each with all its digits.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let [x, y, z] = &self.0;
+        format!("{{\"x\": {x:?},\n\"y\": {y:?},\n\"z\": {z:?}}}\n")
+    }
+
+    /// What tells these cells from `theirs`, in words; nothing if none of them lies elsewhere by more than rounding. Axes of one cell on both
+    /// sides do not count: flow does not vary along them.
+    #[must_use]
+    pub fn differ_from(&self, theirs: &Edges) -> Option<String> {
+        AXES.iter().zip(self.0.iter().zip(&theirs.0)).find_map(|(axis, (ours, theirs))| {
+            let [here, there] = [ours, theirs].map(|edges| edges.len().saturating_sub(1));
+            if here != there {
+                return Some(format!("{there} cells along {axis}, and here {here}"));
+            }
+            let moved = |n: &usize| {
+                let width = ours[n + 1] - ours[*n];
+                [0, 1].iter().any(|end| !((ours[n + end] - theirs[n + end]).abs() <= SAME_PLACE * width))
+            };
+            let cell = (0..here).find(moved).filter(|_| here > 1)?;
+            let range = |edges: &[f64]| format!("from {} to {}", written(edges[cell]), written(edges[cell + 1]));
+            Some(format!("cell {cell} along {axis} reaches {}, and here {}", range(theirs), range(ours)))
+        })
     }
 
     /// Number of cells along each axis.

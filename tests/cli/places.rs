@@ -1,6 +1,6 @@
 //! Where results go: not over what they are made of, nor where another run writes.
 
-use crate::kit::{Scratch, fixture, program, stderr, voidage};
+use crate::kit::{Scratch, fixture, program, solve, solved, stderr, voidage};
 use std::fs;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -59,6 +59,67 @@ fn arrays_of_an_earlier_run_are_told() {
         text.contains("beta_v_lower.npy, beta_v_upper.npy") && text.contains("of an earlier run are still there"),
         "{text}"
     );
+}
+
+/// Arrays of the same shape on cells of another size are refused; where nothing says on which they stand, they are taken.
+#[test]
+fn arrays_know_their_grid() {
+    let at = Scratch::new();
+    let block = "[[solid]]\nshape = \"box\"\nmin = [0.42, 0, 0]\nmax = [0.58, 0.63, 1]\n";
+    fs::write(at.file("block.toml"), block).expect("a scene");
+    let grid = |x: &str| format!("x = {x}\ny = {{ points = [0, 1], cells = [4] }}\nz = [0, 1]\n");
+    let even = grid("{ points = [0, 1], cells = [10] }");
+    fs::write(at.file("grid.toml"), &even).expect("a grid");
+    let measure = |grid: &str, dir: &str| {
+        let scene = at.file("block.toml");
+        let out =
+            voidage(&[&"porosity", &scene, &"--grid", &at.file(grid), &"--drag", &"bluff", &"--npy", &at.file(dir)]);
+        assert!(out.status.success(), "{}", stderr(&out));
+    };
+    measure("grid.toml", "fields");
+    let case = |grid: &str, initial: &str, from: &str| {
+        format!(
+            "[grid]\n{grid}{from}[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\n{initial}\n[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n\
+             y_min = \"wall\"\ny_max = \"wall\"\n[time]\nmax_steps = 1\n[output]\nformats = []\n"
+        )
+    };
+    let (uniform, last) = ("uniform = { rho = 1, p = 1 }", "from = \"first/final\"");
+    let (space, drag) = ("[porosity]\nfrom = \"fields\"\n", "[drag]\nfrom = \"fields\"\n");
+    solved(&at, &case(&even, uniform, space), "first", &[]);
+    let edges = "[0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]";
+    let same = grid(edges);
+    let twice = grid("{ points = [0, 2], cells = [10] }");
+    let moved = grid(&edges.replace("0.3", "0.301"));
+    for (initial, from, key, dir) in [
+        (uniform, space, "porosity.from", "fields"),
+        (uniform, drag, "drag.from", "fields"),
+        (last, "", "initial.from", "first/final"),
+    ] {
+        solved(&at, &case(&same, initial, from), "again", &["--force"]);
+        for (other, difference) in [
+            (&twice, "cell 0 along x reaches from 0 to 0.1, and here from 0 to 0.2"),
+            (&moved, "cell 2 along x reaches from 0.2 to 0.3, and here from 0.2 to 0.301"),
+            (&even.replace("cells = [4]", "cells = [5]"), "4 cells along y, and here 5"),
+        ] {
+            let said = stderr(&solve(&at, &case(other, initial, from), "again", &["--force"]));
+            let beside = format!(
+                "{dir}/edges.json: the arrays beside it are of another grid: {difference}; if they are of this"
+            );
+            assert!(said.contains(&format!("key {key}: ")) && said.contains(&beside), "{said}");
+        }
+        fs::remove_file(at.file(dir).join("edges.json")).expect("it was there");
+        solved(&at, &case(&twice, initial, from), "again", &["--force"]);
+        measure("grid.toml", "fields");
+    }
+    // It is a grid file, to the last digit.
+    let thirds = grid("{ points = [0, 1], cells = [3] }");
+    fs::write(at.file("thirds.toml"), thirds).expect("a grid");
+    measure("thirds.toml", "thirds");
+    measure("thirds/edges.json", "copy");
+    for name in ["beta_v.npy", "beta_x.npy", "edges.json"] {
+        let [first, second] = ["thirds", "copy"].map(|dir| fs::read(at.file(dir).join(name)).expect("a file"));
+        assert!(first == second, "{name}");
+    }
 }
 
 /// While one run writes into a directory another is refused, and once it is gone another is not.

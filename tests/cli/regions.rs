@@ -131,6 +131,13 @@ fn few_cells_in_a_region_are_told() {
         Some("regions[0]    10.0 cells from its middle to its side")
     );
     assert_eq!(told("center = [20, 0.5], radius = 0.3", "beyond"), None);
+    // What a side of the grid cuts off is left out; a ball that touches one is whole.
+    let enough = "regions[0]    8.0 cells from its middle to its side";
+    for (center, cut) in [("0, 0.5", "; cut by x_min"), ("0.81, 0.19", "; cut by x_max, y_min"), ("0.8, 0.2", "")] {
+        let case = case(40).replace("0.5, 0.5", center);
+        let said = crate::kit::stdout(&solved(&at, &case, "cut", &["--force"]));
+        assert!(said.lines().any(|line| line == format!("{enough}{cut}")), "{center}: {said}");
+    }
     // A cloud of the pressure around it is none.
     let cloud = case(20).replace("p = 5e5", "p = 1e5, rho = 3");
     let said = crate::kit::stdout(&solved(&at, &cloud, "cloud", &[]));

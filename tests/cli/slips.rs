@@ -104,6 +104,19 @@ fn angles_in_radians_and_pipes_in_millimetres_are_told() {
     assert!(said(&format!("{block}0.785 }}")).contains("rotate.angle: 0.785 is 45° in radians"));
     let pipe = "shape = \"cylinder\"\nfrom = [-100, 1, 1]\nto = [200, 1, 1]\nradius = 100";
     assert!(said(pipe).contains("every cell is closed"), "{}", said(pipe));
+    // A file in millimetres, as it is and with its unit.
+    let corners = [[0, 0, 0], [1500, 0, 0], [0, 1500, 0], [0, 0, 1500]];
+    let facet = |of: [usize; 3]| {
+        let corner = |n: usize| format!("vertex {} {} {}\n", corners[n][0], corners[n][1], corners[n][2]);
+        format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", of.map(corner).concat())
+    };
+    let facets = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(facet).concat();
+    fs::write(at.file("part.stl"), format!("solid part\n{facets}endsolid part\n")).expect("a file");
+    let file = "shape = \"file\"\npath = \"part.stl\"\n";
+    let hint = "\"one\": part.stl: its size, 1500.000000 × 1500.000000 × 1500.000000, would be in metres; if these are millimetres, give unit = \"mm\"";
+    assert!(said(file).contains(hint), "{}", said(file));
+    let text = said(&format!("{file}unit = \"mm\""));
+    assert!(!text.contains("millimetres"), "{text}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::command::cli::{DEEPEST, SceneArgs};
 use crate::command::progress::Progress;
 use crate::command::streams::{INPUT, is_stream, read_input};
 use crate::error::{Error, Result};
-use crate::geometry::bodies::{Bodies, Body, SolidSummary};
+use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
 use crate::geometry::form::Form;
 use crate::geometry::read;
 use crate::geometry::scene;
@@ -57,8 +57,10 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
         })?;
         mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
         progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
-        if args.unit.is_none() {
-            warn_if_millimetres(path, &bodies, progress);
+        let size = bodies.diagnoses.last().filter(|_| args.unit.is_none()).and_then(Diagnosis::too_large_for_metres);
+        if let Some(size) = size {
+            let path = path.display();
+            progress.warn(format!("{path}: {size}, give --unit mm, in a case porosity.unit = \"mm\""));
         }
     }
     warn_of_unit(args, &bodies, progress);
@@ -85,23 +87,6 @@ fn warn_of_unit(args: &SceneArgs, bodies: &Bodies, progress: &mut Progress) {
         bodies.files(),
         unit.name()
     ));
-}
-
-/// No plant is larger than this in metres, and few parts are smaller than this in millimetres.
-const LARGEST_PLANT: f64 = 1000.0;
-
-fn warn_if_millimetres(path: &Path, bodies: &Bodies, progress: &mut Progress) {
-    let Some([lo, hi]) = bodies.diagnoses.last().map(|d| d.bounds) else { return };
-    let size = hi - lo;
-    if size.max_element() >= LARGEST_PLANT && size.max_element() < LARGEST_PLANT * 1e4 {
-        progress.warn(format!(
-            "{}: its size, {:.6} × {:.6} × {:.6}, would be in metres; if these are millimetres, give --unit mm, in a case porosity.unit = \"mm\"",
-            path.display(),
-            size.x,
-            size.y,
-            size.z
-        ));
-    }
 }
 
 /// The command as typed.

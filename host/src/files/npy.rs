@@ -13,6 +13,7 @@ use std::path::Path;
 use super::bytes::write_f64;
 use super::{atomically, together};
 use crate::error::{Error, Result};
+use crate::grid::Edges;
 
 pub use read::read;
 
@@ -27,16 +28,42 @@ pub fn write(path: &Path, shape: [usize; 3], data: &[f64]) -> Result<()> {
     atomically(path, |out| write_to(out, shape, data))
 }
 
-/// Writes arrays that belong together, given as name, shape and values, into a directory: `NAME.npy` for each, all or none.
+/// Name of the grid file that [`write_fields`] puts beside arrays.
+pub const EDGES: &str = "edges.json";
+
+/// Arrays that belong together: name, shape, values.
+pub type Named<'a> = (String, [usize; 3], &'a [f64]);
+
+/// Writes arrays that belong together into a directory: `NAME.npy` for each, all or none.
 ///
 /// # Errors
 /// The directory cannot be made, or as [`write()`].
-pub fn write_all(directory: &Path, arrays: &[(String, [usize; 3], &[f64])]) -> Result<()> {
-    let paths: Vec<_> = arrays.iter().map(|(name, ..)| directory.join(format!("{name}.npy"))).collect();
+pub fn write_all(directory: &Path, arrays: &[Named]) -> Result<()> {
+    write_into(directory, arrays, None)
+}
+
+/// [`write_all()`] of fields of one grid, with its edges in [`EDGES`]: arrays alone do not say how large their cells are.
+///
+/// # Errors
+/// As [`write_all()`].
+pub fn write_fields(directory: &Path, edges: &Edges, arrays: &[Named]) -> Result<()> {
+    write_into(directory, arrays, Some(edges))
+}
+
+fn write_into(directory: &Path, arrays: &[Named], edges: Option<&Edges>) -> Result<()> {
+    let mut paths: Vec<_> = arrays.iter().map(|(name, ..)| directory.join(format!("{name}.npy"))).collect();
     paths.iter().zip(arrays).try_for_each(|(path, &(_, shape, data))| check(path, shape, data))?;
+    let edges = edges.map(|edges| {
+        paths.push(directory.join(EDGES));
+        edges.to_json()
+    });
     let new = !directory.exists();
     fs::create_dir_all(directory).map_err(|e| Error::io(directory, "create the directory", &e))?;
-    together(&paths, |n, out| write_to(out, arrays[n].1, arrays[n].2)).inspect_err(|_| {
+    let write = |n: usize, out: &mut dyn Write| match arrays.get(n) {
+        Some(&(_, shape, data)) => write_to(out, shape, data),
+        None => out.write_all(edges.as_deref().unwrap_or_default().as_bytes()),
+    };
+    together(&paths, write).inspect_err(|_| {
         if new {
             let _ = fs::remove_dir(directory); // it stays if somebody else has put something there
         }

@@ -59,6 +59,22 @@ pub struct Diagnosis {
     pub bounds: [DVec3; 2],
 }
 
+/// No plant is larger than this in metres, and few parts are smaller than this in millimetres.
+const LARGEST_PLANT: f64 = 1000.0;
+
+impl Diagnosis {
+    /// That the file may be in millimetres, as the beginning of a sentence that ends with what to give; nothing if its size is that of a plant in
+    /// metres.
+    #[must_use]
+    pub fn too_large_for_metres(&self) -> Option<String> {
+        let size = self.bounds[1] - self.bounds[0];
+        (LARGEST_PLANT..LARGEST_PLANT * 1e4).contains(&size.max_element()).then(|| {
+            let DVec3 { x, y, z } = size;
+            format!("its size, {x:.6} × {y:.6} × {z:.6}, would be in metres; if these are millimetres")
+        })
+    }
+}
+
 /// Collects warnings of one file.
 #[derive(Debug)]
 pub(super) struct Reporter {

@@ -142,7 +142,8 @@ fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
     let wants = args.resistance || args.drag.is_some();
     let obstacles = OBSTACLES.iter().filter(|_| wants).chain(DRAG.iter().filter(|_| args.drag.is_some()));
     let names: Vec<String> = fractions(fields, suffixes).chain(obstacles.map(|name| (*name).to_owned())).collect();
-    args.npy.iter().flat_map(|dir| names.iter().map(move |name| dir.join(format!("{name}.npy")))).collect()
+    let files = names.iter().map(|name| format!("{name}.npy")).chain([npy::EDGES.to_owned()]);
+    args.npy.iter().flat_map(|dir| files.clone().map(move |file| dir.join(file))).collect()
 }
 
 /// Write all that was asked for.
@@ -158,7 +159,7 @@ pub(super) fn write(
 ) -> Result<()> {
     if let Some(dir) = &args.npy {
         let all = [fields(edges, result), obstacle_fields(edges, obstacles)].concat();
-        progress.stage("npy", |_| npy::write_all(dir, &all))?;
+        progress.stage("npy", |_| npy::write_fields(dir, edges, &all))?;
         warn_of_older(dir, &all, progress);
     }
     if let Some(path) = &args.output {

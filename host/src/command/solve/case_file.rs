@@ -4,6 +4,7 @@ use super::case::Case;
 use super::{arrays, places, ranges};
 use crate::command::streams::{INPUT, text_of};
 use crate::error::{Error, Result};
+use crate::files::npy;
 use crate::grid::Edges;
 use crate::grid::file;
 use crate::keys::reader::misfit;
@@ -91,6 +92,26 @@ impl CaseFile {
         wrong: impl Fn(f64) -> Option<String>,
     ) -> Result<Vec<f64>> {
         arrays::read(path, shape, wrong).map_err(|e| self.wrong(key, e.to_string()))
+    }
+
+    /// The directory of fields that a key names, checked against the grid of the case if it says on which one the fields stand.
+    ///
+    /// # Errors
+    /// It is not there, or its fields are of another grid.
+    pub fn fields(&self, key: &str, dir: &Path, edges: &Edges) -> Result<PathBuf> {
+        let dir = self.existing(key, dir)?;
+        let path = dir.join(npy::EDGES);
+        if path.exists() {
+            let theirs = file::read(&path, &mut Vec::new()).map_err(|e| self.wrong(key, e.to_string()))?;
+            if let Some(difference) = edges.differ_from(&theirs) {
+                let reason = format!(
+                    "{}: the arrays beside it are of another grid: {difference}; if they are of this one, remove the file",
+                    path.display()
+                );
+                return Err(self.wrong(key, reason));
+            }
+        }
+        Ok(dir)
     }
 
     /// An error at a key.

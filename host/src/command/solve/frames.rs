@@ -48,7 +48,7 @@ impl Snapshot {
         let named = [("rho", &self.density), ("u", u), ("v", v), ("w", w), ("p", &self.pressure)];
         let named = named.into_iter().chain(self.gamma.iter().map(|gamma| ("gamma", gamma)));
         let arrays: Vec<_> = named.map(|(name, values)| (name.to_owned(), edges.cells(), &values[..])).collect();
-        npy::write_all(dir, &arrays)?;
+        npy::write_fields(dir, edges, &arrays)?;
         match self.gamma {
             Some(_) => Ok(()),
             // What an earlier run with a mixed gas has left would speak for this one.

@@ -133,7 +133,7 @@ impl Maxima {
         let fields = self.fields(beta_v);
         let named = NAMES.iter().zip(&fields);
         let arrays: Vec<_> = named.clone().map(|(name, v)| ((*name).to_owned(), edges.cells(), &v[..])).collect();
-        npy::write_all(dir, &arrays)?;
+        npy::write_fields(dir, edges, &arrays)?;
         let [x, y, z] = &edges.0;
         let cell = named.map(|(name, data)| CellField::Values(NamedField { name, components: 1, data }));
         Vtr { x, y, z, cell: cell.collect(), ..Vtr::default() }.write(&dir.join("maxima.vtr"))
@@ -145,7 +145,7 @@ impl Maxima {
     /// A file cannot be removed.
     pub fn forget(dir: &Path) -> Result<()> {
         NAMES.iter().try_for_each(|name| forget(&dir.join(format!("{name}.npy"))))?;
-        forget(&dir.join("maxima.vtr"))?;
+        [npy::EDGES, "maxima.vtr"].into_iter().try_for_each(|name| forget(&dir.join(name)))?;
         // Whatever else it holds is not ours.
         let _ = std::fs::remove_dir(dir);
         Ok(())

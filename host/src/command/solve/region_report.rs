@@ -1,6 +1,7 @@
 //! What the regions of a case came to: how well the grid resolves each, and how much of it is gas.
 
 use super::arrays::index;
+use super::case::side_word;
 use super::case_file::CaseFile;
 use super::cut_off;
 use super::open_parts::{Hold, OpenParts};
@@ -12,11 +13,13 @@ use crate::grid::Edges;
 use serde::Serialize;
 
 /// How well the grid resolves a region.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct RegionReport {
     /// Half the extent along an axis, in the widest cells that it meets there; the smallest of these. Axes along which it reaches from side to side of the grid
     /// have no part in it: none if all do, or it holds nothing of any cell.
     pub cells_per_radius: Option<f64>,
+    /// Sides of the grid that cut it, if it is a ball: what lies beyond them is left out.
+    pub cut_by: Vec<String>,
     /// Volume of the region within the grid, in m³.
     pub volume: f64,
     /// What of it is no solid, in m³.
@@ -50,7 +53,8 @@ pub fn report<const D: usize>(
         let initial = &file.case.initial;
         let around = initial.uniform.as_ref().and_then(|uniform| uniform.p);
         let may_blast = around.is_none() || initial.regions[n].p != around;
-        let report = RegionReport { cells_per_radius, volume, open_volume, may_blast };
+        let cut_by = cut_by(&region, edges, &live);
+        let report = RegionReport { cells_per_radius, cut_by, volume, open_volume, may_blast };
         let open = open_volume / volume;
         let trouble = match report.cells_per_radius {
             _ if region.is_outside(edges) => "lies outside the grid: it has no effect".to_owned(),
@@ -83,6 +87,21 @@ pub fn report<const D: usize>(
 /// Do shares of cells make the whole grid?
 fn covers_all(shares: &[(usize, f64)], edges: &Edges) -> bool {
     shares.len() == edges.cells().iter().product::<usize>() && shares.iter().all(|&(_, share)| share == 1.0)
+}
+
+/// A ball reaches to a side of the grid but for this share of its radius: it touches it.
+const TOUCH: f64 = 1e-9;
+
+/// As [`RegionReport::cut_by`], of the axes `live`.
+fn cut_by(region: &Region, edges: &Edges, live: &[usize]) -> Vec<String> {
+    let Region::Ball(center, radius) = region else { return Vec::new() };
+    let bounds = edges.bounds();
+    let cuts = |&(axis, side): &(usize, usize)| {
+        let room = if side == 0 { center[axis] - bounds[0][axis] } else { bounds[1][axis] - center[axis] };
+        room < radius * (1.0 - TOUCH)
+    };
+    let sides = live.iter().flat_map(|&axis| [(axis, 0), (axis, 1)]);
+    sides.filter(cuts).map(|(axis, side)| side_word(axis, side)).collect()
 }
 
 /// As [`RegionReport::cells_per_radius`], of the axes `live`.

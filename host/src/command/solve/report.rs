@@ -275,7 +275,12 @@ impl Report {
                 // As many as are printed count.
                 let is_few = region.may_blast && (10.0 * cells).round() < 10.0 * ENOUGH_CELLS;
                 let few = if is_few { FEW_CELLS } else { "" };
-                progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side{few}"));
+                let cut = if region.cut_by.is_empty() {
+                    String::new()
+                } else {
+                    format!("; cut by {}", region.cut_by.join(", "))
+                };
+                progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side{few}{cut}"));
             }
         }
         progress.say(format!("steps         {} to t = {} s", self.steps, to_six_digits(self.time)));

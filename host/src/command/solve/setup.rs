@@ -309,10 +309,11 @@ fn drag<const D: usize>(
 ) -> Result<Option<Coefficients<D>>> {
     let keys = &file.case.drag;
     let count: usize = edges.cells().iter().product();
+    let from = keys.from.as_ref().map(|dir| file.fields("drag.from", dir, edges)).transpose()?;
     let mut all: Coefficients<D> = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
     for (n, (name, constants)) in [("cr", keys.cr), ("linear", keys.linear)].into_iter().enumerate() {
         for (d, &axis) in live.iter().enumerate() {
-            let array = keys.from.as_ref().map(|dir| file.resolve(dir).join(format!("{name}_{}.npy", AXES[axis])));
+            let array = from.as_ref().map(|dir| dir.join(format!("{name}_{}.npy", AXES[axis])));
             all[n][d] = match (array.filter(|path| path.exists()), constants) {
                 (Some(_), Some(_)) => {
                     return Err(file.wrong(&format!("drag.{name}"), "is given here and in drag.from"));
@@ -328,8 +329,7 @@ fn drag<const D: usize>(
     if let Some(by_law) = by_law {
         all[0] = by_law;
     }
-    if let Some(dir) = keys.from.as_deref().filter(|_| all.iter().flatten().all(Vec::is_empty)) {
-        let dir = file.existing("drag.from", dir)?;
+    if let Some(dir) = from.filter(|_| all.iter().flatten().all(Vec::is_empty)) {
         return Err(file.wrong("drag.from", format!("{}: {NOTHING}", dir.display())));
     }
     all.iter_mut().flatten().filter(|c| c.iter().all(|&x| x == 0.0)).for_each(Vec::clear);

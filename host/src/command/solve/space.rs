@@ -56,7 +56,7 @@ pub fn load<const D: usize>(
     let (space, solids) = match (&keys.scene, &keys.from) {
         (Some(scene), None) => from_scene(file, scene, edges, live, progress)?,
         (None, Some(dir)) => {
-            let dir = file.existing("porosity.from", dir)?;
+            let dir = file.fields("porosity.from", dir, edges)?;
             let read = |name: &str, shape| {
                 file.array("porosity.from", &dir.join(format!("beta_{name}.npy")), shape, arrays::fraction)
             };

@@ -149,7 +149,7 @@ impl<const D: usize> States<'_, D> {
                     Some(path) => self.file.array("initial.from", &path, edges.cells(), |g| GAMMA.refuses(g))?,
                     None => vec![self.gamma(&StateKeys::default(), None); count],
                 };
-                let states = self.read(&self.file.existing("initial.from", dir)?, edges)?.into_iter();
+                let states = self.read(&self.file.fields("initial.from", dir, edges)?, edges)?.into_iter();
                 states.zip(gammas).map(|(state, gamma)| whole(state, gamma)).collect()
             }
             (None, None) => vec![None; count],

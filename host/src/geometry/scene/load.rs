@@ -109,6 +109,8 @@ fn add_solid(scene: &Scene, solid: &SceneSolid, bodies: &mut Bodies) -> Result<(
     original.add(&mesh, *scale)?;
     let prefix = |warning: &String| format!("{}: solid \"{}\": {warning}", scene.path.display(), solid.name);
     bodies.warnings.extend(mesh.warnings.iter().chain(&original.warnings).map(prefix));
+    let size = original.diagnoses.last().filter(|_| *scale == 1.0).and_then(Diagnosis::too_large_for_metres);
+    bodies.warnings.extend(size.map(|size| prefix(&format!("{}: {size}, give unit = \"mm\"", file.display()))));
     check_size(bodies, original.triangles.len(), solid)?;
     let centre = original.bounds().map_or(DVec3::ZERO, |[lo, hi]| lo * 0.5 + hi * 0.5);
     let first = bodies.bodies.len();
