@@ -11,7 +11,7 @@ use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
 use voidage_core::solids::torus::TorusShape;
 use voidage_core::surface::layer::ShadowReport;
 use voidage_tests::random::Random;
-use voidage_tests::solids::{Triangle, cuboid, formulas, scene, turned_box};
+use voidage_tests::solids::{Triangle, cuboid, formulas, scene, sphere, turned_box};
 
 /// `cells` cells along each axis from `lo` to `hi`.
 pub(super) fn edges(cells: usize, lo: f64, hi: f64) -> Edges {
@@ -336,4 +336,51 @@ fn a_bundle_of_tubes_in_one_cell() {
     // Along y the tubes of a row stand behind each other, a little to the side of one another.
     let row = obstacles(&cell, &formulas(&bundle[..ALONG]));
     assert!(all[1] >= shadows(&row)[1] - 1e-9 && all[1] < 1.2 * shadows(&row)[1], "{all:?} {row:?}");
+}
+
+/// Balls of so many facets that no cell holds their union at once, on a floor whose top lies in a plane of the grid, or a wall or ceiling so: what they leave of
+/// it is wetted. It counted nothing where the floor was closed and its cell was divided.
+#[test]
+fn a_floor_in_a_plane_below_a_divided_cell() {
+    let radii = [0.1, 0.08];
+    let footprints = std::f64::consts::PI * radii.iter().map(|r| r * r).sum::<f64>();
+    // The floor and, in place of the footprints, half of each ball.
+    let truth = 4.0 + footprints;
+    for (axis, side) in (0..3).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
+        let turned = |p: [f64; 3]| {
+            let mut p = DVec3::from_array([p[(3 - axis) % 3], p[(4 - axis) % 3], p[(5 - axis) % 3]]);
+            p[axis] *= side;
+            p
+        };
+        let corners = [[-1.0; 3], [3.0, 3.0, 3.0]].map(|mut p| {
+            p.rotate_right(axis);
+            DVec3::from_array(p)
+        });
+        let floor = |top: f64| {
+            let [mut lo, mut hi] = corners;
+            (lo[axis], hi[axis]) = if side > 0.0 { (-1.0, top) } else { (-top, 1.0) };
+            cuboid(lo, hi)
+        };
+        let centers = [[0.0, 0.65, 0.65], [0.0, 0.88, 0.88]].map(turned);
+        let meshes: Vec<Vec<Triangle>> =
+            centers.iter().zip(radii).map(|(&center, radius)| sphere(center, radius, 16)).collect();
+        let balls = centers.iter().zip(radii).map(|(&center, radius)| Form::Sphere(Sphere { center, radius }));
+        let by_formula = formulas(&balls.collect::<Vec<_>>());
+        for below in [0.0, 0.5] {
+            let across: Vec<f64> = (0..=4).map(|n| 0.5 * f64::from(n)).collect();
+            let mut grid = Edges([across.clone(), across.clone(), across]);
+            let along = if below > 0.0 { vec![-0.5, 0.0, 0.5, 1.0] } else { vec![0.0, 0.5, 1.0] };
+            grid.0[axis] = if side > 0.0 { along } else { along.iter().rev().map(|x| -x).collect() };
+            for top in [0.0, -1e-16] {
+                let with_mesh = scene(&[&meshes[..], &[floor(top)]].concat());
+                let mut with_formulas = scene(&[floor(top)]);
+                with_formulas.bodies.extend(by_formula.bodies.clone());
+                for (what, bodies) in [("mesh", with_mesh), ("formula", with_formulas)] {
+                    let found = obstacles(&grid, &bodies).totals;
+                    let case = format!("{what}, axis {axis}, side {side}, {below}, {top}");
+                    assert!((found.wetted_area - truth).abs() < 2e-3, "{case}: {} {truth}", found.wetted_area);
+                }
+            }
+        }
+    }
 }

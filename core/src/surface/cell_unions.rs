@@ -25,13 +25,12 @@ pub(super) trait UnionSums<V: Vector>: PieceSums<V::Scalar> {
     fn settle(&mut self, at: (usize, Aabb<V>), solid: V::Scalar) -> bool;
     /// What the union has of surface in a cell.
     fn set_union(&mut self, cell: usize, found: Self::Found);
-    /// The same where there is no proof for the cell as a whole, whose bounds may have been `refined`.
+    /// The same where there is no proof for the cell as a whole.
     fn divide_union<O: OtherBodies<V>>(
         &mut self,
         shared: &mut Shared<V, O>,
         site: &Site<V>,
         at: (usize, Aabb<V>),
-        refined: Option<&Refined<V::Scalar>>,
         spare: SpareMemory<V>,
     );
     /// The pieces of sheets inside a cell of which bodies may hide some; none where it is not asked what they leave of them.
@@ -62,7 +61,6 @@ impl<V: Vector> UnionSums<V> for () {
         _: &mut Shared<V, O>,
         _: &Site<V>,
         _: (usize, Aabb<V>),
-        _: Option<&Refined<V::Scalar>>,
         _: SpareMemory<V>,
     ) {
     }
@@ -162,7 +160,7 @@ pub(super) fn resolve<V: Vector, O: OtherBodies<V>, P: UnionSums<V>>(
             }
             match surface {
                 Some(surface) if wanted => pieces.set_union(at.cell(), surface),
-                None if wanted => pieces.divide_union(shared, site, (at.cell(), cell), refined.as_ref(), rest),
+                None if wanted => pieces.divide_union(shared, site, (at.cell(), cell), rest),
                 _ => {}
             }
             if let Some(refined) = refined.filter(|_| open > known()) {

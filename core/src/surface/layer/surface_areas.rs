@@ -299,22 +299,21 @@ impl<V: Vector> UnionSums<V> for LayerSurface<'_, V::Scalar> {
         shared: &mut Shared<V, O>,
         site: &Site<V>,
         (number, cell): (usize, Aabb<V>),
-        refined: Option<&Refined<V::Scalar>>,
         mut spare: SpareMemory<V>,
     ) {
         let wants_sides = self.beside != Beside::Nothing;
         let Some(surface) = self.cell_mut(number) else { return };
         let layers = site.k..site.k + 1;
         let inside = with_effort(shared, site, layers, |shared| parts_of(shared, site, cell, spare.reborrow()));
-        let (area, doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
-        let middles =
-            |Refined { low, high, .. }: &Refined<V::Scalar>| [0, 1, 2].map(|a| [low[a], high[a]].map(Bounds::middle));
-        let sides = match refined {
-            None if wants_sides && surface.in_planes() > V::Scalar::ZERO => {
-                divide(shared, site, cell, spare).as_ref().map(middles)
+        let (area, mut doubt) = inside.unwrap_or((surface.inside, surface.inside.wetted));
+        let mut sides = None;
+        if wants_sides && surface.in_planes() > V::Scalar::ZERO {
+            let middles = |r: Refined<V::Scalar>| [0, 1, 2].map(|a| [r.low[a], r.high[a]].map(Bounds::middle));
+            sides = divide(shared, site, within_sides(cell), spare).map(middles);
+            if sides.is_none() {
+                doubt += surface.in_planes();
             }
-            refined => refined.map(middles),
-        };
+        }
         surface.union = Some(UnionSurface { area, doubt, sides, exact: false });
     }
 }
@@ -353,6 +352,21 @@ fn in_planes<V: Vector>(cell: Aabb<V>, blocked: &Sides<V::Scalar>, solid: &Sides
         }
     }
     sum
+}
+
+/// By how much a cell is made smaller at each side so that what lies in the planes of its sides, or beyond, is not seen: in cells, and in ε of the coordinates.
+const WITHIN: (f64, f64) = (1e-7, 4.0);
+
+/// A cell but for a margin at its sides: what a cell that is divided finds of its sides is what all bodies close of them, also those that only touch it.
+fn within_sides<V: Vector>(cell: Aabb<V>) -> Aabb<V> {
+    let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
+    let margin = |a: usize| {
+        let (share, coordinates) = (V::Scalar::from_f64(WITHIN.0), lo[a].abs().max(hi[a].abs()));
+        let in_cells = share.max(V::Scalar::EPSILON * V::Scalar::from_f64(64.0)) * (hi[a] - lo[a]);
+        in_cells.max(V::Scalar::EPSILON * V::Scalar::from_f64(WITHIN.1) * coordinates)
+    };
+    let [x, y, z] = [0, 1, 2].map(margin);
+    Aabb { min: V::new(lo[0] + x, lo[1] + y, lo[2] + z), max: V::new(hi[0] - x, hi[1] - y, hi[2] - z) }
 }
 
 /// Where a cell without a proof is divided, as a share of its width: surface of bodies seldom lies there.
