@@ -144,8 +144,20 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     }
 
     /// Gives the cells their drag, CR in 1/length and the linear coefficient in 1/time; empty vectors stand for zero.
-    pub fn set_drag(&mut self, quadratic: [Vec<R>; D], linear: [Vec<R>; D]) {
+    ///
+    /// # Errors
+    /// [`Error::ShapeMismatch`]: neither empty nor a number for each cell; [`Error::Drag`]: negative or not finite. What was there stays.
+    pub fn set_drag(&mut self, quadratic: [Vec<R>; D], linear: [Vec<R>; D]) -> Result<(), Error> {
+        for (axis, along) in quadratic.iter().enumerate().chain(linear.iter().enumerate()) {
+            if !along.is_empty() && along.len() != self.len() {
+                return Err(Error::ShapeMismatch { expected: self.len(), found: along.len() });
+            }
+            if let Some(cell) = along.iter().position(|&c| !(c >= R::ZERO && c.is_finite())) {
+                return Err(Error::Drag { axis, cell });
+            }
+        }
         self.resistance = Some(Resistance { quadratic: quadratic.map(Into::into), linear: linear.map(Into::into) });
+        Ok(())
     }
 
     /// Cells along each axis.
@@ -584,7 +596,7 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// Stable steps until `end`; none, if that is not after the time reached.
     ///
     /// # Errors
-    /// As [`Flow::advance`], and where no step is left to do, too.
+    /// As [`Flow::advance`]; a `cfl` that is not positive also if there is no step to do.
     pub fn run(&mut self, cfl: R, end: R) -> Result<(), Error> {
         if !(cfl > R::ZERO) {
             return Err(Error::Step);

@@ -314,7 +314,8 @@ fn around(scene: Option<[DVec3; 2]>) -> Result<[DVec3; 2]> {
     let [lo, hi] = scene.ok_or_else(|| Error::new("the scene is empty: give --bounds"))?;
     let size = (hi - lo).max_element();
     // The box around a round solid has room for rounding.
-    let [lo, hi] = [lo, hi].map(|p| DVec3::from_array(p.to_array().map(decimal(size * BOX_ROOM))));
+    let room = |a: usize| rounding(lo[a], hi[a]).max(size * BOX_ROOM);
+    let [lo, hi] = [lo, hi].map(|p| DVec3::from_array([0, 1, 2].map(|a| decimal(room(a))(p[a]))));
     // A flat scene still needs a box with a volume.
     let thin = DVec3::select((hi - lo).cmpgt(DVec3::ZERO), DVec3::ZERO, DVec3::splat(size * 0.5));
     Ok([lo - thin, hi + thin])

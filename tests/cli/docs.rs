@@ -36,4 +36,7 @@ fn tells_which_page_may_be_meant() {
         said,
         "error: there is no page cases: scene, grid, case, outputs, resistance, study, stress; did you mean case?\n"
     );
+    let elsewhere = stderr(&voidage(&[&"docs", &"link.md"]));
+    assert!(elsewhere.contains("docs/link.md in the repository"), "{elsewhere}");
+    assert!(!page("link.md").is_empty());
 }

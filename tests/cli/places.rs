@@ -111,6 +111,11 @@ fn arrays_know_their_grid() {
         solved(&at, &case(&twice, initial, from), "again", &["--force"]);
         measure("grid.toml", "fields");
     }
+    // What overpressures are counted from is chance there.
+    for (output, told) in [("maxima = {}", true), ("maxima = {}\nambient = 1", false), ("", false)] {
+        let said = stderr(&solved(&at, &(case(&even, last, "") + output), "again", &["--force"]));
+        assert_eq!(said.contains("the lowest pressure of initial.from"), told, "{said}");
+    }
     // It is a grid file, to the last digit.
     let thirds = grid("{ points = [0, 1], cells = [3] }");
     fs::write(at.file("thirds.toml"), thirds).expect("a grid");
@@ -119,6 +124,34 @@ fn arrays_know_their_grid() {
     for name in ["beta_v.npy", "beta_x.npy", "edges.json"] {
         let [first, second] = ["thirds", "copy"].map(|dir| fs::read(at.file(dir).join(name)).expect("a file"));
         assert!(first == second, "{name}");
+    }
+}
+
+/// Around round solids at the coordinates of a site a grid begins where the solids do, as it does around boxes.
+#[test]
+fn a_grid_around_pipes_at_a_site() {
+    let at = Scratch::new();
+    for shape in ["cylinder", "capsule", "cone", "sphere", "box"] {
+        let keys = match shape {
+            "sphere" => "center = [500002.0, 4000000.0, 0.0]\nradius = 2.0",
+            "box" => "min = [500000.0, 3999998.0, -2.0]\nmax = [500004.0, 4000002.0, 2.0]",
+            "capsule" => "from = [500002.0, 4000000.0, 0.0]\nto = [500002.0, 4000000.0, 0.001]\nradius = 1.9995",
+            _ => "from = [500000.0, 4000000.0, 0.0]\nto = [500004.0, 4000000.0, 0.0]\nradius = 2.0",
+        };
+        fs::write(at.file("pipe.toml"), format!("[[solid]]\nshape = \"{shape}\"\n{keys}\n")).expect("a scene");
+        let (scene, out) = (at.file("pipe.toml"), at.file("out"));
+        let output = voidage(&[&"porosity", &scene, &"--spacing", &"0.5", &"--npy", &out]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let edges = crate::kit::json(&out.join("edges.json"));
+        let begins = ["x", "y", "z"].map(|axis| edges[axis][0].as_f64().expect("a number"));
+        let expected = if shape == "capsule" {
+            [500_000.000_5 - 0.5, 3_999_998.000_5 - 0.5, -2.499_5]
+        } else {
+            [499_999.5, 3_999_997.5, -2.5]
+        };
+        assert!(begins.iter().zip(expected).all(|(found, truth)| (found - truth).abs() < 2e-9), "{shape}: {begins:?}");
+        let counts = ["x", "y", "z"].map(|axis| edges[axis].as_array().expect("a list").len() - 1);
+        assert_eq!(counts, [10; 3], "{shape}");
     }
 }
 

@@ -105,18 +105,28 @@ fn angles_in_radians_and_pipes_in_millimetres_are_told() {
     let pipe = "shape = \"cylinder\"\nfrom = [-100, 1, 1]\nto = [200, 1, 1]\nradius = 100";
     assert!(said(pipe).contains("every cell is closed"), "{}", said(pipe));
     // A file in millimetres, as it is and with its unit.
-    let corners = [[0, 0, 0], [1500, 0, 0], [0, 1500, 0], [0, 0, 1500]];
-    let facet = |of: [usize; 3]| {
-        let corner = |n: usize| format!("vertex {} {} {}\n", corners[n][0], corners[n][1], corners[n][2]);
-        format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", of.map(corner).concat())
-    };
-    let facets = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(facet).concat();
-    fs::write(at.file("part.stl"), format!("solid part\n{facets}endsolid part\n")).expect("a file");
+    let large = POINTS.map(|p| p.map(|x| if x == "1" { "1500" } else { x }));
+    fs::write(at.file("part.stl"), format!("solid part\n{}endsolid part\n", facets(large, &FACES))).expect("a file");
     let file = "shape = \"file\"\npath = \"part.stl\"\n";
     let hint = "\"one\": part.stl: its size, 1500.000000 × 1500.000000 × 1500.000000, would be in metres; if these are millimetres, give unit = \"mm\"";
     assert!(said(file).contains(hint), "{}", said(file));
     let text = said(&format!("{file}unit = \"mm\""));
     assert!(!text.contains("millimetres"), "{text}");
+    // In a scene of a study, too: its volume is that of a tetrahedron of 1.5 m.
+    let study = "[[scene]]\nfiles = \"part.stl\"\nUNITexact = 0.5625\n[[method]]\nmethod = \"auto\"\n\
+                 [[grid]]\nx = [-1, 2]\ny = [-1, 2]\nz = [-1, 2]\n";
+    for (unit, told) in [("", true), ("unit = \"mm\"\n", false)] {
+        fs::write(at.file("study.toml"), study.replace("UNIT", unit)).expect("a study");
+        let said = stderr(&run(&at, &["study", "study.toml", "-o", "study", "--force"]));
+        assert_eq!(said.contains("millimetres"), told, "{said}");
+        assert_eq!(said.contains("0.5625"), told, "{said}");
+    }
+    // A name heads columns and stands in lines.
+    let named = said(
+        "shape = \"sphere\"\ncenter = [1, 1, 1]\nradius = 0.3\n[[solid]]\nname = \"two\\nlines\"\nshape = \"sphere\"\n\
+                      center = [1, 1, 1]\nradius = 0.3",
+    );
+    assert!(named.contains("name needs a name in one line"), "{named}");
 }
 
 #[test]

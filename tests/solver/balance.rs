@@ -119,7 +119,8 @@ fn a_shock_meets_a_slab_of_any_drag() {
         let right = Primitive { density: 1.0, velocity: [0.0], pressure: 1.0 };
         let mut flow: Flow<f64, 1> =
             Flow::uniform([n], [1.0 / n as f64], IDEAL, [[Boundary::FarField(left), Boundary::ZeroGradient]]);
-        flow.set_drag([(0..n).map(|i| if i >= n / 2 && i < 3 * n / 4 { cr } else { 0.0 }).collect()], [vec![]]);
+        flow.set_drag([(0..n).map(|i| if i >= n / 2 && i < 3 * n / 4 { cr } else { 0.0 }).collect()], [vec![]])
+            .expect("drag");
         flow.fill(|x| if x[0] < 0.3 { left } else { right });
         flow.run(0.8, 0.25).unwrap();
         flow

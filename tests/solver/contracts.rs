@@ -291,3 +291,22 @@ fn a_run_that_cannot_advance_ends_with_an_error() {
     assert_eq!(flow.run(0.5, 1e-3), Ok(()));
     assert_eq!(flow.time, 1e-3);
 }
+
+/// Drag that no obstacle has is refused, and what was there stays.
+#[test]
+fn drag_is_checked() {
+    let gas = Gas::Ideal { gamma: 1.4 };
+    let mut flow: Flow<f64, 2> = Flow::uniform([2, 2], [1.0; 2], gas, [[Boundary::Wall; 2]; 2]);
+    flow.fill(|_| Primitive { density: 1.0, velocity: [1.0, 0.0], pressure: 1.0 });
+    let one = || vec![1.0; 4];
+    assert_eq!(flow.set_drag([one(), vec![]], [vec![], vec![]]), Ok(()));
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let along = vec![0.0, 0.0, wrong, 0.0];
+        assert_eq!(flow.set_drag([one(), along.clone()], [vec![], vec![]]), Err(Error::Drag { axis: 1, cell: 2 }));
+        assert_eq!(flow.set_drag([one(), vec![]], [along, vec![]]), Err(Error::Drag { axis: 0, cell: 2 }));
+    }
+    let short = flow.set_drag([vec![1.0; 3], vec![]], [vec![], vec![]]);
+    assert_eq!(short, Err(Error::ShapeMismatch { expected: 4, found: 3 }));
+    flow.step(0.1).expect("a step with the drag before");
+    assert!(flow.get(0).velocity[0] < 0.99);
+}

@@ -119,7 +119,8 @@ fn turned_block(block: Block, order: [usize; 3], turned: [bool; 3]) -> Vec<[u64;
     flow.set_drag(
         std::array::from_fn(|a| (0..cells).map(|c| 100.0 * data[old_cell(c)][5 + order[a]]).collect()),
         [vec![], vec![], vec![]],
-    );
+    )
+    .expect("drag");
     for c in 0..cells {
         let d = data[old_cell(c)];
         let velocity = std::array::from_fn(|a| sign(a) * (d[1 + order[a]] - 0.5));

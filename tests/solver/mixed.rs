@@ -379,7 +379,8 @@ fn two_gases_of_one_gamma_are_one_gas() {
         let mut flow: Flow<f64, 3> = Flow::uniform(n, [0.1; 3], gas, sides);
         (flow.gravity, flow.scheme.riemann) = ([0.0, -1.0, 0.5], riemann);
         flow.set_porosity(volume, faces, Treatment::default()).unwrap();
-        flow.set_drag(std::array::from_fn(|_| (0..504).map(|_| 5.0 * s.unit()).collect()), [vec![], vec![], vec![]]);
+        flow.set_drag(std::array::from_fn(|_| (0..504).map(|_| 5.0 * s.unit()).collect()), [vec![], vec![], vec![]])
+            .expect("drag");
         for cell in 0..flow.len() {
             let velocity = std::array::from_fn(|_| 0.4 * (s.unit() - 0.5));
             let w = Primitive { density: 0.7 + s.unit(), velocity, pressure: 0.7 + s.unit() };

@@ -25,7 +25,7 @@ fn rough_line<const D: usize>(n: usize, ends: [Boundary<f64, 1>; 2], porous: boo
         flow.set_porosity(volume, std::array::from_fn(across), Treatment::default()).unwrap();
     }
     let drag = (0..n).map(|i| if i % 5 == 0 { s.scale(1e-2, 1e3) } else { 0.0 }).collect::<Vec<f64>>();
-    flow.set_drag(std::array::from_fn(|_| drag.clone()), std::array::from_fn(|_| Vec::new()));
+    flow.set_drag(std::array::from_fn(|_| drag.clone()), std::array::from_fn(|_| Vec::new())).expect("drag");
     flow.gravity[0] = -0.1;
     for cell in 0..n {
         let mut velocity = [0.0; D];
@@ -85,7 +85,7 @@ fn scaled(density: f64, velocity: f64, length: f64) -> Vec<u64> {
     let (volume, faces) = porosity::<f64, 2>(&mut s, n);
     flow.set_porosity(volume, faces, Treatment::default()).unwrap();
     let drag: Vec<f64> = (0..144).map(|_| s.scale(1e-2, 1e2) / length).collect();
-    flow.set_drag([drag.clone(), drag], [vec![], vec![]]);
+    flow.set_drag([drag.clone(), drag], [vec![], vec![]]).expect("drag");
     for cell in 0..144 {
         let w = Primitive {
             density: density * s.scale(0.1, 1.0),

@@ -82,7 +82,7 @@ fn random<const D: usize>(s: &mut Source<'_>, n: [usize; D], base: f64) -> Flow<
             })
         };
         let (quadratic, linear) = (coefficients(s), coefficients(s));
-        flow.set_drag(quadratic, linear);
+        flow.set_drag(quadratic, linear).expect("drag");
     }
     (0..flow.len()).for_each(|cell| {
         let w = state(s);

@@ -4,7 +4,8 @@
 ! and vdgf_ for real32; every pair of functions has in addition one generic name without prefix:
 ! flow_step(flow, dt, report, fault). Fields may be arrays of any rank where the full name is called;
 ! under a generic name Fortran wants them of rank one. Structs are zero by default and may not be left
-! out; pointers in them come from c_loc.
+! out, nor may arrays that the manual lets be null; pointers in structs come from c_loc. Numbers of bodies, cells,
+! axes and sides in arguments and faults count from 0, as there; arrays in structs count from 1.
 ! This file is made from the header by packaging/fortran.py: do not edit it.
 module voidage
   use, intrinsic :: iso_c_binding

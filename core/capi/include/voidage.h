@@ -14,6 +14,7 @@
  * or that points at fewer numbers than it should.
  *
  * Fields over a grid are stored with x fastest, as Fortran does: see vdg_grid. Lengths are in the caller's unit throughout.
+ * p[3..6] stands for p[3], p[4] and p[5]. Bodies, cells, axes and sides count from 0.
  *
  * This file is made from the sources of the library: do not edit it. */
 
@@ -628,8 +629,9 @@ vdg_status vdg_flow_rate(vdg_flow *flow, double *rate, vdg_fault *fault);
 /* One step of dt, whatever its stability. report and fault may be null. */
 vdg_status vdg_flow_step(vdg_flow *flow, double dt, vdg_step_report *report, vdg_fault *fault);
 
-/* Stable steps at the CFL number cfl (above 0, at most 1) until the time end, or until max_steps have been done. A step that would need floors is
- * repeated with half the time. The report tells what was done even if the call ends early. report and fault may be null. */
+/* Stable steps at the CFL number cfl (above 0, at most 1) until the time end, or until max_steps have been done; none, if that is not
+ * after the time reached. A step that would need floors is repeated with half the time. The report tells what was done even if the call ends early.
+ * report and fault may be null. */
 vdg_status vdg_flow_advance(vdg_flow *flow,
                             double end,
                             double cfl,

@@ -203,8 +203,9 @@ pub unsafe extern "C" fn vdg_flow_step(
     unsafe { told(flow::step(flow, dt, report), fault) }
 }
 
-/// Stable steps at the CFL number `cfl` (above 0, at most 1) until the time `end`, or until `max_steps` have been done. A step that would need floors is
-/// repeated with half the time. The report tells what was done even if the call ends early. `report` and `fault` may be null.
+/// Stable steps at the CFL number `cfl` (above 0, at most 1) until the time `end`, or until `max_steps` have been done; none, if that is not
+/// after the time reached. A step that would need floors is repeated with half the time. The report tells what was done even if the call ends early.
+/// `report` and `fault` may be null.
 ///
 /// # Safety
 /// As of `vdg_flow_step`.

@@ -51,7 +51,7 @@ pub enum Error {
         /// The axis of the side.
         axis: usize,
     },
-    /// A step that is negative or not finite, a CFL number that is not positive, or an end of a run that is NaN.
+    /// A step that is negative or not finite, a CFL number that is not positive, or an end of a run that is NaN or lies before the time reached.
     Step,
     /// A stable step that is too short to advance the time.
     Stalled,
@@ -66,6 +66,13 @@ pub enum Error {
         axis: usize,
         /// Its flat index among the faces across that axis.
         face: usize,
+    },
+    /// A coefficient of drag that is negative or not finite.
+    Drag {
+        /// The axis along which it acts.
+        axis: usize,
+        /// The flat index of the cell.
+        cell: usize,
     },
     /// A cell outside the physical set (density or pressure not positive, or not finite; of a mixed gas a capacity out of its bounds).
     Unphysical {
@@ -98,8 +105,11 @@ impl fmt::Display for Error {
             }
             Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
             Error::Step => f.write_str(
-                "the step is negative or not finite, the CFL number is not positive, or the end of the run is not a number",
+                "the step is negative or not finite, the CFL number is not positive, or the end of the run is not a number or lies before the time reached",
             ),
+            Error::Drag { axis, cell } => {
+                write!(f, "a coefficient of drag along axis {axis} in cell {cell} is negative or not finite")
+            }
             Error::Stalled => f.write_str("a stable step is too short to advance the time"),
             Error::CellFraction { cell } => write!(f, "the open fraction of cell {cell} is not from 0 to 1"),
             Error::FaceFraction { axis, face } => {

@@ -24,6 +24,9 @@ pub const PAGES: [Page; 7] = [
     page!("stress", "hard cases whose truth is known, and what they measure"),
 ];
 
+/// Pages that stand in the repository alone.
+const ELSEWHERE: [&str; 2] = ["link", "numbers"];
+
 /// Prints the page of that name; without one, which pages there are.
 ///
 /// # Errors
@@ -33,6 +36,9 @@ pub fn docs(name: Option<&str>) -> Result<()> {
     let asked = name.strip_suffix(".md").unwrap_or(name);
     match PAGES.iter().find(|(page, _, _)| *page == asked) {
         Some((_, _, text)) => print(readable(text).as_bytes()),
+        None if ELSEWHERE.contains(&asked) => Err(Error::usage(format!(
+            "the page {asked} is for readers of the source: docs/{asked}.md in the repository"
+        ))),
         None => {
             let names = PAGES.map(|(page, _, _)| page);
             let reason = format!("there is no page {name}: {}{}", names.join(", "), meant(asked, &names));

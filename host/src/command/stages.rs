@@ -60,7 +60,9 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
         let size = bodies.diagnoses.last().filter(|_| args.unit.is_none()).and_then(Diagnosis::too_large_for_metres);
         if let Some(size) = size {
             let path = path.display();
-            progress.warn(format!("{path}: {size}, give --unit mm, in a case porosity.unit = \"mm\""));
+            progress.warn(format!(
+                "{path}: {size}, give --unit mm, in a case porosity.unit = \"mm\", in a scene of a study unit = \"mm\""
+            ));
         }
     }
     warn_of_unit(args, &bodies, progress);

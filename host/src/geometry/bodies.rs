@@ -157,7 +157,12 @@ impl Bodies {
     /// The files that they came from, for messages.
     #[must_use]
     pub fn files(&self) -> String {
-        let mut files: Vec<&str> = self.diagnoses.iter().map(|d| d.file.as_str()).collect();
+        // Files that a scene names are told by it.
+        let of_scene = |d: &&Diagnosis| {
+            self.solids.iter().any(|s| s.bodies.start <= d.body_range.start && d.body_range.end <= s.bodies.end)
+        };
+        let given = self.diagnoses.iter().filter(|d| !of_scene(d));
+        let mut files: Vec<&str> = given.map(|d| d.file.as_str()).collect();
         files.extend(self.solids.iter().map(|s| s.scene.as_str()));
         files.dedup();
         files.join(", ")
@@ -176,7 +181,8 @@ impl Bodies {
         let measurable = |p: &DVec3| p.abs().cmple(DVec3::splat(LARGEST)).all();
         if let Some(n) = scaled.iter().position(|t| !t.iter().all(measurable)) {
             let corner = scaled[n].into_iter().find(|p| !measurable(p)).unwrap_or_default();
-            let reason = format!("a coordinate beyond {LARGEST:e} m is no geometry: {}", show(corner));
+            let what = if corner.is_nan() { "that is no number".into() } else { format!("beyond {LARGEST:e} m") };
+            let reason = format!("a coordinate {what} is no geometry: {}", show(corner));
             return Err(Error { place: Some(format!("triangle {n} (counted from 0)")), ..mesh.error(reason) });
         }
         let mut report = Reporter { file: mesh.name.clone(), warnings: Vec::new() };

@@ -34,12 +34,21 @@ impl Form {
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         match self {
-            Form::Sphere(s) => around(s),
+            Form::Sphere(s) => seen_from(s.center, &Sphere { center: DVec3::ZERO, ..*s }),
             Form::Ellipsoid(s) => around(s),
             Form::Box(s) => [s.min, s.max],
-            Form::Cylinder(s) => around(s),
-            Form::Capsule(s) => around(s),
-            Form::Cone(s) => around(s),
+            Form::Cylinder(s) => {
+                let (middle, [from, to]) = from_middle(s.ends());
+                seen_from(middle, &Cylinder::new(from, to, s.base_radius()))
+            }
+            Form::Capsule(s) => {
+                let (middle, [from, to]) = from_middle([s.from, s.to]);
+                seen_from(middle, &Capsule { from, to, ..*s })
+            }
+            Form::Cone(s) => {
+                let (middle, [from, to]) = from_middle(s.ends());
+                seen_from(middle, &Cone::truncated(from, to, s.base_radius(), s.top_radius()))
+            }
             Form::Torus(s) => {
                 let room = DVec3::splat((s.radius + s.tube) * (1.0 + SUPPORT_ROUNDING));
                 TorusSolid::new(s).map_or([s.center - room, s.center + room], |solid| {
@@ -59,6 +68,18 @@ impl Form {
 
 /// Roundings of [`Support::support`] that slack does not count, in ε of the extent.
 const SUPPORT_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The middle between two points, and the points as seen from there.
+fn from_middle([from, to]: [DVec3; 2]) -> (DVec3, [DVec3; 2]) {
+    let middle = from.midpoint(to);
+    (middle, [from - middle, to - middle])
+}
+
+/// The box around a body that is given as seen from a place: far off, only the sums round by the size of coordinates.
+fn seen_from(place: DVec3, body: &impl Support<Vector = DVec3>) -> [DVec3; 2] {
+    let ([lo, hi], room) = (around(body), f64::EPSILON * place.abs());
+    [place + lo - room, place + hi + room]
+}
 
 /// The box around a body, from its six outermost points.
 fn around(body: &impl Support<Vector = DVec3>) -> [DVec3; 2] {

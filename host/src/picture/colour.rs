@@ -23,8 +23,8 @@ const STEPS: usize = 256;
 /// The step of the even map that just under 1 has where 1 itself has the last.
 const LIGHTEST: usize = 222;
 
-/// Means over a pixel miss 1 by no more.
-const ROUNDING: f64 = 1e-9;
+/// Means over a pixel miss 1 by no more, and what rounding of coordinates leaves of a solid in a cell that it should only touch takes no more.
+const ROUNDING: f64 = 1e-6;
 
 /// Less than this share of the largest is none: what the rounding of coordinates leaves of a surface that touches a plane of the grid.
 const NONE: f64 = 3e-7;

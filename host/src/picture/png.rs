@@ -54,9 +54,26 @@ pub fn picture_of(
     let (telling, mean) = survey(edges, values).ok_or_else(|| format!("{name} does not have the grid's length"))?;
     let most = values.iter().copied().fold(0.0, f64::max);
     let note = format!("{} · mean {}, most {}", grid_note(edges, unit), number(mean), number(most));
-    let (at, range, ends, map) = (cut(edges, telling, through), [0.0, most], ["", ""], &ColourMap::density());
+    let last = last_of_scale(values, most);
+    let ends = ["", if last < most { "and above" } else { "" }];
+    let (at, range, map) = (cut(edges, telling, through), [0.0, last], &ColourMap::density());
     let (moment, note, told) = ("", &note[..], [true; 2]);
     Figure { title, moment, note, edges, unit, values, at, name, range, ends, told, map }.draw()
+}
+
+/// Share of the values above zero that the scale of a picture reaches.
+const IN_SCALE: f64 = 0.98;
+
+/// The last value of a scale from zero: the largest; or if that is more than twice what nearly all others are below, that: a sliver in a cell must not
+/// leave all others without colour.
+fn last_of_scale(values: &[f64], most: f64) -> f64 {
+    let mut some: Vec<f64> = values.iter().copied().filter(|&v| v > 0.0).collect();
+    let rank = (some.len() as f64 * IN_SCALE) as usize;
+    if rank + 1 >= some.len() {
+        return most;
+    }
+    let (_, &mut nearly_all, _) = some.select_nth_unstable_by(rank, f64::total_cmp);
+    if most > 2.0 * nearly_all { nearly_all } else { most }
 }
 
 /// The cells that the slices show: those at the given coordinates, else the most telling ones.
@@ -172,6 +189,18 @@ mod tests {
     use super::*;
 
     const EDGES: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+
+    /// A sliver does not take the colours from all others; what grows evenly keeps its largest.
+    #[test]
+    fn the_scale_leaves_out_slivers() {
+        let even: Vec<f64> = (0..1000).map(f64::from).collect();
+        assert_eq!(last_of_scale(&even, 999.0), 999.0);
+        let mut with_sliver = even.clone();
+        with_sliver[3] = 1e27;
+        assert!((970.0..=999.0).contains(&last_of_scale(&with_sliver, 1e27)));
+        assert_eq!(last_of_scale(&[0.0, 5.0, 0.0], 5.0), 5.0);
+        assert_eq!(last_of_scale(&[0.0; 7], 0.0), 0.0);
+    }
 
     #[test]
     fn an_empty_domain_is_cut_in_the_middle() {

@@ -52,13 +52,13 @@ impl From<Leaf> for subdivide::LeafRule {
 /// What to compute and how far to refine.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Unions are found exactly; where one has no proof, divide the cell until its bounds are this close.
+    /// Unions are found exactly; where one has no proof, divide the cell until its bounds are this close. By default 1e-4.
     pub tol: f64,
-    /// How often a cell whose union has no proof may be divided by 2 along each axis.
+    /// How often a cell whose union has no proof may be divided by 2 along each axis. By default 6.
     pub depth: u32,
-    /// Keep lower and upper bounds of all fields.
+    /// Keep lower and upper bounds of all fields. Not by default.
     pub bounds: bool,
-    /// Compute the faces; without, their fields stay empty.
+    /// Compute the faces, as by default; without, their fields stay empty.
     pub areas: bool,
     /// How volumes are found.
     pub method: Method,

@@ -130,6 +130,9 @@ pub fn unseen_frontal_area(grid: &Grid<f64>, beta: &FieldSet, found: &Resistance
 /// Less solid than this, as a share of a cell, is rounding.
 const ROUNDING: f64 = 2e-13;
 
+/// Less surface than this, in the largest side of a cell, is rounding.
+const DUST: f64 = 1e-13;
+
 /// Areas over volumes, and the lengths that follow.
 fn densities(grid: &Grid<f64>, open: &[f64], union: &[(usize, SurfaceArea<f64>)]) -> Resistance {
     let zeros = || vec![0.0; open.len()];
@@ -137,7 +140,11 @@ fn densities(grid: &Grid<f64>, open: &[f64], union: &[(usize, SurfaceArea<f64>)]
     found.l_obs = zeros();
     for &(n, area) in union.iter().filter(|(_, area)| area.wetted > 0.0) {
         let Some(cell) = grid.cell_box(place_of_cell(grid, n)) else { continue };
-        let area = area.times(cell.size().element_product().recip());
+        let (size, volume) = (cell.size(), cell.size().element_product());
+        if area.wetted < DUST * volume / size.min_element() {
+            continue;
+        }
+        let area = area.times(volume.recip());
         found.a.iter_mut().zip(area.frontal).for_each(|(a, f)| a[n] = f);
         found.s[n] = area.wetted;
         found.d_h[n] = 4.0 * open[n] / area.wetted;

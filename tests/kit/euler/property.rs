@@ -175,7 +175,7 @@ fn of_gas_stays_physical<R: Scalar, const D: usize>(s: &mut Source<'_>, n: [usiz
             })
         };
         let (quadratic, linear) = (coefficients(s), coefficients(s));
-        flow.set_drag(quadratic, linear);
+        flow.set_drag(quadratic, linear).expect("drag");
     }
     for cell in 0..cells {
         let w = state(s);

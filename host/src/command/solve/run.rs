@@ -421,9 +421,15 @@ fn ambient<const D: usize>(file: &CaseFile, setup: &Setup<D>) -> f64 {
     file.case.output.ambient.unwrap_or_else(|| lowest_pressure(&setup.flow))
 }
 
-/// Say that overpressures are counted from less than the pressure around, if no other one was asked for and there are any.
+/// Say that overpressures are counted from less than the pressure around, or from whatever a field holds, if no other one was asked for and there are any.
 fn warn_of_low_ambient(file: &CaseFile, ambient: f64, progress: &mut Progress) {
     let (initial, output) = (&file.case.initial, &file.case.output);
+    let is_shown = output.maxima.is_some() || output.formats().contains(&Format::Png);
+    if initial.from.is_some() && output.ambient.is_none() && is_shown {
+        let reason =
+            format!("not given: overpressures are counted from {ambient} Pa, the lowest pressure of initial.from");
+        progress.warn(file.remark("output.ambient", reason));
+    }
     let around = initial.uniform.as_ref().and_then(|state| state.p).filter(|p| ambient < *p * (1.0 - 1e-9));
     if let Some(around) = around.filter(|_| output.ambient.is_none() && output.maxima.is_some()) {
         let reason = format!(

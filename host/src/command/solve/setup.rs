@@ -125,7 +125,7 @@ pub fn setup<const D: usize>(
         }
     }
     match drag(file, edges, live, by_law)? {
-        Some([quadratic, linear]) => flow.set_drag(quadratic, linear),
+        Some([quadratic, linear]) => flow.set_drag(quadratic, linear).map_err(|error| refused(file, error))?,
         None => skipped.push("drag: none".into()),
     }
     if flow.gravity.iter().all(|&g| g == 0.0) {

@@ -39,6 +39,7 @@ use crate::command::stages::room_for;
 use crate::error::{Result, said};
 use crate::geometry::scene::table::{self, StrictTable};
 use crate::geometry::scene::{self, SceneSolid};
+use crate::geometry::unit::Unit;
 use crate::grid::Edges;
 use crate::keys::{Source, first_repeated};
 use crate::porosity::Method;
@@ -130,6 +131,8 @@ pub struct Subject {
     pub name: String,
     /// SCENE files.
     pub files: Vec<PathBuf>,
+    /// Unit of STL and OBJ files among them; metres without one.
+    pub unit: Option<Unit>,
     /// Solids of its own.
     pub solids: Vec<SceneSolid>,
     /// Solid volume in every grid, if it is known.
@@ -245,6 +248,7 @@ fn subject(mut keys: StrictTable, path: &Path, grids: &[Edges]) -> Result<Subjec
     let beside = path.parent().unwrap_or(Path::new(""));
     let there = |value: &DeValue| existing(beside, value);
     let files = keys.get("files", some(there))?.unwrap_or_default();
+    let unit = keys.get("unit", table::unit)?;
     let solids = scene::solids(&mut keys)?;
     let exact = keys.get("exact", table::positive)?;
     let probe = keys.table("probe")?.map(|mut k| probe(&mut k, grids)).transpose()?;
@@ -253,7 +257,7 @@ fn subject(mut keys: StrictTable, path: &Path, grids: &[Edges]) -> Result<Subjec
     if files.is_empty() && solids.is_empty() {
         return Err(keys.fail("needs files or [[scene.solid]]"));
     }
-    Ok(Subject { name, files, solids, exact, probe, published })
+    Ok(Subject { name, files, unit, solids, exact, probe, published })
 }
 
 fn published(mut keys: StrictTable) -> Result<Published> {

@@ -118,9 +118,13 @@ fn wave<const D: usize>(cells: [usize; D], gas: Gas<f64>) -> Flow<f64, D> {
     flow
 }
 
+/// An error of the core as one of the study.
+fn refused(error: voidage_core::flow::Error) -> Error {
+    Error::new(format!("the flow: {error}"))
+}
+
 /// Times of some steps, without the first, which makes memory ready.
 fn steps<const D: usize>(mut flow: Flow<f64, D>, repeats: usize) -> Result<Spread> {
-    let refused = |e| Error::new(format!("the flow: {e}"));
     flow.advance(0.5, f64::MAX).map_err(refused)?;
     let (_, seconds) =
         timed(repeats, || (0..STEPS).try_for_each(|_| flow.advance(0.5, f64::MAX).map(drop)).map_err(refused))?;
@@ -138,8 +142,7 @@ fn of_flow(what: &str, repeats: usize) -> Result<LeftOutRow> {
                 let mut open = wave(box_, ideal);
                 let faces = || vec![1.0; SIDE * SIDE * (SIDE + 1)];
                 let volume = vec![1.0; SIDE * SIDE * SIDE];
-                open.set_porosity(volume, [faces(), faces(), faces()], Treatment::default())
-                    .map_err(|e| Error::new(format!("the flow: {e}")))?;
+                open.set_porosity(volume, [faces(), faces(), faces()], Treatment::default()).map_err(refused)?;
                 (box_, plain()?, steps(open, repeats)?)
             }
             Some(1) => (box_, steps(wave(box_, Gas::Isothermal { sound_speed: 1.0 }), repeats)?, plain()?),
@@ -151,7 +154,7 @@ fn of_flow(what: &str, repeats: usize) -> Result<LeftOutRow> {
             _ => {
                 let mut still = wave(box_, ideal);
                 let none = || vec![0.0; SIDE * SIDE * SIDE];
-                still.set_drag([none(), none(), none()], [vec![], vec![], vec![]]);
+                still.set_drag([none(), none(), none()], [vec![], vec![], vec![]]).map_err(refused)?;
                 (box_, plain()?, steps(still, repeats)?)
             }
         })

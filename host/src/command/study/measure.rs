@@ -141,7 +141,7 @@ fn doubt_exact(subject: &Subject, reference: &Reference, session: &mut Session) 
 /// # Errors
 /// As [`stages::load`].
 pub fn bodies(path: &Path, subject: &Subject, progress: &mut Progress) -> Result<Bodies> {
-    let args = SceneArgs { scene: subject.files.clone(), unit: None };
+    let args = SceneArgs { scene: subject.files.clone(), unit: subject.unit };
     let (mut bodies, _) = stages::load(&args, progress)?;
     let own = Scene { path: path.to_owned(), solids: subject.solids.clone(), grid: None };
     let said = bodies.warnings.len();

@@ -318,10 +318,7 @@ fn file(keys: &mut StrictTable) -> Result<Shape> {
         path if path.is_empty() => Err("is empty: it names an STL or OBJ file".to_owned()),
         path => Ok(PathBuf::from(path)),
     })?;
-    let unit = keys.get("unit", |value| {
-        let name = table::text(value)?;
-        Unit::named(&name).ok_or_else(|| format!("\"{name}\" is not known: {}", Unit::ALL.map(Unit::name).join(", ")))
-    })?;
+    let unit = keys.get("unit", table::unit)?;
     let scale = keys.get("scale", table::positive)?.unwrap_or(1.0);
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
         return Err(keys.wrong("path", "names a scene, but scenes do not hold scenes: only STL and OBJ files"));

@@ -1,6 +1,7 @@
 //! A TOML table read strictly: every key has a reader, every reader says what it wants.
 
 use crate::error::{Error, Result};
+use crate::geometry::unit::Unit;
 use crate::grid::{Edges, file};
 use crate::keys::Source;
 use crate::keys::reader::{nearest, not_known};
@@ -129,6 +130,7 @@ impl<'a> StrictTable<'a> {
     pub fn named(&mut self) -> Result<String> {
         let some = |value: &DeValue| match text(value)? {
             name if name.is_empty() => Err("is empty: give one, or leave the key out".to_owned()),
+            name if name.contains(['\n', '\r']) => Err("needs a name in one line".to_owned()),
             name => Ok(name),
         };
         let Some(name) = self.get("name", some)? else { return Ok(self.subject.clone()) };
@@ -376,6 +378,15 @@ pub fn truth(value: &DeValue) -> Wanted<bool> {
 /// What it should be.
 pub fn text(value: &DeValue) -> Wanted<String> {
     value.as_str().map(str::to_owned).ok_or_else(|| format!("takes a text, not {}", kind(value)))
+}
+
+/// A unit of length, by its name.
+///
+/// # Errors
+/// What it should be.
+pub fn unit(value: &DeValue) -> Wanted<Unit> {
+    let name = text(value)?;
+    Unit::named(&name).ok_or_else(|| format!("\"{name}\" is not known: {}", Unit::ALL.map(Unit::name).join(", ")))
 }
 
 /// A list of values of one kind.

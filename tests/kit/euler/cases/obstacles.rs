@@ -27,7 +27,7 @@ pub(super) fn drag(case: &Case) -> Outcome {
         let start = Primitive { density: rho, velocity: [u0, 0.0, 0.0], pressure: p0 };
         let mut flow = Flow::uniform(n, [1.0; 3], gas, [[Boundary::Periodic; 2]; 3]);
         let all = |c: f64| std::array::from_fn(|_| vec![c; cells]);
-        flow.set_drag(all(2.0 * k), all(a));
+        flow.set_drag(all(2.0 * k), all(a)).expect("drag");
         for i in 0..cells {
             flow.set(i, &start);
         }
@@ -52,7 +52,8 @@ pub(super) fn drag(case: &Case) -> Outcome {
             flow.set_drag(
                 [vec![2.0 * soft; cells], vec![], vec![]],
                 [vec![a / u0.abs().max(1.0); cells], vec![], vec![]],
-            );
+            )
+            .expect("drag");
             for i in 0..cells {
                 flow.set(i, &slanted);
             }
@@ -95,7 +96,7 @@ pub(super) fn shock_slab(case: &Case) -> Outcome {
         flow.set_porosity(volume, faces, smooth_duct())?;
         if cr > 0.0 {
             let inside = |i: usize| line.centre(i) > inside[0] && line.centre(i) < inside[1];
-            flow.set_drag([(0..n).map(|i| if inside(i) { cr } else { 0.0 }).collect()], [vec![]]);
+            flow.set_drag([(0..n).map(|i| if inside(i) { cr } else { 0.0 }).collect()], [vec![]]).expect("drag");
         }
         flow.scheme.limiter = limiter;
         line.fill_jump(&mut flow, case.number("/shock_x0")?, left, right);

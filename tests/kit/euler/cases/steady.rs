@@ -226,7 +226,7 @@ pub(super) fn fanno(case: &Case) -> Outcome {
             Gas::Ideal { gamma },
             [Boundary::FarField(at(line.edge(0)).primitive()), Boundary::FarField(at(line.edge(n)).primitive())],
         );
-        flow.set_drag([vec![cr; n]], [vec![]]);
+        flow.set_drag([vec![cr; n]], [vec![]]).expect("drag");
         let exact: Vec<State> = (0..n).map(|i| at(line.centre(i))).collect();
         for i in 0..n {
             flow.set(i, &exact[i].primitive());

@@ -39,7 +39,7 @@ fn drag_decay(_: Effort) -> Numbers {
     for power in -3..=12 {
         let resistance = 10f64.powi(power);
         let mut flow: Flow<f64, 1> = Flow::uniform([5], [0.2], GAS, [[Boundary::Periodic; 2]]);
-        flow.set_drag([vec![resistance; 5]], [Vec::new()]);
+        flow.set_drag([vec![resistance; 5]], [Vec::new()])?;
         let start = GasState { rho: 1.2, u: 0.7, p: 1.0 };
         flow.fill(|_| start.along(0));
         let books = Books::open(&flow);
@@ -62,7 +62,7 @@ fn rigid_slab(effort: Effort) -> Numbers {
     let ends = [Boundary::FarField(left.along(0)), Boundary::ZeroGradient];
     let mut flow: Flow<f64, 1> = Flow::uniform([n], [1.0 / n as f64], GAS, [ends]);
     let slab = n / 2..3 * n / 4;
-    flow.set_drag([(0..n).map(|i| if slab.contains(&i) { 1e12 } else { 0.0 }).collect()], [Vec::new()]);
+    flow.set_drag([(0..n).map(|i| if slab.contains(&i) { 1e12 } else { 0.0 }).collect()], [Vec::new()])?;
     flow.fill(|[x]| if x < 0.3 { left } else { right }.along(0));
     let books = Books::open(&flow);
     run(&mut flow, 0.8, 0.25)?;

@@ -49,7 +49,7 @@ fn blast(density: f64, velocity: f64, length: f64) -> Result<Vec<f64>, FlowError
     let mut flow: Flow<f64, 2> = Flow::uniform(n, [length / 8.0; 2], GAS, [[Boundary::Wall; 2]; 2]);
     set_random_porosity(&mut flow, n, &mut random)?;
     let drag: Vec<f64> = (0..flow.len()).map(|_| random.scale(1e-2, 1e2) / length).collect();
-    flow.set_drag([drag.clone(), drag], [Vec::new(), Vec::new()]);
+    flow.set_drag([drag.clone(), drag], [Vec::new(), Vec::new()])?;
     for cell in 0..flow.len() {
         let pressure = density * velocity * velocity * random.scale(1e-2, 10.0);
         let moving = [0; 2].map(|_| velocity * random.between(-0.5, 0.5));
