@@ -417,3 +417,27 @@ fn a_cube_in_a_channel() {
         assert!(worst <= 1e-12, "mirrored cells differ by {worst} ({cells:?})");
     }
 }
+
+/// What rounding of unions leaves open in a cell that is wholly solid is no pocket of gas.
+#[test]
+fn what_rounding_leaves_open_is_solid() {
+    let at = Scratch::new();
+    let case = "[grid]\nx = { points = [0, 1], cells = [4] }\ny = { points = [0, 1], cells = [2] }\n[porosity]\nfrom = \"fields\"\n\
+                [gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\nuniform = { rho = 1, p = 1 }\nregions = [{ max = [0.4], p = 3 }]\n\
+                [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\n[time]\nend = 0.1\n\
+                [output]\nformats = []\nmaxima = {}\n";
+    for (dust, closed) in [(7e-13, 1), (1e-6, 0)] {
+        let volume = [1.0, 1.0, dust, 1.0, 1.0, 1.0, 1.0, 1.0];
+        let x = [1.0, 1.0, dust, dust, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+        let y = [1.0, 1.0, dust, 1.0, 1.0, 1.0, dust, 1.0, 1.0, 1.0, 1.0, 1.0];
+        let fields: [npy::Named; 3] =
+            [("beta_v".into(), [4, 2, 1], &volume), ("beta_x".into(), [5, 2, 1], &x), ("beta_y".into(), [4, 3, 1], &y)];
+        npy::write_all(&at.file("fields"), &fields).expect("written");
+        solved(&at, case, "out", &["--force"]);
+        let told = &json(&at.file("out/report.json"))["porosity"];
+        assert!(told["closed_cells"] == closed && told["dust_cells"] == closed, "{dust}: {told}");
+        let over = array(&at.file("out/maxima/overpressure.npy"));
+        let none: Vec<bool> = over.iter().map(|p| p.is_nan()).collect();
+        assert_eq!(none, (0..8).map(|n| n == 2 && closed == 1).collect::<Vec<_>>(), "{dust}: {over:?}");
+    }
+}

@@ -78,8 +78,10 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
             references: [faces.references[0][i], faces.references[1][i]],
             walls: [walls[0][i], walls[1][i]],
         };
-        let (weak, strong) = (acoustic(&lane, gas), strong_waves(&lane, &solve(&lane.throat, &gases), gas));
+        let weak = acoustic(&lane, gas);
         let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
+        let lane = if share < R::ONE { lane.taken_up(throat, gas) } else { lane };
+        let strong = strong_waves(&lane, &solve(&lane.throat, &gases), gas);
         tell(i, weak.blend(&strong, share, gas));
     }
 }
@@ -109,6 +111,48 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize
         let [left, right] = throats.each_ref();
         let of_face = MixedFace(gases.map(FaceGas::new));
         jump_fluxes::<R, D, 1>((&face, 1), &of_face, [left, right], solve, |_, flux| tell(i, flux));
+    }
+}
+
+/// A stream so many times as wide as its throat passes it, whatever lies beyond.
+const FUNNEL: f64 = 4.0;
+
+/// The area of the stream of duct `s` that passes a throat of area `to`: all of it where the ducts carry one stream. At the mouth of a blind hole they do not:
+/// what the gas before a wall does is no stream through the hole, and carried to the throat would press or draw on the gas in it as no gas can. There passes
+/// as much as flows in the duct beyond the throat, and the rest of the gas meets the wall. From half the speed of sound on the gas beyond tells less of what
+/// it takes up, and from that on nothing. `mass` is what flows in the ducts, `mach` how fast, both positive to the right.
+pub(in crate::flow) fn taken_up<R: Real>(ducts: [R; 2], mass: [R; 2], mach: [R; 2], s: usize, to: R) -> R {
+    let least = R::from_f64(FUNNEL) * to;
+    if !(ducts[s] > least) {
+        return ducts[s];
+    }
+    let ahead = |x: R| if mass[s] < R::ZERO { -x } else { x };
+    let (own, beyond) = (ahead(mass[s]), R::larger(ahead(mass[1 - s]), R::ZERO));
+    if !(beyond < own) {
+        return ducts[s];
+    }
+    let untold = R::smaller(R::larger(R::TWO * ahead(mach[1 - s]) - R::ONE, R::ZERO), R::ONE);
+    R::larger(least, ducts[s] * ((beyond + untold * (own - beyond)) / own))
+}
+
+impl<R: Real, const D: usize> JumpLane<R, D> {
+    /// With no more of each stream than [`taken_up`] says.
+    fn taken_up(mut self, throat: [&ThroatGas<R>; 2], gas: &impl FaceGases<R>) -> Self {
+        let u = [0, 1].map(|s| self.cell[s].velocity[0]);
+        let mass = [0, 1].map(|s| self.ducts[s] * (self.cell[s].density * u[s]));
+        let mach = [u[0] / gas.left().sound_speed(&self.cell[0]), u[1] / gas.right().sound_speed(&self.cell[1])];
+        for s in 0..2 {
+            let from = taken_up(self.ducts, mass, mach, s, self.to);
+            if from < self.passing[s] {
+                let w = &self.cell[s];
+                let AtThroat { state, passing } = throat[s].carry(w, from, self.to);
+                (self.throat[s], self.passing[s]) = (state, passing);
+                let into_wall = if s == 0 { u[0] } else { -u[1] };
+                let force = throat[s].wall_pressure(w.density, w.pressure, into_wall) - self.references[s];
+                self.walls[s] = (self.ducts[s] - passing) * force;
+            }
+        }
+        self
     }
 }
 

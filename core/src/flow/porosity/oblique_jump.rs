@@ -8,7 +8,7 @@
 //! a cell leaves it, because the area vector of its walls is along n.
 
 use crate::flow::face_gas::FaceGases;
-use crate::flow::porosity::jump::{JumpLane, ThroatCall, acoustic, carried_by_flux, densities, weakness};
+use crate::flow::porosity::jump::{JumpLane, ThroatCall, acoustic, carried_by_flux, densities, taken_up, weakness};
 use crate::flow::porosity::throat::{AtThroat, ThroatGas};
 use crate::flow::riemann::Flux;
 use crate::flow::state::{Primitive, dot};
@@ -80,11 +80,12 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         area
     }
 
-    fn side(&self, s: usize, throat: &ThroatGas<R>) -> Side<R, D> {
+    /// What side `s` brings to the throat, of its duct as much as a stream of area `from`.
+    fn side(&self, (s, from): (usize, R), throat: &ThroatGas<R>) -> Side<R, D> {
         let (w, n) = (&self.states[s], self.normal);
         let through = dot(n, w.velocity);
         let normal = Primitive { density: w.density, velocity: [through], pressure: w.pressure };
-        let AtThroat { state, passing } = throat.carry(&normal, self.ducts[s], self.throat);
+        let AtThroat { state, passing } = throat.carry(&normal, from, self.throat);
         let along = plus(w.velocity, -through, n);
         let area = self.area(passing);
         let size = dot(area, area).sqrt();
@@ -101,7 +102,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         solve: ThroatCall<R, D>,
     ) -> ObliqueFlux<R, D> {
         // Written out: `map` of an array calls a function for what it makes of an element this large.
-        let sides = [self.side(0, throat[0]), self.side(1, throat[1])];
+        let mut sides = [self.side((0, self.ducts[0]), throat[0]), self.side((1, self.ducts[1]), throat[1])];
         let chokes = (0..2).any(|s| sides[s].passing < self.ducts[s]);
         let across = self.area(self.throat);
         let size = dot(across, across).sqrt();
@@ -112,7 +113,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
             let velocity = turned(plus(side.along, t.velocity[0], self.normal), direction);
             Primitive { density: t.density, velocity, pressure: t.pressure }
         };
-        let at_throat = [turn(&sides[0]), turn(&sides[1])];
+        let mut at_throat = [turn(&sides[0]), turn(&sides[1])];
         let weak = self.weak(&sides, gas);
         let along =
             |t: &Primitive<R, D>| Primitive { density: t.density, velocity: [t.velocity[0]], pressure: t.pressure };
@@ -120,6 +121,18 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         let share = if chokes { R::ZERO } else { self.acoustic_weight * weakness(weak.mass / size, &first, gas) };
         if share >= R::ONE {
             return weak;
+        }
+        let mass = [0, 1].map(|s| self.ducts[s] * (self.states[s].density * sides[s].through));
+        let mach = [
+            sides[0].through / gas.left().sound_speed(&self.states[0]),
+            sides[1].through / gas.right().sound_speed(&self.states[1]),
+        ];
+        for s in 0..2 {
+            let from = taken_up(self.ducts, mass, mach, s, self.throat);
+            if from < sides[s].passing {
+                sides[s] = self.side((s, from), throat[s]);
+                at_throat[s] = turn(&sides[s]);
+            }
         }
         let solved = solve(&at_throat, &[*gas.left(), *gas.right()]);
         let strong = self.strong(&sides, throat, &at_throat, (size, direction), (&solved, gas));

@@ -11,7 +11,7 @@ use super::region_report::{self, RegionReport};
 use super::regions::Region;
 use super::sides::{self, PatchReport, Sides};
 use super::solids::SolidShares;
-use super::space::{self, Space};
+use super::space::{self, Space, close_dust};
 use super::state::{Beginning, States};
 use super::strong_drag;
 use super::units;
@@ -121,7 +121,7 @@ pub fn setup<const D: usize>(
         Some(space) => {
             let Space { volume, faces, drag, .. } = space;
             by_law = drag;
-            report = Some(fill(file, &mut flow, (volume, faces), treatment, progress)?);
+            report = Some(fill(file, &mut flow, (volume, faces), (edges, live, treatment), progress)?);
         }
     }
     match drag(file, edges, live, by_law)? {
@@ -168,10 +168,11 @@ fn open_parts<const D: usize>(
 fn fill<const D: usize>(
     file: &CaseFile,
     flow: &mut Flow<f64, D>,
-    (volume, faces): (Vec<f64>, [Vec<f64>; D]),
-    treatment: Treatment<f64>,
+    (mut volume, mut faces): (Vec<f64>, [Vec<f64>; D]),
+    (edges, live, treatment): (&Edges, [usize; D], Treatment<f64>),
     progress: &mut Progress,
 ) -> Result<SpaceReport> {
+    let closed = close_dust((&mut volume, &mut faces), edges.cells(), live);
     let tidied = flow.set_porosity(volume, faces, treatment).map_err(|e| refused(file, e))?;
     let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
     if matched_faces > 0 {
@@ -184,7 +185,7 @@ fn fill<const D: usize>(
         closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
         jump_faces: flow.jump_faces(),
         merged_cells: flow.merged_cells(),
-        dust_cells,
+        dust_cells: dust_cells + closed,
         dust_faces,
         closed_faces,
         matched_faces,

@@ -32,6 +32,29 @@ pub struct Space<const D: usize> {
     pub scene: Option<SceneBodies>,
 }
 
+/// A cell that is open by less is solid: unions of solids are known to some 1e-12 of a cell, and what rounding leaves of one would be a pocket of gas.
+const DUST: f64 = 1e-9;
+
+/// Closes cells that rounding has left open, with all their faces, given as [`Space`] has them; returns how many.
+pub fn close_dust<const D: usize>(
+    (volume, faces): (&mut [f64], &mut [Vec<f64>; D]),
+    cells: [usize; 3],
+    live: [usize; D],
+) -> usize {
+    let mut count = 0;
+    for (n, open) in volume.iter_mut().enumerate().filter(|(_, open)| **open > 0.0 && **open < DUST) {
+        (*open, count) = (0.0, count + 1);
+        for (faces, &axis) in faces.iter_mut().zip(&live) {
+            let shape = std::array::from_fn(|a| cells[a] + usize::from(a == axis));
+            let mut face = arrays::index(n, cells);
+            faces[arrays::position(face, shape)] = 0.0;
+            face[axis] += 1;
+            faces[arrays::position(face, shape)] = 0.0;
+        }
+    }
+    count
+}
+
 /// The solids of a scene, and how they are measured.
 #[derive(Debug, Clone)]
 pub struct SceneBodies {
