@@ -69,7 +69,7 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
     let (walls, acoustic_weight) = chokes(faces, &at, throat);
     let gases = [*gas.left(), *gas.right()];
     for i in 0..count.min(L) {
-        let lane = JumpLane {
+        let mut lane = JumpLane {
             cell: [faces.states[0].lane(i), faces.states[1].lane(i)],
             throat: [at[0].state.lane(i), at[1].state.lane(i)],
             to: to[i],
@@ -80,7 +80,9 @@ pub(in crate::flow) fn jump_fluxes<R: Real, const D: usize, const L: usize>(
         };
         let weak = acoustic(&lane, gas);
         let share = acoustic_weight[i] * weakness(weak.mass / to[i], &lane.throat, gas);
-        let lane = if share < R::ONE { lane.taken_up(throat, gas) } else { lane };
+        if share < R::ONE {
+            lane.take_up(throat, gas);
+        }
         let strong = strong_waves(&lane, &solve(&lane.throat, &gases), gas);
         tell(i, weak.blend(&strong, share, gas));
     }
@@ -136,8 +138,10 @@ pub(in crate::flow) fn taken_up<R: Real>(ducts: [R; 2], mass: [R; 2], mach: [R; 
 }
 
 impl<R: Real, const D: usize> JumpLane<R, D> {
-    /// With no more of each stream than [`taken_up`] says.
-    fn taken_up(mut self, throat: [&ThroatGas<R>; 2], gas: &impl FaceGases<R>) -> Self {
+    /// Leaves no more of each stream than [`taken_up`] says.
+    // Called, not inlined: few lanes carry strong waves.
+    #[inline(never)]
+    fn take_up(&mut self, throat: [&ThroatGas<R>; 2], gas: &impl FaceGases<R>) {
         let u = [0, 1].map(|s| self.cell[s].velocity[0]);
         let mass = [0, 1].map(|s| self.ducts[s] * (self.cell[s].density * u[s]));
         let mach = [u[0] / gas.left().sound_speed(&self.cell[0]), u[1] / gas.right().sound_speed(&self.cell[1])];
@@ -152,7 +156,6 @@ impl<R: Real, const D: usize> JumpLane<R, D> {
                 self.walls[s] = (self.ducts[s] - passing) * force;
             }
         }
-        self
     }
 }
 
