@@ -172,7 +172,7 @@ fn fill<const D: usize>(
     (edges, live, treatment): (&Edges, [usize; D], Treatment<f64>),
     progress: &mut Progress,
 ) -> Result<SpaceReport> {
-    let closed = close_dust((&mut volume, &mut faces), edges.cells(), live);
+    let [dusty, faces_of_dust] = close_dust((&mut volume, &mut faces), edges.cells(), live);
     let tidied = flow.set_porosity(volume, faces, treatment).map_err(|e| refused(file, e))?;
     let Tidied { dust_cells, dust_faces, closed_faces, matched_faces } = tidied;
     if matched_faces > 0 {
@@ -185,8 +185,8 @@ fn fill<const D: usize>(
         closed_cells: flow.beta_v().map_or(0, |b| b.iter().filter(|&&b| b == 0.0).count()),
         jump_faces: flow.jump_faces(),
         merged_cells: flow.merged_cells(),
-        dust_cells: dust_cells + closed,
-        dust_faces,
+        dust_cells: dust_cells + dusty,
+        dust_faces: dust_faces + faces_of_dust,
         closed_faces,
         matched_faces,
         step_share: 1.0,

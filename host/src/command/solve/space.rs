@@ -35,24 +35,28 @@ pub struct Space<const D: usize> {
 /// A cell that is open by less is solid: unions of solids are known to some 1e-12 of a cell, and what rounding leaves of one would be a pocket of gas.
 const DUST: f64 = 1e-9;
 
-/// Closes cells that rounding has left open, with all their faces, given as [`Space`] has them; returns how many.
+/// Closes cells that rounding has left open, with all their faces, given as [`Space`] has them; returns how many cells and how many faces.
 pub fn close_dust<const D: usize>(
     (volume, faces): (&mut [f64], &mut [Vec<f64>; D]),
     cells: [usize; 3],
     live: [usize; D],
-) -> usize {
-    let mut count = 0;
+) -> [usize; 2] {
+    let mut closed = [0, 0];
     for (n, open) in volume.iter_mut().enumerate().filter(|(_, open)| **open > 0.0 && **open < DUST) {
-        (*open, count) = (0.0, count + 1);
+        *open = 0.0;
+        closed[0] += 1;
         for (faces, &axis) in faces.iter_mut().zip(&live) {
             let shape = std::array::from_fn(|a| cells[a] + usize::from(a == axis));
-            let mut face = arrays::index(n, cells);
-            faces[arrays::position(face, shape)] = 0.0;
-            face[axis] += 1;
-            faces[arrays::position(face, shape)] = 0.0;
+            let low = arrays::index(n, cells);
+            let mut high = low;
+            high[axis] += 1;
+            for face in [low, high] {
+                let open = std::mem::replace(&mut faces[arrays::position(face, shape)], 0.0);
+                closed[1] += usize::from(open > 0.0);
+            }
         }
     }
-    count
+    closed
 }
 
 /// The solids of a scene, and how they are measured.
