@@ -121,8 +121,8 @@ const FUNNEL: f64 = 4.0;
 
 /// The area of the stream of duct `s` that passes a throat of area `to`: all of it where the ducts carry one stream. At the mouth of a blind hole they do not:
 /// what the gas before a wall does is no stream through the hole, and carried to the throat would press or draw on the gas in it as no gas can. There passes
-/// as much as flows in the duct beyond the throat, and the rest of the gas meets the wall. From half the speed of sound on the gas beyond tells less of what
-/// it takes up, and from that on nothing. `mass` is what flows in the ducts, `mach` how fast, both positive to the right.
+/// as much as flows in the duct beyond the throat, and the rest of the gas meets the wall. Gas that runs ahead beyond the throat tells less of what
+/// it takes up from half the speed of sound on, and nothing from the speed of sound on. `mass` is what flows in the ducts, `mach` how fast, both positive to the right.
 pub(in crate::flow) fn taken_up<R: Real>(ducts: [R; 2], mass: [R; 2], mach: [R; 2], s: usize, to: R) -> R {
     let least = R::from_f64(FUNNEL) * to;
     if !(ducts[s] > least) {
