@@ -3,17 +3,17 @@
 //! [`Flow`] is the core's [`Problem`] with storage: two fields, porosity and drag, scratch for each thread. Each thread
 //! advances its own slab of layers; the bits of the state are the same for any number of threads.
 
+mod contents;
 mod field;
+mod places;
 mod slabs;
 mod watch;
 
 use crate::huge::HugeVec;
-use field::Compensated;
-use rayon::prelude::*;
 use slabs::{Working, step};
 use voidage_core::flow::{
-    Boundary, Conserved, Drag, Error, Feed, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive,
-    Problem, Report, Scheme, cluster_scratch, prepare, stable_step,
+    Boundary, Drag, Error, Feed, Fractions, Gas, Merging, Mesh, Patch, Prepared, PreparedView, Primitive, Problem,
+    Report, Scheme, cluster_scratch, prepare, stable_step,
 };
 use watch::Watch;
 
@@ -340,15 +340,6 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
         Mesh::new(self.widths.each_ref().map(|w| w.as_slice()))
     }
 
-    /// Indices of a cell along each axis.
-    pub fn coordinates(&self, mut cell: usize) -> [usize; D] {
-        self.cells().map(|n| {
-            let i = cell % n;
-            cell /= n;
-            i
-        })
-    }
-
     /// Watches from now on what acts on the walls of some cells, on what drags in them, and what passes their faces, with pressures counted from
     /// `reference`. Until the next step that is the pressure of each cell, the drag at its velocity, and the mean of both cells at a face.
     pub fn watch_walls(&mut self, mut cells: Vec<usize>, reference: R) {
@@ -405,122 +396,6 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
             mass: std::array::from_fn(|d| [0, 1].map(|side| passing(d, side))),
             drag: std::array::from_fn(drag),
         }
-    }
-
-    /// Volume of a cell, its obstacles included.
-    pub fn volume(&self, at: [usize; D]) -> R {
-        (0..D).fold(R::ONE, |v, d| v * self.widths[d][at[d]])
-    }
-
-    /// Area of the faces of a cell normal to axis `d`, open or not.
-    pub fn area(&self, d: usize, at: [usize; D]) -> R {
-        self.volume(at) / self.widths[d][at[d]]
-    }
-
-    /// Position of the low (`side` 0) or high (1) face of a cell among the faces normal to axis `d`.
-    pub fn face(&self, d: usize, mut at: [usize; D], side: usize) -> usize {
-        let n = self.cells();
-        at[d] += side;
-        (0..D).rev().fold(0, |i, a| i * (n[a] + usize::from(a == d)) + at[a])
-    }
-
-    /// The cells behind the faces of a cell, the other end of a periodic axis left out.
-    pub fn beside(&self, cell: usize) -> Vec<usize> {
-        let (at, n) = (self.coordinates(cell), self.cells());
-        let mut stride = 1;
-        let mut beside = Vec::with_capacity(2 * D);
-        for d in 0..D {
-            if at[d] > 0 {
-                beside.push(cell - stride);
-            }
-            if at[d] + 1 < n[d] {
-                beside.push(cell + stride);
-            }
-            stride *= n[d];
-        }
-        beside
-    }
-
-    /// The cell behind the low (`side` 0) or high (1) face of a cell; none at a side of the domain that is not periodic.
-    pub fn behind(&self, d: usize, mut at: [usize; D], side: usize) -> Option<usize> {
-        let n = self.cells();
-        let periodic = self.boundaries[d][0].is_periodic();
-        at[d] = match (side, at[d]) {
-            (0, 0) => periodic.then_some(n[d] - 1)?,
-            (0, i) => i - 1,
-            (_, i) if i + 1 == n[d] => periodic.then_some(0)?,
-            (_, i) => i + 1,
-        };
-        Some((0..D).rev().fold(0, |i, a| i * n[a] + at[a]))
-    }
-
-    /// Open volume of a cell.
-    pub fn open_volume(&self, cell: usize) -> R {
-        let volume = self.volume(self.coordinates(cell));
-        self.beta_v().map_or(volume, |open| volume * open[cell])
-    }
-
-    /// The cells along the low (`side` 0) or high (1) side of axis `d`, with the open area of their face there: those of a patch, or those
-    /// of none.
-    pub fn side(&self, d: usize, side: usize, patch: Option<usize>) -> Vec<(usize, R)> {
-        let last = self.widths[d].len().saturating_sub(1);
-        let space = self.porosity();
-        let of_patch = |at: [usize; D]| self.patches.iter().rposition(|p| p.covers(d, side == 1, at)) == patch;
-        let on_side = |at: [usize; D]| at[d] == side * last && of_patch(at);
-        let cells = (0..self.len()).filter(|&c| on_side(self.coordinates(c)));
-        cells
-            .map(|cell| {
-                let at = self.coordinates(cell);
-                let open = space.map_or(R::ONE, |s| s.faces()[d][self.face(d, at, side)]);
-                (cell, open * self.area(d, at))
-            })
-            .collect()
-    }
-
-    /// What stands on the low (`side` 0) or high (1) side of axis `d` beside a cell.
-    pub fn stands(&self, d: usize, side: usize, at: [usize; D]) -> &Boundary<R, D> {
-        let patch = self.patches.iter().rev().find(|p| p.covers(d, side == 1, at));
-        patch.map_or(&self.boundaries[d][side], |p| &p.boundary)
-    }
-
-    /// The largest Mach number of any cell.
-    pub fn max_mach(&self) -> R {
-        let rows = self.len() / self.widths[0].len().max(1);
-        let larger = |a: R, b: R| if b > a { b } else { a };
-        let view = self.state.view();
-        let of_row = |row: usize| {
-            let cells = row * self.widths[0].len()..(row + 1) * self.widths[0].len();
-            cells.fold(R::ZERO, |most, cell| {
-                let gas = view.gas_at(self.gas, cell);
-                let w = gas.primitive(&view.get(cell).expect("a cell of the mesh"));
-                let speed_sq = w.velocity.iter().fold(R::ZERO, |s, &u| s + u * u);
-                larger(most, speed_sq * w.density / (gas.gamma() * w.pressure))
-            })
-        };
-        (0..rows).into_par_iter().map(of_row).reduce(|| R::ZERO, larger).sqrt()
-    }
-
-    /// Contents of the domain, summed with the cells' open volumes; the same bits for any number of threads.
-    pub fn content(&self) -> Conserved<R, D> {
-        let n = self.widths[0].len().max(1);
-        let rows: Vec<Compensated<R, D>> =
-            (0..self.len() / n).into_par_iter().map(|row| self.row_content(row * n, n)).collect();
-        let mut sum = Compensated::default();
-        rows.iter().for_each(|row| sum.add(&row.sum));
-        sum.sum
-    }
-
-    fn row_content(&self, start: usize, n: usize) -> Compensated<R, D> {
-        let (view, space) = (self.state.view(), self.porosity());
-        let mut at = self.coordinates(start);
-        let mut sum = Compensated::default();
-        for i in 0..n {
-            at[0] = i;
-            let open = space.map_or(R::ONE, |s| s.volume()[start + i]);
-            let (v, u) = (self.volume(at) * open, view.get(start + i).expect("a cell of the mesh"));
-            sum.add(&Conserved { density: v * u.density, momentum: u.momentum.map(|m| v * m), energy: v * u.energy });
-        }
-        sum
     }
 
     /// Largest signal rate Σ_d w_d (|u_d| + c)/dx_d of the present state, w_d its open area over its open volume along d.

@@ -1,7 +1,7 @@
 //! One slab of one step, row by row.
 //!
 //! - `scratch`: the buffers, cut from the caller's memory
-//! - `rows`: loops over the cells of a row; `mixed`: what comes to them for a mixed gas
+//! - `rows`: loops over the cells of a row, `row_slopes` those for their slopes; `mixed`: what comes to them for a mixed gas
 //! - `slab`: what a step reads, and where each row stands in the window
 //! - `contractions`: how far the gas of the cells in the window passes their walls as contractions
 //! - `walls_and_jumps`: slopes and fluxes beside walls and porosity jumps
@@ -24,6 +24,7 @@ pub(crate) mod long_line;
 pub(crate) mod mixed;
 pub(crate) mod positive_fluxes;
 pub(crate) mod reconstruct;
+pub(crate) mod row_slopes;
 pub(crate) mod rows;
 pub(crate) mod scratch;
 pub(crate) mod shocks;

@@ -19,6 +19,8 @@ mod apart;
 mod bsp;
 mod descent;
 mod extent;
+mod frame;
+mod memory;
 mod octree;
 mod piece;
 mod planar;
@@ -27,19 +29,22 @@ mod sheets;
 
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::number::space::{cross, dot, sub, unit};
-use crate::surface::clip::{Polygon, keep};
+use crate::number::space::{cross, sub};
+use crate::surface::clip::Polygon;
 use apart::gather;
 use bsp::{Branch, BspMemory, build_bsp};
 use core::ops::Range;
 use descent::{Descent, DescentRule};
-use octree::{Octree, OctreeSize, octree_room};
+use frame::{MOST_ROUNDING, reaches};
+use octree::{Octree, OctreeSize};
+use piece::Ball;
 use piece::NoProof::{Ambiguous, Full};
-use piece::{Ball, Plane};
 use separate::Bodies;
 
 pub use bsp::{Node, Part, PendingNode};
 pub use descent::Fragment;
+pub(super) use frame::{Frame, rounds_much};
+pub use memory::{UnionBuffers, UnionMemory, UnionNeeded};
 pub use octree::Octant;
 pub use piece::{NoProof, Piece};
 pub use planar::{MOST_PLANES, PlanarPart, PlanarParts};
@@ -50,19 +55,8 @@ pub const MAX_SPREAD: f64 = 1e-9;
 /// Where the volumes differ by no more than this, they are rounded. Else some piece of surface is wrongly kept or dropped, as where planes all but coincide.
 const ROUNDED: f64 = 1e-12;
 
-/// Rounding of corners in the frame of a cell, in ε of the coordinates as seen from there. Planes closer than that are
-/// one plane.
-const THICKNESS_IN_EPSILONS: f64 = 64.0;
-
-/// Where rounding asks for planes thicker than this, in cells, what that may cost counts as that of a blur does: cells far from the origin, in `f32` a hundred
-/// of their lengths.
-const MOST_ROUNDING: f64 = 1e-3;
-
-/// Where it asks for more than this there is no proof.
+/// Where rounding asks for planes thicker than this, in cells, there is no proof.
 const TOO_THICK: f64 = 1.0 / 64.0;
-
-/// Pieces of one body in a cell, and the parts that its own planes cut them into, for which room is asked for at most.
-const MOST_OF_ONE: usize = 1 << 14;
 
 /// The diagonal of a side of the cell, in its frame: no section of a piece is longer.
 const LONGEST_EDGE: f64 = 1.5;
@@ -78,143 +72,6 @@ pub struct CellFractions<R> {
     pub high: [R; 3],
     /// How far the volumes along the three axes are apart, and what a blur may have changed.
     pub error: R,
-}
-
-/// Caller's memory for the unions of cells; the larger, the more surface a cell may hold. Contents do not matter. The default is
-/// none: every cell that bodies share is divided.
-#[derive(Debug, Default)]
-pub struct UnionMemory<'a, R: Real> {
-    /// Pieces of all bodies.
-    pub pieces: &'a mut [Piece<R>],
-    /// Parts of pieces that were cut while a tree grew.
-    pub split_pieces: &'a mut [Piece<R>],
-    /// Which pieces and split pieces go where while a tree grows.
-    pub order: &'a mut [u32],
-    /// Nodes of all trees.
-    pub nodes: &'a mut [Node<R>],
-    /// Bodies.
-    pub parts: &'a mut [Part<R>],
-    /// Fragments under way.
-    pub fragments: &'a mut [Fragment<R>],
-    /// Branches of a tree still to grow.
-    pub pending: &'a mut [PendingNode],
-    /// Octants of a cell where more than 64 bodies meet. May be empty: then every piece asks every body, which takes the square of their number.
-    pub octants: &'a mut [Octant<R>],
-    /// Numbers of bodies near octants.
-    pub near: &'a mut [u32],
-}
-
-/// Lengths of the slices of [`UnionMemory`] that serve cells of up to so many pieces well. Any others do; with less, more cells are divided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct UnionNeeded {
-    /// Of [`UnionMemory::pieces`].
-    pub pieces: usize,
-    /// Of [`UnionMemory::split_pieces`].
-    pub split_pieces: usize,
-    /// Of [`UnionMemory::order`].
-    pub order: usize,
-    /// Of [`UnionMemory::nodes`].
-    pub nodes: usize,
-    /// Of [`UnionMemory::parts`].
-    pub parts: usize,
-    /// Of [`UnionMemory::fragments`].
-    pub fragments: usize,
-    /// Of [`UnionMemory::pending`].
-    pub pending: usize,
-    /// Of [`UnionMemory::octants`]; none where too few bodies meet to need them.
-    pub octants: usize,
-    /// Of [`UnionMemory::near`]; likewise.
-    pub near: usize,
-}
-
-impl<R: Real> UnionMemory<'_, R> {
-    /// Lengths for cells of up to so many pieces; [`Layers::union_pieces`](crate::surface::layer::Layers::union_pieces) tells how many there may be.
-    #[must_use]
-    pub const fn needed(pieces: usize) -> UnionNeeded {
-        let fourfold = pieces.saturating_mul(4);
-        // Of one body, or of the parts of one polygon under way.
-        let of_one = if fourfold < MOST_OF_ONE { fourfold } else { MOST_OF_ONE };
-        let at_once = if pieces < of_one { pieces } else { of_one };
-        let [octants, near] = octree_room(pieces);
-        UnionNeeded {
-            pieces,
-            split_pieces: of_one,
-            order: of_one,
-            nodes: fourfold,
-            parts: pieces.div_ceil(4),
-            fragments: at_once,
-            pending: at_once,
-            octants,
-            near,
-        }
-    }
-
-    /// The same memory, for a shorter time.
-    pub fn reborrow(&mut self) -> UnionMemory<'_, R> {
-        UnionMemory {
-            pieces: self.pieces,
-            split_pieces: self.split_pieces,
-            order: self.order,
-            nodes: self.nodes,
-            parts: self.parts,
-            fragments: self.fragments,
-            pending: self.pending,
-            octants: self.octants,
-            near: self.near,
-        }
-    }
-}
-
-/// Memory for the unions of cells with up to `N` pieces in one value, which may stand on the stack, in a static or in a box.
-#[derive(Clone, Debug)]
-pub struct UnionBuffers<R: Real, const N: usize> {
-    pieces: [Piece<R>; N],
-    split_pieces: [[Piece<R>; 4]; N],
-    order: [[u32; 4]; N],
-    nodes: [[Node<R>; 4]; N],
-    parts: [Part<R>; N],
-    fragments: [Fragment<R>; N],
-    pending: [PendingNode; N],
-}
-
-impl<R: Real, const N: usize> Default for UnionBuffers<R, N> {
-    fn default() -> Self {
-        UnionBuffers {
-            pieces: core::array::from_fn(|_| Piece::default()),
-            split_pieces: core::array::from_fn(|_| core::array::from_fn(|_| Piece::default())),
-            order: [[0; 4]; N],
-            nodes: [[Node::default(); 4]; N],
-            parts: [Part::default(); N],
-            fragments: core::array::from_fn(|_| Fragment::default()),
-            pending: [PendingNode::default(); N],
-        }
-    }
-}
-
-impl<R: Real, const N: usize> UnionBuffers<R, N> {
-    /// Its slices.
-    pub fn memory(&mut self) -> UnionMemory<'_, R> {
-        UnionMemory {
-            pieces: &mut self.pieces,
-            split_pieces: self.split_pieces.as_flattened_mut(),
-            order: self.order.as_flattened_mut(),
-            nodes: self.nodes.as_flattened_mut(),
-            parts: &mut self.parts,
-            fragments: &mut self.fragments,
-            pending: &mut self.pending,
-            octants: &mut [],
-            near: &mut [],
-        }
-    }
-}
-
-/// How a cell is seen: 0..1 along each axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame<R> {
-    origin: [R; 3],
-    scale: [R; 3],
-    /// Planes closer than this are one.
-    thickness: R,
 }
 
 /// The union of some bodies in one cell, or on one face between two cells.
@@ -507,148 +364,6 @@ impl<'a, R: Real> CellUnion<'a, R> {
         octree.begin(!self.blurred);
         (Descent { nodes, parts, fragments, octree, spare: Polygon::default(), thickness }, pieces)
     }
-}
-
-impl<R: Real> Frame<R> {
-    /// Of a cell, with a thickness that rounding asks for.
-    pub fn of<V: Vector<Scalar = R>>(cell: Aabb<V>) -> Self {
-        Self::beside(cell, None)
-    }
-
-    /// The same, rounding along a `thin` axis aside.
-    fn beside<V: Vector<Scalar = R>>(cell: Aabb<V>, thin: Option<usize>) -> Self {
-        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
-        let size = sub(hi, lo);
-        let mut reach = R::ONE;
-        for axis in (0..3).filter(|&axis| thin != Some(axis)) {
-            reach = reach.max(lo[axis].abs().max(hi[axis].abs()) / size[axis]);
-        }
-        Frame { origin: lo, scale: size, thickness: R::EPSILON * R::from_f64(THICKNESS_IN_EPSILONS) * reach }
-    }
-
-    /// What a triangle has inside a cell, in the frame, and twice its area vector; none if it has nothing there or lies in the plane of a side.
-    pub fn inside<V: Vector<Scalar = R>>(
-        &self,
-        triangle: &[[R; 3]; 3],
-        cell: Aabb<V>,
-        scratch: &mut [Polygon<R>; 2],
-        part: &mut Polygon<R>,
-    ) -> Option<[R; 3]> {
-        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
-        if !reaches(triangle, lo, hi) {
-            return None;
-        }
-        if triangle.iter().all(|p| (0..3).all(|axis| p[axis] >= lo[axis] && p[axis] <= hi[axis])) {
-            part.clear();
-            for p in triangle {
-                part.push(self.framed(*p));
-            }
-        } else if !self.part(triangle, lo, hi, scratch, part) {
-            return None;
-        }
-        let (doubled, [a, b, c], [x, y, z]) = (part.doubled_area(), *triangle, self.scale);
-        let whole = cross(sub(b, a), sub(c, a));
-        let seen = dot(doubled, [whole[0] * x, whole[1] * y, whole[2] * z]);
-        (seen > R::ZERO).then_some(doubled)
-    }
-
-    /// A point as seen from the cell.
-    #[inline(always)]
-    pub fn framed(&self, p: [R; 3]) -> [R; 3] {
-        let d = sub(p, self.origin);
-        [d[0] / self.scale[0], d[1] / self.scale[1], d[2] / self.scale[2]]
-    }
-
-    /// A polygon as seen from the cell.
-    pub fn framed_polygon(&self, corners: &[[R; 3]]) -> Polygon<R> {
-        let mut polygon = Polygon::default();
-        for corner in corners {
-            polygon.push(self.framed(*corner));
-        }
-        polygon
-    }
-
-    /// The part of a triangle inside the cell `lo..hi`, in the frame; false if there is none. Cut along z, y, x as in [`crate::surface::cells`].
-    #[inline(always)]
-    fn part(
-        &self,
-        corners: &[[R; 3]; 3],
-        lo: [R; 3],
-        hi: [R; 3],
-        scratch: &mut [Polygon<R>; 2],
-        part: &mut Polygon<R>,
-    ) -> bool {
-        let [mut polygon, mut kept] = scratch.each_mut();
-        polygon.set(corners);
-        for axis in (0..3).rev() {
-            let (min, max) = polygon.extent(axis);
-            if !(min < hi[axis] && max > lo[axis]) {
-                return false;
-            }
-            for (cut, at, above) in [(min < lo[axis], lo[axis], true), (max > hi[axis], hi[axis], false)] {
-                if cut {
-                    keep(polygon, axis, at, above, kept);
-                    core::mem::swap(&mut polygon, &mut kept);
-                }
-            }
-            if polygon.is_empty() {
-                return false;
-            }
-        }
-        part.clear();
-        for c in polygon.corners() {
-            part.push(self.framed(*c));
-        }
-        true
-    }
-
-    /// The piece that a triangle has inside the cell `lo..hi`; false if there is none.
-    fn piece(
-        &self,
-        corners: &[[R; 3]; 3],
-        lo: [R; 3],
-        hi: [R; 3],
-        scratch: &mut [Polygon<R>; 2],
-        piece: &mut Piece<R>,
-    ) -> bool {
-        if !self.part(corners, lo, hi, scratch, &mut piece.polygon) {
-            return false;
-        }
-        let [a, b, c] = corners.map(|c| self.framed(c));
-        let (Some(normal), Some(&corner)) = (unit(cross(sub(b, a), sub(c, a))), piece.polygon.corners().first()) else {
-            return false;
-        };
-        piece.plane = Plane { normal, offset: dot(normal, corner) };
-        piece.area = dot(piece.polygon.doubled_area(), normal);
-        piece.ball = Ball::around(&piece.polygon);
-        piece.area > R::ZERO
-    }
-
-    /// Does a piece lie on a side of the cell `lo..hi`, and if so, is the solid on the inner side of it?
-    fn on_side(&self, piece: &Piece<R>, lo: [R; 3], hi: [R; 3]) -> Option<bool> {
-        let (low, high) = (self.framed(lo), self.framed(hi));
-        (0..3).find_map(|axis| {
-            let near = |at: R| piece.polygon.corners().iter().all(|c| (c[axis] - at).abs() <= self.thickness);
-            if near(low[axis]) {
-                Some(piece.plane.normal[axis] < R::ZERO)
-            } else {
-                near(high[axis]).then_some(piece.plane.normal[axis] > R::ZERO)
-            }
-        })
-    }
-}
-
-/// Does rounding ask for planes so thick in a cell that what this may cost counts?
-pub(super) fn rounds_much<V: Vector>(cell: Aabb<V>) -> bool {
-    Frame::of(cell).thickness > V::Scalar::from_f64(MOST_ROUNDING)
-}
-
-/// Does the box of a triangle share space with the cell `lo..hi`?
-fn reaches<R: Real>([a, b, c]: &[[R; 3]; 3], lo: [R; 3], hi: [R; 3]) -> bool {
-    (0..3).all(|axis| {
-        let (min, max) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
-        min < hi[axis] && max > lo[axis]
-    })
 }
 
 /// From which side a face is seen where solid lies in its plane.

@@ -13,7 +13,8 @@
 //! Γ stands behind the last variable of state and change blocks; in face state blocks behind the reference pressure; in flux blocks two variables stand
 //! there: the volume that passes, and the Γ that it carries.
 
-use crate::flow::kernel::rows::{Differences, Faces, Rate, Steps, Three, fit, split_mut, var};
+use crate::flow::kernel::row_slopes::{Differences, Steps, Three, fit};
+use crate::flow::kernel::rows::{Faces, Rate, split_mut, var};
 use crate::flow::limiter::Slope;
 use crate::flow::state::{Fields, each, sum};
 use crate::number::real::Real;

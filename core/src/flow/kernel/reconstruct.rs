@@ -3,7 +3,8 @@
 use crate::flow::kernel::contractions::{Contractions, contractions_at};
 use crate::flow::kernel::inclined_walls::slip_along_walls;
 use crate::flow::kernel::mixed;
-use crate::flow::kernel::rows::{self, Differences, Rate, RowBeside, StateBlock, var};
+use crate::flow::kernel::row_slopes::{self, Differences, RowBeside};
+use crate::flow::kernel::rows::{self, Rate, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::shocks::Pressures;
 use crate::flow::kernel::slab::{Place, RowAt, Slab};
@@ -73,10 +74,10 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: 
         let (rho, p, out) = (inner(0), inner(D + 1), &mut work.coefficients.compliance[..n]);
         if MIXED {
             let capacity = inner(D + 2);
-            rows::compliances(rho, p, |i| mixed::gamma_of(capacity[i]), out);
+            row_slopes::compliances(rho, p, |i| mixed::gamma_of(capacity[i]), out);
         } else {
             let gamma = slab.problem.gas.gamma();
-            rows::compliances(rho, p, |_| gamma, out);
+            row_slopes::compliances(rho, p, |_| gamma, out);
         }
     }
     let of_row = (&work.coefficients, split.then_some(&*work.coefficients.compliance));
@@ -118,9 +119,9 @@ fn slopes_along<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_W
     let values = |v| cells.values(v);
     if BY_WAVES {
         let coefficients = (&*of_row.compliance, &*of_row.rate[d]);
-        rows::slopes_by_waves::<R, S, D>(d, values, axis, coefficients, out, cells.n);
+        row_slopes::slopes_by_waves::<R, S, D>(d, values, axis, coefficients, out, cells.n);
     } else {
-        rows::slopes::<R, S, D>(values, axis, compliance, out, cells.n);
+        row_slopes::slopes::<R, S, D>(values, axis, compliance, out, cells.n);
     }
     if MIXED {
         mixed::slopes::<R, S>(cells.values(D + 2), axis, &mut out[(D + 2) * cells.n..][..cells.n]);

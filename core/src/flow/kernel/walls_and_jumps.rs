@@ -7,7 +7,8 @@
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
-use crate::flow::kernel::rows::{self, Differences, FluxBlock, RowBeside, Three, var};
+use crate::flow::kernel::row_slopes::{self, Differences, RowBeside, Three};
+use crate::flow::kernel::rows::{self, FluxBlock, var};
 use crate::flow::kernel::slab::{Place, RowAt, Slab, place_of, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
 use crate::flow::porosity::areas::{Ducts, share};
@@ -57,7 +58,7 @@ type LimitCall<R> = fn(&CellValues<R>, &Single<R>, Option<&[R]>) -> [R; MOST];
 /// Slopes along an axis one cell at a time, for any limiter and any widths.
 pub(in crate::flow) struct CellSlopes<'a, R> {
     pub axis: &'a dyn Differences<R>,
-    /// 1/c² of the cells of the row, as [`rows::slopes`] takes it.
+    /// 1/c² of the cells of the row, as [`row_slopes::slopes`] takes it.
     pub compliance: Option<&'a [R]>,
     pub limit: LimitCall<R>,
 }
@@ -70,7 +71,7 @@ pub(in crate::flow) fn limited<R: Real, S: Slope, const D: usize>(
 ) -> [R; MOST] {
     let mut slope = [R::ZERO; MOST];
     let of = |v: usize| (&three[v][..1], &three[v][1..2], &three[v][2..]);
-    rows::slopes::<R, S, D>(of, axis, compliance, &mut slope, 1);
+    row_slopes::slopes::<R, S, D>(of, axis, compliance, &mut slope, 1);
     slope
 }
 

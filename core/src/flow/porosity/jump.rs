@@ -119,22 +119,28 @@ pub(in crate::flow) fn mixed_jump_fluxes<R: Real, const D: usize, const L: usize
 /// A stream so many times as wide as its throat passes it, whatever lies beyond.
 const FUNNEL: f64 = 4.0;
 
-/// The area of the stream of duct `s` that passes a throat of area `to`: all of it where the ducts carry one stream. At the mouth of a blind hole they do not:
-/// what the gas before a wall does is no stream through the hole, and carried to the throat would press or draw on the gas in it as no gas can. There passes
+/// The areas of the streams of both ducts that pass a throat of area `to`: the whole ducts where these carry one stream. At the mouth of a blind hole they do
+/// not: what the gas before a wall does is no stream through the hole, and carried to the throat would press or draw on the gas in it as no gas can. There passes
 /// as much as flows in the duct beyond the throat, and the rest of the gas meets the wall. Gas that runs ahead beyond the throat tells less of what
-/// it takes up from half the speed of sound on, and nothing from the speed of sound on. `mass` is what flows in the ducts, `mach` how fast, both positive to the right.
-pub(in crate::flow) fn taken_up<R: Real>(ducts: [R; 2], mass: [R; 2], mach: [R; 2], s: usize, to: R) -> R {
+/// it takes up from half the speed of sound on, and nothing from the speed of sound on. `through` are the velocities of both cells, positive to the right.
+pub(in crate::flow) fn taken_up<R: Real, const D: usize>(
+    cells: &[Primitive<R, D>; 2],
+    through: [R; 2],
+    (ducts, to): ([R; 2], R),
+    gas: &impl FaceGases<R>,
+) -> [R; 2] {
     let least = R::from_f64(FUNNEL) * to;
-    if !(ducts[s] > least) {
-        return ducts[s];
-    }
-    let ahead = |x: R| if mass[s] < R::ZERO { -x } else { x };
-    let (own, beyond) = (ahead(mass[s]), R::larger(ahead(mass[1 - s]), R::ZERO));
-    if !(beyond < own) {
-        return ducts[s];
-    }
-    let untold = R::smaller(R::larger(R::TWO * ahead(mach[1 - s]) - R::ONE, R::ZERO), R::ONE);
-    R::larger(least, ducts[s] * ((beyond + untold * (own - beyond)) / own))
+    let mass = [0, 1].map(|s| ducts[s] * (cells[s].density * through[s]));
+    let mach = [through[0] / gas.left().sound_speed(&cells[0]), through[1] / gas.right().sound_speed(&cells[1])];
+    [0, 1].map(|s| {
+        let ahead = |x: R| if mass[s] < R::ZERO { -x } else { x };
+        let (own, beyond) = (ahead(mass[s]), R::larger(ahead(mass[1 - s]), R::ZERO));
+        if !(ducts[s] > least && beyond < own) {
+            return ducts[s];
+        }
+        let untold = R::smaller(R::larger(R::TWO * ahead(mach[1 - s]) - R::ONE, R::ZERO), R::ONE);
+        R::larger(least, ducts[s] * ((beyond + untold * (own - beyond)) / own))
+    })
 }
 
 impl<R: Real, const D: usize> JumpLane<R, D> {
@@ -142,18 +148,16 @@ impl<R: Real, const D: usize> JumpLane<R, D> {
     // Called, not inlined: few lanes carry strong waves.
     #[inline(never)]
     fn take_up(&mut self, throat: [&ThroatGas<R>; 2], gas: &impl FaceGases<R>) {
-        let u = [0, 1].map(|s| self.cell[s].velocity[0]);
-        let mass = [0, 1].map(|s| self.ducts[s] * (self.cell[s].density * u[s]));
-        let mach = [u[0] / gas.left().sound_speed(&self.cell[0]), u[1] / gas.right().sound_speed(&self.cell[1])];
+        let u = [self.cell[0].velocity[0], self.cell[1].velocity[0]];
+        let from = taken_up(&self.cell, u, (self.ducts, self.to), gas);
         for s in 0..2 {
-            let from = taken_up(self.ducts, mass, mach, s, self.to);
-            if from < self.passing[s] {
-                let w = &self.cell[s];
-                let AtThroat { state, passing } = throat[s].carry(w, from, self.to);
+            if from[s] < self.passing[s] {
+                let AtThroat { state, passing } = throat[s].carry(&self.cell[s], from[s], self.to);
                 (self.throat[s], self.passing[s]) = (state, passing);
                 let into_wall = if s == 0 { u[0] } else { -u[1] };
-                let force = throat[s].wall_pressure(w.density, w.pressure, into_wall) - self.references[s];
-                self.walls[s] = (self.ducts[s] - passing) * force;
+                let blocked = self.ducts[s] - passing;
+                self.walls[s] =
+                    blocked * throat[s].relative_wall_pressure(&self.cell[s], into_wall, self.references[s]);
             }
         }
     }
@@ -199,8 +203,7 @@ fn chokes<R: Real, const D: usize, const L: usize>(
             if blocked > R::ZERO {
                 let w = faces.states[s].lane(i);
                 let into_wall = if s == 0 { w.velocity[0] } else { -w.velocity[0] };
-                let force = throat[s].wall_pressure(w.density, w.pressure, into_wall) - faces.references[s][i];
-                walls[s][i] = blocked * force;
+                walls[s][i] = blocked * throat[s].relative_wall_pressure(&w, into_wall, faces.references[s][i]);
                 acoustic_weight[i] = R::ZERO;
             }
         }

@@ -122,15 +122,11 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
         if share >= R::ONE {
             return weak;
         }
-        let mass = [0, 1].map(|s| self.ducts[s] * (self.states[s].density * sides[s].through));
-        let mach = [
-            sides[0].through / gas.left().sound_speed(&self.states[0]),
-            sides[1].through / gas.right().sound_speed(&self.states[1]),
-        ];
+        let through = [sides[0].through, sides[1].through];
+        let from = taken_up(&self.states, through, (self.ducts, self.throat), gas);
         for s in 0..2 {
-            let from = taken_up(self.ducts, mass, mach, s, self.throat);
-            if from < sides[s].passing {
-                sides[s] = self.side((s, from), throat[s]);
+            if from[s] < sides[s].passing {
+                sides[s] = self.side((s, from[s]), throat[s]);
                 at_throat[s] = turn(&sides[s]);
             }
         }
@@ -169,7 +165,7 @@ impl<R: Real, const D: usize> ObliqueJump<R, D> {
             let blocked = self.ducts[s] - side.passing;
             let walls = if blocked > R::ZERO {
                 let into_wall = if s == 0 { side.through } else { -side.through };
-                blocked * (gas[s].wall_pressure(w.density, w.pressure, into_wall) - self.references[s])
+                blocked * gas[s].relative_wall_pressure(w, into_wall, self.references[s])
             } else {
                 R::ZERO
             };

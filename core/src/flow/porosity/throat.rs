@@ -266,6 +266,11 @@ impl<R: Real> ThroatGas<R> {
             None => pressure * t.pow(self.n + R::TWO),
         }
     }
+
+    /// The same for the gas of a cell, less a reference pressure.
+    pub(in crate::flow) fn relative_wall_pressure<const D: usize>(&self, w: &Primitive<R, D>, v: R, reference: R) -> R {
+        self.wall_pressure(w.density, w.pressure, v) - reference
+    }
 }
 
 /// A place left of the supersonic root of l + A k² e^-2l = A. It is ln k for a contraction. For an expansion the left side at
