@@ -22,6 +22,8 @@ mkdir -p "$prefix/include" "$prefix/lib/pkgconfig" "$prefix/lib/cmake/voidage"
 cp include/voidage.h include/voidage.f90 "$prefix/include/"
 cp "$target/release/libvoidage_capi.a" "$prefix/lib/libvoidage.a"
 cp "$target/release/libvoidage_capi.so" "$prefix/lib/libvoidage.so.$version"
+# Without what only debuggers read: a fifth of the shared library, half of the archive is left.
+strip -S "$prefix/lib/libvoidage.a" "$prefix/lib/libvoidage.so.$version"
 ln -sf "libvoidage.so.$version" "$prefix/lib/libvoidage.so.0"
 ln -sf libvoidage.so.0 "$prefix/lib/libvoidage.so"
 fill() { sed "s|@prefix@|$prefix|; s|@version@|$version|; s|@libs@|$libs|" "packaging/$1.in"; }

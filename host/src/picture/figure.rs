@@ -29,6 +29,9 @@ const HEAD: usize = 64;
 /// Pixels of the bar for an end with a colour of its own.
 const OWN_END: usize = 18;
 
+/// An end of the bar has a number of its own where no mark is so near, in pixels.
+const END_GAP: f64 = 12.0;
+
 /// Explains the pointers.
 const LEGEND: &str = "where the other slices are";
 
@@ -205,7 +208,7 @@ impl Figure<'_> {
     /// Pixels right of the bar, for its numbers, words and name.
     fn bar_room(&self) -> usize {
         let marks = ticks(self.range[0], self.range[1], 5);
-        let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
+        let widest = self.widest_number(&marks);
         let words = self.end_words(&marks).iter().map(|w| text_width(w, SMALL)).fold(0.0, f64::max);
         let beside = 10.0 + widest + if words > 0.0 { words + 8.0 } else { 0.0 };
         beside.max(text_width(&self.bar_name(marks.power), NORMAL) - BAR as f64).ceil() as usize + 8
@@ -218,9 +221,15 @@ impl Figure<'_> {
             let near = 1e-9 * (self.range[1] - self.range[0]);
             match word.is_empty() || marks.at.iter().any(|at| (at - end).abs() <= near) {
                 true => word.to_owned(),
-                false => format!("{} {word}", number(end / 10_f64.powi(marks.power))),
+                false => format!("{} {word}", end_number(end, marks)),
             }
         })
+    }
+
+    /// Width of the numbers beside the bar, of those at its ends too.
+    fn widest_number(&self, marks: &Ticks) -> f64 {
+        let ends = self.range.map(|end| text_width(&end_number(end, marks), SMALL));
+        marks.labels.iter().map(|l| text_width(l, SMALL)).chain(ends).fold(0.0, f64::max)
     }
 
     /// The name of the field over its bar, with the unit of numbers from which a power of ten is taken out.
@@ -272,7 +281,13 @@ impl Figure<'_> {
             canvas.rect(area.x + area.width, row(*v).round() as usize, 5, 1, INK);
             canvas.text(right + 10.0, row(*v).round() + 0.5, label, style);
         }
-        let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
+        for (n, end) in [low, high].into_iter().enumerate() {
+            let free = marks.at.iter().all(|v| (row(*v) - row(end)).abs() > END_GAP);
+            if free && !self.told[n] {
+                canvas.text(right + 10.0, row(end) + 0.5, &end_number(end, &marks), Style { colour: GREY, ..style });
+            }
+        }
+        let widest = self.widest_number(&marks);
         let words = self.end_words(&marks);
         for ((v, word), _) in [low, high].into_iter().zip(&words).zip(self.told).filter(|(_, told)| *told) {
             canvas.text(right + 18.0 + widest, row(v) + 0.5, word, Style { colour: GREY, ..style });
@@ -284,6 +299,11 @@ impl Figure<'_> {
             Style { height: NORMAL, ..Style::default() },
         );
     }
+}
+
+/// The number of an end of the bar, in the power of ten of its marks.
+fn end_number(end: f64, marks: &Ticks) -> String {
+    number(end / 10_f64.powi(marks.power))
 }
 
 /// The pointers' explanation with its own pointer.

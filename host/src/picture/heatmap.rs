@@ -20,8 +20,6 @@ const TICK_GAP: f64 = 5.0;
 const OUTLINED: f64 = 11.0;
 /// Pixels between lines of hatching.
 const HATCH: usize = 6;
-/// Sum of red, green and blue below which lines are white rather than of ink.
-const DARK: u32 = 330;
 /// Solid fraction from which a cell is hatched.
 const LEAST_HATCHED: f64 = 5e-4;
 /// Share of ink in the outlines.
@@ -121,17 +119,17 @@ impl Heatmap<'_> {
         }
     }
 
-    /// Draws lines over cells that are partly solid, the stronger, the more of them is; whole solid is left as it is.
+    /// Draws lines over cells that are partly solid, the stronger, the more of them is; whole solid is left as it is. Each is a line of ink with a white one
+    /// beside it: one of both is seen on any colour.
     pub fn hatch(&self, canvas: &mut Canvas, area: Area, blocked: &dyn Fn(usize, usize) -> f64) {
         let columns = shares(self.across.edges, area.width);
         let rows = shares(self.up.edges, area.height);
         for (y, row) in rows.iter().rev().enumerate() {
-            for (x, column) in columns.iter().enumerate().filter(|(x, _)| (x + y).is_multiple_of(HATCH)) {
+            for (x, column) in columns.iter().enumerate().filter(|(x, _)| (x + y) % HATCH < 2) {
                 let share = mean(row, column, blocked);
                 if (LEAST_HATCHED..1.0 - LEAST_HATCHED).contains(&share) {
-                    let (x, y) = (area.x + x, area.y + y);
-                    let dark = canvas.get(x, y).iter().map(|c| u32::from(*c)).sum::<u32>() < DARK;
-                    canvas.blend(x, y, if dark { WHITE } else { INK }, 0.3 + 0.5 * share);
+                    let colour = if (x + y).is_multiple_of(HATCH) { INK } else { WHITE };
+                    canvas.blend(area.x + x, area.y + y, colour, 0.3 + 0.5 * share);
                 }
             }
         }

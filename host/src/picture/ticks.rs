@@ -24,8 +24,8 @@ pub fn ticks(low: f64, high: f64, wanted: usize) -> Ticks {
     }
     let (step, exponent) = round_step(span / wanted.max(1) as f64);
     let largest = low.abs().max(high.abs()).log10().floor() as i32;
-    // Map coordinates (6200010, 6200020) read better in full than as 6.20001, 6.20002.
-    let plain = PLAIN.contains(&largest) || largest < 9 && exponent >= 0 && largest - exponent > 3;
+    // Map coordinates (6200010, 6200020; 6200000.5) read better in full than as 6.20001, 6.20002.
+    let plain = PLAIN.contains(&largest) || (0..9).contains(&largest) && largest - exponent > 3;
     let power = if plain { 0 } else { largest.div_euclid(3) * 3 };
     let decimals = (power - exponent).clamp(0, 17) as usize;
     let slack = 1e-9 * span; // a mark on the very end belongs
@@ -115,6 +115,7 @@ mod tests {
         assert_eq!(ticks(-3.0, 7.5, 6).labels, ["−2", "0", "2", "4", "6"]);
         assert_eq!(ticks(500_000.0, 500_100.0, 4).labels, ["500000", "500050", "500100"]);
         assert_eq!(ticks(6_200_000.0, 6_200_040.0, 2).labels, ["6200000", "6200020", "6200040"]);
+        assert_eq!(ticks(6_200_000.0, 6_200_001.0, 2).labels, ["6200000.0", "6200000.5", "6200001.0"]);
     }
 
     #[test]

@@ -284,6 +284,22 @@ pub fn write<const D: usize>(
     })
 }
 
+/// There is a checkpoint in a directory: asked before the case is set up, which may take long.
+///
+/// # Errors
+/// There is none.
+pub fn expect(dir: &Path) -> Result<()> {
+    let path = dir.join(NAME);
+    std::fs::metadata(&path).map(drop).map_err(|e| unread(&path, &e))
+}
+
+fn unread(path: &Path, e: &io::Error) -> Error {
+    match e.kind() {
+        io::ErrorKind::NotFound => Error::file(path, "there is no checkpoint to resume from; run without --resume"),
+        _ => Error::io(path, "read", e),
+    }
+}
+
 /// Puts the flow of `setup` where the checkpoint left it. Returns what that run had written and counted.
 ///
 /// # Errors
@@ -294,10 +310,7 @@ pub fn resume<const D: usize>(
     setup: &mut Setup<D>,
     maxima: Option<&mut Maxima>,
 ) -> Result<Journal> {
-    let bytes = std::fs::read(path).map_err(|e| match e.kind() {
-        io::ErrorKind::NotFound => Error::file(path, "there is no checkpoint to resume from; run without --resume"),
-        _ => Error::io(path, "read", &e),
-    })?;
+    let bytes = std::fs::read(path).map_err(|e| unread(path, &e))?;
     if bytes.is_empty() {
         return Err(Error::file(path, "is empty (0 bytes): there is nothing to resume from; run without --resume"));
     }

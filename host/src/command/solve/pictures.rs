@@ -101,7 +101,7 @@ impl Pictures {
     ) -> Self {
         let edges = &setup.edges;
         let middle = edges.cells().map(|n| n / 2);
-        let telling = |beta| png::most_telling(edges.0.each_ref().map(|e| &e[..]), beta);
+        let telling = |beta| png::most_telling_space(edges.0.each_ref().map(|e| &e[..]), beta);
         let usual = setup.flow.beta_v().and_then(telling).unwrap_or(middle);
         let [lo, _] = edges.bounds().map(|p| p.to_array());
         let given = keys.slice.as_ref().and_then(|given| point(edges, given).ok());

@@ -76,9 +76,12 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
 /// Name of the report, which a run writes last: where it is, the run is finished.
 const REPORT: &str = "report.json";
 
-/// A finished run is not replaced unless that is asked for.
+/// A finished run is not replaced unless that is asked for, and what goes on has begun.
 fn keep_results(dir: &Path, args: &SolveArgs) -> Result<()> {
-    if args.resume || args.force || !dir.join(REPORT).exists() {
+    if args.resume {
+        return checkpoint::expect(dir);
+    }
+    if args.force || !dir.join(REPORT).exists() {
         return Ok(());
     }
     let reason = "holds a finished run: --force replaces it, --resume goes on from its end, -o DIR takes another place";

@@ -4,7 +4,7 @@ use super::case::Published;
 use super::flows::runs::{self, FlowOrder};
 use super::found::StudyFindings;
 use super::row::{EXACT, ROUNDING, Row};
-use super::table::{Cell, Listing, Reading, readable};
+use super::table::{Cell, Listing, Reading, readable, without_tags};
 use super::values::unique;
 use super::{left_out, points, scaling};
 use crate::picture::panels::Panels;
@@ -279,7 +279,7 @@ pub fn html(found: &StudyFindings, pictures: &[(String, Panels)]) -> String {
 /// The same in Markdown; pictures by the names of their files, beside it.
 #[must_use]
 pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String {
-    let mut text = if found.title.is_empty() { String::new() } else { format!("# {}\n\n", found.title) };
+    let mut text = if found.title.is_empty() { String::new() } else { format!("# {}\n\n", without_tags(&found.title)) };
     for line in about(found) {
         let _ = writeln!(text, "{line}\n");
     }
@@ -287,13 +287,13 @@ pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String 
     for (head, words, table) in parts(found) {
         let _ = writeln!(text, "## {head}\n");
         for sentence in &words {
-            let _ = writeln!(text, "- {sentence}");
+            let _ = writeln!(text, "- {}", without_tags(sentence));
         }
         let gap = if words.is_empty() { "" } else { "\n" };
         let table = if table.columns.is_empty() { String::new() } else { table.markdown() };
         let _ = writeln!(text, "{gap}{table}");
         for (name, picture) in shown.drain(..) {
-            let _ = writeln!(text, "![{}]({name}.svg)\n", picture.title);
+            let _ = writeln!(text, "![{}]({name}.svg)\n", without_tags(&picture.title));
         }
     }
     text.trim_end().to_owned() + "\n"

@@ -89,6 +89,12 @@ pub fn readable(x: f64, reading: Reading) -> String {
     }
 }
 
+/// Words for Markdown, in which a name such as `<b>` is no tag.
+#[must_use]
+pub fn without_tags(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;")
+}
+
 /// A table: its columns with their names, those that only programs get with `false`.
 #[derive(Debug, Clone, Default)]
 pub struct Listing {
@@ -137,7 +143,7 @@ impl Listing {
         line(&mut text, &|c| if self.is_text(c) { "---" } else { "---:" }.to_owned());
         for row in &self.rows {
             let cell = |c: usize| row.get(c).map_or_else(String::new, Cell::readable);
-            line(&mut text, &|c| cell(c).replace('|', "\\|").replace(['\n', '\r'], " "));
+            line(&mut text, &|c| without_tags(&cell(c)).replace('|', "\\|").replace(['\n', '\r'], " "));
         }
         text
     }
