@@ -83,10 +83,20 @@ fn tints(rows: &[Row]) -> Vec<(String, f64)> {
     names.iter().map(|name| (name.clone(), white(name))).collect()
 }
 
-/// A colour for each family of methods, a tint for each depth and tolerance; a line for each method from grid to grid, or on a single grid for
+/// What has a colour of its own: a family of methods on so many threads.
+fn colour_of(row: &Row) -> String {
+    row.family.clone() + &on_threads(row.threads)
+}
+
+/// What follows a name where there are several threads.
+fn on_threads(threads: usize) -> String {
+    if threads > 1 { format!(", {threads} threads") } else { String::new() }
+}
+
+/// A colour for each family of methods and number of threads, a tint for each depth and tolerance; a line for each method from grid to grid, or on a single grid for
 /// each family.
 fn errors(rows: &[Row], error: Error, fronts: bool) -> Panels {
-    let series = unique(rows.iter().map(|r| r.family.clone()));
+    let series = unique(rows.iter().map(colour_of));
     let tints = tints(rows);
     let panels = unique(rows.iter().map(|r| r.scene.clone())).into_iter().map(|scene| {
         let of_scene: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
@@ -116,9 +126,9 @@ fn panel(
     let grids = unique(rows.iter().map(|r| r.cells)).len();
     let mut lines: BTreeMap<(usize, String), Vec<Mark>> = BTreeMap::new();
     for row in rows {
-        let (Some(y), Some(n)) = (error(row), series.iter().position(|s| *s == row.family)) else { continue };
+        let (Some(y), Some(n)) = (error(row), series.iter().position(|s| *s == colour_of(row))) else { continue };
         // With several grids a line goes from one to the next; with one, from depth to depth.
-        let line = if grids > 1 { format!("{} {}", row.method, row.threads) } else { row.threads.to_string() };
+        let line = if grids > 1 { row.method.clone() } else { String::new() };
         lines.entry((n, line)).or_default().push(Mark {
             at: [row.seconds.median, y],
             x_ends: Some([row.seconds.fastest, row.seconds.slowest]).filter(|[a, b]| a < b),
@@ -145,8 +155,7 @@ fn panel(
 fn of_flows(title: &str, rows: &[FlowRow]) -> Panels {
     let scheme = |r: &FlowRow| {
         let slopes = if r.order == 1 { "first order".to_owned() } else { r.limiter.clone() };
-        let threads = if r.threads > 1 { format!(", {} threads", r.threads) } else { String::new() };
-        format!("{}, {slopes}, {}{threads}", r.riemann, r.precision)
+        format!("{}, {slopes}, {}{}", r.riemann, r.precision, on_threads(r.threads))
     };
     let (series, fitted) = (unique(rows.iter().map(scheme)), orders(rows));
     let number = |r: &FlowRow| series.iter().position(|s| *s == scheme(r)).unwrap_or(0);
