@@ -470,3 +470,37 @@ fn names_with_commas_head_columns() {
     }
     assert_eq!(json(&at.file("out/report.json"))["forces"][0]["name"], "tank, north");
 }
+
+/// Solids without names have a force all together; an empty name is none.
+#[test]
+fn solids_without_names_are_told_together() {
+    let at = Scratch::new();
+    let corners = [[1.0, 0.2, 0.2], [1.4, 0.6, 0.6]];
+    let side = |axis: usize, high: usize| {
+        let point = |u: usize, v: usize| {
+            let mut p = [0.0; 3];
+            (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) =
+                (corners[high][axis], corners[u][(axis + 1) % 3], corners[v][(axis + 2) % 3]);
+            p
+        };
+        let [a, b, c, d] = [point(0, 0), point(1, 0), point(1, 1), point(0, 1)];
+        if high == 1 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
+    };
+    let facets = (0..6).flat_map(|n| side(n / 2, n % 2));
+    let facet = |[a, b, c]: [[f64; 3]; 3]| {
+        let vertex = |p: [f64; 3]| format!("vertex {} {} {}\n", p[0], p[1], p[2]);
+        format!("facet normal 0 0 0\nouter loop\n{}{}{}endloop\nendfacet\n", vertex(a), vertex(b), vertex(c))
+    };
+    fs::write(at.file("box.stl"), format!("solid\n{}endsolid\n", facets.map(facet).collect::<String>()))
+        .expect("a file");
+    let of = |forces: &str| {
+        let more = format!("[time]\nmax_steps = 3\n[output]\nformats = []\nforces = [{forces}]\n");
+        solve(&at, &case(20.0, &more).replace("scene.toml", "box.stl"), "out", &["--force"])
+    };
+    let done = of("\"*\"");
+    assert!(done.status.success() && stderr(&done).contains("no solid of the scene has a name"), "{}", stderr(&done));
+    let columns = log(&at, "out");
+    assert_eq!(columns["others force_x"], columns["force_x"]);
+    assert!(columns["force_x"].last().expect("a line").abs() > 0.1);
+    assert!(stderr(&of("\"\"")).contains("is an empty text in place of a name"), "{}", stderr(&of("\"\"")));
+}

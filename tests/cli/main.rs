@@ -25,6 +25,7 @@ mod regions;
 mod scene;
 mod slips;
 mod solve;
+mod solve_again;
 mod solve_errors;
 mod solve_resume;
 mod streams;

@@ -139,3 +139,28 @@ fn places_of_tables_stay_what_they_were() {
     assert_eq!((begun.lines().count(), late.lines().count()), (6, 3));
     assert_eq!(begun.lines().last(), late.lines().last());
 }
+
+/// Volume is that of the gas where it comes from: from beyond an inlet, and from the other end of a periodic axis.
+#[test]
+fn volumes_through_sides_are_of_the_gas_outside() {
+    let at = Scratch::new();
+    let planes = "{ name = \"in\", x = 0 }, { name = \"end\", x = 2 }";
+    let hot = case("", planes).replace("\"inlet\", rho = 1.2", "\"inlet\", rho = 0.3");
+    solved(&at, &hot, "out", &[]);
+    let value = last(&at);
+    let found = value("in volume_flow") / value("in mass_flow");
+    assert!((found - 1.0 / 0.3).abs() < 1e-9, "{found}");
+    // Four times the density comes around from the last tenth.
+    let around = case("", planes)
+        .replace("{ type = \"inlet\", rho = 1.2, u = 10 }", "\"periodic\"")
+        .replace("{ type = \"outlet\", p = 1e5 }", "\"periodic\"")
+        .replace("[boundary]", "regions = [{ min = [1.8], rho = 4.8 }]\n[boundary]");
+    solved(&at, &around, "out", &["--force"]);
+    let value = last(&at);
+    for name in ["in", "end"] {
+        let found = value(&format!("{name} volume_flow"));
+        assert!((found - 10.0).abs() < 0.2, "{name}: {found}");
+    }
+    assert_eq!(value("in mass_flow"), value("end mass_flow"));
+    assert_eq!(value("in overpressure"), value("end overpressure"));
+}

@@ -154,3 +154,60 @@ fn a_vent_that_differs_on_half_the_cells_is_told() {
     let silent = stderr(&solved(&at, &case(0.4, 0.6), "same", &["--refine-check"]));
     assert!(!silent.contains("on half of them"), "{silent}");
 }
+
+/// An inlet that gives no pressure starts from that of the gas beside it, not from that of the whole side.
+#[test]
+fn an_inlet_starts_from_the_gas_beside_it() {
+    let at = Scratch::new();
+    let inlet = "[[boundary.patch]]\nside = \"x_min\"\nmin = [0, 0, 0]\nmax = [2, 0.4, 1]\ntype = \"inlet\"\nu = 5\nrho = 1.2\n\
+                 [time]\nmax_steps = 1\n[output]\nmonitors = [{ name = \"M\", x = 0, max = [9, 0.4] }]\n";
+    let case = chamber(inlet, "rho = 1.2, p = 1e5 }\nregions = [{ min = [0, 0.5], p = 8e5 }]\n#", "");
+    solved(&at, &case, "out", &["-q"]);
+    let text = fs::read_to_string(at.file("out/monitors.csv")).expect("a table");
+    let mass: f64 = text.lines().last().and_then(|l| l.split(',').nth(2)?.parse().ok()).expect("a number");
+    // 1.2 kg/m³ at 5 m/s through 0.4 m²; gas at rest lets in half of that at first.
+    assert!((1.1..2.5).contains(&mass), "{mass}");
+}
+
+/// An inlet that nothing is left of stays as it is, and is told.
+#[test]
+fn an_inlet_without_open_faces_is_told() {
+    let at = Scratch::new();
+    let wall = "[[boundary.patch]]\nside = \"x_min\"\nmin = [0, 0, 0]\nmax = [2, 1, 1]\ntype = \"wall\"\n[time]\nmax_steps = 40\n";
+    let case = chamber(wall, "rho = 1.2, p = 1e5", "[output]\nformats = []\n");
+    let case = case.replace("x_min = \"wall\"", "x_min = { type = \"inlet\", u = 5, rho = 1.2, relax = 1e-6 }");
+    let text = stderr(&solved(&at, &case, "out", &[]));
+    assert!(text.contains("key boundary.x_min: solids or patches cover all of this inlet: nothing enters"), "{text}");
+    let p = array(&at.file("out/final/p.npy"));
+    assert!(p.iter().all(|p| (p - 1e5).abs() < 1e-6));
+}
+
+/// An upright patch with one pressure under gravity is told, as a whole side is.
+#[test]
+fn level_pressures_of_patches_are_told() {
+    let at = Scratch::new();
+    let vent = "[[boundary.patch]]\nside = \"x_max\"\nmin = [0, 0, 0]\nmax = [2, 1, 1]\ntype = \"outlet\"\np = 1e5\n\
+                [gravity]\ng = [0, 0, -9.81]\n[time]\nmax_steps = 1\n";
+    let text = stderr(&solved(&at, &chamber(vent, "rho = 1.2, p = 1e5", ""), "out", &[]));
+    assert!(text.contains("key boundary.patch[0]: has one pressure at all heights"), "{text}");
+}
+
+/// Sides of an axis of one cell are sides like any other: a type, and its keys alone.
+#[test]
+fn sides_of_an_axis_of_one_cell_are_checked() {
+    let at = Scratch::new();
+    let said = |side: &str| {
+        let case = chamber("[time]\nmax_steps = 1\n", "rho = 1.2, p = 1e5", "")
+            .replace("z = { points = [0, 1], cells = [10] }", "z = { points = [0, 1], cells = [1] }")
+            .replace("z_min = \"wall\"", side);
+        stderr(&solve(&at, &case, "out", &["-q", "--force"]))
+    };
+    assert!(
+        said("z_min = { p = 3e5 }").contains("key boundary.z_min: needs a type"),
+        "{}",
+        said("z_min = { p = 3e5 }")
+    );
+    let wall = said("z_min = { type = \"wall\", T = 3 }");
+    assert!(wall.contains("key boundary.z_min.T: is not a key of this type (wall)"), "{wall}");
+    assert_eq!(said("z_min = \"wall\""), "");
+}

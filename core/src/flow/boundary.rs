@@ -163,8 +163,8 @@ impl<R: Real, const D: usize> Boundary<R, D> {
         }
     }
 
-    /// The same for a state that is not turned.
-    pub(crate) fn ghost_cell(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
+    /// The state that stands beside an inner one at the low or high side of axis `d`, velocities along x, y, z; behind a periodic side the inner one.
+    pub fn ghost_cell(&self, inner: &Primitive<R, D>, d: usize, low: bool, gas: Gas<R>) -> Primitive<R, D> {
         let turned = Primitive { velocity: rotate(inner.velocity, d), ..*inner };
         let ghost = self.ghost_face(&turned, d, low, gas);
         Primitive { velocity: rotate_back(ghost.velocity, d), ..ghost }

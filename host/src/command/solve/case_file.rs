@@ -11,6 +11,7 @@ use crate::keys::reader::misfit;
 use crate::keys::source::another;
 use crate::keys::value::Value;
 use crate::keys::{self, PlacedValue, Source};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// A case file with its place, for errors and for the paths in it.
@@ -137,20 +138,20 @@ impl CaseFile {
         }
     }
 
-    /// `name` heads columns of a table, and is none of the `others`.
+    /// `name` heads columns of a table, and is none of the `others`, which it joins.
     ///
     /// # Errors
     /// It is one, or cannot head a column.
-    pub fn column_name<'a>(&self, key: &str, name: &str, mut others: impl Iterator<Item = &'a str>) -> Result<()> {
+    pub fn column_name(&self, key: &str, name: &str, others: &mut HashSet<String>) -> Result<()> {
         if name.is_empty() {
             return Err(self.wrong(key, "is empty: give a name, or leave the key out"));
         }
         if name.contains(['\n', '\r']) {
             return Err(self.wrong(key, "needs a name in one line"));
         }
-        match others.any(|other| other == name) {
-            true => Err(self.wrong(key, format!("\"{name}\" is the name of another"))),
-            false => Ok(()),
+        match others.insert(name.to_owned()) {
+            true => Ok(()),
+            false => Err(self.wrong(key, format!("\"{name}\" is the name of another"))),
         }
     }
 

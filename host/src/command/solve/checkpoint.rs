@@ -19,11 +19,11 @@ use std::path::Path;
 use voidage_core::flow::{Boundary, Conserved, Gas, Limiter, PressureForm, Primitive, Report, Riemann, Scheme};
 
 /// First bytes of the file; the last is the version of the layout.
-const MAGIC: &[u8; 8] = b"VOIDAGE\x05";
+const MAGIC: &[u8; 8] = b"VOIDAGE\x06";
 
-/// Values of a watched cell: two sides, two masses and a drag for each axis, and all parts of what acts along two sides.
+/// Values of a watched cell: its number, two sides, two masses and a drag for each axis, and all parts of what acts along two sides.
 const fn watched(dimensions: usize) -> usize {
-    (5 + 2 * dimensions) * dimensions
+    1 + (5 + 2 * dimensions) * dimensions
 }
 
 /// Name of the file in the output directory.
@@ -49,11 +49,23 @@ pub const BEFORE: &str = "checkpoint_before.bin";
 const TABLES: [(&str, &str); 3] =
     [("log.csv", "log_before.csv"), ("probes.csv", "probes_before.csv"), ("monitors.csv", "monitors_before.csv")];
 
-/// Renames the checkpoint in `dir` and the tables that go with it, as far as they are there; returns their new names, the checkpoint's first.
+/// The frames of a run, and their name beside [`BEFORE`].
+const FRAMES: [&str; 2] = ["frames", "frames_before"];
+
+/// Renames the checkpoint in `dir`, its frames and the tables that go with it, as far as they are there; returns the new names of the checkpoint and the tables, the
+/// checkpoint's first.
 ///
 /// # Errors
 /// A file cannot be renamed.
 pub fn put_aside(dir: &Path) -> Result<Vec<&'static str>> {
+    let [frames, before] = FRAMES.map(|name| dir.join(name));
+    if dir.join(NAME).exists() && frames.is_dir() {
+        let renamed = match std::fs::remove_dir_all(&before) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+            _ => std::fs::rename(&frames, &before),
+        };
+        renamed.map_err(|e| Error::io(&frames, "rename", &e))?;
+    }
     let all = std::iter::once((NAME, BEFORE)).chain(TABLES);
     let renamed = all.map(|(from, to)| match std::fs::rename(dir.join(from), dir.join(to)) {
         Ok(()) => Ok(Some(to)),
@@ -83,6 +95,9 @@ pub struct Journal {
     pub seconds: f64,
     /// Largest forces on solids so far.
     pub peaks: Vec<ForcePeak>,
+    /// The last step, in s.
+    #[serde(default)]
+    pub dt: f64,
     /// The cell through which pictures are cut, if there are any.
     #[serde(default)]
     pub cut: Option<[usize; 3]>,
@@ -126,7 +141,9 @@ impl Fingerprint {
             out.hasher.finalize()
         };
         let of_numbers = |numbers: &[f64]| of_arrays(&mut std::iter::once(numbers));
-        let inlets = setup.inlets.iter().flat_map(|i| [i.at.0 as f64, i.at.1 as f64, i.relax]);
+        let inlets = setup.inlets.iter().flat_map(|i| {
+            [i.at.0 as f64, i.at.1 as f64, i.relax, i.per_pressure.unwrap_or(0.0)] // 0: the density is given
+        });
         let mut sides: Vec<f64> = flow.boundaries.iter().flatten().flat_map(side_numbers).chain(inlets).collect();
         for patch in &flow.patches {
             let place = [patch.axis, usize::from(patch.high)].into_iter().chain(patch.first).chain(patch.end);
@@ -273,7 +290,9 @@ pub fn write<const D: usize>(
         out.write_all(&text)?;
         columns(&flow.state).try_for_each(|values| write_f64(&mut out, values))?;
         maxima.iter().flat_map(|m| m.arrays()).try_for_each(|values| write_f64(&mut out, values))?;
-        flow.watched_walls().1.iter().try_for_each(|push| {
+        let (cells, pushes) = flow.watched_walls();
+        cells.iter().zip(pushes).try_for_each(|(&cell, push)| {
+            write_f64(&mut out, &[cell as f64])?;
             write_f64(&mut out, push.sides.as_flattened())?;
             write_f64(&mut out, push.mass.as_flattened())?;
             write_f64(&mut out, &push.drag)?;
@@ -329,23 +348,14 @@ pub fn resume<const D: usize>(
     let state = Field { density, momentum, energy, capacity };
     let wanted: usize = maxima.iter().flat_map(|m| m.arrays()).map(<[f64]>::len).sum();
     if wanted != header.maxima {
-        let reason = "knows other largest values over time than output.maxima asks for; run without --resume";
+        let reason =
+            "knows other largest values over time than output.maxima or --refine-check asks for; run without --resume";
         return Err(Error::file(path, reason));
     }
     for array in maxima.into_iter().flat_map(|m| m.arrays_mut()) {
         array.iter_mut().zip(values.by_ref()).for_each(|(into, from)| *into = from);
     }
-    let mut pushes = setup.flow.watched_walls().1.to_vec();
-    let same_walls = pushes.len() * watched(D) == header.walls;
-    if same_walls {
-        for push in &mut pushes {
-            let sides = push.sides.as_flattened_mut().iter_mut();
-            let along = push.along.as_flattened_mut().as_flattened_mut();
-            let into = sides.chain(push.mass.as_flattened_mut()).chain(&mut push.drag).chain(along);
-            into.zip(values.by_ref()).for_each(|(into, from)| *into = from);
-        }
-        setup.flow.restore_walls(&pushes);
-    }
+    let walls: Vec<f64> = values.collect();
     let Header { time, steps, repeated, rate, first_order, floored, .. } = header;
     let mut total = Report { rate, first_order, floored, ..Report::new() };
     let lengths = header.inflow.len() == 2 * D * (D + 2) && header.floor_change.len() == D + 2;
@@ -361,13 +371,27 @@ pub fn resume<const D: usize>(
         *into = amount(from);
     }
     setup.flow.resume(state, Clock { time, steps, repeated, total }).map_err(|_| wrong())?;
-    if !same_walls {
-        // Until the next step the state alone tells what acts on the cells that the case watches now.
-        setup.flow.watch_walls_anew();
-    }
+    restore_walls(setup, &walls);
     let restore = |(inlet, p): (&Inlet<D>, f64)| inlet.set_pressure(&mut setup.flow, p);
     setup.inlets.iter().zip(header.inlet_pressures).for_each(restore);
     Ok(header.journal)
+}
+
+/// Puts back what acted on the walls of the watched cells in the last step. Of cells that the case watches now and did not watch then the state alone tells,
+/// until the next step.
+fn restore_walls<const D: usize>(setup: &mut Setup<D>, walls: &[f64]) {
+    setup.flow.watch_walls_anew();
+    let (cells, pushes) = setup.flow.watched_walls();
+    let mut pushes = pushes.to_vec();
+    for kept in walls.chunks_exact(watched(D)) {
+        let Ok(place) = cells.binary_search(&(kept[0] as usize)) else { continue };
+        let push = &mut pushes[place];
+        let sides = push.sides.as_flattened_mut().iter_mut();
+        let along = push.along.as_flattened_mut().as_flattened_mut();
+        let into = sides.chain(push.mass.as_flattened_mut()).chain(&mut push.drag).chain(along);
+        into.zip(&kept[1..]).for_each(|(into, from)| *into = *from);
+    }
+    setup.flow.restore_walls(&pushes);
 }
 
 /// Header and values, or the reason why there are none.

@@ -19,20 +19,25 @@ pub struct Inlet<const D: usize> {
     pub at: (usize, usize),
     /// The patch on that side, if it is not the rest of it.
     pub patch: Option<usize>,
-    /// Time in which the pressure follows; infinite where it does not.
+    /// Time in which the pressure follows, once its side is known; infinite where it does not.
     pub relax: f64,
+    /// Density over pressure where the temperature is given.
+    pub per_pressure: Option<f64>,
+    /// The time that the table gives, and the length of the axis, which sound crosses in that of one that gives none.
+    given_relax: Option<f64>,
+    length: f64,
+    /// It starts from the pressure of the gas beside it.
+    starts_as_beside: bool,
     /// +1 if the gas enters along the axis, −1 if against it.
     sign: f64,
     /// What enters.
     gas: Gas<f64>,
-    /// Density over pressure where the temperature is given.
-    per_pressure: Option<f64>,
     /// Open area beside each cell of the side, as a share of all.
     shares: Vec<(usize, f64)>,
 }
 
 impl<const D: usize> Inlet<D> {
-    /// The inlet of a table, with its first state; `pressure` is where it starts from unless the table says.
+    /// The inlet of a table, with a state in it; `pressure` is that of any gas of the flow, until its side is known.
     ///
     /// # Errors
     /// The table gives no state, or one that does not enter.
@@ -44,7 +49,8 @@ impl<const D: usize> Inlet<D> {
         pressure: f64,
         edges: &Edges,
     ) -> Result<(Self, Primitive<f64, D>)> {
-        let first = keys.p.or((states.gas.has_energy() || keys.rho.is_none()).then_some(pressure));
+        let starts_as_beside = keys.p.is_none() && (states.gas.has_energy() || keys.rho.is_none());
+        let first = if starts_as_beside { Some(pressure) } else { keys.p };
         let mut state = states.state(key, &StateKeys { p: first, ..keys.clone() }, None)?;
         let per_pressure = keys.temperature.zip(states.gas_constant).map(|(t, r)| 1.0 / (r * t));
         let sign = [1.0, -1.0][at.1];
@@ -54,12 +60,18 @@ impl<const D: usize> Inlet<D> {
             return Err(states.file.wrong(&format!("{key}.{name}"), reason));
         }
         let axis = &edges.0[states.live[at.0]];
-        let gas = states.gas_of(states.gamma(keys, None));
-        let sound_speed = gas.sound_speed(&state);
-        let crossing = (axis[axis.len() - 1] - axis[0]) / sound_speed;
-        let is_supersonic = sign * state.velocity[at.0] > sound_speed;
-        let relax = if is_supersonic { f64::INFINITY } else { keys.relax.unwrap_or(crossing) };
-        let inlet = Inlet { at, patch: None, relax, sign, gas, per_pressure, shares: Vec::new() };
+        let inlet = Inlet {
+            at,
+            patch: None,
+            relax: f64::INFINITY,
+            per_pressure,
+            given_relax: keys.relax,
+            length: axis[axis.len() - 1] - axis[0],
+            starts_as_beside,
+            sign,
+            gas: states.gas_of(states.gamma(keys, None)),
+            shares: Vec::new(),
+        };
         inlet.follow(&mut state);
         Ok((inlet, state))
     }
@@ -72,19 +84,36 @@ impl<const D: usize> Inlet<D> {
         }
     }
 
-    /// Learns the open areas of its side.
-    pub fn look_at(&mut self, flow: &Flow<f64, D>) {
+    /// Learns the open areas of its side, and starts from the gas there. Has it any?
+    pub fn look_at(&mut self, flow: &mut Flow<f64, D>) -> bool {
         self.shares = flow.side(self.at.0, self.at.1, self.patch);
         let whole: f64 = self.shares.iter().map(|(_, area)| area).sum();
         self.shares.retain(|(_, area)| *area > 0.0);
         self.shares.iter_mut().for_each(|(_, area)| *area /= whole);
+        if self.starts_as_beside && !self.shares.is_empty() {
+            let beside = self.mean(|cell| flow.get(cell).pressure);
+            self.set_pressure(flow, beside);
+        }
+        if let Boundary::Inlet(state) = *self.place(flow) {
+            let (speed, sound) = (self.sign * state.velocity[self.at.0], self.gas.sound_speed(&state));
+            self.relax = if speed > sound { f64::INFINITY } else { self.given_relax.unwrap_or(self.length / sound) };
+        }
+        !self.shares.is_empty()
+    }
+
+    /// The mean of something along its side, over the open area.
+    fn mean(&self, of: impl Fn(usize) -> f64) -> f64 {
+        self.shares.iter().map(|&(cell, share)| share * of(cell)).sum()
     }
 
     /// Lets the pressure follow the flow for one step.
     pub fn relax(&self, flow: &mut Flow<f64, D>, dt: f64) {
         let d = self.at.0;
         let Boundary::Inlet(state) = *self.place(flow) else { return };
-        let mean: f64 = self.shares.iter().map(|&(cell, share)| share * flow.get(cell).velocity[d]).sum();
+        if self.shares.is_empty() {
+            return;
+        }
+        let mean = self.mean(|cell| flow.get(cell).velocity[d]);
         let share = (dt / self.relax).min(1.0);
         let mut next = self.place(flow).relaxed(d, self.sign * mean, self.gas.sound_speed(&state), share);
         if let Boundary::Inlet(w) = &mut next {

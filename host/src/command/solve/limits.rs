@@ -59,6 +59,12 @@ impl Limits {
         }
         (n * self.every).min(self.end)
     }
+
+    /// Is the moment of a stop that of a frame, and not merely the end?
+    #[must_use]
+    pub fn is_frame(&self, stop: f64) -> bool {
+        stop < self.end || (stop / self.every).round() * self.every == stop
+    }
 }
 
 /// Frames of a run: more is a slip of the pen.

@@ -15,6 +15,7 @@ use crate::flow::Flow;
 use crate::grid::{AXES, Edges};
 use crate::words::counted;
 use serde::Serialize;
+use std::collections::HashSet;
 use std::fmt::Write as _;
 
 /// A plane whose flow is kept.
@@ -32,7 +33,7 @@ pub struct Monitor<const D: usize> {
 /// An open face of a plane.
 #[derive(Debug)]
 struct Face {
-    /// The cells below and above, the same twice at a side of the domain.
+    /// The cells below and above, the same twice at a side of the domain that is not periodic.
     cells: [usize; 2],
     /// The face is on the low (0) or high (1) side of the second of them.
     side: usize,
@@ -117,11 +118,11 @@ pub struct Plane {
 /// # Errors
 /// As [`monitors`].
 pub fn planes(file: &CaseFile, edges: &Edges, live: &[usize]) -> Result<Vec<Plane>> {
-    let mut all: Vec<Plane> = Vec::new();
+    let (mut all, mut names) = (Vec::new(), HashSet::new());
     for (n, keys) in file.case.output.monitors.iter().enumerate() {
         let key = format!("output.monitors[{n}]");
         let name = keys.name.clone().unwrap_or_else(|| format!("monitor {}", n + 1));
-        file.column_name(&format!("{key}.name"), &name, all.iter().map(|plane| &plane.name[..]))?;
+        file.column_name(&format!("{key}.name"), &name, &mut names)?;
         all.push(Plane::new(file, &key, name, keys, (edges, live))?);
     }
     Ok(all)
@@ -169,6 +170,12 @@ impl<const D: usize> Monitor<D> {
         self.faces.iter().filter(|face| within(face.cells)).count()
     }
 
+    /// Numbers that tell its faces from those of any other plane.
+    pub fn places(&self) -> impl Iterator<Item = usize> {
+        let of_face = |face: &Face| [face.cells[0], face.cells[1], face.side];
+        std::iter::once(self.d).chain(self.faces.iter().flat_map(of_face))
+    }
+
     /// What it came to.
     #[must_use]
     pub fn report(&self) -> MonitorReport {
@@ -190,7 +197,14 @@ impl<const D: usize> Monitor<D> {
             let place = watched.binary_search(&cells[1]);
             let passing = place.map_or(0.0, |place| pushes[place].mass[self.d][*side] * section);
             mass += passing;
-            volume += passing / states[usize::from(passing < 0.0)].density;
+            let comes_in = cells[0] == cells[1] && (passing > 0.0) == (*side == 0);
+            let density = if comes_in {
+                let beside = flow.stands(self.d, *side, flow.coordinates(cells[1]));
+                beside.ghost_cell(&states[1], self.d, *side == 0, flow.gas_at(cells[1])).density
+            } else {
+                states[usize::from(passing < 0.0)].density
+            };
+            volume += if passing == 0.0 { 0.0 } else { passing / density };
             let over = 0.5 * (states[0].pressure + states[1].pressure) - ambient;
             force += area * over;
             largest = over.max(largest);
@@ -220,7 +234,11 @@ fn faces<const D: usize>(
     let shape = edges.cells();
     let across = edges.across(&live);
     let open = flow.faces().nth(d);
-    let (low, high) = (plane.saturating_sub(1), plane.min(shape[axis] - 1));
+    let last = shape[axis] - 1;
+    let is_periodic = flow.boundaries[d][0].is_periodic();
+    // The last plane of a periodic axis is the first.
+    let plane = if is_periodic && plane > last { 0 } else { plane };
+    let (low, high) = if is_periodic && plane == 0 { (last, 0) } else { (plane.saturating_sub(1), plane.min(last)) };
     let mut all = Vec::new();
     let within = |a: usize, i: usize| {
         let middle = f64::midpoint(edges.0[a][i], edges.0[a][i + 1]);
@@ -235,8 +253,7 @@ fn faces<const D: usize>(
         below[axis] = low;
         let (side, section) = (usize::from(plane > high), flow.area(d, here) * across);
         let share = open.map_or(1.0, |open| open[flow.face(d, here, side)]);
-        let is_side = plane == 0 || plane > high;
-        let is_wall = is_side && flow.stands(d, side, here).is_wall();
+        let is_wall = (plane == 0 || plane > high) && flow.stands(d, side, here).is_wall();
         if share > 0.0 && !is_wall {
             all.push(Face { cells: [position(below, shape), cell], side, area: share * section, section });
         }

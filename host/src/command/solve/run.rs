@@ -59,16 +59,19 @@ pub fn solve(args: &SolveArgs) -> Result<()> {
     )?;
     pictures::check(&file, &edges)?;
     keep_inputs(&file, &dir)?;
+    keep_places(&dir)?;
     let live = live_axes(&edges);
     check_watched(&file, &edges, &live)?;
     if args.refine_check {
         refine::check(&file, &edges, &live)?;
     }
+    // Held while the case is set up, so that of two runs the later one is told at once.
+    let lock = Lock::take(&dir)?;
     keep_results(&dir, args)?;
     threads(args.threads)?.install(|| match live[..] {
-        [a] => run(&file, &edges, [a], dir, args, progress),
-        [a, b] => run(&file, &edges, [a, b], dir, args, progress),
-        [a, b, c] => run(&file, &edges, [a, b, c], dir, args, progress),
+        [a] => run(&file, &edges, [a], (dir, lock), args, progress),
+        [a, b] => run(&file, &edges, [a, b], (dir, lock), args, progress),
+        [a, b, c] => run(&file, &edges, [a, b, c], (dir, lock), args, progress),
         _ => Ok(()), // there are one to three
     })
 }
@@ -99,26 +102,41 @@ fn make_way(dir: &Path, progress: &mut Progress) -> Result<()> {
         }
         return frames::forget(&report);
     }
+    // Those of a finished run that had gone on.
+    Maxima::forget(&dir.join("maxima"))?;
+    frames::forget(&dir.join(frames::SERIES))?;
     let kept = checkpoint::put_aside(dir)?;
     let dir = dir.display();
     match &kept[..] {
         [] => {}
-        [checkpoint::BEFORE, ..] => progress
-            .warn(format!("{dir}: held a run that had not ended; its last state is kept in {}", checkpoint::BEFORE)),
+        [checkpoint::BEFORE, ..] => progress.warn(format!(
+            "{dir}: held a run that had not ended; its last state is kept in {}, its frames and tables beside it as *_before",
+            checkpoint::BEFORE
+        )),
         tables => progress.warn(format!("{dir}: held tables of no run; they are kept as {}", tables.join(", "))),
     }
     Ok(())
 }
 
-/// The last state must not replace the first one.
+/// States that a run writes must not replace the one that it begins from.
 fn keep_inputs(file: &CaseFile, dir: &Path) -> Result<()> {
-    let last = dir.join("final").canonicalize();
-    let from = file.case.initial.from.as_ref().map(|from| file.resolve(from).canonicalize());
-    match (last, from) {
-        (Ok(last), Some(Ok(from))) if last == from => {
-            Err(file.wrong("initial.from", format!("would be replaced by the results in {}", dir.display())))
-        }
-        _ => Ok(()),
+    let from = file.case.initial.from.as_ref().and_then(|from| file.resolve(from).canonicalize().ok());
+    let is_ours = |name: &str| dir.join(name).canonicalize().is_ok_and(|own| from.iter().any(|p| p.starts_with(&own)));
+    match DIRECTORIES.into_iter().any(is_ours) {
+        true => Err(file.wrong("initial.from", format!("would be replaced by the results in {}", dir.display()))),
+        false => Ok(()),
+    }
+}
+
+/// Names of the directories that a run writes into.
+const DIRECTORIES: [&str; 3] = ["final", "frames", "maxima"];
+
+/// No file stands where a directory is to be.
+fn keep_places(dir: &Path) -> Result<()> {
+    let mut places = DIRECTORIES.into_iter().map(|name| dir.join(name));
+    match places.find(|place| place.exists() && !place.is_dir()) {
+        Some(file) => Err(Error::file(&file, "is a file, and results would go into a directory of this name")),
+        None => Ok(()),
     }
 }
 
@@ -126,13 +144,13 @@ fn run<const D: usize>(
     file: &CaseFile,
     edges: &Edges,
     live: [usize; D],
-    dir: PathBuf,
+    (dir, lock): (PathBuf, Option<Lock>),
     args: &SolveArgs,
     mut progress: Progress,
 ) -> Result<()> {
     let limits = Limits::new(file)?;
     let setup = progress.stage("setup", |p| setup(file, edges, live, p))?;
-    let mut run = Run::begin(file, setup, limits, dir, args.resume, &mut progress)?;
+    let mut run = Run::begin(file, setup, limits, (dir, lock), args, &mut progress)?;
     let stepped = {
         let _watch = interrupt::Watch::new();
         progress.stage("steps", |p| run.steps(&p.line()))
@@ -184,8 +202,8 @@ impl<'a, const D: usize> Run<'a, D> {
         file: &'a CaseFile,
         mut setup: Setup<D>,
         limits: Limits,
-        dir: PathBuf,
-        resume: bool,
+        (dir, lock): (PathBuf, Option<Lock>),
+        args: &SolveArgs,
         progress: &mut Progress,
     ) -> Result<Self> {
         let output = &file.case.output;
@@ -197,8 +215,16 @@ impl<'a, const D: usize> Run<'a, D> {
         let cells = setup.pushed.iter().copied().chain(watched.cells()).collect();
         setup.flow.watch_walls(cells, ambient);
         let pictures = pictures(file, &setup, ambient, progress)?;
-        let lock = Lock::take(&dir)?;
-        let journal = if resume {
+        let lock = match lock {
+            Some(lock) => Some(lock),
+            // There was no directory when the run began; since then another may have come.
+            None => {
+                let lock = Lock::take(&dir)?;
+                keep_results(&dir, args)?;
+                lock
+            }
+        };
+        let journal = if args.resume {
             checkpoint::resume(&dir.join(checkpoint::NAME), &fingerprint, &mut setup, maxima.as_mut())?
         } else {
             let journal = first_journal(file, &mut setup)?;
@@ -227,7 +253,7 @@ impl<'a, const D: usize> Run<'a, D> {
             _lock: lock,
         };
         run.own_planes(progress)?;
-        if resume {
+        if args.resume {
             run.warn_of_an_end_before(file, progress);
             if run.goes_on() {
                 // A report tells that a run is finished.
@@ -276,16 +302,18 @@ impl<'a, const D: usize> Run<'a, D> {
     /// Steps until the end, or an interrupt.
     fn steps(&mut self, line: &Meter) -> Result<()> {
         let (begun, start) = (Instant::now(), (self.setup.flow.time, self.setup.flow.steps));
-        let (mut saved, mut last_step) = (begun, None);
+        let mut saved = begun;
         while self.goes_on() {
             let stop = self.limits.next_stop(self.setup.flow.time);
             let clock = Instant::now();
-            let dt = step(&mut self.setup, self.maxima.as_mut(), stop).map_err(|trouble| self.stopped(trouble))?;
+            let dt = match step(&mut self.setup, self.maxima.as_mut(), stop) {
+                Ok(dt) => dt,
+                Err(trouble) => return Err(self.stopped(trouble)),
+            };
             self.done.seconds += clock.elapsed().as_secs_f64();
             self.done.steps += 1;
-            last_step = Some(dt);
             self.record(dt)?;
-            if self.setup.flow.time >= stop {
+            if self.setup.flow.time >= stop && self.limits.is_frame(stop) {
                 self.frame()?;
             }
             if saved.elapsed() >= self.limits.checkpoint_every {
@@ -303,9 +331,7 @@ impl<'a, const D: usize> Run<'a, D> {
         }
         // A last state between two frames is shown, but no frame of a run that goes on.
         self.checkpoint()?;
-        if let Some(dt) = last_step {
-            self.series.end(&self.setup, dt, &self.forces())?;
-        }
+        self.series.end(&self.setup, self.journal.dt, &self.forces())?;
         if self.journal.frames.last() != Some(&self.setup.flow.time) {
             self.frame()?;
         }
@@ -313,7 +339,9 @@ impl<'a, const D: usize> Run<'a, D> {
     }
 
     /// A run that must not go on, and where its last good state is.
-    fn stopped(&self, trouble: Trouble) -> Error {
+    fn stopped(&mut self, trouble: Trouble) -> Error {
+        // The lines until then show what went wrong; the checkpoint knows which of them a run that goes on keeps. If they cannot be written, the trouble is told all the same.
+        let _ = self.series.flush(&mut self.journal.clone());
         let floored = matches!(trouble, Trouble::Floors(_)) && !self.untouched;
         let last = self.dir.join(if floored { checkpoint::UNTOUCHED } else { checkpoint::NAME });
         Error::new(format!("{trouble}; the last good state is in {}", last.display()))
@@ -321,6 +349,7 @@ impl<'a, const D: usize> Run<'a, D> {
 
     /// Lines of this moment in the tables.
     fn record(&mut self, dt: f64) -> Result<()> {
+        self.journal.dt = dt;
         let forces = self.forces();
         force_peaks::take(&mut self.journal.peaks, &forces, self.setup.flow.time);
         self.series.record(&self.setup, dt, &forces)

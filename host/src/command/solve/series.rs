@@ -14,6 +14,7 @@ use crate::command::progress::Progress;
 use crate::error::{Error, Result};
 use crate::files::csv;
 use crate::grid::Edges;
+use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -42,7 +43,7 @@ impl<const D: usize> Watched<D> {
             cells.for_each(|cell| hasher.update(&(cell as u64).to_le_bytes()));
             hasher.finalize()
         };
-        [sum(&mut self.probes.iter().copied()), sum(&mut self.cells())]
+        [sum(&mut self.probes.iter().copied()), sum(&mut self.planes.iter().flat_map(Monitor::places))]
     }
 
     /// Of a case; what lies in solids is told.
@@ -61,7 +62,7 @@ pub struct Series<const D: usize> {
     /// With the cells of the probes.
     probes: Option<(Table, Vec<usize>)>,
     monitors: Option<(Table, Vec<Monitor<D>>)>,
-    /// What [`Watched::places`] tells.
+    /// What [`Watched::places`] tells; where there is nothing now, what it told when there was.
     places: [u32; 2],
     /// Steps between lines of the log.
     log_every: usize,
@@ -108,6 +109,8 @@ impl<const D: usize> Series<D> {
             true => None,
             false => Some((table("monitors.csv", &head(&planes), "output.monitors", journal.monitors)?, planes)),
         };
+        // Tables that rest for a while go on at their places or not at all.
+        let places = [0, 1].map(|n| if places[n] == 0 { journal.places[n] } else { places[n] });
         Ok(Series { log, probes, monitors, places, log_every, ambient })
     }
 
@@ -242,12 +245,11 @@ fn probe_cells<const D: usize>(file: &CaseFile, setup: &Setup<D>, progress: &mut
 /// The cells of the probes, solid or not.
 fn probe_places(file: &CaseFile, edges: &Edges) -> Result<Vec<usize>> {
     let probes = &file.case.output.probes;
-    let mut cells = Vec::with_capacity(probes.len());
+    let (mut cells, mut names) = (Vec::with_capacity(probes.len()), HashSet::new());
     for (n, probe) in probes.iter().enumerate() {
         let key = format!("output.probes[{n}]");
         let name = probe.name(n);
-        let others: Vec<String> = probes[..n].iter().enumerate().map(|(m, other)| other.name(m)).collect();
-        file.column_name(&format!("{key}.name"), &name, others.iter().map(|other| &other[..]))?;
+        file.column_name(&format!("{key}.name"), &name, &mut names)?;
         let at = point(edges, &probe.at)
             .map_err(|(at, why)| file.wrong(&format!("{key}.at{at}"), format!("\"{name}\": {why}")))?;
         cells.extend(cell_at(edges, at).map(|at| position(at, edges.cells())));

@@ -141,7 +141,13 @@ pub fn setup<const D: usize>(
         report.step_share = step_share(&mut flow);
     }
     let (edges, cfl) = (edges.clone(), case.scheme.cfl.unwrap_or(USUAL_CFL));
-    inlets.iter_mut().for_each(|inlet| inlet.look_at(&flow));
+    for inlet in &mut inlets {
+        // A patch without an open face is told with the other patches.
+        if !inlet.look_at(&mut flow) && inlet.patch.is_none() {
+            let key = format!("boundary.{}", side_word(live[inlet.at.0], inlet.at.1));
+            progress.warn(file.remark(&key, "solids or patches cover all of this inlet: nothing enters"));
+        }
+    }
     let pushed = pushed_cells(&flow);
     let solids =
         (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed, !space::given_otherwise(file)));
@@ -269,22 +275,26 @@ const CAREFUL_STEPS: usize = 5;
 /// Share of the stable step of a case that does not say.
 const USUAL_CFL: f64 = 0.8;
 
-/// Tells of upright sides with one pressure at all heights, through which an atmosphere under gravity flows.
+/// Tells of upright sides and patches with one pressure at all heights, through which an atmosphere under gravity flows.
 fn warn_of_level_pressures<const D: usize>(
     file: &CaseFile,
     flow: &Flow<f64, D>,
     live: [usize; D],
     progress: &mut Progress,
 ) {
+    let mut tell = |stands: &Boundary<f64, D>, key: String| {
+        if let Boundary::Outlet { .. } | Boundary::Reservoir { .. } | Boundary::FarField(_) = stands {
+            let reason = "has one pressure at all heights: under gravity an atmosphere at rest flows in and out there; \
+                          with \"wall\" or \"zero-gradient\" it stays at rest";
+            progress.warn(file.remark(&key, reason));
+        }
+    };
     for d in (0..D).filter(|&d| (0..D).any(|e| e != d && flow.gravity[e] != 0.0)) {
         for side in 0..2 {
-            if let Boundary::Outlet { .. } | Boundary::Reservoir { .. } | Boundary::FarField(_) =
-                flow.boundaries[d][side]
-            {
-                let reason = "has one pressure at all heights: under gravity an atmosphere at rest flows in and out there; \
-                              with \"wall\" or \"zero-gradient\" it stays at rest";
-                progress.warn(file.remark(&format!("boundary.{}", side_word(live[d], side)), reason));
-            }
+            tell(&flow.boundaries[d][side], format!("boundary.{}", side_word(live[d], side)));
+        }
+        for (n, patch) in flow.patches.iter().enumerate().filter(|(_, patch)| patch.axis == d) {
+            tell(&patch.boundary, format!("boundary.patch[{n}]"));
         }
     }
 }

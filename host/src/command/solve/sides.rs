@@ -1,6 +1,5 @@
 //! The sides of the domain, and patches on them: from the keys of a case to what stands there.
 
-use super::arrays;
 use super::case::{Kind, SideName, StateKeys, side_word};
 use super::case_file::CaseFile;
 use super::inlet::Inlet;
@@ -68,7 +67,7 @@ pub fn sides<const D: usize>(
         for side in 0..2 {
             let key = format!("boundary.{}", side_word(axis, side));
             let Some(d) = states.live.iter().position(|&a| a == axis) else {
-                no_flow_through(file, &key, given[axis][side])?;
+                given[axis][side].map_or(Ok(()), |keys| no_flow_through(file, key, keys))?;
                 continue;
             };
             let keys = given[axis][side].ok_or_else(|| file.wrong(&key, "is missing"))?;
@@ -133,7 +132,7 @@ fn boundary<const D: usize>(
 ) -> Result<Boundary<f64, D>> {
     let (file, Place { key, keys, at: (d, side), patch }) = (states.file, place);
     let kind = keys.kind.ok_or_else(|| file.wrong(key, "needs a type"))?;
-    only_its_keys(file, place, kind)?;
+    only_its_keys(file, (key, keys), kind, if patch.is_some() { &["side", "min", "max"] } else { &[] })?;
     Ok(match kind {
         Kind::Wall => Boundary::Wall,
         Kind::ZeroGradient => Boundary::ZeroGradient,
@@ -149,8 +148,8 @@ fn boundary<const D: usize>(
             Boundary::Reservoir { density, pressure }
         }
         Kind::Inlet => {
-            let first = first_pressure(states, edges, cells, *d, *side);
-            let (mut inlet, state) = Inlet::new(states, key, keys, (*d, *side), first, edges)?;
+            let some = cells.first().map_or(f64::NAN, |w| w.pressure);
+            let (mut inlet, state) = Inlet::new(states, key, keys, (*d, *side), some, edges)?;
             inlet.patch = *patch;
             inlets.push(inlet);
             Boundary::Inlet(state)
@@ -158,34 +157,17 @@ fn boundary<const D: usize>(
     })
 }
 
-/// Mean pressure of the cells along a side at the beginning: what an inlet starts from unless told.
-fn first_pressure<const D: usize>(
-    states: &States<'_, D>,
-    edges: &Edges,
-    cells: &[Primitive<f64, D>],
-    d: usize,
-    side: usize,
-) -> f64 {
-    let shape = edges.cells();
-    let axis = states.live[d];
-    let at = side * (shape[axis] - 1);
-    let of_side = cells.iter().enumerate().filter(|(c, _)| arrays::index(*c, shape)[axis] == at);
-    let (sum, count) = of_side.fold((0.0, 0.0), |(s, n), (_, w)| (s + w.pressure, n + 1.0));
-    sum / count
-}
-
 /// An axis of one cell is no part of the flow, so nothing may come through its sides.
-fn no_flow_through(file: &CaseFile, key: &str, keys: Option<&StateKeys>) -> Result<()> {
-    match keys.and_then(|k| k.kind) {
-        Some(Kind::Inlet | Kind::FarField | Kind::Outlet | Kind::Reservoir) => {
-            Err(file.wrong(key, "the axis has one cell: only wall, zero-gradient or periodic make sense there"))
-        }
-        _ => Ok(()),
+fn no_flow_through(file: &CaseFile, key: String, keys: &StateKeys) -> Result<()> {
+    let kind = keys.kind.ok_or_else(|| file.wrong(&key, "needs a type"))?;
+    if let Kind::Inlet | Kind::FarField | Kind::Outlet | Kind::Reservoir = kind {
+        return Err(file.wrong(&key, "the axis has one cell: only wall, zero-gradient or periodic make sense there"));
     }
+    only_its_keys(file, (&key, keys), kind, &[])
 }
 
 /// Keys that a type of boundary has no use for are errors.
-fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
+fn only_its_keys(file: &CaseFile, (key, keys): (&str, &StateKeys), kind: Kind, of_place: &[&str]) -> Result<()> {
     let of_kind: &[&str] = match kind {
         Kind::Inlet => &["rho", "T", "u", "v", "w", "p", "gamma", "relax"],
         Kind::FarField => &STATE,
@@ -193,11 +175,10 @@ fn only_its_keys(file: &CaseFile, place: &Place<'_>, kind: Kind) -> Result<()> {
         Kind::Reservoir => &["rho", "T", "p"],
         Kind::Wall | Kind::ZeroGradient | Kind::Periodic => &[],
     };
-    let of_patch: &[&str] = if place.patch.is_some() { &["side", "min", "max"] } else { &[] };
-    match place.keys.given().into_iter().find(|k| !of_kind.contains(k) && !of_patch.contains(k)) {
+    match keys.given().into_iter().find(|k| !of_kind.contains(k) && !of_place.contains(k)) {
         Some(other) => {
             let reason = format!("is not a key of this type ({})", kind.word());
-            Err(file.wrong(&format!("{}.{other}", place.key), reason))
+            Err(file.wrong(&format!("{key}.{other}"), reason))
         }
         None => Ok(()),
     }

@@ -162,7 +162,11 @@ fn from_scene<const D: usize>(
     let (left_out, with_surface) = (file.case.grid.left_out(), Options { resistance: true, ..options });
     let mut result = stages::measure(&bodies, edges, left_out, with_surface, progress)?;
     let (wanted, faces) = (wanted_solids(file, &bodies)?, keys.faces.unwrap_or(Faces::Throat));
-    let solids = match wanted.is_empty() {
+    if wanted.is_empty() && !file.case.output.forces.is_empty() {
+        let reason = "no solid of the scene has a name: the force on all of them is told as that on others";
+        progress.warn(file.remark("output.forces", reason));
+    }
+    let solids = match file.case.output.forces.is_empty() {
         true => Vec::new(),
         false => progress.stage("solids", |_| solids::measure(&bodies, &wanted, edges, live, (options, faces)))?,
     };
@@ -209,6 +213,7 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
     for (n, name) in file.case.output.forces.iter().enumerate() {
         let more: Vec<&str> = match &name[..] {
             "*" => all.iter().map(|[_, solid]| *solid).filter(|name| !name.is_empty()).collect(),
+            "" => return Err(file.wrong(&format!("output.forces[{n}]"), "is an empty text in place of a name")),
             name if known(name) => vec![name],
             name => {
                 let names: Vec<&str> = all.iter().flatten().copied().filter(|name| !name.is_empty()).collect();

@@ -36,15 +36,15 @@ impl Table {
     pub fn resume(path: &Path, head: &str, of: &str, bytes: u64) -> Result<Self> {
         let failed = |e: std::io::Error| Error::io(path, "go on with", &e);
         let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
+        if length < bytes {
+            return Err(Error::file(path, format!("has {length} bytes; the checkpoint needs its first {bytes}")));
+        }
         let mut start = vec![0; head.len() + 1];
         if file.read_exact(&mut start).is_err() || start != [head.as_bytes(), b"\n"].concat() {
             let reason =
                 format!("has other columns than {of} asks for now: leave that as it was, or run without --resume");
             return Err(Error::file(path, reason));
-        }
-        let length = file.metadata().map_err(failed)?.len();
-        if length < bytes {
-            return Err(Error::file(path, format!("has {length} bytes; the checkpoint needs its first {bytes}")));
         }
         file.set_len(bytes).map_err(failed)?;
         file.seek(SeekFrom::Start(bytes)).map_err(failed)?;
