@@ -346,3 +346,30 @@ fn ways_between_bars_stay() {
         assert_eq!(found.faces[1], found.faces[2], "{gap}");
     }
 }
+
+/// A room as one body, its inside a cavity: where a side of a wall lies in a plane of the grid, the cells beside the wall that divides one are cut by one
+/// patch of its outside, and what of them is open counts for what is closed. As tight as six walls, with the same faces where these are aligned.
+#[test]
+fn rooms_of_one_surface() {
+    let mut random = Random::new(33);
+    for n in 0..60 {
+        let spacing = [0.2, 0.25, 0.5][n % 3];
+        let round = |x: f64| (x * 20.0).round() / 20.0;
+        let point = |random: &mut Random, lo: f64, hi: f64| random.point(DVec3::splat(lo), DVec3::splat(hi));
+        let (low, high) = (point(&mut random, 0.6, 1.4), point(&mut random, 3.4, 4.4));
+        let [low, high] = [low, high].map(|p| DVec3::new(round(p.x), round(p.y), round(p.z)));
+        let thickness = [0.05, 0.1, 0.2][random.below(3)];
+        let count = (5.0 / spacing) as usize;
+        let edges = Edges([(); 3].map(|()| (0..=count).map(|n| n as f64 * spacing).collect()));
+        let grid = edges.grid(None).expect("a grid");
+        let inside = cuboid(low + thickness, high - thickness).into_iter().map(|[a, b, c]| [a, c, b]);
+        let found = told(&edges, &scene(&[cuboid(low, high).into_iter().chain(inside).collect::<Vec<Triangle>>()]));
+        let middle = (low + high) / 2.0;
+        let from = [0, 1, 2].map(|axis| (middle[axis] / spacing) as usize);
+        let name = format!("{n}: {low} {high} {thickness} thick, cells of {spacing}");
+        assert!(!reached(&grid, &found.faces[2], from, 0.05)[0], "{name}: {:?}", found.closed);
+        let half = (high - low) / 2.0 - thickness;
+        let walls = told(&edges, &room(middle, half, thickness, DMat3::IDENTITY, false));
+        assert_eq!(found.closed.faces, walls.closed.faces, "{name}");
+    }
+}

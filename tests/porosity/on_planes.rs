@@ -286,3 +286,70 @@ fn thin_cells_have_the_mean_of_their_sections() {
         found.fields[0]
     );
 }
+
+/// Pipes and cones whose axis misses one of the grid by an ulp of its coordinates: flat ends in planes of the grid block them whole.
+#[test]
+fn ends_of_axes_that_are_off_by_an_ulp() {
+    let edges: Edges = [vec![-1.0, 0.0, 1.0, 2.0], vec![-1.0, 20.0], vec![-1.0, 20.0]];
+    for place in [0.0_f64, 0.37, 7.3, 0.1] {
+        let beside = if place == 0.0 { 6.123_233_995_736_766e-17 } else { f64::from_bits(place.to_bits() + 1) };
+        for (from, to) in [(place, beside), (beside, place)] {
+            let ends = [DVec3::new(0.0, from, 0.21), DVec3::new(1.0, to, 0.21)];
+            let disc = std::f64::consts::PI * 0.09;
+            let solids = [
+                QuadricSolid::cylinder(ends[0], ends[1], 0.3),
+                QuadricSolid::cylinder(ends[1], ends[0], 0.3),
+                QuadricSolid::truncated_cone(ends[0], ends[1], [0.3, 0.29]),
+            ];
+            for (solid, last) in solids.into_iter().zip([0.09, 0.09, 0.0841]) {
+                let found = shares(&solid.expect("a solid"), &grid(&edges));
+                let faces: Vec<f64> = found.fields[1].iter().map(|share| share * 441.0).collect();
+                let expected = [0.0, disc, std::f64::consts::PI * last, 0.0];
+                let near = faces.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-11);
+                assert!(near, "{place} {from} {to}: {faces:?}");
+            }
+        }
+    }
+}
+
+/// Shares of thin boxes, and of those small beside the solid, are within what they say to be off by.
+#[test]
+fn shares_of_thin_boxes_are_within_their_bounds() {
+    use voidage_core::solids::enclosure::{BoxAround, Enclosed};
+    let random = &mut Random::new(2311);
+    for n in 0..cases(4000) {
+        let radius = if random.below(2) == 0 { random.between(10.0, 1000.0) } else { random.between(0.3, 3.0) };
+        let out = DVec3::from_array(random.on_sphere());
+        let along = out.any_orthonormal_vector();
+        let low = DVec3::from_array([0, 1, 2].map(|_| random.between(-0.5, 0.0)));
+        let width = |random: &mut Random| match random.below(5) {
+            0 => 10_f64.powf(random.between(-4.0, -1.0)),
+            _ => random.between(0.1, 1.0),
+        };
+        let high = low + DVec3::from_array([0, 1, 2].map(|_| width(random)));
+        let center = out * (random.between(-0.3, 0.3) - radius);
+        let solid = match n % 4 {
+            0 => QuadricSolid::ball(center, radius),
+            1 => QuadricSolid::cylinder(center - along * 3.0, center + along * 3.0, radius),
+            2 => QuadricSolid::capsule(center, center + along, radius),
+            _ => {
+                let [a, b] = [0, 1].map(|_| radius * random.between(0.5, 2.0));
+                QuadricSolid::ellipsoid(center, [out * radius, along * a, out.cross(along) * b])
+            }
+        };
+        let solid = solid.expect("a solid");
+        let share = |low: DVec3, high: DVec3| solid.share(&BoxAround::new([0, 1, 2].map(|k| [low[k], high[k]])));
+        let whole = share(low, high);
+        let cut = DVec3::from_array([0, 1, 2].map(|k| random.between(low[k], high[k])));
+        let (mut least, mut most) = (0.0, 0.0);
+        for part in 0..8 {
+            let above = [0, 1, 2].map(|k| part >> k & 1 == 1);
+            let pick = |k: usize, a: DVec3, b: DVec3| if above[k] { a[k] } else { b[k] };
+            let from = DVec3::from_array([0, 1, 2].map(|k| pick(k, cut, low)));
+            let to = DVec3::from_array([0, 1, 2].map(|k| pick(k, high, cut)));
+            let (weight, found) = (((to - from) / (high - low)).element_product(), share(from, to));
+            (least, most) = (least + found.lower * weight, most + found.upper * weight);
+        }
+        assert!(least <= whole.upper && whole.lower <= most, "{solid:?} {low} {high} {cut}: {whole:?} {least} {most}");
+    }
+}

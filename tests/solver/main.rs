@@ -2,6 +2,7 @@
 
 mod askew;
 mod balance;
+mod barotropic;
 mod blast;
 mod choking;
 mod clusters;

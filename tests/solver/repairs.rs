@@ -142,3 +142,18 @@ fn stable_steps_through_rough_gas_need_no_floor_and_keep_mass_and_energy() {
         println!("porous {porous}: {repeated} repeated steps");
     }
 }
+
+/// After floors the reported rate is that of the states that are there.
+#[test]
+fn floors_leave_their_own_rate() {
+    let states = [(1.0, 2.0, 0.1), (1.0, 2.0, 1.0), (0.1, 2.0, 0.001), (0.01, -2.0, 0.01)];
+    let mut flow: Flow<f64, 1> = Flow::uniform([4], [0.25], Gas::Ideal { gamma: 1.4 }, [[Boundary::Wall; 2]]);
+    for (cell, (density, u, pressure)) in states.into_iter().enumerate() {
+        flow.set(cell, &Primitive { density, velocity: [u], pressure });
+    }
+    let report = flow.step(0.47122).unwrap();
+    assert!(report.floored > 0);
+    flow.touched();
+    let rate = flow.rate().unwrap();
+    assert!((report.rate / rate - 1.0).abs() < 1e-12, "{} and {rate}", report.rate);
+}

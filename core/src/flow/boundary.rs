@@ -81,7 +81,9 @@ impl<R: Real, const D: usize> Boundary<R, D> {
                 [w.density, if gas.has_energy() { w.pressure } else { w.density }]
             }
             Boundary::Outlet { pressure } => [*pressure; 2],
-            Boundary::Reservoir { density, pressure } => [*density, *pressure],
+            Boundary::Reservoir { density, pressure } => {
+                [*density, if gas.has_energy() { *pressure } else { *density }]
+            }
         };
         density > R::ZERO && pressure > R::ZERO && density.is_finite() && pressure.is_finite()
     }
@@ -151,7 +153,8 @@ impl<R: Real, const D: usize> Boundary<R, D> {
         match self {
             Boundary::Periodic | Boundary::ZeroGradient => *inner,
             Boundary::FarField(outer) | Boundary::Inlet(outer) => {
-                Primitive { velocity: rotate(outer.velocity, d), ..*outer }
+                let pressure = stated(outer.density, outer.pressure, gas);
+                Primitive { velocity: rotate(outer.velocity, d), pressure, ..*outer }
             }
             Boundary::Wall => {
                 let mut w = *inner;
@@ -159,7 +162,9 @@ impl<R: Real, const D: usize> Boundary<R, D> {
                 w
             }
             Boundary::Outlet { pressure } => outward(&|w| outlet(w, *pressure, gas)),
-            Boundary::Reservoir { density, pressure } => outward(&|w| reservoir(w, *density, *pressure, gas)),
+            Boundary::Reservoir { density, pressure } => {
+                outward(&|w| reservoir(w, *density, stated(*density, *pressure, gas), gas))
+            }
         }
     }
 
@@ -173,14 +178,21 @@ impl<R: Real, const D: usize> Boundary<R, D> {
     /// An inlet whose pressure has followed the flow for one step, so that the velocity just inside tends to the wanted one.
     ///
     /// `velocity` is the mean normal velocity inside, out of the domain negative (that is, counted in the direction of the
-    /// wanted velocity); `share` = dt over the time in which the difference should vanish. Other sides come back unchanged.
+    /// wanted velocity); `share` = dt over the time in which the difference should vanish. At least a tenth of the pressure is left. Other sides come back
+    /// unchanged.
     pub fn relaxed(self, d: usize, velocity: R, sound_speed: R, share: R) -> Self {
         let Boundary::Inlet(mut w) = self else { return self };
         let impedance = w.density * sound_speed;
         let wanted = w.velocity.get(d).map_or(velocity, |v| v.abs());
-        w.pressure += share * impedance * (wanted - velocity);
+        let least = R::from_f64(0.1) * w.pressure;
+        w.pressure = R::larger(w.pressure + share * impedance * (wanted - velocity), least);
         Boundary::Inlet(w)
     }
+}
+
+/// The pressure of gas outside: of a gas without energy that of its density, whatever is given.
+fn stated<R: Real>(density: R, pressure: R, gas: Gas<R>) -> R {
+    if gas.has_energy() { pressure } else { gas.pressure(density, R::ZERO) }
 }
 
 /// The state that a simple wave from outside makes of `w` when it brings the pressure to `pressure`.
@@ -195,7 +207,7 @@ fn outlet<R: Real, const D: usize>(w: Primitive<R, D>, pressure: R, gas: Gas<R>)
     let mut velocity = w.velocity;
     velocity[0] = match gas {
         Gas::Isothermal { .. } => v + c * (w.density / density).ln(),
-        _ => v + R::TWO / (gamma - R::ONE) * (c - (gamma * pressure / density).sqrt()),
+        _ => v - rise_of_sound(pressure / w.pressure, c, gamma),
     };
     Primitive { density, velocity, pressure }
 }
@@ -290,5 +302,11 @@ fn rise_of_velocity<R: Real, const D: usize>(w: &Primitive<R, D>, pressure: R, g
         return [step * root, root * (R::ONE - R::HALF * step / sum)];
     }
     let share = (pressure / w.pressure).pow(R::HALF * m / gamma);
-    [R::TWO * c / m * (share - R::ONE), c * share / (gamma * pressure)]
+    [rise_of_sound(pressure / w.pressure, c, gamma), c * share / (gamma * pressure)]
+}
+
+/// 2/(γ − 1) times the rise of the speed of sound from `c` when a simple wave changes the pressure by a factor: to the last digits, however near γ is to 1.
+fn rise_of_sound<R: Real>(factor: R, c: R, gamma: R) -> R {
+    let m = gamma - R::ONE;
+    R::TWO * c / m * (R::HALF * m / gamma * factor.ln()).exp_m1()
 }

@@ -60,15 +60,12 @@ impl<R: Real, const D: usize> DragCell<R, D> {
         let mut stiffness = [R::ZERO; D];
         for c in 0..D {
             let a = self.linear[c];
-            let (decay, phi) = if a > R::ZERO {
-                let loss = -(-(a * dt)).exp_m1();
-                ((-(a * dt)).exp(), loss / a)
-            } else {
-                (R::ONE, dt)
-            };
+            // What is lost in a step as a share; none of no drag, and of one too small to tell.
+            let loss = -(-(a * dt)).exp_m1();
+            let (is_lost, push) = (loss > R::ZERO, pushed[c] - u[c]);
             // φ/dt of the push; decay alone where nothing pushes.
-            let push = pushed[c] - u[c];
-            free[c] = if a > R::ZERO { decay * u[c] + push * (phi / dt) } else { pushed[c] };
+            let phi = if is_lost { loss / a } else { dt };
+            free[c] = if is_lost { (-(a * dt)).exp() * u[c] + push * (phi / dt) } else { pushed[c] };
             stiffness[c] = self.half_quadratic[c] * phi;
         }
         let speed = |s: R| {

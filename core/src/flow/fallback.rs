@@ -132,6 +132,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
     ) -> Result<(), Error> {
         self.check_fields(old)?;
         self.fits(&new.as_fields(), self.mesh.len())?;
+        let mut any = false;
         for cell in 0..self.mesh.len() {
             if self.holds(&new.as_fields(), cell) {
                 continue;
@@ -157,7 +158,11 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
             });
             report.floored += 1;
             report.floored_cell = Some(cell);
-            report.rate = R::larger(self.cell_rate(&new.as_fields(), cell), report.rate);
+            any = true;
+        }
+        if any {
+            // The rate so far is that of the states before them, too. Where a floor made no state of the gas, it stays.
+            report.rate = self.rate(&new.as_fields()).unwrap_or(report.rate);
         }
         report.unphysical = 0;
         Ok(())

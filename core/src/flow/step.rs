@@ -169,7 +169,7 @@ impl<R: Real, const D: usize> Problem<'_, R, D> {
         self.check_fields(old)?;
         self.fits(&new.as_fields(), self.mesh.len())?;
         let Some(p) = &self.porosity else { return Ok(()) };
-        cluster_averages::apply(self.clusters, &self.mesh, p.volume, old, new);
+        cluster_averages::apply(self.clusters, &self.mesh, p.volume, self.gas, old, new);
         if self.gas.is_mixed() {
             cluster_averages::apply_capacities(self.clusters, &self.mesh, p.volume, self.gas, new);
         }

@@ -42,7 +42,7 @@ pub struct ShadowMemory<'a, R: Real> {
 /// The shadows of the solids in the cells of a layer along x, y and z, `ny*nx` each, x fastest.
 #[derive(Debug)]
 pub struct ShadowSlices<'a, R> {
-    /// Which share of the lines along the axis through the cell meets solid, in the cell or on a blocked side of it. Zeros before, or
+    /// Which share of the lines along the axis through the cell meets solid in it, or what the more blocked of its two sides shows, if that is more. Zeros before, or
     /// what an earlier call has written for the same layer.
     pub share: [&'a mut [R]; 3],
     /// Where, in widths of the cell from its middle, −½ to ½: the mean place of the surface inside, each part counted by its area as seen along the

@@ -92,18 +92,27 @@ impl Division {
 
     /// The parts of all cells that may let gas pass but for some that are told already, and of those beside them; and which of the former let it pass.
     fn leaking(&self, grid: &Grid<f64>, beta: &FieldSet, is_told: impl Fn(usize) -> bool) -> (CellParts, Vec<usize>) {
-        let (told, first): (Vec<usize>, Vec<usize>) = self.first.iter().partition(|n| is_told(**n));
+        let [first, beside] = [&self.first, &self.beside].map(|cells| cells.iter().copied());
+        let may_be_divided = |n: &usize| !self.near.is_whole(*n);
+        let (told, first): (Vec<usize>, Vec<usize>) = first.filter(may_be_divided).partition(|n| is_told(*n));
+        let others: Vec<usize> = beside.filter(may_be_divided).collect();
         let mut parts = CellParts::none(grid);
         let mut candidates = self.add(grid, &mut parts, &first);
         let near = |parts: &CellParts, cells: &[usize]| {
             let is_beside = |n: &usize| around(grid, *n).into_iter().flatten().any(|cell| parts.is_divided(cell));
             cells.iter().copied().filter(is_beside).collect::<Vec<usize>>()
         };
-        let (told, beside) = (near(&parts, &told), near(&parts, &self.beside));
+        let (told, beside) = (near(&parts, &told), near(&parts, &others));
         // Of those that are told only the parts count.
         self.add(grid, &mut parts, &told);
         candidates.extend(self.add(grid, &mut parts, &beside));
         candidates.sort_unstable();
+        // What one patch cuts is not divided, but where it is open counts for what divides the cells beside it.
+        let whole = |cells: &[usize]| cells.iter().copied().filter(|n| self.near.is_whole(*n)).collect::<Vec<usize>>();
+        for cells in [whole(&self.first), whole(&self.beside)] {
+            let cells = near(&parts, &cells);
+            self.add(grid, &mut parts, &cells);
+        }
         let leaking = candidates.into_par_iter().filter(|&n| parts.lets_pass(grid, beta, n)).collect();
         (parts, leaking)
     }

@@ -53,18 +53,24 @@ impl<'a> ToPlanes<'a> {
     /// A solid by formula, its flat ends in the planes that they miss by rounding.
     #[must_use]
     pub fn form(&self, form: &Form) -> Form {
-        let moved = |p: DVec3| self.corner(p, None);
         match form {
             Form::Cylinder(s) => {
-                let [from, to] = s.ends().map(moved);
+                let [from, to] = self.ends(s.ends());
                 Form::Cylinder(Cylinder::new(from, to, s.base_radius()))
             }
             Form::Cone(s) => {
-                let [from, to] = s.ends().map(moved);
+                let [from, to] = self.ends(s.ends());
                 Form::Cone(Cone::truncated(from, to, s.base_radius(), s.top_radius()))
             }
             other => other.clone(),
         }
+    }
+
+    /// The ends of an axis, which is along one of the grid if it misses that by rounding: its flat ends lie in planes then.
+    fn ends(&self, ends: [DVec3; 2]) -> [DVec3; 2] {
+        let [from, to] = ends.map(|p| self.corner(p, None));
+        let is_off = (to - from).abs().cmpgt(self.near);
+        if is_off.bitmask().count_ones() == 1 { [from, DVec3::select(is_off, to, from)] } else { [from, to] }
     }
 
     /// A corner, its coordinates replaced by those of the planes that it misses by rounding.

@@ -188,9 +188,8 @@ pub fn boundary<R: Real, const D: usize>(
             Boundary::Outlet { pressure: side.p }
         }
         6 => {
-            density()?;
-            pressure()?;
-            Boundary::Reservoir { density: side.rho, pressure: side.p }
+            let rest = state()?;
+            Boundary::Reservoir { density: rest.density, pressure: rest.pressure }
         }
         _ => return Err(Status::Kind.of(c"side.kind")),
     };

@@ -9,8 +9,9 @@ use crate::flow::kernel::rows::{self, Faces, FluxBlock, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::shocks::{Pressures, fluxes_along_shocks};
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
-use crate::flow::kernel::walls_and_jumps::{changes_apart, fluxes_at_breaks};
-use crate::flow::porosity::flags::{break_high, break_low, marked};
+use crate::flow::kernel::walls_and_jumps::{apart, changes_apart, fluxes_at_breaks};
+use crate::flow::porosity::flags::{break_high, break_low, is, marked};
+use crate::flow::porosity::fractions::Medium;
 use crate::flow::problem::PressureForm;
 use crate::flow::state::{Conserved, Primitive, rotate_back};
 use crate::flow::step_report::Report;
@@ -96,8 +97,8 @@ fn changes_x<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
 ) {
     let (n, m) = (slab.size.n, slab.size.m);
     let flux = &*work.flux;
-    count_inflow::<R, D, ENERGY>(slab, (0, 0), row, (flux, work.right), 0..1, report);
-    count_inflow::<R, D, ENERGY>(slab, (0, 1), row, (flux, work.left), n..m, report);
+    count_inflow::<R, D, ENERGY, MIXED>(slab, (0, 0), row, (flux, work.right), 0..1, report);
+    count_inflow::<R, D, ENERGY, MIXED>(slab, (0, 1), row, (flux, work.left), n..m, report);
     if slab.walls.is_some() {
         tell_walls(slab, (0, row.at), [work.left, work.right], flux, [true; 2]);
     }
@@ -430,7 +431,7 @@ fn fluxes_under<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
             of_row[d] = inside;
             let row = RowAt { start: mesh.index(of_row), at: of_row };
             let wall = if side == 0 { &work.right[..f] } else { &*below_state };
-            count_inflow::<R, D, ENERGY>(slab, (d, side), row, (&work.flux[..f], wall), 0..n, report);
+            count_inflow::<R, D, ENERGY, MIXED>(slab, (d, side), row, (&work.flux[..f], wall), 0..n, report);
         }
     }
     if slab.walls.is_some() {
@@ -490,7 +491,7 @@ pub(in crate::flow) fn keep_for_layer_above<R: Real, const D: usize, const MIXED
 
 /// Adds what enters through some boundary faces of a flux block, beside cells of `row` on a side (axis, 0 low or 1 high) of the domain;
 /// `wall` is the block of face states inside, whose reference pressure the flux is counted from.
-fn count_inflow<R: Real, const D: usize, const ENERGY: bool>(
+fn count_inflow<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     (d, side): (usize, usize),
     row: RowAt<D>,
@@ -526,8 +527,12 @@ fn count_inflow<R: Real, const D: usize, const ENERGY: bool>(
         total.density += through(0);
         let mut momentum = [R::ZERO; D];
         momentum[0] = weight * (flux[normal * m + face] + open * wall[(D + 2) * m + face]);
+        // What the cell above a broken face gains along it is not what the cell below loses.
+        let cell = row.start + if d == 0 { 0 } else { face };
+        let breaks = |medium: &Medium<'_, R, D>| is(medium.porosity.marks[cell], break_low(d));
+        let is_apart = side == 0 && slab.medium.as_ref().is_some_and(breaks);
         for c in 1..D {
-            momentum[c] = through(1 + c);
+            momentum[c] = through(if is_apart { apart(c, D, MIXED) } else { 1 + c });
         }
         let momentum = rotate_back(momentum, d);
         for c in 0..D {

@@ -3,7 +3,7 @@
 use crate::flow::kernel::contractions::{Contractions, contractions_at};
 use crate::flow::kernel::inclined_walls::slip_along_walls;
 use crate::flow::kernel::mixed;
-use crate::flow::kernel::row_slopes::{self, Differences, RowBeside};
+use crate::flow::kernel::row_slopes::{self, Differences, HalfWeights, RowBeside};
 use crate::flow::kernel::rows::{self, Rate, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::shocks::Pressures;
@@ -101,7 +101,8 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: 
             let place = if d == 0 { None } else { Some(row.at[d]) };
             let copied = slab.problem.boundaries[d].map(|b| b.copies_inside());
             let half_gravity = R::HALF * gravity;
-            let axis = Uneven { widths, place, half_gravity, periodic: slab.periodic[d], copied };
+            let (is_even, periodic) = (slab.even[d], slab.periodic[d]);
+            let axis = Uneven { widths, is_even, place, half_gravity, periodic, copied };
             slopes_along::<R, D, S, MIXED, BY_WAVES>(slab, (d, row), cells, &axis, of_row, out);
         }
     }
@@ -310,7 +311,7 @@ impl<R: Real> Differences<R> for Even {
     }
 
     #[inline(always)]
-    fn half_weight(&self, _: usize) -> Option<(R, R)> {
+    fn half_weight(&self, _: usize) -> Option<HalfWeights<R>> {
         None
     }
 }
@@ -319,6 +320,7 @@ impl<R: Real> Differences<R> for Even {
 /// periodic end the cell of the other end.
 struct Uneven<'w, R> {
     widths: &'w [R],
+    is_even: bool,
     /// Index of the row along the axis; `None` if the axis is that of the row.
     place: Option<usize>,
     half_gravity: R,
@@ -328,37 +330,37 @@ struct Uneven<'w, R> {
 }
 
 impl<R: Real> Uneven<'_, R> {
-    /// Width of cell `i`, and the distances of its centre to those below and above.
+    /// Widths of the cells below `i`, here and above.
     #[inline(always)]
-    fn spacing(&self, i: usize) -> (R, R, R) {
+    fn three(&self, i: usize) -> [R; 3] {
         let i = self.place.unwrap_or(i);
         let own = self.widths[i];
         let last = self.widths.len() - 1;
         let beyond = |across: usize| if self.periodic { self.widths[across] } else { own };
         let low = if i > 0 { self.widths[i - 1] } else { beyond(last) };
         let high = if i < last { self.widths[i + 1] } else { beyond(0) };
-        (own, R::HALF * (low + own), R::HALF * (own + high))
+        [low, own, high]
     }
 }
 
 impl<R: Real> Differences<R> for Uneven<'_, R> {
     #[inline(always)]
     fn is_even(&self) -> bool {
-        false
+        self.is_even
     }
 
     #[inline(always)]
     fn scale(&self, i: usize) -> (R, R) {
-        let (own, below, above) = self.spacing(i);
-        (own / below, own / above)
+        let [low, own, high] = self.three(i);
+        (own / (R::HALF * (low + own)), own / (R::HALF * (own + high)))
     }
 
     #[inline(always)]
-    fn half_weight(&self, i: usize) -> Option<(R, R)> {
-        let (_, below, above) = self.spacing(i);
+    fn half_weight(&self, i: usize) -> Option<HalfWeights<R>> {
+        let [low, own, high] = self.three(i).map(|width| self.half_gravity * width);
         let place = self.place.unwrap_or(i);
-        let low = if self.copied[0] && place == 0 { R::ZERO } else { self.half_gravity * below };
-        let high = if self.copied[1] && place + 1 == self.widths.len() { R::ZERO } else { self.half_gravity * above };
-        Some((low, high))
+        let (no_low, no_high) = (self.copied[0] && place == 0, self.copied[1] && place + 1 == self.widths.len());
+        let between = |is_copied: bool, both: [R; 2]| if is_copied { [R::ZERO; 2] } else { both };
+        Some([between(no_low, [low, own]), between(no_high, [own, high])])
     }
 }

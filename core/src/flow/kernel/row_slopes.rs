@@ -29,14 +29,17 @@ impl<'a, R> RowBeside<'a, R> {
     }
 }
 
+/// Half the weights of two cells of density 1, the lower one first: those below and here, those here and above.
+pub(crate) type HalfWeights<R> = [[R; 2]; 2];
+
 /// How differences along an axis become slopes.
 pub(crate) trait Differences<R> {
     /// Are all cells alike, so that a slope that is limited leaves no face beyond the neighbour's value?
     fn is_even(&self) -> bool;
     /// Own width over the distance of the centres, below and above.
     fn scale(&self, i: usize) -> (R, R);
-    /// Half the weight of a column of unit density between the centres, below and above; `None` without gravity along the axis.
-    fn half_weight(&self, i: usize) -> Option<(R, R)>;
+    /// What lies between the centres of the cells, below and above; `None` without gravity along the axis.
+    fn half_weight(&self, i: usize) -> Option<HalfWeights<R>>;
 }
 
 /// Differences of a variable to the cell below and to the cell above.
@@ -56,7 +59,10 @@ impl<R: Real> Steps<R> {
         let Steps(below, above) = Steps::of(p, i);
         match axis.half_weight(i) {
             None => Steps(below, above),
-            Some((low, high)) => Steps(below - (rho.0[i] + rho.1[i]) * low, above - (rho.1[i] + rho.2[i]) * high),
+            Some([low, high]) => Steps(
+                below - (rho.0[i] * low[0] + rho.1[i] * low[1]),
+                above - (rho.1[i] * high[0] + rho.2[i] * high[1]),
+            ),
         }
     }
 

@@ -7,7 +7,7 @@
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
-use crate::flow::kernel::row_slopes::{self, Differences, RowBeside, Three};
+use crate::flow::kernel::row_slopes::{self, Differences, HalfWeights, RowBeside, Three};
 use crate::flow::kernel::rows::{self, FluxBlock, var};
 use crate::flow::kernel::slab::{Place, RowAt, Slab, place_of, tightened};
 use crate::flow::limiter::{Slope, wall_slope};
@@ -32,7 +32,7 @@ const MOST: usize = 5;
 /// Differences along an axis for a single cell, without gravity towards its mirror images.
 pub(in crate::flow) struct Single<R> {
     scale: (R, R),
-    half_weight: Option<(R, R)>,
+    half_weight: Option<HalfWeights<R>>,
 }
 
 impl<R: Real> Differences<R> for Single<R> {
@@ -44,7 +44,7 @@ impl<R: Real> Differences<R> for Single<R> {
         self.scale
     }
 
-    fn half_weight(&self, _: usize) -> Option<(R, R)> {
+    fn half_weight(&self, _: usize) -> Option<HalfWeights<R>> {
         self.half_weight
     }
 }
@@ -188,7 +188,10 @@ fn slope_at_walls<R: Real, const D: usize>(
     let ((a, b), weights) = (slopes.axis.scale(i), slopes.axis.half_weight(i));
     let single = Single {
         scale: (image(walls[0], a, R::ONE), image(walls[1], b, R::ONE)),
-        half_weight: weights.map(|(a, b)| (image(walls[0], a, R::ZERO), image(walls[1], b, R::ZERO))),
+        half_weight: weights.map(|[low, high]| {
+            let free = [R::ZERO; 2];
+            [if walls[0] { free } else { low }, if walls[1] { free } else { high }]
+        }),
     };
     let mut slope = (slopes.limit)(&three, &single, slopes.compliance.map(|c| &c[i..=i]));
     slope[1 + d] = match walls {

@@ -57,20 +57,7 @@ pub(in crate::flow) fn average_unequal<R: Real, const D: usize>(
 ) {
     let weight = open_volumes(mesh, volume);
     for cells in clusters.groups() {
-        let Some(first) = cells.clone().next() else { continue };
-        let gas_of = |field: &FieldsMut<'_, R, D>, cell: usize| field.as_fields().gas_at(gas, cell);
-        let own = gas_of(field, first);
-        let w = own.primitive(&field.at(first));
-        let limit = R::from_f64(UNEQUAL);
-        let unequal = cells.clone().any(|cell| {
-            let (other_gas, c) = (gas_of(field, cell), own.sound_speed(&w));
-            let other = other_gas.primitive(&field.at(cell));
-            // Gases that differ at all share one: what they carry into each other would not add up.
-            other_gas != own
-                || !((other.pressure - w.pressure).abs() <= limit * w.pressure)
-                || (0..D).any(|d| !((other.velocity[d] - w.velocity[d]).abs() <= limit * c))
-        });
-        if !unequal {
+        if !are_unequal(cells.clone(), gas, &field.as_fields()) {
             continue;
         }
         let sum = |of: &dyn Fn(&Conserved<R, D>) -> R| weighted(cells.clone(), &weight, |cell| of(&field.at(cell)));
@@ -84,6 +71,34 @@ pub(in crate::flow) fn average_unequal<R: Real, const D: usize>(
             field.set(cell, &mean);
         }
     }
+}
+
+/// Do some cells differ by more than [`UNEQUAL`]? The same in any order of the cells: the ends of what they have are compared.
+fn are_unequal<R: Real, const D: usize>(
+    mut cells: impl Iterator<Item = usize>,
+    gas: Gas<R>,
+    field: &Fields<'_, R, D>,
+) -> bool {
+    let limit = R::from_f64(UNEQUAL);
+    let Some(first) = cells.next() else { return false };
+    let own = field.gas_at(gas, first);
+    let w = own.primitive(&field.at(first));
+    let mut sound = own.sound_speed(&w);
+    let (mut pressures, mut velocities) = ([w.pressure; 2], w.velocity.map(|u| [u; 2]));
+    let widen = |ends: &mut [R; 2], x: R| *ends = [R::smaller(x, ends[0]), R::larger(x, ends[1])];
+    for cell in cells {
+        let other = field.gas_at(gas, cell);
+        // Gases that differ at all share one: what they carry into each other would not add up.
+        if other != own {
+            return true;
+        }
+        let w = other.primitive(&field.at(cell));
+        widen(&mut pressures, w.pressure);
+        velocities.iter_mut().zip(w.velocity).for_each(|(ends, u)| widen(ends, u));
+        sound = R::smaller(other.sound_speed(&w), sound);
+    }
+    let apart = |[low, high]: [R; 2], most: R| !(high - low <= limit * most);
+    apart(pressures, pressures[1]) || velocities.iter().any(|&ends| apart(ends, sound))
 }
 
 /// Gives each cluster the mean capacity of its open volumes: where the pressure is one, the energy of all has that pressure still.
@@ -157,10 +172,16 @@ impl<R: Real, const D: usize> Totals<R, D> {
     }
 
     /// Whether anything changes by more than the share `still` of what there is.
-    fn moves(&self, still: R) -> bool {
+    fn moves(&self, still: R, gas: Gas<R>) -> bool {
         let (content, largest) = (&self.content, &self.largest);
-        // Momentum is measured against mass times a speed, sqrt(E/rho) or, for a barotropic gas, its own.
-        let momentum_scale = (content.density * content.energy).sqrt();
+        // Momentum is measured against mass times a speed: sqrt(E/rho) or, for a barotropic gas, that of sound.
+        let momentum_scale = if gas.has_energy() {
+            (content.density * content.energy).sqrt()
+        } else {
+            let density = content.density / self.volume;
+            let mean = Conserved { density, momentum: [R::ZERO; D], energy: R::ZERO };
+            content.density * gas.sound_speed(&gas.primitive(&mean))
+        };
         let momentum_moves = (0..D).any(|c| {
             let scale = R::larger(momentum_scale, content.momentum[c].abs());
             !(largest.momentum[c] <= still * scale)
@@ -174,6 +195,7 @@ pub(in crate::flow) fn apply<R: Real, const D: usize>(
     clusters: Clusters<'_>,
     mesh: &Mesh<'_, R, D>,
     volume: &[R],
+    gas: Gas<R>,
     old: &Fields<'_, R, D>,
     new: &mut FieldsMut<'_, R, D>,
 ) {
@@ -182,7 +204,7 @@ pub(in crate::flow) fn apply<R: Real, const D: usize>(
     let weight = open_volumes(mesh, volume);
     for cells in clusters.groups() {
         let totals = Totals::new(cells.clone(), &weight, old, new);
-        let (moves, inv) = (totals.moves(still), R::ONE / totals.volume);
+        let (moves, inv) = (totals.moves(still, gas), R::ONE / totals.volume);
         let Totals { content, change, .. } = totals;
         for cell in cells {
             let a = old.at(cell);

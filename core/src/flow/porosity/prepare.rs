@@ -267,7 +267,7 @@ impl<'a, R: Real, const D: usize> PreparedView<'a, R, D> {
         marks.filter(|&(cell, &m)| is(m, BORDER) && !(0..D).any(|d| open(cell, d))).count()
     }
 
-    /// Open faces where the porosity jumps and the throat map acts.
+    /// Open faces where the porosity jumps and the throat map acts; the two ends of a periodic axis are one face.
     pub fn jump_faces(&self) -> usize {
         let mut total = 0;
         for d in 0..D {
@@ -278,7 +278,8 @@ impl<'a, R: Real, const D: usize> PreparedView<'a, R, D> {
                 // A layer of cells has one face more along its own axis.
                 let low = cell + cell / (stride * self.cells[d]).max(1) * stride;
                 let jumps = |bit: u8, face: usize| marks & bit != 0 && faces.get(face).is_some_and(|f| *f > R::ZERO);
-                let high = place + 1 == self.cells[d] && jumps(break_high(d), low + stride);
+                let is_last = !self.periodic[d] && place + 1 == self.cells[d];
+                let high = is_last && jumps(break_high(d), low + stride);
                 total += usize::from(jumps(break_low(d), low)) + usize::from(high);
             }
         }

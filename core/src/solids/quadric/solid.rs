@@ -23,6 +23,22 @@ fn wide<V: Vector>(v: V) -> Option<[f64; 3]> {
     a.iter().all(|x| x.abs() < SIZES.end).then_some(a)
 }
 
+/// Two places that are nearer to each other along an axis than this, in ε of their distance from the origin along it, are at one place there.
+const ONE_PLACE: f64 = 4.0;
+
+/// The ends of a solid; where its axis is along one of the grid but for rounding, it is along that: then an end that should lie in a plane lies there.
+fn straight<V: Vector>(from: V, to: V) -> Option<[[f64; 3]; 2]> {
+    let (from, to) = (wide(from)?, wide(to)?);
+    let room = ONE_PLACE * V::Scalar::EPSILON.to_f64();
+    let is_off = |n: &Axis| (to[*n] - from[*n]).abs() > room * from[*n].abs().max(to[*n].abs());
+    let length = Axis::ALL.map(|n| (to[n] - from[n]).abs()).into_iter().fold(0.0, f64::max);
+    let mut off = Axis::ALL.into_iter().filter(|n| is_off(n) && (to[*n] - from[*n]).abs() > room * length);
+    let (Some(along), None) = (off.next(), off.next()) else { return Some([from, to]) };
+    let mut end = from;
+    end[along] = to[along];
+    Some([from, end])
+}
+
 /// Length and direction between two points; none if they are too close or too far.
 fn direction(from: [f64; 3], to: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let d = Axis::ALL.map(|n| to[n] - from[n]);
@@ -58,7 +74,8 @@ impl QuadricSolid {
     /// A cylinder between the centres of its flat ends; none if a length leaves 10⁻⁶⁰ to 10⁶⁰.
     #[must_use]
     pub fn cylinder<V: Vector>(from: V, to: V, radius: V::Scalar) -> Option<Self> {
-        Some(Self::of(&[tube(wide(from)?, wide(to)?, radius.to_f64())?]))
+        let [from, to] = straight(from, to)?;
+        Some(Self::of(&[tube(from, to, radius.to_f64())?]))
     }
 
     /// A capsule; none if a length leaves 10⁻⁶⁰ to 10⁶⁰. With both ends in one place it is a ball.
@@ -67,7 +84,7 @@ impl QuadricSolid {
         if from == to {
             return Self::ball(from, radius);
         }
-        let (from, to, radius) = (wide(from)?, wide(to)?, radius.to_f64());
+        let ([from, to], radius) = (straight(from, to)?, radius.to_f64());
         let tube = tube(from, to, radius)?;
         let half = |center: [f64; 3], sign: f64| {
             let inward = tube.curved.axis.map(|a| a * sign);
@@ -88,7 +105,7 @@ impl QuadricSolid {
     /// make a cylinder.
     #[must_use]
     pub fn truncated_cone<V: Vector>(from: V, to: V, radii: [V::Scalar; 2]) -> Option<Self> {
-        let (from, to, [one, other]) = (wide(from)?, wide(to)?, radii.map(Real::to_f64));
+        let ([from, to], [one, other]) = (straight(from, to)?, radii.map(Real::to_f64));
         if one == other {
             return Some(Self::of(&[tube(from, to, one)?]));
         }

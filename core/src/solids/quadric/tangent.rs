@@ -19,8 +19,10 @@ struct Quadratic {
     products: [f64; 3],
 }
 
-/// Closed forms are off by no more than this, if none left 0 to 1 by more than a thousand times as much.
+/// Closed forms are off by no more than this, if none left 0 to 1 by more than a thousand times as much; and in boxes that are thin, or small beside
+/// the solid, by so many roundings of what cancels there.
 const CLOSED_FORM: f64 = 1e-12;
+const CANCELLED: f64 = 64.0 * f64::EPSILON;
 
 impl Enclosed for QuadricSolid {
     fn enclosures(&self, place: &BoxAround, tell: &mut impl FnMut(Enclosure)) {
@@ -44,7 +46,15 @@ impl Enclosed for QuadricSolid {
                 found += share;
             }
         });
-        if worst <= 1e3 * CLOSED_FORM { Bounds::around(f64::min(found, 1.0), CLOSED_FORM) } else { Bounds::UNKNOWN }
+        let solid = self.parts().iter().map(Part::width).fold(0.0, f64::max);
+        let thin = Axis::ALL.into_iter().filter(|n| flat != Some(*n as usize));
+        let thin = thin.fold(1.0 / size, |product, n| product * (size / (sides[n][1] - sides[n][0])));
+        let error = CLOSED_FORM + CANCELLED * (thin * (size + solid));
+        if worst <= 1e3 * CLOSED_FORM && error < 1.0 {
+            Bounds::around(f64::min(found, 1.0), error)
+        } else {
+            Bounds::UNKNOWN
+        }
     }
 
     fn price(&self) -> f64 {
@@ -53,6 +63,15 @@ impl Enclosed for QuadricSolid {
 }
 
 impl Part {
+    /// How far its surface is from its axis or middle at most.
+    fn width(&self) -> f64 {
+        match &self.curved.wall {
+            Wall::Ball { radius } | Wall::Cylinder { radius } => *radius,
+            Wall::Cone { radius, .. } => self.ends.iter().flatten().fold(*radius, |most, end| most.max(end.radius)),
+            Wall::Ellipsoid(map) => map.reach.iter().fold(0.0, |most, reach| most.max(*reach)),
+        }
+    }
+
     /// What is known of it in a box.
     pub fn enclosure(&self, place: &BoxAround) -> Enclosure {
         let from = Axis::ALL.map(|n| place.middle[n] - self.origin[n]);

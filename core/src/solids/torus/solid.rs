@@ -41,6 +41,9 @@ const SIZES: Range<f64> = 1e-30..1e30;
 /// What rounding takes of a volume, as a share of a cell and for each of its sizes to the axis.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// A hole is closed that is narrower than this share of the ring.
+const CLOSED_HOLE: f64 = 1e-6;
+
 /// Margin for rounding, as a share of coordinates and sizes.
 const MARGIN: f64 = 1e-12;
 
@@ -517,7 +520,12 @@ impl Ring {
             volume += sign * ahead(toward, reference.toward) * moment;
         }
         let least = width(Axis::X).min(width(Axis::Y)).min(width(Axis::Z));
-        (volume, error + ROUNDING * (1.0 + (self.radius + self.tube) / least))
+        let rounding = ROUNDING * (1.0 + (self.radius + self.tube) / least);
+        // Where the tube closes the hole, the circles that touch in the middle do so by a root of what rounding leaves.
+        let touches = self.radius - self.tube <= CLOSED_HOLE * self.radius
+            && sides.iter().all(|[lo, hi]| lo - (hi - lo) <= 0.0 && hi + (hi - lo) >= 0.0);
+        let touching = if touches { Real::sqrt(f64::EPSILON) * (self.radius / least) } else { 0.0 };
+        (volume, error + rounding + touching)
     }
 
     /// Does the axis meet a cell or a rectangle, or nearly?

@@ -75,12 +75,14 @@ pub(super) fn cancelled<R: Real>(edges: &mut [ShadowEdge<R>], places: &mut [u32]
     let size = (edges.len().saturating_mul(4) / 3).next_power_of_two();
     let Some(table) = places.get_mut(..size) else { return edges.len() };
     table.fill(NO_EDGE);
-    let [a, b, c, d, all] = SCATTER.map(R::from_f64);
+    let [a, b, c, d, all] = SCATTER;
     let mut kept = 0_usize;
     for n in 0..edges.len() {
         let Some(&edge) = edges.get(n) else { break };
         let ShadowEdge { low, high, .. } = edge;
-        let mut at = ((low[0] * a + low[1] * b + high[0] * c + high[1] * d) * all).to_usize() & (size - 1);
+        // In `f64`: of sums this large an `f32` has no low digits.
+        let [u, v, w, x] = [low[0], low[1], high[0], high[1]].map(Real::to_f64);
+        let mut at = ((u * a + v * b + w * c + x * d) * all) as usize & (size - 1);
         // A quarter of the table is empty.
         while let Some(place) = table.get_mut(at) {
             match edges.get_mut(*place as usize) {

@@ -20,6 +20,8 @@ pub struct Near {
     cells: Vec<usize>,
     /// Of each cell, those of a body one after the other.
     lists: Vec<Vec<u32>>,
+    /// Which cells one unbroken patch cuts: its open space is not divided.
+    whole: Vec<bool>,
 }
 
 /// A triangle whose box reaches so many cells is not cut to tell which of them it reaches itself.
@@ -28,7 +30,8 @@ const FEW_CELLS: usize = 27;
 impl Near {
     /// Of cells in ascending order, some of which may be `known`; curved bodies as facets.
     pub fn new(grid: &Grid<f64>, bodies: &Bodies, cells: Vec<usize>, known: &CellTriangles) -> Self {
-        let mut near = Near { lists: vec![Vec::new(); cells.len()], cells, ..Near::default() };
+        let whole = cells.iter().map(|&n| known.is_whole(n)).collect();
+        let mut near = Near { lists: vec![Vec::new(); cells.len()], cells, whole, ..Near::default() };
         let unknown = near.take_known(grid, bodies, known);
         if !unknown.is_empty() {
             near.search(grid, bodies, &unknown);
@@ -40,6 +43,11 @@ impl Near {
     pub fn of(&self, cell: usize) -> impl Iterator<Item = OfBody> {
         let list = self.cells.binary_search(&cell).map_or(&[][..], |at| &self.lists[at]);
         list.iter().map(|&t| self.triangles[t as usize])
+    }
+
+    /// Does one unbroken patch cut a cell?
+    pub fn is_whole(&self, cell: usize) -> bool {
+        self.cells.binary_search(&cell).is_ok_and(|at| self.whole[at])
     }
 
     /// Fills the lists of cells that are known; where the others stand among the cells.

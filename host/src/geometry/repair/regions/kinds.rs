@@ -36,7 +36,7 @@ pub enum Unknown {
 
 /// What a region is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum RegionKind {
     Open,
     Solid,
     Perhaps,
@@ -49,7 +49,7 @@ impl Complex<'_> {
     /// as well be a cavity that touches the outside. Where the open lies behind such triangles and before none, all look inward.
     ///
     /// `mixed`: some parts look inward and others outward; then what lies behind some and before others is known only beside the open.
-    pub fn by_sides(&mut self, looks: &[[bool; 2]], mixed: bool) -> Option<(Vec<Kind>, bool)> {
+    pub fn by_sides(&mut self, looks: &[[bool; 2]], mixed: bool) -> Option<(Vec<RegionKind>, bool)> {
         let outside = self.outside();
         let open = self.sets.find(outside);
         let (mut behind_one, mut before_one, mut beside_open) =
@@ -79,10 +79,10 @@ impl Complex<'_> {
             }
         }
         let kind = |r: usize| match r {
-            r if r == open => Kind::Open,
-            r if mixed && before_one[r] && !faces_open[r] => Kind::Perhaps,
-            r if behind_one[r] || (beside_open[r] && !before_one[r]) => Kind::Solid,
-            _ => Kind::Perhaps,
+            r if r == open => RegionKind::Open,
+            r if mixed && before_one[r] && !faces_open[r] => RegionKind::Perhaps,
+            r if behind_one[r] || (beside_open[r] && !before_one[r]) => RegionKind::Solid,
+            _ => RegionKind::Perhaps,
         };
         (!behind_one[open]).then(|| ((0..=outside).map(kind).collect(), inverted))
     }
@@ -92,7 +92,7 @@ impl Complex<'_> {
     /// Each triangle belongs to one part, whose solid lies on the same side of it everywhere, and so does the triangle beside it across an edge that both have
     /// for themselves. Solid is what lies opposite to the open, behind such surface elsewhere, and behind triangles without backs. Where a region
     /// lies before triangles without backs of which no more is known, it may as well be a cavity that touches the outside.
-    pub fn by_faces(&mut self, edges: &[SideUse]) -> Result<(Vec<Kind>, bool), Unknown> {
+    pub fn by_faces(&mut self, edges: &[SideUse]) -> Result<(Vec<RegionKind>, bool), Unknown> {
         let outside = self.outside();
         let open = self.sets.find(outside);
         let beside: Vec<[usize; 2]> = (0..self.elements.len()).map(|e| self.beside(e)).collect();
@@ -137,16 +137,16 @@ impl Complex<'_> {
             }
         }
         let kind = |r: usize| match r {
-            r if r == open => Kind::Open,
-            r if solid[r] && (behind_one[r] || !before_one[r]) => Kind::Solid,
-            _ => Kind::Perhaps,
+            r if r == open => RegionKind::Open,
+            r if solid[r] && (behind_one[r] || !before_one[r]) => RegionKind::Solid,
+            _ => RegionKind::Perhaps,
         };
         if solid[open] { Err(Unknown::Unclear) } else { Ok(((0..=outside).map(kind).collect(), inward)) }
     }
 
     /// What each region is by its winding number, of which the open has 0; none if there is none, or regions beside the open differ in sign.
     /// A region of the other sign, or of winding number 0, may be a cavity, or solid where another body is missing.
-    pub fn by_winding(&mut self) -> Option<(Vec<Kind>, bool)> {
+    pub fn by_winding(&mut self) -> Option<(Vec<RegionKind>, bool)> {
         let outside = self.outside();
         let open = self.sets.find(outside);
         let mut neighbours: Vec<Vec<(usize, i32)>> = vec![Vec::new(); outside + 1];
@@ -177,17 +177,17 @@ impl Complex<'_> {
             return None;
         }
         let kind = |r: usize| match winding[r] {
-            _ if r == open => Kind::Open,
-            Some(w) if w.signum() == sign => Kind::Solid,
-            _ => Kind::Perhaps,
+            _ if r == open => RegionKind::Open,
+            Some(w) if w.signum() == sign => RegionKind::Solid,
+            _ => RegionKind::Perhaps,
         };
         Some(((0..=outside).map(kind).collect(), sign < 0))
     }
 
     /// The surfaces of what is solid and of what may be; none if one of them is not closed, or nothing is solid.
-    pub fn surfaces(&mut self, kinds: &[Kind], inverted: bool, [lo, hi]: [DVec3; 2]) -> Option<Regions> {
-        let mut of = |kind: Kind| self.surface(|region| kinds[region] == kind);
-        let (solid, perhaps) = (of(Kind::Solid), of(Kind::Perhaps));
+    pub fn surfaces(&mut self, kinds: &[RegionKind], inverted: bool, [lo, hi]: [DVec3; 2]) -> Option<Regions> {
+        let mut of = |kind: RegionKind| self.surface(|region| kinds[region] == kind);
+        let (solid, perhaps) = (of(RegionKind::Solid), of(RegionKind::Perhaps));
         let middle = (lo + hi) * 0.5;
         let closed = |surface: &[[DVec3; 3]]| {
             surface.is_empty() || (is_closed(surface, [lo, hi]) && signed_volume(surface, middle) > 0.0)
