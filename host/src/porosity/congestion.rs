@@ -119,7 +119,7 @@ fn of_zone(
         zone: zone.name.clone(),
         bounds: [zone.bounds.min, zone.bounds.max],
         volume: extent.element_product(),
-        solid_volume,
+        solid_volume: solid_volume + 0.0, // a sum of nothing is −0
         sizes: classes.into_iter().filter(|class| class.bodies > 0).collect(),
     }
 }
