@@ -44,6 +44,11 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A hole is closed that is narrower than this share of the ring.
 const CLOSED_HOLE: f64 = 1e-6;
 
+/// How near to a cell the middle of a ring with a closed hole is in it, in sizes of the cell; and what the share of such a cell may be off by, for each of its
+/// sizes to the ring's radius: a sixtieth of the root of a rounding. The largest found in 30 000 random cells is 1.1·10⁻⁷, with a radius of hundreds of cells.
+const MARGIN_AT_HOLE: f64 = 1e-3;
+const TOUCHING: f64 = 2.5e-10;
+
 /// Margin for rounding, as a share of coordinates and sizes.
 const MARGIN: f64 = 1e-12;
 
@@ -523,8 +528,10 @@ impl Ring {
         let rounding = ROUNDING * (1.0 + (self.radius + self.tube) / least);
         // Where the tube closes the hole, the circles that touch in the middle do so by a root of what rounding leaves.
         let touches = self.radius - self.tube <= CLOSED_HOLE * self.radius
-            && sides.iter().all(|[lo, hi]| lo - (hi - lo) <= 0.0 && hi + (hi - lo) >= 0.0);
-        let touching = if touches { Real::sqrt(f64::EPSILON) * (self.radius / least) } else { 0.0 };
+            && sides
+                .iter()
+                .all(|[lo, hi]| lo - MARGIN_AT_HOLE * (hi - lo) <= 0.0 && hi + MARGIN_AT_HOLE * (hi - lo) >= 0.0);
+        let touching = if touches { TOUCHING * (self.radius / least) } else { 0.0 };
         (volume, error + rounding + touching)
     }
 
