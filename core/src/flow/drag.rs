@@ -61,7 +61,7 @@ impl<R: Real, const D: usize> DragCell<R, D> {
         for c in 0..D {
             let a = self.linear[c];
             // What is lost in a step as a share; none of no drag, and of one too small to tell.
-            let loss = -(-(a * dt)).exp_m1();
+            let loss = if a > R::ZERO { -(-(a * dt)).exp_m1() } else { R::ZERO };
             let (is_lost, push) = (loss > R::ZERO, pushed[c] - u[c]);
             // φ/dt of the push; decay alone where nothing pushes.
             let phi = if is_lost { loss / a } else { dt };
