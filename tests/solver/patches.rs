@@ -2,7 +2,7 @@
 //! they must.
 
 use voidage::flow::{Flow, Treatment};
-use voidage_core::flow::{Boundary, Error, Gas, Mesh, Patch, Primitive, Problem};
+use voidage_core::flow::{Boundary, Error, Feed, Gas, Mesh, Patch, Primitive, Problem};
 use voidage_tests::euler::property::{Source, porosity};
 
 const IDEAL: Gas<f64> = Gas::Ideal { gamma: 1.4 };
@@ -68,12 +68,7 @@ fn as_the_side<const D: usize>(n: [usize; D]) {
             sides[d][side] = kind;
             let plain = after(random(n, sides));
             assert!(with_patch(n, (d, side), [kind, kind], part) == plain, "{kind:?} on side {side} of axis {d}");
-            // Of the weight of gas the side around counts, so walls and copies stand on like sides.
-            let around = if matches!(kind, Boundary::Wall | Boundary::ZeroGradient) {
-                [Boundary::ZeroGradient, Boundary::Wall][usize::from(kind == Boundary::ZeroGradient)]
-            } else {
-                Boundary::FarField(Primitive { pressure: 9.0, ..state() })
-            };
+            let around = Boundary::FarField(Primitive { pressure: 9.0, ..state() });
             assert!(with_patch(n, (d, side), [around, kind], [[0; D], n]) == plain, "{kind:?} over side {side} of {d}");
             let apart = with_patch(n, (d, side), [around, kind], part);
             assert!(apart != plain, "{kind:?}: a part is not the whole");
@@ -133,4 +128,8 @@ fn patches_that_cannot_be_are_refused() {
     let line = Problem::new(Mesh::new([&widths[0][..]]).unwrap(), IDEAL, [[Boundary::Wall; 2]]).unwrap();
     let patch = Patch { axis: 0, high: true, first: [0], end: [9], boundary: Boundary::ZeroGradient };
     assert_eq!(line.with_patches(&[patch]).map(drop), Err(Error::Patch { number: 0 }));
+    let mixed = Problem::new(mesh, Gas::Mixed { gammas: [1.2, 1.4] }, wall).unwrap();
+    let (one, two) = ([good], [good, good]);
+    let fed = mixed.with_patches(&one).unwrap().with_feed(Feed { sides: [[1.4; 2]; 2], patches: &[1.3] }).unwrap();
+    assert_eq!(fed.with_patches(&two).map(drop), Err(Error::ShapeMismatch { expected: 2, found: 1 }));
 }

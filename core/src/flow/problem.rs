@@ -119,12 +119,15 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     ///
     /// # Errors
     /// A patch names no axis, stands on a periodic side, or is periodic itself; the mesh is a line, whose sides have no parts; what stands outside a patch
-    /// is no state of the gas.
+    /// is no state of the gas; [`Problem::with_feed`] has been told of another number of patches.
     pub fn with_patches(self, patches: &'a [Patch<R, D>]) -> Result<Self, Error> {
         let wrong = |p: &Patch<R, D>| {
             let side = self.boundaries.get(p.axis).map(|sides| sides[usize::from(p.high)]);
             D < 2 || p.boundary.is_periodic() || side.is_none_or(|side| side.is_periodic())
         };
+        if !self.feed.patches.is_empty() {
+            fits(patches.len(), self.feed.patches.len())?;
+        }
         match patches.iter().position(wrong) {
             Some(number) => Err(Error::Patch { number }),
             None => Problem { patches, ..self }.with_sound_sides(patches.iter().map(|p| (p.axis, &p.boundary))),

@@ -14,6 +14,7 @@ use crate::flow::kernel::walls_and_jumps::{
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
 use crate::flow::porosity::flags::{BORDER, SMALL, any_marked, any_small_or_border, break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::least_volume;
+use crate::flow::problem::Problem;
 use crate::flow::state::{Gas, sum};
 use crate::number::real::Real;
 
@@ -99,10 +100,10 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: 
             slopes_along::<R, D, S, MIXED, BY_WAVES>(slab, (d, row), cells, &Even, of_row, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
-            let copied = slab.problem.boundaries[d].map(|b| b.copies_inside());
+            let sides = Sides { problem: &slab.problem, d, at: row.at };
             let half_gravity = R::HALF * gravity;
             let (is_even, periodic) = (slab.even[d], slab.periodic[d]);
-            let axis = Uneven { widths, is_even, place, half_gravity, periodic, copied };
+            let axis = Uneven { widths, is_even, place, half_gravity, periodic, sides };
             slopes_along::<R, D, S, MIXED, BY_WAVES>(slab, (d, row), cells, &axis, of_row, out);
         }
     }
@@ -316,20 +317,36 @@ impl<R: Real> Differences<R> for Even {
     }
 }
 
+/// What stands on the sides of an axis beside the cells of a row.
+struct Sides<'p, R, const D: usize> {
+    problem: &'p Problem<'p, R, D>,
+    d: usize,
+    /// Index of the first cell of the row along each axis.
+    at: [usize; D],
+}
+
+impl<R: Real, const D: usize> Sides<'_, R, D> {
+    /// The pressure beyond the low or the high side is that inside, so gravity has no weight to subtract.
+    fn copy_inside(&self, high: bool, i: usize) -> bool {
+        let mut at = self.at;
+        at[0] += i;
+        self.problem.side(self.d, high, at).copies_inside()
+    }
+}
+
 /// An axis with unequal cells or gravity. Beyond a boundary stands a cell of the same width, beyond a
 /// periodic end the cell of the other end.
-struct Uneven<'w, R> {
+struct Uneven<'w, R, const D: usize> {
     widths: &'w [R],
     is_even: bool,
     /// Index of the row along the axis; `None` if the axis is that of the row.
     place: Option<usize>,
     half_gravity: R,
     periodic: bool,
-    /// The pressure beyond the low and high side is that inside, so gravity has no weight to subtract.
-    copied: [bool; 2],
+    sides: Sides<'w, R, D>,
 }
 
-impl<R: Real> Uneven<'_, R> {
+impl<R: Real, const D: usize> Uneven<'_, R, D> {
     /// Widths of the cells below `i`, here and above.
     #[inline(always)]
     fn three(&self, i: usize) -> [R; 3] {
@@ -343,7 +360,7 @@ impl<R: Real> Uneven<'_, R> {
     }
 }
 
-impl<R: Real> Differences<R> for Uneven<'_, R> {
+impl<R: Real, const D: usize> Differences<R> for Uneven<'_, R, D> {
     #[inline(always)]
     fn is_even(&self) -> bool {
         self.is_even
@@ -359,7 +376,8 @@ impl<R: Real> Differences<R> for Uneven<'_, R> {
     fn half_weight(&self, i: usize) -> Option<HalfWeights<R>> {
         let [low, own, high] = self.three(i).map(|width| self.half_gravity * width);
         let place = self.place.unwrap_or(i);
-        let (no_low, no_high) = (self.copied[0] && place == 0, self.copied[1] && place + 1 == self.widths.len());
+        let copies = |high: bool, end: usize| place == end && self.sides.copy_inside(high, i);
+        let (no_low, no_high) = (copies(false, 0), copies(true, self.widths.len() - 1));
         let between = |is_copied: bool, both: [R; 2]| if is_copied { [R::ZERO; 2] } else { both };
         Some([between(no_low, [low, own]), between(no_high, [own, high])])
     }
