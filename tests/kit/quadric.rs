@@ -96,6 +96,22 @@ pub enum Kind {
     Any,
     /// Truncated cones.
     Frustum,
+    /// Cones, whole and truncated, with a line along an axis of the grid, as reducers between pipes at 45°.
+    Leaning,
+}
+
+/// Half the angle of a leaning cone, and a direction of its axis.
+fn leaning(random: &mut Random) -> (f64, DVec3) {
+    let half: f64 = match random.below(4) {
+        0 => 45_f64.to_radians(),
+        1 => [30_f64, 60.0][random.below(2)].to_radians(),
+        2 => [0.5_f64, 0.75][random.below(2)].atan(),
+        _ => random.between(0.1, 1.4),
+    };
+    let (n, sign) = (random.below(3), [1.0, -1.0][random.below(2)]);
+    let (u, v) = (DVec3::AXES[(n + 1) % 3], DVec3::AXES[(n + 2) % 3]);
+    let around = if random.below(2) == 0 { 0.0 } else { random.between(0.0, 6.2) };
+    (half, DVec3::AXES[n] * (sign * half.cos()) + (u * around.cos() + v * around.sin()) * half.sin())
 }
 
 /// How many times as wide a truncated cone is at its other end: nearly equal, nearly a whole cone, anything.
@@ -115,12 +131,24 @@ pub fn solid_of(random: &mut Random, family: Family, kinds: Kind) -> (QuadricSol
         Family::Huge => 10_f64.powf(random.between(2.4, 3.4)),
         _ => random.between(0.1, 0.5),
     };
-    let axis = direction(random, family);
+    let (half, axis) = if kinds == Kind::Leaning { leaning(random) } else { (0.0, direction(random, family)) };
     let mut center = place(random, family);
     let mut radius = size * random.between(0.3, 1.0);
-    let kind = if kinds == Kind::Any { random.below(5) } else { 5 };
+    let kind = match kinds {
+        Kind::Any => random.below(5),
+        Kind::Frustum => 5,
+        Kind::Leaning => 4 + random.below(2),
+    };
     let mut length = size * random.between(0.5, 3.0);
-    let taper = if kind == 5 { taper(random) } else { 0.0 };
+    let taper = match (kinds, kind) {
+        (Kind::Leaning, 5) => [0.25, 0.5, 0.9][random.below(3)],
+        (_, 5) => taper(random),
+        _ => 0.0,
+    };
+    if kinds == Kind::Leaning {
+        length = 0.3;
+        radius = length * half.tan() / (1.0 - taper);
+    }
     match family {
         Family::Tangent => {
             // Beside a plane by one radius, rounded.

@@ -3,12 +3,15 @@
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use std::collections::HashMap;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use voidage_core::grid::Grid;
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::solids::quadric::{FaceBetween, FacesBetween, QuadricSolid, excess};
 use voidage_tests::quadrature::with_chords;
-use voidage_tests::quadric::{FAMILIES, Family, Kind, errors, never_panics, parts_sum_to_the_whole, shares};
+use voidage_tests::quadric::{
+    FAMILIES, Family, Kind, edges, errors, is_within_grid, never_panics, parts_sum_to_the_whole, shares, solid_of,
+    volume,
+};
 use voidage_tests::random::Random;
 
 /// Largest error of a cell or face, in cells and faces.
@@ -56,6 +59,69 @@ proptest! {
     #[test]
     fn truncated_cones(seed in any::<u64>(), family in 0..FAMILIES.len() - 1) {
         agrees_of(FAMILIES[family], Kind::Frustum, seed)?;
+    }
+}
+
+/// A line of the grid along a line of the cone meets the cone once, or its other nappe alone.
+#[test]
+fn cones_with_a_line_along_an_axis() {
+    let mut within = 0;
+    for seed in 0..2000 {
+        let (solid, exact) = solid_of(&mut Random::new(seed), Family::Oblique, Kind::Leaning);
+        if !is_within_grid(&exact) {
+            continue;
+        }
+        within += 1;
+        let edges = edges();
+        let grid = Grid::new(&edges[0], &edges[1], &edges[2]).unwrap();
+        let found = shares(&solid, &grid);
+        let cells = edges.iter().fold(1.0, |product, e| product * e[1]);
+        let sum: f64 = found.fields[0].iter().sum::<f64>() * cells;
+        assert!((sum / volume(&exact) - 1.0).abs() < 1e-11, "{seed}: {exact:?}: {sum} {}", volume(&exact));
+        assert!(found.worst < 1e-9, "{seed}: {exact:?}: {}", found.worst);
+    }
+    assert!(within > 400, "{within}");
+    let compared = (0..24).filter(|&seed| match agrees_of(Family::Oblique, Kind::Leaning, seed) {
+        Err(TestCaseError::Reject(_)) => false,
+        found => {
+            found.unwrap();
+            true
+        }
+    });
+    assert!(compared.count() > 8);
+}
+
+/// Cones that lie on a plane of the grid have nothing below it and block nothing in it.
+#[test]
+fn cones_that_lie_on_a_plane() {
+    let mut random = Random::new(5);
+    for _ in 0..4000 {
+        let half: f64 = random.between(0.1, 1.4);
+        let around = [0.0, FRAC_PI_2, random.between(0.0, 6.2)][random.below(3)];
+        let axis = DVec3::new(half.cos() * around.cos(), half.cos() * around.sin(), half.sin());
+        let apex = random.vector::<DVec3>(4.0).round() * 0.25;
+        let length = 0.25 * (1 + random.below(4)) as f64;
+        let end = [0.0, 0.5][random.below(2)];
+        let radius = length * half.tan();
+        let (base, top) = (apex + axis * length, apex + axis * (length * end));
+        let cone = QuadricSolid::truncated_cone(base, top, [radius, radius * end]).unwrap();
+        let beside = |place: f64| [-1.0, 0.0, 1.0].map(|step| (place * 4.0).round() * 0.25 + step);
+        let (x, y) = (beside(apex.x + 0.5 * axis.x), beside(apex.y + 0.5 * axis.y));
+        let z = [apex.z - 1.0, apex.z, apex.z + 1.0];
+        let grid = Grid::new(&x, &y, &z).unwrap();
+        let (mut below, mut blocked, mut worst) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for k in 0..2 {
+            let told = cone.layer(&grid, k, true, &mut |kind, _, share| match kind {
+                RangeKind::Cells if k == 0 => below = below.max(share),
+                RangeKind::Faces(2) if k == 1 => blocked = blocked.max(share),
+                _ => {}
+            });
+            worst = worst.max(told);
+        }
+        assert!(
+            worst < 1e-9 && below < 1e-12 && blocked < 1e-5,
+            "{half} {around} {apex} {length} {end}: {below} {blocked} {worst}"
+        );
     }
 }
 

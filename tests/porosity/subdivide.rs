@@ -1,6 +1,6 @@
 //! Subdivision by GJK against exact unions, closed forms, its own theory, and itself.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -11,12 +11,16 @@ use voidage::porosity::{Leaf, Method, Options, Porosity};
 use voidage_core::convex::chord::Chords;
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Ellipsoid, OrientedBox, Sphere};
 use voidage_core::convex::support::Transformed;
+use voidage_core::grid::Grid;
+use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::real::{Real, Vector};
 use voidage_core::subdivide::{
     Bounds, Candidate, LeafRule, MAX_DEPTH, QueryCount, Subdividable, SubdivisionMemory, SubdivisionRule, share,
 };
 use voidage_tests::convex::{Part, bounds_hold_the_union, run};
+use voidage_tests::quadrature::Exact;
+use voidage_tests::quadric::{Family, Kind, solid_of};
 use voidage_tests::random::Random;
 use voidage_tests::solids::{Triangle, cuboid, formulas, scene, sphere, turned_box, volume};
 
@@ -536,5 +540,60 @@ fn precisions_agree(seed: u64) {
     ];
     for (name, [a, b]) in found {
         check(name, seed, a, b);
+    }
+}
+
+/// Lines of the grid along lines of a cone, and but for rounding: chords end in the cone that is meant, and bounds hold the closed form.
+#[test]
+fn cones_with_a_line_along_an_axis_hold_their_closed_forms() {
+    let mut cut = 0;
+    for seed in 0..4000 {
+        let mut random = Random::new(seed);
+        let (solid, exact) = solid_of(&mut random, Family::Oblique, Kind::Leaning);
+        let (body, apex) = match exact {
+            Exact::Cone(base, top, radius) => (Cone::truncated(base, top, radius, 0.0), top),
+            Exact::Frustum(base, top, [r, s]) => {
+                (Cone::truncated(base, top, r, s), base + (top - base) * (r / (r - s)))
+            }
+            _ => continue,
+        };
+        // Every other cell has an edge on lines through the apex.
+        let corner = if seed % 2 == 0 { apex } else { apex + random.vector::<DVec3>(0.1) };
+        let min = corner + random.vector::<DVec3>(4.0).round() * 0.05;
+        let cell = Aabb { min, max: min + DVec3::splat(0.1) };
+        let found = finer(body, &cell);
+        let sides = [0, 1, 2].map(|axis: usize| [cell.min[axis], cell.max[axis]]);
+        let grid = Grid::new(&sides[0], &sides[1], &sides[2]).unwrap();
+        let mut share = 0.0;
+        let worst = solid.layer(&grid, 0, false, &mut |kind, _, own| {
+            if kind == RangeKind::Cells {
+                share += own;
+            }
+        });
+        assert!(worst < 1e-9, "{seed}: {exact:?}: {worst}");
+        cut += usize::from(share > 0.0 && share < 1.0);
+        assert!(
+            found.lower <= share + 1e-9 && share <= found.upper + 1e-9,
+            "{seed}: {exact:?} {cell:?}: {share} {found:?}"
+        );
+    }
+    assert!(cut > 500, "{cut}");
+}
+
+/// Lines through the apex of a cone have its end there, or miss it, whatever rounding says of the apex.
+#[test]
+fn lines_through_an_apex_are_inside_or_outside() {
+    let mut random = Random::new(3);
+    for n in 0..100_000 {
+        let (apex, axis) = (random.vector::<Vec3>(1.0), random.vector::<Vec3>(1.0).normalize());
+        let (height, half) = (0.5_f32, random.between(0.2, 1.2) as f32);
+        let cone = Cone::new(apex - axis * height, apex, height * half.tan());
+        let side = axis.any_orthonormal_vector();
+        let angle = if n % 2 == 0 { half * 0.8 } else { half + 0.2 * (FRAC_PI_2 as f32 - half) };
+        let direction = -axis * angle.cos() + side * angle.sin();
+        let origin = apex - direction * random.between(0.1, 2.0) as f32;
+        let length = cone.chord(origin, direction, 0.0, &[]).map_or(0.0, |[from, to]| to - from);
+        let wanted = if n % 2 == 0 { height / angle.cos() } else { 0.0 };
+        assert!((length - wanted).abs() < 2e-3, "{n}: {cone:?} {origin} {direction}: {length}, not {wanted}");
     }
 }

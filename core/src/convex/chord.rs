@@ -195,9 +195,11 @@ fn within_usual_cone<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Opti
     let discriminant = reach.dot(reach) - area.dot(area);
     let (a, b) = (e.dot(e) - dq * dq, w.dot(e) - q * dq);
     let beyond = |t: V::Scalar| if dq > zero { [t, infinity] } else { [-infinity, t] };
+    // The line is parallel to one of the cone but for rounding.
+    let is_parallel = a.abs() <= e.dot(e) * V::Scalar::EPSILON * V::Scalar::from_f64(MOVED_IN_EPSILONS);
     if discriminant < zero {
         // Steeper than the cone, and through its apex but for rounding.
-        return (a < zero).then(|| beyond(-q / dq));
+        return (a < zero && !is_parallel).then(|| beyond(-q / dq));
     }
     let root = discriminant.sqrt();
     let sum = if b > zero { -b - root } else { root - b };
@@ -205,6 +207,15 @@ fn within_usual_cone<V: Vector>(w: V, e: V, q: V::Scalar, dq: V::Scalar) -> Opti
     let flat = a > V::Scalar::HALF * e.dot(e);
     let other = if flat { (-b - b - sum) / a } else { (w.dot(w) - q * q) / sum };
     let (low, high) = (one.min(other), one.max(other));
+    if is_parallel {
+        // It has one end in the cone that is meant, or in the other cone that it meets at the apex; the second end is anywhere.
+        return match [one, other].map(|t| q + t * dq >= zero && t.is_finite()) {
+            [true, true] => Some(beyond(if dq > zero { low } else { high })),
+            [true, false] => Some(beyond(one)),
+            [false, true] => Some(beyond(other)),
+            [false, false] => None,
+        };
+    }
     if a < zero {
         return Some(beyond(if dq > zero { high } else { low }));
     }

@@ -135,7 +135,17 @@ impl<'m, V: Vector> RoundSolids<'m, V> {
     fn add_places(&mut self, grid: &Grid<V::Scalar>, k: usize, kinds: &[RangeKind], layer: &mut Layer<V::Scalar>) {
         let places = Places::of(grid);
         let RoundMemory { sums, owners, .. } = &mut self.memory;
-        let (Some(sums), Some(owners)) = (sums.get_mut(..places.end()), owners.get_mut(..places.end())) else { return };
+        let (Some(sums), Some(owners)) = (sums.get_mut(..places.end()), owners.get_mut(..places.end())) else {
+            // Of a larger grid than the memory is made for nothing is known.
+            for &kind in kinds {
+                let (_, sum) = match kind {
+                    RangeKind::Cells => layer.cells_mut(),
+                    RangeKind::Faces(axis) => layer.faces_mut(axis),
+                };
+                sum.iter_mut().for_each(|sum| *sum += V::Scalar::ONE);
+            }
+            return;
+        };
         sums.fill(V::Scalar::ZERO);
         owners.fill(NOBODY);
         let mut doubtful = false;

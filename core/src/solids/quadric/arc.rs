@@ -124,12 +124,11 @@ pub(super) fn lens_of([p, q]: [P2; 2], turn: f64, conic: &Conic, reach: f64) -> 
     if turn * turn >= kappa * tau * SHARP {
         // Two lines: what is left is the triangle of the points and the lines' crossing.
         let along = kappa / (2.0 * turn);
-        let area = kappa * along * 0.25;
-        return if area * area <= dot(chord, chord) * (reach * reach) {
-            Lens::Triangle(tangent.map(|t| t * along), area)
-        } else {
-            Lens::Nothing
-        };
+        let (area, corner) = (kappa * along * 0.25, tangent.map(|t| t * along));
+        // No triangle has more than half the product of two sides; in a plane that touches a cone rounding makes others.
+        let (side, sides) = (dot(corner, corner), dot(chord, chord) * dot(corner, corner));
+        let is_one = side <= reach * reach && area * area <= sides * 0.26;
+        return if is_one { Lens::Triangle(corner, area) } else { Lens::Nothing };
     }
     let ratio = Real::sqrt(kappa / tau);
     let w = turn * ratio / kappa;

@@ -4,6 +4,7 @@ use super::ends::End;
 use super::part::Part;
 use super::spread::{self, FacesBetween, NumberedPart};
 use super::wall::{Curved, UnitMap, Wall};
+use super::window::reached;
 use crate::grid::Grid;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
@@ -158,7 +159,8 @@ impl QuadricSolid {
 
     /// Tells the solid's shares in layer `k`: of cells, and with `areas` of x and y faces and of the z faces below, by their positions in
     /// the fields of a layer ([`crate::grid::fields::Fields`]). The shares of a capsule's three parts are told one by one and add up.
-    /// Returns by how much the worst of them left 0 to 1 before it was cut; more than rounding means that it cannot be relied on.
+    /// Returns by how much the worst of them left 0 to 1 before it was cut, or may be off where an ellipsoid is flat and cells are thin; more than rounding means
+    /// that it cannot be relied on.
     pub fn layer<R: Real>(
         &self,
         grid: &Grid<R>,
@@ -181,6 +183,10 @@ impl QuadricSolid {
         let mut worst = 0.0;
         for (number, part) in self.parts.iter().enumerate() {
             worst = f64::max(worst, spread::layer(NumberedPart { part, number, between }, grid, k, areas, visit));
+            if matches!(&part.curved.wall, Wall::Ellipsoid(map) if map.flatness() > FLAT) {
+                let lost = part.cancelled(narrowest(part, grid, k));
+                worst = if lost > LOST { worst.max(lost) } else { worst };
+            }
         }
         worst
     }
@@ -189,6 +195,25 @@ impl QuadricSolid {
     pub fn plane<R: Real>(&self, grid: &Grid<R>, plane: usize, visit: &mut impl FnMut(RangeKind, usize, f64)) {
         self.parts.iter().for_each(|part| spread::plane(part, grid, plane, visit));
     }
+}
+
+/// Of ellipsoids flatter than this, whose longest axis is some thirty times the shortest, it is asked what cancels in their cells.
+const FLAT: f64 = 1e3;
+
+/// More than this counts.
+const LOST: f64 = 1e-6;
+
+/// The least widths of the cells of a layer that a part reaches.
+fn narrowest<R: Real>(part: &Part, grid: &Grid<R>, k: usize) -> [f64; 3] {
+    Axis::ALL.map(|axis| {
+        let edges = grid.edges(axis as usize);
+        let cells = if axis == Axis::Z { k..k + 1 } else { reached(edges, part.extent(axis)) };
+        let edges = edges.get(cells.start..=cells.end).unwrap_or_default().windows(2);
+        edges.fold(f64::INFINITY, |least, pair| match pair {
+            [low, high] => least.min((*high - *low).to_f64()),
+            _ => least,
+        })
+    })
 }
 
 /// A cylinder.

@@ -8,6 +8,7 @@ use crate::grid::Grid;
 use crate::grid::bounds::Bounds;
 use crate::grid::cell_range::RangeKind;
 use crate::number::axis::Axis;
+use crate::number::real::Real;
 use crate::solids::enclosure::{BoxAround, Constraint, Enclosed, Enclosure};
 
 /// Rounding of the sums below, a few units in the last place of their terms.
@@ -46,10 +47,8 @@ impl Enclosed for QuadricSolid {
                 found += share;
             }
         });
-        let solid = self.parts().iter().map(Part::width).fold(0.0, f64::max);
-        let thin = Axis::ALL.into_iter().filter(|n| flat != Some(*n as usize));
-        let thin = thin.fold(1.0 / size, |product, n| product * (size / (sides[n][1] - sides[n][0])));
-        let error = CLOSED_FORM + CANCELLED * (thin * (size + solid));
+        let widths = sides.map(|[lo, hi]| hi - lo);
+        let error = self.parts().iter().fold(CLOSED_FORM, |sum, part| sum + part.cancelled(widths));
         if worst <= 1e3 * CLOSED_FORM && error < 1.0 {
             Bounds::around(f64::min(found, 1.0), error)
         } else {
@@ -63,12 +62,22 @@ impl Enclosed for QuadricSolid {
 }
 
 impl Part {
-    /// How far its surface is from its axis or middle at most.
+    /// What rounding may leave of what cancels in a box of such widths, as a share of it.
+    pub(super) fn cancelled(&self, widths: [f64; 3]) -> f64 {
+        let size = widths.iter().fold(0.0_f64, |most, width| most.max(*width));
+        let thin = widths.iter().fold(1.0 / size, |product, width| product * (size / width));
+        CANCELLED * (thin * (size + self.width()))
+    }
+
+    /// How far its surface is from its axis or middle at most; of an ellipsoid, whose map enlarges rounding, times its flatness.
     fn width(&self) -> f64 {
         match &self.curved.wall {
             Wall::Ball { radius } | Wall::Cylinder { radius } => *radius,
             Wall::Cone { radius, .. } => self.ends.iter().flatten().fold(*radius, |most, end| most.max(end.radius)),
-            Wall::Ellipsoid(map) => map.reach.iter().fold(0.0, |most, reach| most.max(*reach)),
+            Wall::Ellipsoid(map) => {
+                let reach = map.reach.iter().fold(0.0, |sum, x| sum + x * x);
+                Real::sqrt(reach) * map.flatness()
+            }
         }
     }
 

@@ -191,7 +191,8 @@ impl Curved {
         let (out, own) = (hypotenuse(off.value, along * am), radius + slope * along * across);
         let (s, t) = (sum / leading, (out - own) * (out + own) / sum);
         if leading == 0.0 {
-            return ray(t, growth);
+            // Parallel to a line of the cone: beyond the plane that touches it there it meets the other nappe alone.
+            return if half * growth > 0.0 { ray(t, growth) } else { Span::EMPTY };
         }
         let (lo, hi) = (s.min(t), s.max(t));
         if leading < 0.0 {
@@ -398,6 +399,12 @@ fn hypotenuse_of_difference(a: f64, b: f64) -> f64 {
 }
 
 impl UnitMap {
+    /// Some times the square of the ratio of its longest to its shortest axis, and no less.
+    pub fn flatness(&self) -> f64 {
+        let squares = |all: &[f64]| all.iter().fold(0.0, |sum, x| sum + x * x);
+        squares(&self.reach) * squares(self.columns.as_flattened())
+    }
+
     /// From the inverse map, which makes the unit ball the ellipsoid: the images of the three axes; orthogonal, none of them zero.
     pub fn new(axes: [[f64; 3]; 3]) -> Self {
         let squares = axes.map(|a| a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
