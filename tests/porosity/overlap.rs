@@ -325,3 +325,73 @@ fn other_tessellations_of_one_body_have_true_bounds() {
         assert!(low <= most + 1e-12 && least <= high + 1e-12, "seed {seed}: {low} {high}, {least} {most}");
     }
 }
+
+/// By how much a scene in one coarse cell, which is not divided, and in small ones holds not the same.
+fn is_divided_alike(solids: &[Vec<Triangle>], edges: &[Vec<f64>; 3], parts: usize) -> f64 {
+    let bodies = scene(solids);
+    let found = |edges: &[Vec<f64>; 3]| {
+        let grid = Edges(edges.clone());
+        porosity(&grid.grid(None).unwrap(), &bodies, Options::default())
+    };
+    let whole = found(edges);
+    assert_eq!(whole.divided, 0);
+    let finer = edges.each_ref().map(|e| {
+        let (lo, hi) = (e[0], e[e.len() - 1]);
+        (0..=parts).map(|n| lo + (hi - lo) * n as f64 / parts as f64).collect()
+    });
+    (whole.solid_volume - found(&finer).solid_volume).abs()
+}
+
+/// The planes of long thin triangles must be known as well as those of others: else one is taken to cut off what it does not.
+#[test]
+fn a_needle_hides_nothing() {
+    let bipyramid = |[tip, end]: [DVec3; 2], ring: [DVec3; 3]| -> Vec<Triangle> {
+        let [a, b, c] = ring;
+        vec![[tip, b, a], [tip, c, b], [tip, a, c], [end, a, b], [end, b, c], [end, c, a]]
+    };
+    let needle = bipyramid(
+        [
+            DVec3::new(-0.100_535_021_157_171_62, 2.908_352_568_836_066, 1.365_912_736_801_805_1),
+            DVec3::new(1.600_752_554_249_997_2, -0.593_062_564_254_297_9, 0.446_286_371_623_542_7),
+        ],
+        [
+            DVec3::new(0.750_108_392_981_565_2, 1.157_644_820_781_063_2, 0.906_099_554_212_674),
+            DVec3::new(0.750_108_724_816_108_6, 1.157_645_088_175_904_8, 0.906_099_150_011_170_6),
+            DVec3::new(0.750_109_181_841_564_5, 1.157_645_097_915_684_5, 0.906_099_958_414_177_3),
+        ],
+    );
+    let turn = DMat3::from_cols(
+        DVec3::new(0.5750, -0.9099, 0.4685).normalize(),
+        DVec3::new(-0.9574, -0.4254, 0.3487).normalize(),
+        DVec3::new(-0.0889, -0.4891, -0.8407).normalize(),
+    );
+    let thick = turned_box(DVec3::new(1.27, 0.88, 1.65), DVec3::new(0.59, 0.55, 0.49), turn);
+    let mut random = Random::new(7);
+    let cell = [vec![-9.0, 1.75], vec![-9.0, 0.0], vec![0.25, 1.75]];
+    for n in 0..200 {
+        let (axis, angle) = (random.vector::<DVec3>(1.0).normalize(), random.between(0.0, 6.2));
+        let half =
+            DVec3::new(random.between(0.2, 0.8), random.between(0.2, 0.8), 10_f64.powf(random.between(-5.0, -1.0)));
+        let plate = turned_box(
+            DVec3::new(1.07, 1.15, 0.86) + random.vector::<DVec3>(0.4),
+            half,
+            DMat3::from_axis_angle(axis, angle),
+        );
+        let off = is_divided_alike(&[thick.clone(), plate, needle.clone()], &cell, 5);
+        assert!(off < 1e-12 * 145.0, "{n}: {off:e}");
+    }
+}
+
+/// Hundreds of triangles of one body in a cell: their tree is not a list, and holds the same.
+#[test]
+fn crowds_of_triangles_are_divided_alike() {
+    let turn = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+    let solids = [
+        sphere(DVec3::new(0.41, 0.5, 0.52), 0.3, 5),
+        sphere(DVec3::new(0.57, 0.45, 0.5), 0.25, 4),
+        turned_box(DVec3::new(0.5, 0.6, 0.4), DVec3::new(0.4, 0.1, 0.1), turn),
+    ];
+    let unit = || vec![0.0, 1.0];
+    let off = is_divided_alike(&solids, &[unit(), unit(), unit()], 5);
+    assert!(off < 1e-12, "{off:e}");
+}

@@ -23,6 +23,32 @@ pub(crate) fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// The high and the low half of the digits of a number: T. Dekker, Numerische Mathematik 18 (1971).
+#[inline(always)]
+fn halves<R: Real>(x: R) -> [R; 2] {
+    // 2 to half the digits of the scalar, and 1.
+    let scaled = x * R::from_f64(if R::EPSILON.to_f64() > 1e-12 { 4097.0 } else { 134_217_729.0 });
+    let high = scaled - (scaled - x);
+    [high, x - high]
+}
+
+/// What rounding takes away from `a b`, which is `value`.
+#[inline(always)]
+fn rest_of_product<R: Real>(a: R, b: R, value: R) -> R {
+    let ([ah, al], [bh, bl]) = (halves(a), halves(b));
+    ((ah * bh - value) + ah * bl + al * bh) + al * bl
+}
+
+/// The vector product to the last digits, also of vectors that are all but parallel.
+#[inline(never)]
+pub(crate) fn sharp_cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    let difference = |p: usize, q: usize| {
+        let (one, other) = (a[p] * b[q], a[q] * b[p]);
+        (one - other) + (rest_of_product(a[p], b[q], one) - rest_of_product(a[q], b[p], other))
+    };
+    [difference(1, 2), difference(2, 0), difference(0, 1)]
+}
+
 /// The length, of a vector whose squares neither overflow nor underflow.
 #[inline(always)]
 pub(crate) fn length<R: Real>(a: [R; 3]) -> R {

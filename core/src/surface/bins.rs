@@ -103,7 +103,10 @@ impl fmt::Display for BinsError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             BinsError::NotFinite { body, triangle } => {
-                write!(f, "triangle {triangle} of body {body} has a coordinate that is NaN or infinite")
+                write!(
+                    f,
+                    "triangle {triangle} of body {body} has a coordinate that is NaN, infinite or too large to compute with"
+                )
             }
             BinsError::Memory { needed: BinsNeeded { numbers, groups } } => {
                 write!(f, "sorting the triangles needs memory of {numbers} numbers and {groups} groups")
@@ -192,7 +195,9 @@ impl<'a, V: Vector> Bins<'a, V> {
             return Err(BinsError::TooMany);
         }
         for (body, Surface { triangles, .. }) in bodies.iter().enumerate() {
-            let broken = triangles.iter().position(|t| !t.iter().all(|p| p.is_finite()));
+            // Differences and sums of a few coordinates must be finite, too.
+            let most = V::Scalar::MAX * V::Scalar::from_f64(0.25);
+            let broken = triangles.iter().position(|t| !t.iter().all(|p| p.is_finite() && p.norm_max() <= most));
             if let Some(triangle) = broken {
                 return Err(BinsError::NotFinite { body, triangle });
             }

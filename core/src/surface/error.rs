@@ -39,7 +39,7 @@ pub enum SurfaceError {
         /// How many triangles there are.
         triangles: usize,
     },
-    /// A triangle has a coordinate that is NaN or infinite.
+    /// A triangle has a coordinate that is NaN, infinite or too large to compute with.
     NotFinite {
         /// The triangle's number.
         id: u32,
@@ -59,7 +59,9 @@ impl fmt::Display for SurfaceError {
         match self {
             SurfaceError::NoLayer { layer, layers } => write!(f, "layer or plane {layer} of {layers}"),
             SurfaceError::NoTriangle { id, triangles } => write!(f, "triangle {id} of {triangles}"),
-            SurfaceError::NotFinite { id } => write!(f, "triangle {id} has a coordinate that is NaN or infinite"),
+            SurfaceError::NotFinite { id } => {
+                write!(f, "triangle {id} has a coordinate that is NaN, infinite or too large to compute with")
+            }
             SurfaceError::Shape(mismatch) => mismatch.fmt(f),
         }
     }

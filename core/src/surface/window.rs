@@ -24,7 +24,8 @@ impl Window {
         for &id in ids {
             let missing = SurfaceError::NoTriangle { id, triangles: triangles.len() };
             for corner in triangles.get(id as usize).ok_or(missing)? {
-                if !corner.is_finite() {
+                // Differences and sums of a few coordinates must be finite, too.
+                if !(corner.is_finite() && corner.norm_max() <= R::MAX * R::from_f64(0.25)) {
                     return Err(SurfaceError::NotFinite { id });
                 }
                 (lo, hi) = (lo.min(*corner), hi.max(*corner));

@@ -5,6 +5,7 @@ use super::piece::NoProof::{self, Ambiguous, Full};
 use super::piece::{Piece, Place, Plane, cut};
 use crate::number::real::Real;
 use core::cell::Cell;
+use core::ops::Range;
 
 /// Where a branch of a tree leads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,7 +56,17 @@ pub(super) struct BspMemory<'a, R: Real> {
     pub node_count: &'a mut usize,
 }
 
-/// Build the tree of a body, which has surface in the cell: the largest piece divides, the others go to its sides.
+/// Of more pieces than this a plane across an axis divides the crowd, if one serves: every plane of a convex body has all the others behind it, and its tree
+/// would be a list.
+const CROWD: usize = 96;
+
+/// Such a plane serves if neither of its sides gets more than this share of the pieces.
+const MOST: f64 = 0.75;
+
+/// It is so far from the mean of the pieces, as a share of their extent: what is symmetric has faces in the middle.
+const ASIDE: f64 = 0.0137;
+
+/// Build the tree of a body, which has surface in the cell: crowds are divided across axes, then the largest piece divides, and the others go to its sides.
 pub(super) fn build_bsp<R: Real>(pieces: &[Piece<R>], memory: BspMemory<R>, thickness: R) -> Result<Branch, NoProof> {
     let BspMemory { split_pieces, order, pending, nodes, node_count } = memory;
     let mut builder = BspBuilder { pieces, split_pieces, used: 0, thickness };
@@ -72,14 +83,15 @@ pub(super) fn build_bsp<R: Real>(pieces: &[Piece<R>], memory: BspMemory<R>, thic
         open_nodes -= 1;
         let PendingNode { first, end, parent } = *pending.get(open_nodes).ok_or(Full)?;
         let number = *node_count as u32;
-        let plane = builder.piece(*order.get(first).ok_or(Full)?)?.plane;
+        let room = order.len().saturating_sub(first);
+        let (divider, plane) = builder.divider(order.get(first..end).ok_or(Full)?, room)?;
         *nodes.get_mut(*node_count).ok_or(Full)? = Node { plane, positive: Branch::Open, negative: Branch::Solid };
         *node_count += 1;
         if let Some((node, positive)) = parent {
             let node = nodes.get_mut(node as usize).ok_or(Full)?;
             *(if positive { &mut node.positive } else { &mut node.negative }) = Branch::Node(number);
         }
-        let (middle, end) = builder.divide(order, first, end)?;
+        let (middle, end) = builder.divide(order, first..end, divider, &plane)?;
         for (first, end, positive) in [(first, middle, false), (middle, end, true)] {
             if end > first {
                 *pending.get_mut(open_nodes).ok_or(Full)? =
@@ -177,27 +189,83 @@ impl<R: Real> BspBuilder<'_, R> {
         piece(self.pieces, self.split_pieces, id)
     }
 
-    /// Sort the pieces after `order[first]`, the divider, by the sides of its plane: `first..a` behind, `a..b` before, the largest
+    /// The plane that divides some pieces, and the piece whose plane it is, the first; none if it is one between them. There is `room` to sort them in.
+    fn divider(&self, pieces: &[u32], room: usize) -> Result<(Option<u32>, Plane<R>), NoProof> {
+        if pieces.len() > CROWD
+            && let Some(plane) = self.plane_between(pieces, room)
+        {
+            return Ok((None, plane));
+        }
+        let first = *pieces.first().ok_or(Full)?;
+        Ok((Some(first), self.piece(first)?.plane))
+    }
+
+    /// A plane across an axis in which no piece lies, with enough of them on either side and few across.
+    #[inline(never)]
+    fn plane_between(&self, pieces: &[u32], room: usize) -> Option<Plane<R>> {
+        let (mut low, mut high, mut sum) = ([R::INFINITY; 3], [-R::INFINITY; 3], [R::ZERO; 3]);
+        for &id in pieces {
+            let center = self.piece(id).ok()?.ball.center;
+            for axis in 0..3 {
+                low[axis] = center[axis].smaller(low[axis]);
+                high[axis] = center[axis].larger(high[axis]);
+                sum[axis] += center[axis];
+            }
+        }
+        let count = R::from_usize(pieces.len());
+        (0..3).find_map(|axis| {
+            let mut normal = [R::ZERO; 3];
+            normal[axis] = R::ONE;
+            let offset = sum[axis] / count + (high[axis] - low[axis]) * R::from_f64(ASIDE);
+            let plane = Plane { normal, offset };
+            self.serves(&plane, pieces, room).then_some(plane)
+        })
+    }
+
+    /// Does a plane leave few enough of some pieces to either side, and does what it makes of them find room?
+    fn serves(&self, plane: &Plane<R>, pieces: &[u32], room: usize) -> bool {
+        let (mut sides, mut across) = ([0_usize; 2], 0);
+        for &id in pieces {
+            let Ok(piece) = self.piece(id) else { return false };
+            match piece.place(plane, self.thickness) {
+                Place::Negative => sides[0] += 1,
+                Place::Positive => sides[1] += 1,
+                Place::Across if !piece.polygon.is_full() => across += 1,
+                Place::On | Place::Across => return false,
+            }
+        }
+        let has_room =
+            self.used + 2 * across <= self.split_pieces.len() / 2 && pieces.len() + sides[1] + across <= room;
+        has_room && R::from_usize(sides[0].max(sides[1]) + across) <= R::from_usize(pieces.len()) * R::from_f64(MOST)
+    }
+
+    /// Sort some pieces by the sides of a plane, but the divider, which lies in it: `first..a` behind, `a..b` before, the largest
     /// first in each; returns `(a, b)`. Pieces in the plane are dropped, pieces across are cut.
-    fn divide(&mut self, order: &mut [u32], first: usize, end: usize) -> Result<(usize, usize), NoProof> {
-        let divider = *order.get(first).ok_or(Full)?;
-        let plane = self.piece(divider)?.plane;
+    fn divide(
+        &mut self,
+        order: &mut [u32],
+        Range { start: first, end }: Range<usize>,
+        divider: Option<u32>,
+        plane: &Plane<R>,
+    ) -> Result<(usize, usize), NoProof> {
         let mut sorted = Sorted::new(order, first, end);
-        for p in first + 1..end {
+        for p in first + usize::from(divider.is_some())..end {
             let id = *sorted.order.get(p).ok_or(Full)?;
             let piece = self.piece(id)?;
-            match piece.place(&plane, self.thickness) {
+            match piece.place(plane, self.thickness) {
                 // Solid thinner than rounding: which side of the plane holds it cannot be told.
-                Place::On if piece.backs(self.piece(divider)?, self.thickness) => return Err(Ambiguous),
+                Place::On if piece.backs(self.piece(divider.ok_or(Ambiguous)?)?, self.thickness) => {
+                    return Err(Ambiguous);
+                }
                 Place::On => {}
                 Place::Negative => sorted.behind(id, piece.area, p)?,
                 Place::Positive => sorted.before(id, piece.area)?,
                 Place::Across if piece.polygon.is_full() => {
                     for half in self.halve(id)? {
-                        self.cut(half, &plane, p, &mut sorted)?;
+                        self.cut(half, plane, p, &mut sorted)?;
                     }
                 }
-                Place::Across => self.cut(id, &plane, p, &mut sorted)?,
+                Place::Across => self.cut(id, plane, p, &mut sorted)?,
             }
         }
         sorted.finish(first, end)

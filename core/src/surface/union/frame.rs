@@ -3,7 +3,7 @@
 use super::piece::{Ball, Piece, Plane};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::number::space::{cross, dot, sub, unit};
+use crate::number::space::{cross, dot, sharp_cross, sub, unit};
 use crate::surface::clip::{Polygon, keep};
 
 /// Rounding of corners in the frame of a cell, in ε of the coordinates as seen from there. Planes closer than that are
@@ -129,7 +129,8 @@ impl<R: Real> Frame<R> {
             return false;
         }
         let [a, b, c] = corners.map(|c| self.framed(c));
-        let (Some(normal), Some(&corner)) = (unit(cross(sub(b, a), sub(c, a))), piece.polygon.corners().first()) else {
+        let (Some(normal), Some(&corner)) = (unit(normal(sub(b, a), sub(c, a))), piece.polygon.corners().first())
+        else {
             return false;
         };
         piece.plane = Plane { normal, offset: dot(normal, corner) };
@@ -150,6 +151,17 @@ impl<R: Real> Frame<R> {
             }
         })
     }
+}
+
+/// Sides of a triangle whose angle has a smaller sine leave their vector product too few digits: it would not be normal to the longer one.
+const SHARP: f64 = 0.1;
+
+/// Normal to two sides of a triangle.
+#[inline(always)]
+fn normal<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    let rough = cross(a, b);
+    let is_sharp = dot(rough, rough) < R::from_f64(SHARP * SHARP) * (dot(a, a) * dot(b, b));
+    if is_sharp { sharp_cross(a, b) } else { rough }
 }
 
 /// Does rounding ask for planes so thick in a cell that what this may cost counts?
