@@ -119,7 +119,7 @@ impl<'a, R: Real, const D: usize> Problem<'a, R, D> {
     ///
     /// # Errors
     /// A patch names no axis, stands on a periodic side, or is periodic itself; the mesh is a line, whose sides have no parts; what stands outside a patch
-    /// is no state of the gas; [`Problem::with_feed`] has been told of another number of patches.
+    /// is no state of the gas; [`Problem::with_feed`] has told of patches, but not of as many.
     pub fn with_patches(self, patches: &'a [Patch<R, D>]) -> Result<Self, Error> {
         let wrong = |p: &Patch<R, D>| {
             let side = self.boundaries.get(p.axis).map(|sides| sides[usize::from(p.high)]);

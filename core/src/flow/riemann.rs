@@ -34,7 +34,7 @@ pub struct Flux<R, const D: usize> {
     pub energy: R,
     /// The part of the normal momentum that is pressure at the face.
     pub pressure: R,
-    /// Volume, by which a capacity 1/(gamma − 1) is carried: of three waves the speed of the contact.
+    /// Volume, by which a capacity 1/(gamma − 1) is carried.
     pub velocity: R,
     /// The capacity that it carries, and what diffusion adds to their product.
     pub capacity: [R; 2],
@@ -288,9 +288,11 @@ fn hllc<R: Real, const D: usize, const ENERGY: bool>(
     } else {
         R::ZERO
     };
-    let (face_velocity, face_pressure) = if speed == R::ZERO { (velocity[0], pressure) } else { (star, p_star) };
+    let face_pressure = if speed == R::ZERO { pressure } else { p_star };
     let capacity = [upwind.capacity(), R::ZERO];
-    Flux { mass, momentum, energy, pressure: face_pressure, velocity: face_velocity, capacity }
+    // The volume of upwind gas that crosses the face, E. Johnsen and T. Colonius, J. Comput. Phys. 219 (2006) 715: the speed of the contact would jump where an
+    // outer wave stands at the face, as at a choked throat, and rounding would choose.
+    Flux { mass, momentum, energy, pressure: face_pressure, velocity: share * relative, capacity }
 }
 
 /// The mean of two fluxes, a share of their difference, and a diffusion of the jump.

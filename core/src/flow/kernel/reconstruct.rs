@@ -100,7 +100,8 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: 
             slopes_along::<R, D, S, MIXED, BY_WAVES>(slab, (d, row), cells, &Even, of_row, out);
         } else {
             let place = if d == 0 { None } else { Some(row.at[d]) };
-            let sides = Sides { problem: &slab.problem, d, at: row.at };
+            let sides = slab.problem.boundaries[d].map(|b| b.copies_inside());
+            let sides = Sides { sides, problem: slab.problem, d, at: row.at };
             let half_gravity = R::HALF * gravity;
             let (is_even, periodic) = (slab.even[d], slab.periodic[d]);
             let axis = Uneven { widths, is_even, place, half_gravity, periodic, sides };
@@ -319,6 +320,8 @@ impl<R: Real> Differences<R> for Even {
 
 /// What stands on the sides of an axis beside the cells of a row.
 struct Sides<'p, R, const D: usize> {
+    /// The pressure beyond the low and the high side, patches aside, is that inside.
+    sides: [bool; 2],
     problem: &'p Problem<'p, R, D>,
     d: usize,
     /// Index of the first cell of the row along each axis.
@@ -327,7 +330,14 @@ struct Sides<'p, R, const D: usize> {
 
 impl<R: Real, const D: usize> Sides<'_, R, D> {
     /// The pressure beyond the low or the high side is that inside, so gravity has no weight to subtract.
+    #[inline(always)]
     fn copy_inside(&self, high: bool, i: usize) -> bool {
+        if D < 2 || self.problem.patches.is_empty() { self.sides[usize::from(high)] } else { self.copies(high, i) }
+    }
+
+    /// The same where patches are.
+    #[inline(never)]
+    fn copies(&self, high: bool, i: usize) -> bool {
         let mut at = self.at;
         at[0] += i;
         self.problem.side(self.d, high, at).copies_inside()

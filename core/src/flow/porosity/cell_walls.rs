@@ -121,16 +121,8 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
             if !differs(low, high) {
                 return false;
             }
-            let mut beside = at;
-            if (low < high) == (corner == Corner::Solid) {
-                let Some(below) = at[d].checked_sub(1) else { return false };
-                beside[d] = below;
-            } else if at[d] + 1 < self.mesh.cells()[d] {
-                beside[d] += 1;
-            } else {
-                return false;
-            }
-            self.is_askew_or_medium(beside)
+            let upward = (low < high) != (corner == Corner::Solid);
+            self.beside(at, d, upward).is_some_and(|beside| self.is_askew_or_medium(beside))
         };
         !(0..D).any(goes_on_askew)
     }
@@ -156,15 +148,9 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
         let along = (0..D).find(|&d| area.get(d).is_some_and(|a| a.abs() >= largest));
         let (1, Some(d)) = (tilts, along) else { return false };
         let (low, high) = openings.get(d).copied().unwrap_or_default();
-        let mut beyond = at;
-        if let Some(place) = beyond.get_mut(d) {
-            *place = if high < low { *place + 1 } else { place.wrapping_sub(1) };
-            if *place >= self.mesh.cells().get(d).copied().unwrap_or_default() {
-                return false;
-            }
-        }
         let narrow = R::smaller(low, high);
-        narrow > rounding() && self.open_volume(beyond) >= R::HALF * narrow
+        let beyond = self.beside(at, d, high < low);
+        narrow > rounding() && beyond.is_some_and(|cell| self.open_volume(cell) >= R::HALF * narrow)
     }
 
     /// Whether a cell holds an inclined wall that tells what one of its faces across an axis is, of which so much is open. A wall tilted from the axis by less
@@ -230,21 +216,20 @@ impl<R: Real, const D: usize> Medium<'_, R, D> {
 
     /// The cell so many steps beyond another along an axis, into what the area vector of its walls says is solid; none outside the mesh.
     fn beyond(&self, at: [usize; D], area: [R; D], d: usize, steps: usize) -> Option<[usize; D]> {
-        let (place, falls) = (*at.get(d)?, *area.get(d)? < R::ZERO);
-        let (cells, periodic) = (*self.mesh.cells().get(d)?, *self.periodic.get(d)?);
-        let around = |k: usize| periodic.then_some(k);
-        let step = |k: usize| match falls {
-            true => {
-                if k + 1 < cells {
-                    Some(k + 1)
-                } else {
-                    around(0)
-                }
-            }
-            false => k.checked_sub(1).or(around(cells.wrapping_sub(1))),
-        };
+        let falls = *area.get(d)? < R::ZERO;
+        (0..steps).try_fold(at, |cell, _| self.beside(cell, d, falls))
+    }
+
+    /// The next cell along an axis, upward or downward, around periodic ends; none outside the mesh.
+    fn beside(&self, at: [usize; D], d: usize, upward: bool) -> Option<[usize; D]> {
+        let (place, cells) = (*at.get(d)?, *self.mesh.cells().get(d)?);
+        let around = |k: usize| if self.periodic.get(d) == Some(&true) { Some(k) } else { None };
         let mut cell = at;
-        *cell.get_mut(d)? = (0..steps).try_fold(place, |k, _| step(k))?;
+        *cell.get_mut(d)? = match upward {
+            true if place + 1 < cells => place + 1,
+            true => around(0)?,
+            false => place.checked_sub(1).or(around(cells.wrapping_sub(1)))?,
+        };
         Some(cell)
     }
 

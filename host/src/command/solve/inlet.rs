@@ -34,6 +34,26 @@ pub struct Inlet<const D: usize> {
     gas: Gas<f64>,
     /// Open area beside each cell of the side, as a share of all.
     shares: Vec<(usize, f64)>,
+    /// The pressure from which it starts.
+    first: f64,
+}
+
+/// Gas that enters slower than this share of what is asked for does not meet it.
+const MET: f64 = 0.98;
+
+/// A pressure that is so many times the first, after so many relaxation times, has risen far.
+const RISEN: f64 = 2.0;
+const TRIED: f64 = 10.0;
+
+/// What an inlet does not meet.
+#[derive(Debug, Clone, Copy)]
+pub struct Shortfall {
+    /// The speed asked for.
+    pub asked: f64,
+    /// That of the gas beside it.
+    pub found: f64,
+    /// Its pressure at the beginning and now.
+    pub pressure: [f64; 2],
 }
 
 impl<const D: usize> Inlet<D> {
@@ -71,6 +91,7 @@ impl<const D: usize> Inlet<D> {
             sign,
             gas: states.gas_of(states.gamma(keys, None)),
             shares: Vec::new(),
+            first: state.pressure,
         };
         inlet.follow(&mut state);
         Ok((inlet, state))
@@ -94,6 +115,7 @@ impl<const D: usize> Inlet<D> {
             let beside = self.mean(|cell| flow.get(cell).pressure);
             self.set_pressure(flow, beside);
         }
+        self.first = self.pressure(flow);
         if let Boundary::Inlet(state) = *self.place(flow) {
             let (speed, sound) = (self.sign * state.velocity[self.at.0], self.gas.sound_speed(&state));
             self.relax = if speed > sound { f64::INFINITY } else { self.given_relax.unwrap_or(self.length / sound) };
@@ -122,13 +144,29 @@ impl<const D: usize> Inlet<D> {
         *self.place(flow) = next;
     }
 
+    /// The present state outside.
+    fn state(&self, flow: &Flow<f64, D>) -> Option<Primitive<f64, D>> {
+        match self.patch.map_or(flow.boundaries[self.at.0][self.at.1], |n| flow.patches[n].boundary) {
+            Boundary::Inlet(w) => Some(w),
+            _ => None,
+        }
+    }
+
     /// The present pressure outside.
     #[must_use]
     pub fn pressure(&self, flow: &Flow<f64, D>) -> f64 {
-        match self.patch.map_or(flow.boundaries[self.at.0][self.at.1], |n| flow.patches[n].boundary) {
-            Boundary::Inlet(w) => w.pressure,
-            _ => 0.0,
-        }
+        self.state(flow).map_or(0.0, |w| w.pressure)
+    }
+
+    /// Does gas enter more slowly than is asked for, although the pressure has risen far? Then what lies behind lets no more pass.
+    #[must_use]
+    pub fn shortfall(&self, flow: &Flow<f64, D>) -> Option<Shortfall> {
+        let (d, state) = (self.at.0, self.state(flow)?);
+        let [asked, found] = [state.velocity[d], self.mean(|cell| flow.get(cell).velocity[d])].map(|u| self.sign * u);
+        let pressure = [self.first, state.pressure];
+        let has_tried = flow.time > TRIED * self.relax;
+        let is_short = has_tried && found < MET * asked && pressure[1] > RISEN * pressure[0];
+        is_short.then_some(Shortfall { asked, found, pressure })
     }
 
     /// Sets the pressure outside, of a flow that goes on.

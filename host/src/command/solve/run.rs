@@ -1,10 +1,12 @@
 //! `voidage solve`: case → setup → steps → files.
 
+use super::case::side_word;
 use super::case_file::CaseFile;
 use super::charges::Charges;
 use super::checkpoint::{self, Fingerprint, Journal};
 use super::force_peaks;
 use super::frames::{self, Snapshot, create};
+use super::inlet::Shortfall;
 use super::limits::Limits;
 use super::lock::Lock;
 use super::maxima::{Maxima, Peaks, lowest_pressure};
@@ -25,6 +27,7 @@ use crate::command::template;
 use crate::error::{Error, Result};
 use crate::files::json;
 use crate::grid::Edges;
+use crate::picture::ticks::number as short;
 use crate::words::written;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -156,6 +159,7 @@ fn run<const D: usize>(
         progress.stage("steps", |p| run.steps(&p.line()))
     };
     stepped?;
+    run.warn_of_inlets(file, &mut progress);
     progress.stage("output", |_| run.last())?;
     let report = |run: &Run<D>, progress: &Progress| {
         let report = Report::new(file, &run.setup, &run.journal, run.done, progress);
@@ -291,6 +295,26 @@ impl<'a, const D: usize> Run<'a, D> {
             let (time, end) = (written(self.setup.flow.time), written(self.limits.end));
             let reason = "the run that --resume goes on with is at t";
             progress.warn(file.remark("time.end", format!("is {end}, and {reason} = {time}: nothing is left to do")));
+        }
+    }
+
+    /// Inlets that did not meet their velocity, however far their pressure rose.
+    fn warn_of_inlets(&self, file: &CaseFile, progress: &mut Progress) {
+        let Setup { flow, inlets, live, .. } = &self.setup;
+        for inlet in inlets {
+            let Some(Shortfall { asked, found, pressure: [first, now] }) = inlet.shortfall(flow) else { continue };
+            let key = match inlet.patch {
+                Some(n) => format!("boundary.patch[{n}]"),
+                None => format!("boundary.{}", side_word(live[inlet.at.0], inlet.at.1)),
+            };
+            let [found, asked, first, now] = [found, asked, first, now].map(short);
+            progress.warn(file.remark(
+                &key,
+                format!(
+                    "the gas enters at {found} m/s, not at {asked} as asked for, although the pressure of the inlet has risen from {first} to {now} Pa: what lies \
+                     behind it is choked or has no way out"
+                ),
+            ));
         }
     }
 
