@@ -6,6 +6,7 @@ use crate::command::stages::load;
 use crate::command::streams::{check_place, check_suffix, is_stream, replaces, write_json};
 use crate::error::{Error, Result};
 use crate::geometry::bodies::{Bodies, Body, Diagnosis, SolidSummary};
+use crate::geometry::repair::tree::Tree;
 use crate::picture::ticks::{measure, plain_to};
 use crate::words::counted;
 use glam::DVec3;
@@ -68,15 +69,13 @@ pub fn inspect(args: &InspectArgs) -> Result<()> {
     Ok(())
 }
 
-/// Pairs of bodies whose boxes overlap: an upper bound on overlapping pairs. A sweep along x.
+/// Pairs of bodies whose boxes overlap: an upper bound on overlapping pairs.
 fn overlapping_boxes(bodies: &[Body]) -> usize {
-    let mut order: Vec<&Body> = bodies.iter().collect();
-    order.sort_by(|a, b| a.bounds[0].x.total_cmp(&b.bounds[0].x));
     let mut pairs = 0;
-    for (n, a) in order.iter().enumerate() {
-        let reach = order[n + 1..].iter().take_while(|b| b.bounds[0].x < a.bounds[1].x);
-        pairs += reach.filter(|b| b.bounds[0].cmplt(a.bounds[1]).all() && a.bounds[0].cmplt(b.bounds[1]).all()).count();
-    }
+    Tree::of_boxes(bodies.iter().map(|body| body.bounds), None).touching_pairs(|a, b| {
+        let [[a_low, a_high], [b_low, b_high]] = [a, b].map(|n| bodies[n as usize].bounds);
+        pairs += usize::from(b_low.cmplt(a_high).all() && a_low.cmplt(b_high).all());
+    });
     pairs
 }
 

@@ -20,6 +20,7 @@ use crate::geometry::repair::regions::{self, Regions, Unknown};
 use crate::geometry::repair::rooms::Role;
 use crate::geometry::repair::sets::Sets;
 use crate::geometry::repair::shells::{self, Shell};
+use crate::geometry::repair::tree::Tree;
 use crate::geometry::repair::two_sided;
 use crate::geometry::repair::weld::{self, Indexed};
 use crate::geometry::resolve::{Part, resolve};
@@ -201,9 +202,7 @@ impl Bodies {
         };
         let name_of =
             |n: u32| mesh.solids.get(solid_of(indexed.source(n))).map_or_else(String::new, |s| s.name.clone());
-        let walls = Cluster::walls(&clusters);
-        let surface =
-            Unclosed { mesh: &indexed, shells: &shells, with_backs: with_backs.as_deref(), walls: &walls, rounding };
+        let surface = Unclosed { mesh: &indexed, shells: &shells, with_backs: with_backs.as_deref(), rounding };
         let closed = close(&surface, name_of, &mut d, &mut report);
         let known = clusters.into_iter().map(|c| c.into_part(&indexed, name_of)).collect();
         let closed = resolve(closed, known, &scaled, &mut d, &mut report);
@@ -353,9 +352,12 @@ fn say_doubts(shells: &[Closed], inner: &[usize], unclear: &[(usize, [DVec3; 2])
 /// The cavities of a body, overlapping ones made one; and whether that was possible.
 fn joined(cavities: &[&Closed]) -> (Vec<Closed>, bool) {
     let mut sets = Sets::new(cavities.len());
-    for (n, a) in cavities.iter().enumerate() {
-        (0..n).filter(|&m| a.overlaps(cavities[m])).for_each(|m| sets.join(m, n));
-    }
+    Tree::of_boxes(cavities.iter().map(|cavity| cavity.bounds), None).touching_pairs(|m, n| {
+        let (m, n) = (m.min(n) as usize, m.max(n) as usize);
+        if cavities[m].overlaps(cavities[n]) {
+            sets.join(m, n);
+        }
+    });
     let mut clear = true;
     let mut one = |group: Vec<usize>| {
         let whole = Closed::together(group.iter().map(|&n| cavities[n]));
@@ -405,13 +407,6 @@ impl Cluster {
             Err(Unknown::Open | Unknown::Mixed) => None,
             found => Some(Cluster { triangles, regions: found.ok() }),
         }
-    }
-
-    /// The triangles of those that hold nothing.
-    fn walls(clusters: &[Self]) -> Vec<u32> {
-        let holds_nothing =
-            |c: &&Cluster| c.regions.as_ref().is_some_and(|r| r.solid.is_empty() && r.perhaps.is_empty());
-        clusters.iter().filter(holds_nothing).flat_map(|c| c.triangles.iter().copied()).collect()
     }
 
     fn into_part(self, mesh: &Indexed, name_of: impl Fn(u32) -> String) -> (Part, Option<Regions>) {

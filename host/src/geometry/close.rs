@@ -21,8 +21,6 @@ pub(super) struct Unclosed<'a> {
     pub shells: &'a [Shell],
     /// Which triangles have three corners, those too that were dropped, if some are the backs of others.
     pub with_backs: Option<&'a [bool]>,
-    /// Double-sided triangles that hold nothing: perhaps what two parts have between them.
-    pub walls: &'a [u32],
     /// How far corners may be off.
     pub rounding: f64,
 }
@@ -111,17 +109,17 @@ fn doubt_gaping(mesh: &Indexed, parts: &mut [Part], loose: &[Loose], report: &mu
 }
 
 /// Takes those parts apart that were joined although each closes by itself, if some of them look the other way, or a part that looks the other way holds one
-/// and not the other: that one may be its cavity. Sheets and walls may be what they have between them. `joined`: which parts, and their triangles.
+/// and not the other: that one may be its cavity. Sheets may be what they have between them. `joined`: which parts, and their triangles.
 fn separate(
     surface: &Unclosed<'_>,
     parts: &mut Vec<Part>,
     mut joined: Vec<(usize, Vec<u32>)>,
     name_of: impl Fn(u32) -> String,
 ) {
-    let &Unclosed { mesh, walls, .. } = surface;
+    let mesh = surface.mesh;
     let sheets = joined.iter().filter(|(s, _)| parts[*s].shell.is_sheet());
     let between: Vec<(u32, Closed)> =
-        sheets.flat_map(|(_, members)| members).chain(walls).map(|&n| (n, Closed::new(mesh.corners(&[n])))).collect();
+        sheets.flat_map(|(_, members)| members).map(|&n| (n, Closed::new(mesh.corners(&[n])))).collect();
     let (mut used, mut sheets) = (HashSet::default(), Vec::new());
     while let Some((s, members)) = joined.pop() {
         let (shell, is_sheet) = (&parts[s].shell, parts[s].shell.is_sheet());

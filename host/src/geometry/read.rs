@@ -17,6 +17,7 @@ use std::path::Path;
 use super::mesh::Mesh;
 use crate::error::{Error, Result};
 use kind::FileKind;
+pub use kind::is_scene;
 
 /// Bytes looked at before a file is read whole, so that a huge file of the wrong kind costs nothing.
 const HEAD: u64 = 64 * 1024;

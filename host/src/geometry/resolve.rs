@@ -63,9 +63,20 @@ fn have_backs(triangles: &[[DVec3; 3]]) -> impl Iterator<Item = bool> {
     triangles.iter().map(move |&[a, b, c]| distinct([a, b, c]) && all.contains(&key(&[a, c, b])))
 }
 
+/// Do triangles lie in the plane of the largest of them?
+fn is_flat(triangles: &[[DVec3; 3]], on: f64) -> bool {
+    let doubled = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a);
+    let largest = triangles.iter().max_by(|s, t| doubled(s).length().total_cmp(&doubled(t).length()));
+    let Some((origin, normal)) = largest.map(|t| (t[0], doubled(t).normalize_or_zero())) else { return false };
+    normal != DVec3::ZERO && triangles.iter().flatten().all(|p| (p - origin).dot(normal).abs() <= on)
+}
+
 fn untangle(shell: &Closed) -> Found {
     if !shell.is_sheet() {
         return crossing::untangle(&shell.triangles, shell.bounds);
+    }
+    if is_flat(&shell.triangles, crossing::tolerance(shell.bounds)) {
+        return Found::Simple { walls: true };
     }
     // What winds forward in one place and backward in another may have no volume, either.
     match have_backs(&shell.triangles).all(|back| back) {

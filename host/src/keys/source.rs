@@ -8,6 +8,9 @@ use std::ops::Range;
 use std::path::Path;
 use toml::de::DeTable;
 
+/// Bytes on either side of a place within which an excerpt lies: more than it shows.
+const NEAR: usize = 1000;
+
 /// A text and the file it is from.
 #[derive(Debug, Clone)]
 pub struct Source<'a> {
@@ -118,8 +121,15 @@ impl<'a> Source<'a> {
         let end = self.breaks.get(number - 1).copied().unwrap_or(self.text.len());
         let text = |range: Range<usize>| self.text.get(range).unwrap_or("");
         let start = span.start.min(end);
+        // A line may be the whole file: what is far from the place is not shown.
+        let (begin, end) = (self.boundary(begin.max(start.saturating_sub(NEAR))), self.boundary(end.min(start + NEAR)));
         let width = text(start..span.end.clamp(start, end)).trim_end().chars().count();
         excerpt(number, text(begin..end), text(begin..start).chars().count(), width)
+    }
+
+    /// The first place from `at` on that is not within a character.
+    fn boundary(&self, at: usize) -> usize {
+        (at..self.text.len()).find(|&at| self.text.is_char_boundary(at)).unwrap_or(self.text.len())
     }
 }
 

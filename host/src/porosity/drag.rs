@@ -8,7 +8,6 @@
 //!
 //! which is what [`ObstacleDrag::cr`] holds.
 
-use super::levels::levels;
 use super::resistance::Resistance;
 use super::shadows::{cells, faces_of_cell};
 use super::solid::with_solid_layers;
@@ -194,22 +193,18 @@ impl<'a> Rows<'a> {
 /// The resistance in 1/m that solids are given as a whole, along all axes, by the share of each cell that they fill; all 0 where none is given one.
 #[must_use]
 pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Vec<f64> {
-    let mut sums = vec![0.0; grid.cell_count()];
-    let mut given: Vec<f64> = bodies.bodies.iter().filter_map(|b| b.drag.cr).collect();
-    given.sort_by(f64::total_cmp);
-    given.dedup();
-    given.retain(|cr| *cr > 0.0);
-    let mut below = 0.0;
-    for cr in given {
-        // What resists at least as much fills so much of a cell.
-        let mut own = bodies.some(|body| bodies.bodies[body].drag.cr.is_some_and(|other| other >= cr));
-        own.bodies.iter_mut().for_each(|b| b.porosity = 0.0);
-        debug_assert!(levels(&own) == [0.0], "all of them solid");
-        let filled = porosity(grid, &own, Options { bounds: false, areas: false, ..options });
-        sums.iter_mut().zip(filled.beta.v.iter()).for_each(|(sum, open)| *sum += (cr - below) * (1.0 - open));
-        below = cr;
+    let given = |n: usize| bodies.bodies[n].drag.cr.filter(|cr| *cr > 0.0);
+    let most = (0..bodies.bodies.len()).filter_map(given).fold(0.0, f64::max);
+    if most == 0.0 {
+        return vec![0.0; grid.cell_count()];
     }
-    sums
+    // Where several lie, the one that resists most counts, as of porous bodies the least open does.
+    let mut own = bodies.some(|n| given(n).is_some());
+    for body in &mut own.bodies {
+        body.porosity = 1.0 - body.drag.cr.map_or(0.0, |cr| cr / most);
+    }
+    let filled = porosity(grid, &own, Options { bounds: false, areas: false, ..options });
+    filled.beta.v.iter().map(|open| most * (1.0 - open)).collect()
 }
 
 /// A cell that is less open than this is full, but for rounding.

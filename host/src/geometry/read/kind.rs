@@ -143,9 +143,17 @@ fn has_vertex(head: &[u8]) -> bool {
     })
 }
 
-/// Whether a line begins as a table of a scene does: `[[solid]]`.
-fn is_scene(text: &[u8]) -> bool {
-    text.split(|byte| matches!(byte, b'\n' | b'\r')).any(|line| line.trim_ascii().starts_with(b"[[solid"))
+/// Whether a text has a line that begins as the solids of a scene do: `[[solid]]`, or `solid = [`.
+#[must_use]
+pub fn is_scene(text: &[u8]) -> bool {
+    let begins = |line: &[u8]| {
+        let mut dense = line.iter().filter(|byte| !byte.is_ascii_whitespace());
+        let mut start = [0; 7];
+        start.iter_mut().zip(&mut dense).for_each(|(place, byte)| *place = *byte);
+        [&b"[[solid"[..], b"solid=["].contains(&&start[..])
+    };
+    let text = text::without_bom(text);
+    !has_many_controls(body(text)) && text.split(|byte| matches!(byte, b'\n' | b'\r')).any(begins)
 }
 
 /// Last resort for what bears no mark: its extension, or the message that helps most.

@@ -1,7 +1,11 @@
 //! Closed surfaces with what is asked of them again and again: bounds, volume, how often they wind around a point.
 
-use crate::geometry::repair::crossing::solid_angle;
+use crate::geometry::repair::crossing::{solid_angle, tolerance};
+use crate::geometry::repair::face::Face;
+use crate::geometry::repair::lines::Lines;
+use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
+use std::sync::{Arc, OnceLock};
 
 /// What is not known of a body.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -37,7 +41,19 @@ pub struct Closed {
     pub rounding: f64,
     /// Boxes in which it is not known what is solid: around rims of holes that are not plane, and around parts that may have each other's triangles.
     pub unknown: Vec<[DVec3; 2]>,
+    /// What lines through it are followed by, once that was asked.
+    pub lines: LineSearch,
 }
+
+/// Faces of a shell and their tree, made when they are needed first.
+#[derive(Debug, Clone, Default)]
+pub struct LineSearch(OnceLock<Arc<(Vec<Face>, Tree)>>);
+
+/// Of shells with fewer triangles, solid angles tell as fast as lines do.
+const MANY: usize = 512;
+
+/// Directions in which lines leave a point: along nothing that is built.
+const AWAY: [DVec3; 2] = [DVec3::new(0.412_91, 0.573_37, 0.707_65), DVec3::new(-0.63, 0.34, -0.69)];
 
 impl Closed {
     /// Measure some triangles.
@@ -53,6 +69,7 @@ impl Closed {
             two_sided: false,
             rounding: 0.0,
             unknown: Vec::new(),
+            lines: LineSearch::default(),
         }
     }
 
@@ -93,6 +110,22 @@ impl Closed {
     /// Does it wind around a point?
     #[must_use]
     pub fn winds_around(&self, point: DVec3) -> bool {
+        let [lo, hi] = self.bounds;
+        if point.cmplt(lo).any() || point.cmpgt(hi).any() {
+            return false;
+        }
+        if self.triangles.len() >= MANY {
+            let made =
+                || Arc::new((self.triangles.iter().map(|t| Face::new(*t)).collect(), Tree::new(&self.triangles)));
+            let (faces, tree) = &**self.lines.0.get_or_init(made);
+            let lines = Lines::new(faces, tree, tolerance(self.bounds));
+            // Where the surface has a crack, lines through it and others differ.
+            if let [Some(one), Some(other)] = AWAY.map(|away| lines.winding(point, away, &[]))
+                && one == other
+            {
+                return one != 0;
+            }
+        }
         self.triangles.iter().map(|t| solid_angle(t, point)).sum::<f64>().abs() > 0.5
     }
 

@@ -63,8 +63,6 @@ pub struct Resolved {
     pub both_ways: bool,
     /// It touches itself in edges: it may be several that were joined.
     pub touches: bool,
-    /// It has walls without thickness.
-    pub walls: bool,
 }
 
 /// What was made of a shell.
@@ -386,13 +384,12 @@ pub fn untangle(triangles: &[[DVec3; 3]], [lo, hi]: [DVec3; 2]) -> Found {
     match shell.resolved(inverted) {
         Some(made) if !made.differs => Found::Simple { walls: made.walls },
         Some(made) if is_closed(&made.surface, [lo, hi]) => {
-            let Made { surface, forward, backward, walls, .. } = made;
+            let Made { surface, forward, backward, .. } = made;
             Found::Resolved(Resolved {
                 surface,
                 place,
                 both_ways: forward && backward,
                 touches: shell.at_edge_of_many().is_some(),
-                walls,
             })
         }
         _ => Found::Doubtful(place),

@@ -3,8 +3,8 @@
 //! There parts of an assembly touch, or a surface touches itself. Around the edge the triangles lie like the spokes of a wheel: each
 //! opens a wedge of solid or closes one. A triangle that opens belongs to the one that closes *its* wedge, as brackets do. Where spokes
 //! coincide (flush parts) or wedges overlap, many pairings are possible; then what is known to be one part comes first: triangles of
-//! one named solid, then those already connected by other edges. So no shell depends on the order of a file, and a triangle and
-//! its exact reverse, between which there is nothing, are never joined.
+//! one named solid, then those already connected by other edges. So no shell depends on the order of a file where each triangle stands there once; of repeated
+//! and turned ones the values do not, but their bounds may. A triangle and its exact reverse, between which there is nothing, are never joined.
 
 use crate::geometry::repair::edges::{Use, ends};
 use crate::geometry::repair::sets::Sets;

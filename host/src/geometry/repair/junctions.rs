@@ -72,7 +72,7 @@ fn is_odd(mesh: &Indexed, uses: &[(u64, Use)]) -> bool {
     all.len() % 2 == 1
 }
 
-/// EdgeCorners at which two of these edges run straight on.
+/// Corners at which two of these edges run straight on.
 fn straight(mesh: &Indexed, edges: &[u64]) -> Vec<u32> {
     let both_ways = |&edge: &u64| {
         let [a, b] = ends(edge);

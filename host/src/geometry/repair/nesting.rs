@@ -37,9 +37,9 @@ pub fn nest(shells: &[Closed], names: &[String]) -> Nesting {
     let is_mixed = order.iter().any(|&s| sign(s)) && !order.iter().all(|&s| sign(s));
     order.sort_by(|&a, &b| shells[b].volume.abs().total_cmp(&shells[a].volume.abs()));
     let mut rooms = Rooms::new(shells, names, &order);
-    for (n, &s) in order.iter().enumerate().filter(|_| is_mixed) {
-        // The smallest container is the nearest before it in the order.
-        let Some(&nearest) = order[..n].iter().rev().find(|&&p| contains(&shells[p], &shells[s])) else { continue };
+    for &s in order.iter().filter(|_| is_mixed) {
+        // The smallest container is the nearest.
+        let Some(nearest) = rooms.around(s).find(|&p| contains(&shells[p], &shells[s])) else { continue };
         match (sign(nearest) == sign(s), rooms.is_cavity(nearest)) {
             (false, false) => rooms.give(s, nearest),
             // In a room of one body it may be a room of another that crosses the first.
@@ -64,12 +64,16 @@ pub fn nest(shells: &[Closed], names: &[String]) -> Nesting {
 /// For shells with two sides those with two sides that hold them, unless a cavity of these does.
 fn around_two_sided(shells: &[Closed], order: &[usize], rooms: &Rooms<'_>) -> BTreeMap<usize, Vec<usize>> {
     let two_sided: Vec<usize> = order.iter().copied().filter(|&s| shells[s].two_sided && !rooms.is_cavity(s)).collect();
-    let around = |n: usize| -> Vec<usize> {
-        let inner = &shells[two_sided[n]];
+    let around = |s: usize| -> Vec<usize> {
+        let inner = &shells[s];
         let is_in_room_of = |outer: usize| rooms.of(outer).iter().any(|&room| contains(&shells[room], inner));
-        let holds = |outer: &usize| contains(&shells[*outer], inner) && !is_in_room_of(*outer);
-        two_sided[..n].iter().copied().filter(holds).collect()
+        let is_one = |outer: &usize| shells[*outer].two_sided && !rooms.is_cavity(*outer);
+        let holds = |outer: &usize| is_one(outer) && contains(&shells[*outer], inner) && !is_in_room_of(*outer);
+        let mut found: Vec<usize> = rooms.around(s).filter(holds).collect();
+        // The largest first.
+        found.reverse();
+        found
     };
-    let all = (0..two_sided.len()).into_par_iter().map(|n| (two_sided[n], around(n)));
+    let all = two_sided.par_iter().map(|&s| (s, around(s)));
     all.filter(|(_, around)| !around.is_empty()).collect()
 }

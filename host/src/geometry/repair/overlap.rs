@@ -5,7 +5,7 @@ use crate::geometry::repair::crossing::{Meetings, tolerance};
 use crate::geometry::repair::face::bounds;
 use glam::DVec3;
 
-/// So many solid angles at most are computed for the points of one surface: beyond, some are left out.
+/// So many points times triangles are looked at, at most, for one surface: beyond, some points are left out.
 const LOOKS: usize = 20_000_000;
 
 /// Points just within a surface, one beside each part into which another divides those of its triangles that it meets. None where they do not meet.

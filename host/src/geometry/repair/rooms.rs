@@ -6,6 +6,7 @@
 
 use crate::geometry::repair::closed::Closed;
 use crate::geometry::repair::overlap::{contains, overlap};
+use crate::geometry::repair::tree::Tree;
 use glam::DVec3;
 use rustc_hash::FxHashMap as HashMap;
 
@@ -35,6 +36,8 @@ pub struct Rooms<'a> {
     hosts: HashMap<usize, Vec<usize>>,
     overlaps: HashMap<[usize; 2], bool>,
     unclear: Vec<(usize, [DVec3; 2])>,
+    /// Of boxes in the order of size.
+    tree: Tree,
 }
 
 impl<'a> Rooms<'a> {
@@ -53,7 +56,20 @@ impl<'a> Rooms<'a> {
             hosts: HashMap::default(),
             overlaps: HashMap::default(),
             unclear: Vec::new(),
+            tree: Tree::of_boxes(order.iter().map(|&s| shells[s].bounds), None),
         }
+    }
+
+    /// The shells not smaller than one whose boxes touch its own, the smallest first.
+    pub fn around(&self, s: usize) -> impl Iterator<Item = usize> {
+        let mut found = Vec::new();
+        self.tree.touching(self.shells[s].bounds, |rank| {
+            if (rank as usize) < self.rank[s] {
+                found.push(rank as usize);
+            }
+        });
+        found.sort_unstable();
+        found.into_iter().rev().map(|rank| self.order[rank])
     }
 
     /// Is a shell a cavity?
@@ -70,8 +86,10 @@ impl<'a> Rooms<'a> {
 
     /// Make a shell a cavity of the body `nearest`, the smallest that holds it, or of another. All larger shells have their roles.
     pub fn give(&mut self, s: usize, nearest: usize) {
-        let may_overlap = |&other: &usize| self.shells[other].overlaps(&self.shells[s]);
-        if self.names[nearest] == self.names[s] && !self.of[nearest].iter().any(may_overlap) {
+        // All cavities so far are larger.
+        let may_overlap =
+            |other: usize| self.owner[other] == Some(nearest) && self.shells[other].overlaps(&self.shells[s]);
+        if self.names[nearest] == self.names[s] && !self.around(s).any(may_overlap) {
             return self.put(s, nearest);
         }
         let hosts = self.hosts(s);
@@ -157,7 +175,7 @@ impl<'a> Rooms<'a> {
         let shells = self.shells;
         let looks_the_other_way = |p: usize| (shells[p].volume > 0.0) != (shells[s].volume > 0.0);
         let is_host = |&p: &usize| looks_the_other_way(p) && !self.is_cavity(p) && contains(&shells[p], &shells[s]);
-        let mut hosts: Vec<usize> = self.order[..self.rank[s]].iter().rev().copied().filter(is_host).collect();
+        let mut hosts: Vec<usize> = self.around(s).filter(is_host).collect();
         hosts.sort_by_key(|&p| self.names[p] != self.names[s]);
         self.hosts.insert(s, hosts.clone());
         hosts
