@@ -32,6 +32,13 @@ impl Scratch {
         self.0.join(name)
     }
 
+    /// Writes a file, and tells its path.
+    pub fn write(&self, name: &str, contents: &[u8]) -> PathBuf {
+        let path = self.file(name);
+        std::fs::write(&path, contents).expect("written");
+        path
+    }
+
     /// Names of everything in it, sorted.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.0).expect("readable");

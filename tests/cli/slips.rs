@@ -534,3 +534,69 @@ fn small_times_are_short() {
     let said = stdout(&solved(&at, &case, "out", &[]));
     assert!(said.contains("to t = 1e-25 s"), "{said}");
 }
+
+/// What stands beside a directory that is to be made is no hindrance, whatever its name; and where a picture is cut is looked at before anything is written.
+#[test]
+fn outputs_go_where_they_can() {
+    let at = Scratch::new();
+    at.write("scene.toml", [BOX, GRID].concat().as_bytes());
+    fs::create_dir(at.file("voidage")).expect("a directory");
+    let output = run(&at, &["porosity", "scene.toml", "--npy", "made/fields", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(at.file("made/fields/beta_v.npy").exists());
+    let arguments = ["porosity", "scene.toml", "--npy", "late", "--png", "late.png", "--slice", "x=99", "-q"];
+    fails(&run(&at, &arguments), 2, &["--slice x=99: "]);
+    assert!(!at.file("late").exists() && !at.file("late.png").exists());
+}
+
+/// A link to a file that is not there yet is followed.
+#[cfg(unix)]
+#[test]
+fn links_to_nothing_are_followed() {
+    let at = Scratch::new();
+    at.write("scene.toml", [BOX, GRID].concat().as_bytes());
+    fs::create_dir(at.file("there")).expect("a directory");
+    std::os::unix::fs::symlink("there/report.json", at.file("link.json")).expect("a link");
+    let output = run(&at, &["porosity", "scene.toml", "--report", "link.json", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(at.file("there/report.json").is_file());
+    assert!(fs::symlink_metadata(at.file("link.json")).expect("the link").is_symlink());
+}
+
+/// Files that lie outside the grid are named beside scenes.
+#[test]
+fn files_outside_the_grid_are_named_beside_scenes() {
+    let at = Scratch::new();
+    at.write("scene.toml", [BOX, GRID].concat().as_bytes());
+    let far = "v 9 9 9\nv 10 9 9\nv 9 10 9\nv 9 9 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    at.write("far.obj", far.as_bytes());
+    let said = stderr(&run(&at, &["porosity", "scene.toml", "far.obj"]));
+    assert!(said.contains("far.obj: outside the grid"), "{said}");
+    at.write(
+        "moved.toml",
+        format!(
+            "{GRID}[[solid]]\nname = \"moved\"\nshape = \"file\"\npath = \"far.obj\"\ntranslate = [-8.9, -8.9, -8.9]\n"
+        )
+        .as_bytes(),
+    );
+    let said = stderr(&run(&at, &["porosity", "moved.toml"]));
+    assert!(!said.contains("outside the grid"), "{said}");
+}
+
+/// An inlet whose gas has no way out does not meet its velocity, and says so.
+#[test]
+fn an_inlet_without_a_way_out_says_so() {
+    let at = Scratch::new();
+    let grid = "[grid]\nx = { points = [0, 1], cells = [10] }\n";
+    let gas = "[initial]\nuniform = { rho = 1.2, p = 1e5 }\n[time]\nend = 0.2\n";
+    let run = |x_max: &str| {
+        let sides = format!("[boundary]\nx_min = {{ type = \"inlet\", rho = 1.2, u = 50 }}\nx_max = {x_max}\n");
+        let output = solve(&at, &[grid, GAS, gas, &sides].concat(), "out", &["--force"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let said = run("\"wall\"");
+    assert!(said.contains("boundary.x_min: the gas enters at ") && said.contains("has no way out"), "{said}");
+    let said = run("{ type = \"outlet\", p = 1e5 }");
+    assert!(!said.contains("has no way out"), "{said}");
+}

@@ -358,3 +358,20 @@ fn parts_of_a_file_are_told_one_by_one() {
     assert!((part["wetted_area"].as_f64().expect("an area") - wetted).abs() < 1e-12, "{part}");
     assert_eq!(part["bounds"], serde_json::json!([[0.0, 2.0, 0.0], [1.0, 3.0, 1.0]]));
 }
+
+/// A scene through a pipe, however its list of solids is written.
+#[test]
+fn scenes_through_a_pipe() {
+    let at = Scratch::new();
+    let grid = "[grid]\nx = { points = [0, 2], cells = [2] }\ny = { points = [0, 2], cells = [2] }\nz = { points = [0, 2], cells = [2] }\n";
+    let list = format!("solid = [{{ shape = \"sphere\", center = [1, 1, 1], radius = 0.5 }}]\n{grid}");
+    let spaced = format!("{grid}[[ solid ]]\nshape = \"sphere\"\ncenter = [1, 1, 1]\nradius = 0.5\n");
+    for text in [list, spaced] {
+        let output = piped(&["porosity", "-", "-q", "--report", "out.json"], text.as_bytes(), &at);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let mut foreign = b"# Beh\xE4lter\n[[solid]]\nshape = \"sphere\"\ncenter = [1, 1, 1]\nradius = 0.5\n".to_vec();
+    foreign.extend(grid.as_bytes());
+    let output = piped(&["porosity", "-"], &foreign, &at);
+    assert!(stderr(&output).contains("line 1, column 6"), "{}", stderr(&output));
+}

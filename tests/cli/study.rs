@@ -477,3 +477,45 @@ fn wrong_flows_say_where() {
         assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
     }
 }
+
+/// A study of one solid on two grids that have as many cells, and whose geometry is a file that a solid names.
+#[test]
+fn grids_of_as_many_cells_and_files_of_solids_are_told_apart() {
+    let dir = Scratch::new();
+    let surface = |size: f64| {
+        let corners = |n: usize| [0, 1, 2].map(|axis| if n >> axis & 1 == 1 { size } else { 0.0 });
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let points: String = (0..8).map(corners).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+        let faces: String =
+            faces.map(|f| f.map(|n| (n + 1).to_string()).join(" ")).map(|f| format!("f {f}\n")).concat();
+        points + &faces
+    };
+    let grid = |size: f64| {
+        let axis = format!("{{ points = [0, {size}], cells = [4] }}");
+        format!("[[grid]]\nx = {axis}\ny = {axis}\nz = {axis}\n")
+    };
+    let scene = "repeats = 1\nthreads = [1]\n[[scene]]\nname = \"block\"\n[[scene.solid]]\nshape = \"file\"\npath = \"block.obj\"\n";
+    let case = [scene, "[[method]]\nname = \"exact\"\n", &grid(2.0), &grid(0.5)].concat();
+    let case = dir.write("case.toml", case.as_bytes());
+    let out = dir.file("out");
+    let study = || {
+        let output = voidage(&[&"study", &case, &"-o", &out]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let text = fs::read_to_string(out.join("study.csv")).expect("a table");
+        let mut lines = text.lines().map(cells);
+        let head = lines.next().expect("names of columns");
+        let rows: Vec<Row> = lines.map(|line| head.iter().cloned().zip(line).collect()).collect();
+        let told = rows.iter().map(|row| (row["cells"].clone(), number(row, "solid_volume"))).collect::<Vec<_>>();
+        (told, stdout(&output) + &stderr(&output))
+    };
+    dir.write("block.obj", surface(1.0).as_bytes());
+    let wanted = |large: f64, small: f64| vec![("4x4x4".to_owned(), large), ("4x4x4 (2)".to_owned(), small)];
+    assert_eq!(study().0, wanted(1.0, 0.125));
+    let (again, said) = study();
+    assert_eq!(again, wanted(1.0, 0.125));
+    assert!(said.contains("2 points are kept from before"), "{said}");
+    dir.write("block.obj", surface(0.25).as_bytes());
+    let (changed, said) = study();
+    assert_eq!(changed, wanted(0.015625, 0.015625));
+    assert!(said.contains("all is measured anew"), "{said}");
+}

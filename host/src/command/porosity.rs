@@ -49,8 +49,10 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
             None => grid::edges(&spec(args, &bodies, own_grid)?, bodies.bounds(), &mut remarks)?,
         };
         remarks.into_iter().for_each(|r| progress.warn(r));
+        let through = files::slices(args, &edges)?;
         let zones = zones::read(args.zones.as_deref(), &edges)?;
         let leaf = leaf_of(args, &mut progress);
+        let args = &PorosityArgs { leaf, ..args.clone() };
         let depth = args.depth.unwrap_or(leaf.depth());
         let (bounds, areas, method) = (args.bounds_fields, !args.no_areas, args.method);
         let resistance = args.resistance || args.zones.is_some() || args.drag.is_some();
@@ -70,7 +72,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
             _ => Vec::new(),
         };
         let report = Report::new(args, &edges, &bodies, &result, (&found, congestion));
-        files::write(args, &edges, (&result, &found), &report, &mut progress)?;
+        files::write(args, (&edges, through), (&result, &found), &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {
             streams::write_json(path, &report.finished(&bodies, &progress))?;

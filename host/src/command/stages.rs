@@ -13,6 +13,7 @@ use crate::grid::{AXES, Edges};
 use crate::picture::ticks::{measure as number, number as short, number_to};
 use crate::porosity::snap::{self, OffPlanes};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
+use crate::text;
 use crate::words::{counted, either};
 use glam::DVec3;
 use std::path::Path;
@@ -33,11 +34,12 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
             true => (Path::new(INPUT), Some(read_input()?)),
             false => (path.as_path(), None),
         };
-        let text = piped.as_deref().and_then(|bytes| std::str::from_utf8(bytes).ok());
-        let text = text.filter(|text| text.contains("[[solid"));
-        if scene::is_scene(path) || text.is_some() {
-            let found =
-                progress.stage("read", |_| text.map_or_else(|| scene::read(path), |text| scene::parse(path, text)))?;
+        let is_piped_scene = piped.as_deref().is_some_and(read::is_scene);
+        if scene::is_scene(path) || is_piped_scene {
+            let found = progress.stage("read", |_| match piped {
+                Some(bytes) => text::of_bytes(path, bytes).and_then(|text| scene::parse(path, &text)),
+                None => scene::read(path),
+            })?;
             progress.stage("bodies", |_| scene::load::add(&found, &mut bodies))?;
             grid = match (grid, found.grid) {
                 (Ok(Some(_)), Some(_)) => Err(Error::file(path, "a second scene with a [grid]: leave one of them out")),
@@ -251,8 +253,13 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &G
         }
     };
     let solids = bodies.solids.iter().filter_map(solid);
-    let files = bodies.diagnoses.iter().filter(|d| outside(d.bounds)).map(|d| d.file.clone());
-    let names: Vec<String> = if bodies.solids.is_empty() { files.collect() } else { solids.collect() };
+    // A file of a scene is told by its solid, which may have moved it.
+    let of_solid = |d: &Diagnosis| {
+        let next = bodies.solids.partition_point(|solid| solid.bodies.start <= d.body_range.start);
+        next > 0 && !d.body_range.is_empty() && bodies.solids[next - 1].bodies.end >= d.body_range.end
+    };
+    let files = bodies.diagnoses.iter().filter(|d| outside(d.bounds) && !of_solid(d)).map(|d| d.file.clone());
+    let names: Vec<String> = solids.chain(files).collect();
     if let Some(names) = listed(&names) {
         progress.warn(format!("{names}: outside the grid, {within}, and without effect"));
     }

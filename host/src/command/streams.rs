@@ -2,7 +2,7 @@
 
 use crate::command::progress::print;
 use crate::error::{Error, Result};
-use crate::files::{check_target, json};
+use crate::files::{check_takes_files, check_target, json};
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -74,7 +74,7 @@ pub fn check_place(path: &Path) -> Result<()> {
     if !above.is_dir() {
         return Err(Error::file(path, format!("cannot create: {} is no directory", above.display())));
     }
-    check_target(&above.join("voidage")).map_err(|e| Error { path: Some(path.to_owned()), ..e })
+    check_takes_files(above)
 }
 
 /// Files can go into a directory at `path`: there is nothing else of that name. `option` is what asked for it.

@@ -45,11 +45,11 @@ pub fn study(args: &StudyArgs) -> Result<()> {
     let text = piped.map_or_else(|| case::text(path), Ok)?;
     let case = case::parse(path, &text)?;
     let case = if args.quick { case.quick() } else { case };
-    let name = session::fingerprint(&text, case.files(), args.quick);
     let dir = args.output.as_deref();
     dir.iter().try_for_each(|dir| check_directory("-o", dir))?;
     // Before anything is measured all scenes must be there.
     let scenes = measure::scenes(path, &case, &mut progress)?;
+    let name = session::fingerprint(&text, &scenes, args.quick);
     let mut session = Session::new(&mut progress, dir, name, found::plan(&case), args.force);
     let found = found::measure(&case, &scenes, command_line(), &mut session)?;
     match dir {

@@ -56,9 +56,30 @@ pub fn check_target(path: &Path) -> Result<()> {
     temporary_for(path).map(drop)
 }
 
+/// A directory takes files.
+///
+/// # Errors
+/// It does not.
+pub fn check_takes_files(directory: &Path) -> Result<()> {
+    Temporary::create(directory).map(drop).map_err(|cause| Error::io(directory, "create files in", &cause))
+}
+
+/// Links from one place to another, at most.
+const MOST_LINKS: usize = 40;
+
+/// What a link leads to, also where nothing is there yet.
+fn followed(path: &Path) -> PathBuf {
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { break };
+        target = directory(&target).join(next);
+    }
+    target
+}
+
 /// A temporary beside the target, links followed.
 fn temporary_for(path: &Path) -> Result<(PathBuf, Temporary, File)> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let target = fs::canonicalize(path).unwrap_or_else(|_| followed(path));
     let (temporary, file) = Temporary::create(directory(&target)).map_err(|cause| Error::io(path, "create", &cause))?;
     Ok((target, temporary, file))
 }

@@ -152,7 +152,7 @@ fn arrays(args: &PorosityArgs) -> Vec<PathBuf> {
 /// The first file that cannot be written.
 pub(super) fn write(
     args: &PorosityArgs,
-    edges: &Edges,
+    (edges, through): (&Edges, [Option<f64>; 3]),
     (result, obstacles): (&Porosity, &Obstacles),
     about: &Report,
     progress: &mut Progress,
@@ -169,7 +169,6 @@ pub(super) fn write(
         let name = |p: &PathBuf| p.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         let title = args.scene.scene.iter().map(name).collect::<Vec<_>>().join(" + ");
         progress.warn_of_title(&title);
-        let through = slices(args, edges)?;
         let (grid, edges) = (edges, edges.0.each_ref().map(|e| &e[..]));
         progress.stage("png", |_| {
             let shown = obstacle_fields(grid, obstacles).into_iter().find(|(name, ..)| *name == args.show);
@@ -280,7 +279,7 @@ fn write_vtr(
 ///
 /// # Errors
 /// Outside the grid.
-fn slices(args: &PorosityArgs, edges: &Edges) -> Result<[Option<f64>; 3]> {
+pub(super) fn slices(args: &PorosityArgs, edges: &Edges) -> Result<[Option<f64>; 3]> {
     let mut through = [None; 3];
     for &(axis, at) in &args.slice {
         if let Some(why) = edges.misses(axis, at) {

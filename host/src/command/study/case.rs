@@ -101,9 +101,15 @@ impl StudyCase {
         self
     }
 
-    /// The files that it names.
-    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        self.subjects.iter().flat_map(|s| &s.files)
+    /// The grids by their cells, `10x10x10`; where several have as many, all but the first with a number.
+    #[must_use]
+    pub fn grid_names(&self) -> Vec<String> {
+        let cells: Vec<[usize; 3]> = self.grids.iter().map(Edges::cells).collect();
+        let name = |(n, own): (usize, &[usize; 3])| match cells[..n].iter().filter(|c| *c == own).count() {
+            0 => joined(*own),
+            before => format!("{} ({})", joined(*own), before + 1),
+        };
+        cells.iter().enumerate().map(name).collect()
     }
 
     /// How many points of porosity it has, and what they cost by [`cost`].
@@ -114,6 +120,12 @@ impl StudyCase {
         let often = self.subjects.len() * self.threads.len();
         (often * self.grids.len() * self.recipes.len(), often as f64 * costs)
     }
+}
+
+/// `10x10x10`.
+#[must_use]
+pub fn joined(cells: [usize; 3]) -> String {
+    cells.map(|n| n.to_string()).join("x")
 }
 
 /// What a point costs, roughly: cells, and those that subdivision makes of the cells at surfaces.

@@ -1,6 +1,6 @@
 //! What a run leaves out, and what that saves: measured by switching it on.
 
-use super::case::StudyCase;
+use super::case::{StudyCase, joined};
 use super::session::Session;
 use super::spread::{Spread, timed};
 use super::table::{Cell, Listing, Reading, readable};
@@ -188,7 +188,7 @@ pub fn table(rows: &[LeftOutRow]) -> Listing {
         let times = [row.without, row.with].map(|s| [s.median, s.fastest, s.slowest]);
         let times = times.as_flattened().iter().map(|s| Cell::Number(*s, Reading::Seconds));
         let saves = Cell::Number(1.0 - row.without.median / row.with.median, Reading::Share);
-        let grid = row.cells.map(|n| n.to_string()).join("x");
+        let grid = joined(row.cells);
         let words = [row.scene.clone(), grid, row.what.clone()].map(Cell::Text);
         words.into_iter().chain(times).chain([saves]).collect()
     };

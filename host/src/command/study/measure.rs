@@ -37,6 +37,8 @@ struct Site<'a> {
     subject: &'a Subject,
     bodies: &'a Bodies,
     edges: &'a Edges,
+    /// Its name.
+    grid: &'a str,
     reference: &'a Reference,
 }
 
@@ -67,10 +69,10 @@ pub fn scenes(path: &Path, case: &StudyCase, progress: &mut Progress) -> Result<
 /// # Errors
 /// A scene that a method cannot measure.
 pub fn all(case: &StudyCase, scenes: &[Bodies], session: &mut Session) -> Result<Vec<Row>> {
-    let mut rows = Vec::new();
+    let (grids, mut rows) = (case.grid_names(), Vec::new());
     for (subject, bodies) in case.subjects.iter().zip(scenes) {
-        for edges in &case.grids {
-            on_grid(case, subject, bodies, edges, session, &mut rows)?;
+        for (edges, grid) in case.grids.iter().zip(&grids) {
+            on_grid(case, subject, bodies, (edges, grid), session, &mut rows)?;
         }
     }
     mark_fronts(&mut rows);
@@ -82,7 +84,7 @@ fn on_grid(
     case: &StudyCase,
     subject: &Subject,
     bodies: &Bodies,
-    edges: &Edges,
+    (edges, grid): (&Edges, &str),
     session: &mut Session,
     rows: &mut Vec<Row>,
 ) -> Result<()> {
@@ -99,17 +101,16 @@ fn on_grid(
             continue;
         }
         for &threads in &case.threads {
-            let [nx, ny, nz] = edges.cells();
-            let key = format!("{} | {nx}x{ny}x{nz} | {} | {threads}", subject.name, recipe.name);
+            let key = format!("{} | {grid} | {} | {threads}", subject.name, recipe.name);
             if reference.is_none() && session.before::<Row>(&key).is_none() {
-                let what = format!("reference of {} on {nx}x{ny}x{nz}", subject.name);
+                let what = format!("reference of {} on {grid}", subject.name);
                 let made = session.prepare(&what, || self::reference(bodies, edges, case.areas))?;
                 doubt_exact(subject, &made, session);
                 reference = Some(made);
             }
             let measure = |_: &mut Progress| {
                 let reference = reference.as_ref().ok_or_else(|| Error::new("no reference"))?;
-                Site { case, subject, bodies, edges, reference }.run(recipe, threads)
+                Site { case, subject, bodies, edges, grid, reference }.run(recipe, threads)
             };
             rows.push(session.point(&key, cost, measure, points::line)?);
         }
@@ -199,6 +200,7 @@ impl Site<'_> {
             bodies: bodies.bodies.len(),
             triangles: bodies.triangles.len(),
             cells: edges.cells(),
+            grid: self.grid.to_owned(),
             method: recipe.name.clone(),
             family: recipe.family.clone(),
             road: word(method),

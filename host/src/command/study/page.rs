@@ -1,6 +1,6 @@
 //! The page of a study: one HTML file that needs no other, with pictures, tables, and what follows from them.
 
-use super::case::Published;
+use super::case::{Published, joined};
 use super::flows::runs::{self, FlowOrder};
 use super::found::StudyFindings;
 use super::row::{EXACT, ROUNDING, Row};
@@ -31,9 +31,10 @@ fn finest(rows: &[Row]) -> Vec<Vec<&Row>> {
     let scenes = unique(rows.iter().map(|r| r.scene.clone()));
     let of = |scene: &String| {
         let own: Vec<&Row> = rows.iter().filter(|r| r.scene == *scene).collect();
-        let cells = own.iter().map(|r| r.cells).max_by_key(|c| c.iter().product::<usize>()).unwrap_or_default();
+        let most = own.iter().max_by_key(|r| r.cells.iter().product::<usize>());
+        let grid = most.map(|r| r.grid.clone()).unwrap_or_default();
         let threads = own.iter().map(|r| r.threads).min().unwrap_or(1);
-        own.into_iter().filter(|r| r.cells == cells && r.threads == threads).collect()
+        own.into_iter().filter(|r| r.grid == grid && r.threads == threads).collect()
     };
     scenes.iter().map(of).collect()
 }
@@ -57,7 +58,7 @@ pub fn choices(rows: &[Row]) -> Listing {
     let cells = |own: &Vec<&Row>| {
         let first = own.first()?;
         let best = |limit: f64| fastest(own, limit).map_or("none".to_owned(), one);
-        let mut row = vec![Cell::Text(first.scene.clone()), Cell::Text(points::grid(first))];
+        let mut row = vec![Cell::Text(first.scene.clone()), Cell::Text(first.grid.clone())];
         row.extend(LIMITS.map(|l| Cell::Text(best(l.0))));
         let paper = own.iter().find(|r| r.paper).map(|r| {
             let error = r.error.map_or_else(String::new, |e| format!(", volume {}", readable(e, Reading::Percent)));
@@ -77,7 +78,7 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
 
 fn sentence(own: &[&Row]) -> Option<String> {
     let first = own.first()?;
-    let place = format!("{} on {} cells", first.scene, points::grid(first));
+    let place = format!("{} on {} cells", first.scene, first.grid);
     let time = |row: &Row| readable(row.seconds.median, Reading::Seconds);
     let Some(exact) = fastest(own, EXACT) else {
         let near = own.iter().filter_map(|r| Some((worst(r)?, *r))).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -124,12 +125,12 @@ pub fn published(all: &[(String, Published)], rows: &[Row]) -> Listing {
     let row = |(scene, published): &(String, Published)| {
         let own: Vec<&Row> = rows.iter().filter(|r| r.scene == *scene).collect();
         let count = |cells: [usize; 3]| cells.iter().product::<usize>();
-        let near = own.iter().map(|r| r.cells).min_by_key(|c| count(*c).abs_diff(count(published.cells)))?;
+        let near = own.iter().min_by_key(|r| count(r.cells).abs_diff(count(published.cells)))?.grid.clone();
         let threads = own.iter().map(|r| r.threads).min()?;
-        let here: Vec<&Row> = own.into_iter().filter(|r| r.cells == near && r.threads == threads).collect();
+        let here: Vec<&Row> = own.into_iter().filter(|r| r.grid == near && r.threads == threads).collect();
         let paper = here.iter().find(|r| r.paper).map(|r| r.seconds.median);
         let exact = fastest(&here, EXACT).map(|r| r.seconds.median);
-        let [cells, ours] = [published.cells, near].map(|c| Cell::Text(c.map(|n| n.to_string()).join("x")));
+        let [cells, ours] = [joined(published.cells), near].map(Cell::Text);
         Some(vec![
             Cell::Text(scene.clone()),
             Cell::Text(published.by.clone()),

@@ -123,7 +123,7 @@ fn panel(
     error: Error,
     fronts: bool,
 ) -> Panel {
-    let grids = unique(rows.iter().map(|r| r.cells)).len();
+    let grids = unique(rows.iter().map(|r| &r.grid)).len();
     let mut lines: BTreeMap<(usize, String), Vec<Mark>> = BTreeMap::new();
     for row in rows {
         let (Some(y), Some(n)) = (error(row), series.iter().position(|s| *s == colour_of(row))) else { continue };

@@ -52,7 +52,7 @@ fn cells(row: &Row) -> [Cell; COLUMNS.len()] {
         text(&row.scene),
         Cell::Whole(row.bodies),
         Cell::Whole(row.triangles),
-        Cell::Text(grid(row)),
+        text(&row.grid),
         text(&row.method),
         text(&row.road),
         text(&row.leaf),
@@ -83,19 +83,12 @@ fn cells(row: &Row) -> [Cell; COLUMNS.len()] {
     ]
 }
 
-/// `10x10x10`.
-#[must_use]
-pub fn grid(row: &Row) -> String {
-    row.cells.map(|n| n.to_string()).join("x")
-}
-
 /// A line for the terminal while the study runs.
 #[must_use]
 pub fn line(row: &Row) -> String {
-    let Row { scene, method, threads, .. } = row;
+    let Row { scene, grid, method, threads, .. } = row;
     let (seconds, volume) = (readable(row.seconds.median, Reading::Seconds), readable(row.volume, Reading::Volume));
     let error = row.error.map_or_else(String::new, |e| readable(e, Reading::Percent));
-    let grid = grid(row);
     let words = either(*threads, "thread", "threads");
     format!("{scene:<24} {grid:>12} {method:<16} {threads:>2} {words:<7} {seconds:>9} s {volume:>18} m³ {error:>12}")
 }

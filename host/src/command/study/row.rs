@@ -14,6 +14,8 @@ pub struct Row {
     pub triangles: usize,
     /// The grid's cells.
     pub cells: [usize; 3],
+    /// The grid's name in tables, and among those of the study.
+    pub grid: String,
     /// The method by the name of its table and of what varies.
     pub method: String,
     /// That name without depth and tolerance.
@@ -100,7 +102,7 @@ impl Errors {
 /// rounding, [`ROUNDING`], errs equally.
 pub fn mark_fronts(rows: &mut [Row]) {
     let value = |row: &Row| row.error.map(|e| [row.seconds.median, e.abs().max(ROUNDING)]);
-    let place = |row: &Row| (row.scene.clone(), row.cells, row.threads);
+    let place = |row: &Row| (row.scene.clone(), row.grid.clone(), row.threads);
     let all: Vec<_> = rows.iter().map(|row| (place(row), value(row))).collect();
     for (n, row) in rows.iter_mut().enumerate() {
         let (here, Some(own)) = &all[n] else { continue };

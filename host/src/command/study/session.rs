@@ -3,6 +3,7 @@
 use crate::command::progress::Progress;
 use crate::command::version::BUILD;
 use crate::error::{Error, Result};
+use crate::geometry::bodies::Bodies;
 use crate::words::counted;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -40,7 +41,7 @@ pub struct Session<'a> {
 /// The first line of the file.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Head {
-    /// Of the case, the files that it names, and the program.
+    /// Of the case, its bodies, and the program.
     study: String,
 }
 
@@ -51,15 +52,16 @@ struct Line {
     value: Value,
 }
 
-/// What a study is made of: its text, the files it names, whether it is quick, and this program. A study that differs in any of it
+/// What a study is made of: its text, the bodies of its scenes, whether it is quick, and this program. A study that differs in any of it
 /// is another one.
 #[must_use]
-pub fn fingerprint<'a>(text: &str, files: impl Iterator<Item = &'a PathBuf>, quick: bool) -> String {
+pub fn fingerprint(text: &str, scenes: &[Bodies], quick: bool) -> String {
     let mut hash = crc32fast::Hasher::new();
     hash.update(text.as_bytes());
-    for file in files {
-        // What cannot be read will be said when it is needed.
-        hash.update(&std::fs::read(file).unwrap_or_default());
+    for scene in scenes {
+        let numbers = scene.triangles.as_flattened().iter().flat_map(|corner| corner.to_array());
+        numbers.for_each(|number| hash.update(&number.to_le_bytes()));
+        hash.update(format!("{:?}", scene.bodies).as_bytes());
     }
     let program = serde_json::to_string(&BUILD).unwrap_or_default();
     hash.update(program.as_bytes());
