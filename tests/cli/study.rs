@@ -244,7 +244,7 @@ fn lists_multiply_out_and_errors_are_told() {
     }
 }
 
-/// What is finished is kept; another case, or `--force`, begins anew.
+/// What is finished is kept; another case begins anew where the one before was not finished, `--force` always.
 #[test]
 fn an_interrupted_study_goes_on() {
     let dir = Scratch::new();
@@ -282,11 +282,45 @@ fn an_interrupted_study_goes_on() {
     assert_eq!(text(&whole), text(&now));
     assert!(run(&["--force"]).0.contains("[1/16"));
     fs::write(&case, LISTS.replace("repeats = 3", "repeats = 2")).expect("written");
+    // As if the one before had not come to its end.
+    let unfinish = || fs::remove_file(out.join("study.json")).expect("a report");
+    unfinish();
     let (said, warned) = run(&[]);
     assert!(said.contains("[1/16") && warned.contains("of another case"), "{said}{warned}");
+    unfinish();
     let (said, warned) = run(&["--quick"]);
     assert!(said.contains("[1/16") && warned.contains("--quick"), "{said}{warned}");
     assert_eq!(voidage(&[&"study", &case, &"--force"]).status.code(), Some(2));
+}
+
+/// Of a finished study nothing is replaced by another one, unless that is asked for; the same one may be run again.
+#[test]
+fn a_finished_study_is_not_replaced() {
+    let dir = Scratch::new();
+    let (case, out) = (dir.file("case.toml"), dir.file("out"));
+    let run = |text: &str, more: &[&str]| {
+        fs::write(&case, text).expect("written");
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"study", &case, &"-q", &"-o", &out];
+        all.extend(more.iter().map(|m| m as &dyn AsRef<std::ffi::OsStr>));
+        voidage(&all)
+    };
+    assert!(run(LISTS, &["--quick"]).status.success());
+    let tables = || ["study.csv", "study.md", "points.jsonl"].map(|name| fs::read(out.join(name)).expect("a file"));
+    let before = tables();
+    for (text, more) in [(LISTS.replace("repeats = 3", "repeats = 2"), &["--quick"][..]), (LISTS.to_owned(), &[])] {
+        let refused = run(&text, more);
+        let said = stderr(&refused);
+        assert_eq!(refused.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("out: holds a finished study of another case") && said.contains("--force replaces it"),
+            "{said}"
+        );
+    }
+    assert!(before == tables());
+    assert!(run(LISTS, &["--quick"]).status.success());
+    assert!(before[2] == tables()[2]);
+    assert!(run(LISTS, &["--force"]).status.success());
+    assert!(before[2] != tables()[2]);
 }
 
 /// Pictures have all panels, the floor and the legend; as SVG they are text that can be searched.

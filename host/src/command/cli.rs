@@ -300,7 +300,7 @@ pub struct StudyArgs {
     /// A first look: one run of each (short flows: 0.02 s of runs), one number of threads, the two smallest grids
     #[arg(long)]
     pub quick: bool,
-    /// Measure anew what that directory keeps from before
+    /// Measure anew what that directory keeps from before, and replace a finished study of another case in it
     #[arg(long, requires = "output")]
     pub force: bool,
     /// What goes to the terminal.

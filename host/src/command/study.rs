@@ -50,6 +50,7 @@ pub fn study(args: &StudyArgs) -> Result<()> {
     // Before anything is measured all scenes must be there.
     let scenes = measure::scenes(path, &case, &mut progress)?;
     let name = session::fingerprint(&text, &scenes, args.quick);
+    dir.iter().try_for_each(|dir| session::keep_results(dir, &name, args.force))?;
     let mut session = Session::new(&mut progress, dir, name, found::plan(&case), args.force);
     let found = found::measure(&case, &scenes, command_line(), &mut session)?;
     match dir {
@@ -86,5 +87,5 @@ fn write(mut found: StudyFindings, dir: &Path, progress: &mut Progress) -> Resul
     found.warnings.clone_from(&progress.warnings);
     put("study.md", &page::markdown(&found, &pictures))?;
     put("study.html", &page::html(&found, &pictures))?;
-    json::write(&dir.join("study.json"), &found.report())
+    json::write(&dir.join(session::REPORT), &found.report())
 }

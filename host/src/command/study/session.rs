@@ -17,6 +17,9 @@ use std::time::Instant;
 /// The file of points that are done, in the directory of results.
 pub const POINTS: &str = "points.jsonl";
 
+/// The report, which a study writes last: where it is, the study is finished.
+pub const REPORT: &str = "study.json";
+
 /// From this share of the cost on, the time that was measured tells that of the rest.
 const ENOUGH: f64 = 0.2;
 
@@ -68,6 +71,28 @@ pub fn fingerprint(text: &str, scenes: &[Bodies], quick: bool) -> String {
     format!("{:08x}-{}{}", hash.finalize(), text.len(), if quick { "-quick" } else { "" })
 }
 
+/// A finished study is not replaced by another one unless that is asked for. `study` is the fingerprint of the one that begins.
+///
+/// # Errors
+/// A directory with a finished study of another fingerprint.
+pub fn keep_results(dir: &Path, study: &str, force: bool) -> Result<()> {
+    if force || !dir.join(REPORT).exists() {
+        return Ok(());
+    }
+    let points = std::fs::read_to_string(dir.join(POINTS)).unwrap_or_default();
+    if head_of(&points).is_some_and(|head| head.study == study) {
+        return Ok(());
+    }
+    let reason = "holds a finished study of another case, another geometry, another build of the program, or of --quick where this is not (or the \
+                  other way round): --force replaces it, -o DIR takes another place";
+    Err(Error::file(dir, reason))
+}
+
+/// The first line of a file of points, if it is one.
+fn head_of(points: &str) -> Option<Head> {
+    serde_json::from_str(points.lines().next()?).ok()
+}
+
 impl<'a> Session<'a> {
     /// Begins, or goes on with what a directory keeps of the same study. `planned` counts points and their cost.
     pub fn new(
@@ -98,6 +123,11 @@ impl<'a> Session<'a> {
             lines.push(serde_json::to_string(&line).unwrap_or_default());
         }
         crate::files::atomically(path, |out| writeln!(out, "{}", lines.join("\n")))?;
+        let report = dir.join(REPORT);
+        if report.exists() {
+            // What is measured now is not finished.
+            std::fs::remove_file(&report).map_err(|e| Error::io(&report, "remove", &e))?;
+        }
         File::options().append(true).open(path).map_err(|e| Error::io(path, "write", &e))
     }
 
@@ -114,15 +144,13 @@ impl<'a> Session<'a> {
 
     /// Keeps the points of a file, if they are of the same study. A line that was cut off counts for nothing.
     fn take(&mut self, text: &str, path: &Path) {
-        let mut lines = text.lines();
-        let same = lines.next().and_then(|l| serde_json::from_str::<Head>(l).ok()).is_some_and(|h| h == self.head);
-        if !same {
+        if head_of(text).is_none_or(|head| head != self.head) {
             let other =
                 "holds points of another case, another build of the program, or of --quick: all is measured anew";
             self.progress.warn(format!("{}: {other}", path.display()));
             return;
         }
-        let points = lines.filter_map(|l| serde_json::from_str::<Line>(l).ok());
+        let points = text.lines().skip(1).filter_map(|l| serde_json::from_str::<Line>(l).ok());
         self.kept = points.map(|line| (line.key, line.value)).collect();
         if !self.kept.is_empty() {
             let count = self.kept.len();
