@@ -133,7 +133,7 @@ fn reports_and_tables_of_solve() {
     let with_sides = "[grid]\nx = { points = [0, 1], cells = [8] }\ny = { points = [0, 1], cells = [8] }\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n\
          [initial]\nuniform = { rho = 1.2, p = 1e5 }\nregions = [{ center = [0.5, 0.5], radius = 0.2, p = 2e5 }]\n\
          [boundary]\nx_min = \"wall\"\nx_max = \"wall\"\ny_min = \"wall\"\ny_max = \"wall\"\n\
-         [[boundary.patch]]\nside = \"x_min\"\ntype = \"zero-gradient\"\n[time]\nmax_steps = 2\n[output]\nformats = [\"png\"]\n";
+         [[boundary.patch]]\nside = \"x_min\"\ntype = \"zero-gradient\"\n[time]\nend = 1\nmax_steps = 2\n[output]\nformats = [\"png\"]\n";
     let cases = cases.into_iter().chain([("sides", with_sides.to_owned())]);
     let reports: Vec<Value> = cases
         .map(|(name, case)| {

@@ -1,6 +1,6 @@
 //! A directory in which a run has been: what of it stays, what another run may take, and what one that goes on finds again.
 
-use crate::kit::{Scratch, array, json, program, solve, solved, stderr};
+use crate::kit::{Scratch, array, json, program, solve, solved, stderr, stdout};
 use std::fs;
 use std::process::Command;
 
@@ -181,4 +181,26 @@ fn a_finished_run_is_not_replaced_by_one_that_began_before_its_end() {
     assert_eq!(done.iter().filter(|out| out.status.success()).count(), 1, "{done:?}");
     let cells = [10, 4000][usize::from(done[1].status.success())];
     assert_eq!(array(&at.file("out/final/rho.npy")).len(), cells);
+}
+
+/// A run that its steps stop before the end that its case asks for says so, and in its report; one that goes on to the end does not any more.
+#[test]
+fn an_end_that_is_not_reached_is_told() {
+    let at = Scratch::new();
+    let run = |time: &str, more: &[&str]| {
+        let done = solved(&at, &tube(time, "formats = []"), "out", more);
+        let (said, report) = (stdout(&done), json(&at.file("out/report.json")));
+        let warnings = report["warnings"].to_string();
+        (said, stderr(&done), warnings, report["end_not_reached"].as_f64())
+    };
+    let (said, warned, kept, end) = run("end = 1e-3\nmax_steps = 2", &[]);
+    assert!(said.contains(" s, stopped by max_steps before the end at 0.001 s"), "{said}");
+    let words = "key time.max_steps: the run stopped after 2 steps at t = ";
+    assert!(warned.contains(words) && warned.contains(" s: time.end, 0.001 s, was not reached"), "{warned}");
+    assert!(kept.contains(words) && end == Some(1e-3), "{kept}");
+    for (time, more) in [("end = 1e-3\nmax_steps = 2000", &["--resume"][..]), ("max_steps = 2", &["--force"])] {
+        let (said, warned, kept, end) = run(time, more);
+        let all = said + &warned + &kept;
+        assert!(!all.contains("stopped by") && !all.contains("not reached") && end.is_none(), "{all}");
+    }
 }

@@ -1,9 +1,9 @@
 //! Gas flow through porosity fields: `voidage solve`.
 //!
 //! In reading order: [`output_keys`], [`case`], [`places`] and [`case_file`], the file as typed; `arrays`, [`regions`], [`mixture`], [`space`],
-//! [`open_parts`], [`state`], [`inlet`], [`sides`], `cut_off`, [`region_report`], [`units`] and [`setup`], from the case to a flow; [`charges`], where its blast begins; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`],
-//! [`force_peaks`], [`table`], [`series`], [`checkpoint`], [`lock`], [`report`], what it writes; [`limits`] and [`stepping`], how far it goes and
-//! each step; [`refine`], the same case on half the cells; [`run`].
+//! [`open_parts`], [`state`], [`inlet`], [`sides`], `cut_off`, [`region_report`], [`units`] and [`setup`], from the case to a flow; [`charges`], where its blast begins; [`limits`], how far it goes; [`frames`], [`pictures`], [`maxima`], [`monitors`], [`force`], [`solids`],
+//! [`force_peaks`], [`table`], [`series`], [`checkpoint`], [`lock`], [`report`], what it writes; [`stepping`], each
+//! step; [`refine`], the same case on half the cells; [`run`].
 
 mod arrays;
 pub mod case;

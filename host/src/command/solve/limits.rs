@@ -60,6 +60,12 @@ impl Limits {
         (n * self.every).min(self.end)
     }
 
+    /// A case has an end, and a run that is over at this time has not come to it.
+    #[must_use]
+    pub fn falls_short(&self, time: f64) -> bool {
+        self.end < f64::INFINITY && time < self.end
+    }
+
     /// Is the moment of a stop that of a frame, and not merely the end?
     #[must_use]
     pub fn is_frame(&self, stop: f64) -> bool {

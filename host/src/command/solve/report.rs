@@ -4,6 +4,7 @@ use super::case::GasKeys;
 use super::case_file::CaseFile;
 use super::checkpoint::Journal;
 use super::force_peaks::{self, ForcePeak};
+use super::limits::Limits;
 use super::maxima::{Maxima, Peaks};
 use super::monitors::MonitorReport;
 use super::pictures::Colours;
@@ -42,6 +43,9 @@ pub struct Report {
     axes: Vec<&'static str>,
     steps: usize,
     time: f64,
+    /// The end that the case asks for, if it was not reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    end_not_reached: Option<f64>,
     /// Of stepping, over all sessions.
     seconds: f64,
     /// Of this session from its start to this report: reading, setup, stepping, output.
@@ -178,6 +182,7 @@ impl Report {
             axes: setup.live.iter().map(|&a| AXES[a]).collect(),
             steps: flow.steps,
             time: flow.time,
+            end_not_reached: None,
             seconds: journal.seconds + done.seconds,
             seconds_in_all: progress.elapsed(),
             cell_updates_per_second: (flow.len() * done.steps) as f64 / done.seconds.max(1e-9),
@@ -220,6 +225,12 @@ impl Report {
     pub fn with_maxima(self, maxima: Option<&Maxima>, probes: Vec<Peaks>) -> Self {
         let report = |m: &Maxima| MaximaReport { ambient: m.ambient, threshold: m.threshold, probes };
         Report { maxima: maxima.map(report), ..self }
+    }
+
+    /// With the end that the case asks for, if it was not reached.
+    #[must_use]
+    pub fn with_end(self, limits: &Limits) -> Self {
+        Report { end_not_reached: limits.falls_short(self.time).then_some(limits.end), ..self }
     }
 
     /// With the ends of the colours of pictures, if there are any.
@@ -283,7 +294,9 @@ impl Report {
                 progress.say(format!("{key:<14}{cells:.1} cells from its middle to its side{few}{cut}"));
             }
         }
-        progress.say(format!("steps         {} to t = {} s", self.steps, to_six_digits(self.time)));
+        let short_of = |end| format!(", stopped by max_steps before the end at {} s", to_six_digits(end));
+        let short = self.end_not_reached.map_or_else(String::new, short_of);
+        progress.say(format!("steps         {} to t = {} s{short}", self.steps, to_six_digits(self.time)));
         let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {}", share(e)));
         progress.say(format!("drift         mass {}{energy}", share(self.mass_drift)));
         progress.say(format!(

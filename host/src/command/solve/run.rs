@@ -28,7 +28,7 @@ use crate::error::{Error, Result};
 use crate::files::json;
 use crate::grid::Edges;
 use crate::picture::ticks::number as short;
-use crate::words::written;
+use crate::words::{counted, written};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -160,9 +160,10 @@ fn run<const D: usize>(
     };
     stepped?;
     run.warn_of_inlets(file, &mut progress);
+    run.warn_of_an_end_not_reached(file, &mut progress);
     progress.stage("output", |_| run.last())?;
     let report = |run: &Run<D>, progress: &Progress| {
-        let report = Report::new(file, &run.setup, &run.journal, run.done, progress);
+        let report = Report::new(file, &run.setup, &run.journal, run.done, progress).with_end(&run.limits);
         let report = report.with_maxima(run.maxima.as_ref(), run.peaks(file)).with_monitors(run.series.monitors());
         let report = report.with_forces(run.forces(), &run.journal.peaks);
         report.with_colours(run.pictures.as_ref().map(Pictures::colours))
@@ -295,6 +296,16 @@ impl<'a, const D: usize> Run<'a, D> {
             let (time, end) = (written(self.setup.flow.time), written(self.limits.end));
             let reason = "the run that --resume goes on with is at t";
             progress.warn(file.remark("time.end", format!("is {end}, and {reason} = {time}: nothing is left to do")));
+        }
+    }
+
+    /// A run that its steps ended is not at the end that its case asks for.
+    fn warn_of_an_end_not_reached(&self, file: &CaseFile, progress: &mut Progress) {
+        let (flow, end) = (&self.setup.flow, self.limits.end);
+        if self.limits.falls_short(flow.time) {
+            let (steps, time, end) = (counted(flow.steps, "step", "steps"), short(flow.time), written(end));
+            let reason = format!("the run stopped after {steps} at t = {time} s: time.end, {end} s, was not reached");
+            progress.warn(file.remark("time.max_steps", reason));
         }
     }
 
