@@ -1,6 +1,6 @@
 //! What a case asks for in solids changes nothing, and is told.
 
-use crate::kit::{Scratch, json, solve, solved, stderr};
+use crate::kit::{Scratch, json, solve, solved, stderr, voidage};
 use std::fs;
 
 /// A box from 0.2 to 0.6 on a grid of 10 x 10 cells, with a key of `[initial]`, sides and more.
@@ -89,4 +89,43 @@ fn ends_of_a_box_in_the_wrong_order_are_refused() {
         text.contains("key initial.regions[0].max: must not lie below min: along x it is 0.2, and min is 0.5"),
         "{text}"
     );
+}
+
+/// What solids resist by themselves is in fields only with a law; where no fields are asked for, nothing is missing.
+#[test]
+fn fields_without_the_drag_of_solids_say_so() {
+    let at = Scratch::new();
+    let solid =
+        |x: u32, keys: &str| format!("[[solid]]\nshape = \"box\"\nmin = [{x}, 0, 0]\nmax = [{x}.5, 1, 1]\n{keys}\n");
+    let scene = at.file("scene.toml");
+    let run = |keys: [&str; 3], more: &[&str]| {
+        let solids: String = keys.iter().zip(0..).map(|(keys, x)| solid(x, keys)).collect();
+        fs::write(&scene, solids).expect("a scene");
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"porosity", &scene, &"--cells", &"4x4x4"];
+        all.extend(more.iter().map(|m| m as &dyn AsRef<std::ffi::OsStr>));
+        let output = voidage(&all);
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let (npy, report) = (at.file("npy").display().to_string(), at.file("r.json").display().to_string());
+    let vtr = at.file("f.vtr").display().to_string();
+    let grating = "porosity = 0.5\ncr = 4";
+    let cr = [grating, "", grating];
+    for (keys, more, words) in [
+        (cr, ["--npy", &npy], "scene.toml: cr of 2 solids are written only with --drag LAW"),
+        ([grating, "cd = 1", ""], ["-o", &vtr], "scene.toml: cr and cd of 2 solids are written only with --drag LAW"),
+        (["", "cd = 1", ""], ["--npy", &npy], "scene.toml: cd of 1 solid is written only with --drag LAW"),
+    ] {
+        let said = run(keys, &more);
+        assert_eq!(said.matches(words).count(), 1, "{said}");
+    }
+    for (keys, more) in [
+        (cr, &["--report", &report][..]),
+        (cr, &["--npy", &npy, "--drag", "bluff", "--cd", "0"]),
+        (cr, &["--npy", &npy, "--no-areas"]),
+        (["", "", ""], &["--npy", &npy]),
+    ] {
+        let said = run(keys, more);
+        assert!(!said.contains("only with --drag"), "{more:?}: {said}");
+    }
 }

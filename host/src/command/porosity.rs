@@ -12,11 +12,12 @@ use super::stages::{load, measure, need_convex, need_surfaces, threads};
 use super::streams::{self, INPUT, is_stream, text_of};
 use super::template;
 use crate::error::Result;
-use crate::geometry::bodies::Bodies;
+use crate::geometry::bodies::{Bodies, OwnDrag, SolidSummary};
 use crate::grid::{self, Edges, GridSpec, usual_spacing};
 use crate::porosity::congestion::congestion;
 use crate::porosity::throat::Faces;
 use crate::porosity::{Leaf, Method, Options};
+use crate::words::counted;
 use report::Report;
 use std::path::Path;
 
@@ -51,6 +52,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         remarks.into_iter().for_each(|r| progress.warn(r));
         let through = files::slices(args, &edges)?;
         let zones = zones::read(args.zones.as_deref(), &edges)?;
+        warn_of_own_drag(args, &bodies, &mut progress);
         let leaf = leaf_of(args, &mut progress);
         let args = &PorosityArgs { leaf, ..args.clone() };
         let depth = args.depth.unwrap_or(leaf.depth());
@@ -88,6 +90,30 @@ fn leaf_of(args: &PorosityArgs, progress: &mut Progress) -> Leaf {
     }
     progress.warn("--leaf has no effect: it is of --method gjk, which subdivides bodies");
     Leaf::Plane
+}
+
+/// Fields without a drag have nothing of what solids of the scene resist by themselves.
+fn warn_of_own_drag(args: &PorosityArgs, bodies: &Bodies, progress: &mut Progress) {
+    let fields = args.npy.is_some() || args.output.is_some();
+    if args.drag.is_some() || args.no_areas || !fields {
+        return;
+    }
+    let drags = |s: &SolidSummary| bodies.bodies[s.bodies.clone()].first().map(|body| body.drag).unwrap_or_default();
+    let has = |cr: bool, cd: bool| match (cr, cd) {
+        (true, true) => "cr and cd",
+        (true, false) => "cr",
+        _ => "cd",
+    };
+    let own: Vec<OwnDrag> = bodies.solids.iter().map(drags).filter(|drag| *drag != OwnDrag::default()).collect();
+    if !own.is_empty() {
+        let keys = has(own.iter().any(|drag| drag.cr.is_some()), own.iter().any(|drag| drag.cd.is_some()));
+        progress.warn(format!(
+            "{}: {keys} of {} written only with --drag LAW (of these solids alone: --drag bluff --cd 0); the fields of this run have nothing of \
+             them, and a case that takes them by [porosity] from is without that drag",
+            bodies.files(),
+            counted(own.len(), "solid is", "solids are")
+        ));
+    }
 }
 
 /// What was asked for; else the scene's own grid; else cubes that resolve the scene.
