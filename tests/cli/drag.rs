@@ -405,3 +405,26 @@ fn a_plate_between_planes_is_told() {
         );
     }
 }
+
+/// Where the law takes the rim of a solid body for obstacles, the cure is told with the warning, and it is one.
+#[test]
+fn drag_of_a_rim_names_its_cure() {
+    let at = Scratch::new();
+    let told = |keys: &str, more: &str| {
+        let tank = format!(
+            "[[solid]]\nname = \"tank\"\nshape = \"cylinder\"\nfrom = [5, 1.5, -1]\nto = [5, 1.5, 4]\nradius = 1.2345\n{keys}\n"
+        );
+        fs::write(at.file("tank.toml"), tank).expect("written");
+        let fine = channel("tank.toml", more).replace("cells = [20]", "cells = [200]").replace("[6]", "[60]");
+        stderr(&solved(&at, &fine.replace("end = 2", "max_steps = 1"), "out", &["--force"]))
+    };
+    let text = told("", "[drag]\nlaw = \"pdr\"");
+    let cure = "are the rim of a solid body that many cells resolve (there of \"tank\")";
+    assert!(text.contains("more than 100 dynamic pressures") && text.contains(cure), "{text}");
+    assert!(text.contains("cd = 0 of that solid in its scene takes the drag away"), "{text}");
+    let text = told("cd = 0", "[drag]\nlaw = \"pdr\"");
+    assert!(!text.contains("dynamic pressures"), "{text}");
+    // What has another drag by its own is no such rim.
+    let text = told("porosity = 0.5\ncr = 1e4", "[drag]\nlaw = \"pdr\"");
+    assert!(text.contains("dynamic pressures") && !text.contains("the rim of"), "{text}");
+}

@@ -112,14 +112,15 @@ pub fn setup<const D: usize>(
 
     let (keys, usual) = (&case.porosity, Treatment::default());
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
-    let (mut report, mut by_law) = (None, None);
+    let (mut report, mut by_law, mut bodies) = (None, None, None);
     let (space, measured) = space::load(file, edges, live, progress)?;
     let parts = open_parts(file, edges, &beginning, space.as_ref(), progress)?;
     states.settle(&mut beginning, &parts, edges)?;
     match space {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
-            let Space { volume, faces, drag, .. } = space;
+            let Space { volume, faces, drag, scene } = space;
+            bodies = scene.map(|scene| scene.bodies).filter(|_| space::has_law(file));
             by_law = drag;
             report = Some(fill(file, &mut flow, (volume, faces), (edges, live, treatment), progress)?);
         }
@@ -136,7 +137,7 @@ pub fn setup<const D: usize>(
     }
 
     set_states(&mut flow, &beginning);
-    strong_drag::warn(&flow, live, edges, progress);
+    strong_drag::warn(&flow, live, edges, bodies.as_ref(), progress);
     if let Some(report) = &mut report {
         report.step_share = step_share(&mut flow);
     }

@@ -240,6 +240,11 @@ pub fn given_otherwise(file: &CaseFile) -> bool {
     keys.cr.is_some() || keys.from.is_some()
 }
 
+/// Does a law give solids a drag?
+pub fn has_law(file: &CaseFile) -> bool {
+    matches!(file.case.drag.law, Some(LawName::Bluff | LawName::Pdr))
+}
+
 /// The law of `[drag]` and its coefficients.
 fn law(file: &CaseFile) -> Result<Option<(DragLaw, DragCoefficients)>> {
     let keys = &file.case.drag;
