@@ -178,3 +178,34 @@ fn one_run_at_a_time() {
     let out = voidage(&[&"solve", &case, &"-o", &dir]);
     assert!(out.status.success(), "{}", stderr(&out));
 }
+
+/// Names that no disk takes are refused before anything is read or computed.
+#[cfg(unix)]
+#[test]
+fn names_that_are_too_long_are_refused_first() {
+    let (at, skid) = (Scratch::new(), fixture("cad_skid.stl"));
+    let long = "a".repeat(300);
+    let name = |suffix: &str| at.file(&format!("{long}{suffix}"));
+    let case = at.file("case.toml");
+    fs::write(&case, TUBE.replace("end = 1e6", "max_steps = 1")).expect("a case");
+    let study = at.file("study.toml");
+    fs::write(&study, crate::kit::stdout(&voidage(&[&"study", &"--template"]))).expect("a study");
+    let porosity =
+        |option: &str, suffix: &str| voidage(&[&"porosity", &skid, &"--cells", &"4x4x4", &option, &name(suffix)]);
+    for (output, bytes) in [
+        (porosity("-o", ".vtr"), 304),
+        (porosity("--png", ".png"), 304),
+        (porosity("--report", ".json"), 305),
+        (porosity("--npy", ""), 300),
+        (voidage(&[&"porosity", &skid, &"--png", &name("").join("deep/p.png")]), 300),
+        (voidage(&[&"inspect", &skid, &"--report", &name(".json")]), 305),
+        (voidage(&[&"solve", &case, &"-o", &name("").join("deep")]), 300),
+        (voidage(&[&"study", &study, &"--quick", &"-o", &name("")]), 300),
+    ] {
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains(&format!("cannot create: a name of {bytes} bytes is too long for this disk")), "{said}");
+        assert!(output.stdout.is_empty(), "{}", crate::kit::stdout(&output));
+    }
+    assert_eq!(at.names(), ["case.toml", "study.toml"]);
+}

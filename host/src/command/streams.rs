@@ -4,7 +4,8 @@ use crate::command::progress::print;
 use crate::error::{Error, Result};
 use crate::files::{check_takes_files, check_target, json};
 use serde::Serialize;
-use std::io::Read;
+use std::ffi::OsStr;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 /// What messages call the standard input.
@@ -66,6 +67,7 @@ pub fn check_suffix(option: &str, path: &Path, wanted: &str) -> Result<()> {
 /// # Errors
 /// It cannot.
 pub fn check_place(path: &Path) -> Result<()> {
+    check_names(path)?;
     let directory = directory(path);
     if is_stream(path) || directory.is_dir() {
         return if is_stream(path) { Ok(()) } else { check_target(path) };
@@ -85,6 +87,7 @@ pub fn check_directory(option: &str, path: &Path) -> Result<()> {
     if is_stream(path) {
         return Err(Error::usage(format!("{option} takes a directory, not the standard output")));
     }
+    check_names(path)?;
     match path.ancestors().find(|place| place.exists()) {
         Some(file) if !file.is_dir() => {
             Err(Error::file(file, format!("cannot create the directory of {option}: there is a file of that name")))
@@ -92,6 +95,31 @@ pub fn check_directory(option: &str, path: &Path) -> Result<()> {
         _ => Ok(()),
     }
 }
+
+/// The names in a path that are not there yet can be made.
+///
+/// # Errors
+/// The system takes no names like one of them: most take up to 255 bytes.
+fn check_names(path: &Path) -> Result<()> {
+    let Some(above) = path.ancestors().map(or_here).find(|place| place.is_dir()) else { return Ok(()) };
+    let absent = path.strip_prefix(above).unwrap_or(path);
+    // Each is looked for where names of this disk are known: what lies between does not exist.
+    let refused = |name: &&OsStr| {
+        let looked = above.join(name).symlink_metadata();
+        looked.is_err_and(|error| error.kind() == ErrorKind::InvalidFilename)
+    };
+    match absent.iter().find(refused) {
+        Some(name) if name.len() > USUAL_NAME => Err(Error::file(
+            path,
+            format!("cannot create: a name of {} bytes is too long for this disk; most take {USUAL_NAME}", name.len()),
+        )),
+        Some(name) => Err(Error::file(path, format!("cannot create: this disk takes no name {}", name.display()))),
+        None => Ok(()),
+    }
+}
+
+/// Bytes of a file name that nearly every disk takes.
+const USUAL_NAME: usize = 255;
 
 /// `output` would replace `input`.
 #[must_use]
