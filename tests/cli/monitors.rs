@@ -98,7 +98,7 @@ fn planes_that_are_none_are_refused() {
     for (planes, words) in [
         ("{ x = 3 }", "key output.monitors[0].x: "),
         ("{ z = 0.5 }", "key output.monitors[0].z: the axis has one cell"),
-        ("{ x = 1, y = 0.5 }", "key output.monitors[0]: needs one of x, y and z"),
+        ("{ x = 1, y = 0.5 }", "key output.monitors[0]: takes only one of x, y and z"),
         ("{ name = \"a\" }", "key output.monitors[0]: needs one of x, y and z"),
         (
             "{ name = \"a\", x = 1 }, { name = \"a\", x = 1 }",

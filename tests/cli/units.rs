@@ -164,3 +164,17 @@ fn the_examples_are_not_doubted() {
         assert!(!text.contains("check the"), "{text}");
     }
 }
+
+/// A unit is of STL and OBJ files: beside a scene it is for these, and for a scene alone it has no effect.
+#[test]
+fn a_unit_is_doubted_where_it_has_no_effect() {
+    let (at, skid) = (Scratch::new(), fixture("cad_skid.stl"));
+    let ball = at.write("ball.toml", b"[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n");
+    let words = "ball.toml: a scene is in metres";
+    let alone = stderr(&voidage(&[&"inspect", &ball, &"--unit", &"cm"]));
+    assert_eq!(alone.matches(words).count(), 1, "{alone}");
+    for scene in [[&ball, &skid], [&skid, &ball]] {
+        let text = stderr(&voidage(&[&"inspect", scene[0], scene[1], &"--unit", &"cm"]));
+        assert!(!text.contains(words), "{text}");
+    }
+}

@@ -316,3 +316,82 @@ fn a_long_stage_tells_how_much_is_done() {
     assert_eq!(said.0, [None, line("porosity 0 %"), line("porosity 27 %")]);
     assert_eq!(said.1, line("setup"), "the bar of a stage that is over is not that of the next");
 }
+
+/// Cells that rounding leaves no width are told by the keys that ask for them.
+#[test]
+fn widths_lost_in_rounding_are_told_by_their_keys() {
+    let at = Scratch::new();
+    let said = |text: &str| {
+        let grid = at.write("grid.toml", text.as_bytes());
+        stderr(&ball(&at, &["--grid", grid.to_str().expect("a path")]))
+    };
+    let text = said("origin = [1e17, 0, 0]\nspacing = [1, 1, 1]\ncells = [4, 4, 4]\n");
+    let words = "grid.toml: line 2, column 12: key spacing[0]: a step of 1 is lost in rounding at coordinates around origin[0] = 1e17";
+    assert!(text.contains(words) && !text.contains("x["), "{text}");
+    let text = said("x = { points = [1e17, 1.00000000000000016e17], cells = [40] }\ny = [0, 1]\nz = [0, 1]\n");
+    let words = "line 1, column 5: key x: of the 40 cells between the points 1e17 and 1.0000000000000002e17 some have a width that is lost";
+    assert!(text.contains(words), "{text}");
+    let text = said("x = { points = [0, 1], cells = [40], ratios = [1e300] }\ny = [0, 1]\nz = [0, 1]\n");
+    assert!(!text.contains("x["), "{text}");
+}
+
+/// A grid or a list of zones where a scene is asked for is called by its name.
+#[test]
+fn grids_and_zones_are_no_scenes() {
+    let at = Scratch::new();
+    for (name, text, words) in [
+        (
+            "g.toml",
+            "origin = [0, 0, 0]\nspacing = [1, 1, 1]\ncells = [4, 4, 4]\n",
+            "g.toml: this is a grid, not a scene: it has the key origin;",
+        ),
+        (
+            "h.toml",
+            "x = [0, 1]\ny = [0, 1]\nz = [0, 1]\n",
+            "h.toml: this is a grid, not a scene: it has the key x; voidage porosity takes it by --grid",
+        ),
+        (
+            "g.json",
+            "{\"x\": [0, 1],\n\"y\": [0, 1],\n\"z\": [0, 1]}\n",
+            "g.json: this is a grid, not a geometry: voidage porosity takes it by --grid",
+        ),
+        (
+            "z.toml",
+            "[[zone]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n",
+            "z.toml: this is a list of zones, not a scene: it has the key zone; voidage porosity takes it by --zones",
+        ),
+    ] {
+        for command in ["inspect", "porosity"] {
+            let output = voidage(&[&command, &at.write(name, text.as_bytes())]);
+            assert!(output.status.code() == Some(1) && stderr(&output).contains(words), "{}", stderr(&output));
+        }
+    }
+}
+
+#[test]
+fn a_cone_with_its_apex_at_the_base_is_to_be_turned() {
+    let at = Scratch::new();
+    let inspect = |radii: &str| {
+        let text = format!("[[solid]]\nshape = \"cone\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\n{radii}\n");
+        stderr(&voidage(&[&"inspect", &at.write("cone.toml", text.as_bytes())]))
+    };
+    let text = inspect("radius = 0\ntop_radius = 1");
+    assert!(text.contains("line 5, column 10: ") && text.contains("radius must be positive, not 0"), "{text}");
+    assert!(text.contains("a cone has its apex at to; swap from and to"), "{text}");
+    for radii in ["radius = 0", "radius = -1\ntop_radius = 1", "radius = 0\ntop_radius = 0"] {
+        let text = inspect(radii);
+        assert!(text.contains("radius must be positive") && !text.contains("swap"), "{text}");
+    }
+}
+
+#[test]
+fn compression_needs_what_it_packs() {
+    let at = Scratch::new();
+    let png = at.file("p.png").display().to_string();
+    for more in [&["--compress"][..], &["--compress", "-o", &png]] {
+        let output = ball(&at, more);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        let words = "--compress packs the fields for ParaView: give -o FILE.vtr";
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+}

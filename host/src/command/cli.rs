@@ -217,7 +217,7 @@ pub struct PorosityArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Compress the .vtr file (zlib)
-    #[arg(long, requires = "output")]
+    #[arg(long)]
     pub compress: bool,
     /// Write beta_v.npy, beta_x.npy, beta_y.npy, beta_z.npy into this directory
     #[arg(long, value_name = "DIR")]

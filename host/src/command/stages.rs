@@ -9,7 +9,7 @@ use crate::geometry::form::Form;
 use crate::geometry::read;
 use crate::geometry::scene;
 use crate::geometry::unit::Unit;
-use crate::grid::{AXES, Edges};
+use crate::grid::{self, AXES, Edges};
 use crate::picture::ticks::{measure as number, number as short, number_to};
 use crate::porosity::snap::{self, OffPlanes};
 use crate::porosity::{self, Leaf, Method, Options, Porosity};
@@ -25,7 +25,7 @@ use voidage_core::grid::Grid;
 /// The first file that cannot be read or holds nothing solid.
 pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result<Option<Edges>>)> {
     let scale = args.unit.unwrap_or(Unit::M).metres();
-    let (mut bodies, mut grid) = (Bodies::default(), Ok(None));
+    let (mut bodies, mut grid, mut in_metres) = (Bodies::default(), Ok(None), Vec::new());
     if args.scene.iter().filter(|path| is_stream(path)).count() > 1 {
         return Err(Error::usage("the standard input can be read once: - stands for one file of a scene"));
     }
@@ -45,17 +45,12 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
                 (Ok(Some(_)), Some(_)) => Err(Error::file(path, "a second scene with a [grid]: leave one of them out")),
                 (before, own) => before.map(|grid| grid.or(own)),
             };
-            if args.unit.is_some() {
-                progress.warn(format!(
-                    "{}: a scene is in metres, and its solids of files have a unit each: the unit of STL and OBJ files does not change them",
-                    path.display()
-                ));
-            }
+            in_metres.push(path);
             continue;
         }
         let mesh = progress.stage("read", |_| match piped {
             Some(bytes) => read::from_bytes(path, bytes),
-            None => read::read(path),
+            None => read::read(path).map_err(|error| grid_in_place_of(path).unwrap_or(error)),
         })?;
         mesh.warnings.iter().for_each(|w| progress.warn(w.as_str()));
         progress.stage("bodies", |_| bodies.add(&mesh, scale))?;
@@ -67,9 +62,23 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
             ));
         }
     }
+    // Beside files that have none of their own the unit is for these.
+    for path in in_metres.iter().filter(|_| args.unit.is_some() && in_metres.len() == args.scene.len()) {
+        progress.warn(format!(
+            "{}: a scene is in metres, and its solids of files have a unit each: the unit of STL and OBJ files does not change them",
+            path.display()
+        ));
+    }
     warn_of_unit(args, &bodies, progress);
     bodies.warnings.iter().for_each(|w| progress.warn(w.as_str()));
     Ok((bodies, grid))
+}
+
+/// What is wrong with a file that is no geometry but a grid in JSON.
+fn grid_in_place_of(path: &Path) -> Option<Error> {
+    let is_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    grid::file::read(path, &mut Vec::new()).ok().filter(|_| is_json)?;
+    Some(Error::file(path, "this is a grid, not a geometry: voidage porosity takes it by --grid"))
 }
 
 /// Sizes in m of all that is read in a unit of its own: less is likely a file in metres, more is no plant.

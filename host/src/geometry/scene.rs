@@ -94,6 +94,7 @@ pub fn parse(path: &Path, text: &str) -> Result<Scene> {
     let table = source.toml()?;
     let mut keys = StrictTable::new(&source, "", 0..0, table.get_ref());
     keys.is_a("a scene")?;
+    not_beside_a_scene(path, &keys)?;
     let solids = solids(&mut keys)?;
     let grid = keys.grid("grid")?;
     keys.finish()?;
@@ -101,6 +102,30 @@ pub fn parse(path: &Path, text: &str) -> Result<Scene> {
         return Err(Error::file(path, "a scene without solids: it needs at least one [[solid]]"));
     }
     Ok(Scene { path: path.to_owned(), solids, grid })
+}
+
+/// Files that stand beside a scene: what they are, a key that only they have, and how the commands take them.
+const BESIDE: [(&str, &str, &str); 7] = [
+    ("a grid", "x", GRID_FILE),
+    ("a grid", "y", GRID_FILE),
+    ("a grid", "z", GRID_FILE),
+    ("a grid", "origin", GRID_FILE),
+    ("a grid", "spacing", GRID_FILE),
+    ("a grid", "cells", GRID_FILE),
+    ("a list of zones", "zone", "voidage porosity takes it by --zones"),
+];
+
+/// How a grid file is taken.
+const GRID_FILE: &str = "voidage porosity takes it by --grid, [grid] file = \"FILE\" of a case names it";
+
+/// Refuses a file of another kind that has no solids.
+fn not_beside_a_scene(path: &Path, keys: &StrictTable) -> Result<()> {
+    match BESIDE.iter().find(|(_, key, _)| keys.has(key)).filter(|_| !keys.has("solid")) {
+        Some((kind, key, taken)) => {
+            Err(Error::file(path, format!("this is {kind}, not a scene: it has the key {key}; {taken}")))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The tables `[[solid]]` of a scene.

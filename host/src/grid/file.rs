@@ -179,15 +179,28 @@ impl GridTable {
         }
         few_enough(DVec3::from_array([0, 1, 2].map(|a| cells.get(a).map_or(1.0, |&n| n as f64))))
             .map_err(|reason| wrong("cells", reason))?;
-        Ok(Edges([0, 1, 2].map(|a| match cells.get(a) {
+        let edges = [0, 1, 2].map(|a| match cells.get(a) {
             Some(&n) => {
                 let decimal = decimal(rounding(origin[a], origin[a] + spacing[a] * n as f64));
                 let edge = |i: i64| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64) };
                 (0..=n).map(edge).collect()
             }
             None => UNIT_CELL.to_vec(),
-        })))
+        });
+        // Beyond the range of numbers it is not the step that is too small.
+        let lost = |e: &Vec<f64>| e.iter().all(|x| x.is_finite()) && first_lost(e).is_some();
+        if let Some(a) = edges.iter().position(lost) {
+            let (step, origin) = (written(spacing[a]), written(origin[a]));
+            let reason = format!("a step of {step} is lost in rounding at coordinates around origin[{a}] = {origin}");
+            return Err(wrong(&format!("spacing[{a}]"), format!("{reason}: move the origin nearer to 0")));
+        }
+        Ok(Edges(edges))
     }
+}
+
+/// The first edge that does not lie above the one before it.
+fn first_lost(edges: &[f64]) -> Option<usize> {
+    edges.windows(2).position(|pair| !(pair[0] < pair[1])).map(|n| n + 1)
 }
 
 /// Names, and whether one of them is or several are.
@@ -321,6 +334,14 @@ fn axis(spec: &AxisSpec) -> std::result::Result<Vec<f64>, String> {
         edges.extend((1..=n).map(|i| ends[0] + (ends[1] - ends[0]) * share(i, n, ratio)));
         if let Some(last) = edges.last_mut() {
             *last = ends[1];
+        }
+        let segment = &edges[edges.len() - 1 - n as usize..];
+        if ends.iter().all(|end| end.is_finite()) && first_lost(segment).is_some() {
+            let [low, high] = [ends[0], ends[1]].map(written);
+            return Err(format!(
+                "of the {n} cells between the points {low} and {high} some have a width that is lost in rounding: take fewer, a ratio nearer to 1, or points \
+                 nearer to 0"
+            ));
         }
     }
     Ok(edges)

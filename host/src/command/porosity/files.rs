@@ -88,6 +88,9 @@ fn check_use(args: &PorosityArgs) -> Result<()> {
     if args.bounds_fields && !fields {
         return Err(Error::usage("--bounds-fields makes fields: give --npy DIR or -o FILE.vtr"));
     }
+    if args.compress && args.output.is_none() {
+        return Err(Error::usage("--compress packs the fields for ParaView: give -o FILE.vtr"));
+    }
     if args.zones.is_some() && args.report.is_none() {
         return Err(Error::usage("--zones makes a table of the report: give --report FILE.json"));
     }

@@ -139,7 +139,8 @@ impl Plane {
         let given: Vec<(usize, f64)> =
             [keys.x, keys.y, keys.z].into_iter().enumerate().filter_map(|(a, at)| Some((a, at?))).collect();
         let [(axis, at)] = given[..] else {
-            return Err(file.wrong(key, "needs one of x, y and z: the place of the plane along that axis"));
+            let takes = if given.is_empty() { "needs one of" } else { "takes only one of" };
+            return Err(file.wrong(key, format!("{takes} x, y and z: the place of the plane along that axis")));
         };
         let wrong = |reason: String| Err(file.wrong(&format!("{key}.{}", AXES[axis]), reason));
         let Some(d) = live.iter().position(|&a| a == axis) else {

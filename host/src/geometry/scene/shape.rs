@@ -130,9 +130,13 @@ impl Shape {
     pub fn read(keys: &mut StrictTable) -> Result<Self> {
         let round = |kind: Round, keys: &mut StrictTable| {
             let (from, to) = (keys.need("from", table::point)?, keys.need("to", table::point)?);
-            let radius = keys.need("radius", table::positive)?;
-            let top_radius =
-                if kind == Round::Cone { keys.get("top_radius", table::not_negative)?.unwrap_or(0.0) } else { radius };
+            let top =
+                if kind == Round::Cone { keys.get("top_radius", table::not_negative)?.unwrap_or(0.0) } else { 0.0 };
+            let radius = keys.need("radius", |value| match table::number(value)? {
+                0.0 if top > 0.0 => Err("must be positive, not 0: a cone has its apex at to; swap from and to".into()),
+                _ => table::positive(value),
+            })?;
+            let top_radius = if kind == Round::Cone { top } else { radius };
             if from == to && kind != Round::Capsule {
                 return Err(keys.wrong("to", "is the same point as from"));
             }
