@@ -1,6 +1,6 @@
 //! `voidage inspect`.
 
-use crate::kit::{fixture, stderr, stdout, voidage};
+use crate::kit::{Scratch, fixture, stderr, stdout, voidage};
 use serde_json::Value;
 
 fn inspect(name: &str) -> Value {
@@ -16,6 +16,17 @@ fn a_table_for_people() {
     for row in ["triangles         78736", "bodies            123", "boundary edges    0", "9.263415382"] {
         assert!(text.contains(row), "{row}: {text}");
     }
+}
+
+/// Rims of sheets are closed, too, but nothing is capped: the row does not say so.
+#[test]
+fn rims_of_sheets_are_no_holes() {
+    let at = Scratch::new();
+    let sheet = at.write("sheet.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let output = voidage(&[&"inspect", &sheet]);
+    let text = stdout(&output);
+    assert!(text.contains("sheets            1") && text.contains("rims closed       "), "{text}");
+    assert!(!(text + &stderr(&output)).contains("capped"), "{}", stderr(&output));
 }
 
 #[test]

@@ -117,7 +117,7 @@ impl Inspection<'_> {
                 ("repeated", d.repeated.to_string()),
                 ("backs dropped", d.doubled.to_string()),
                 ("boundary edges", format!("{} ({} of T-junctions)", d.boundary_edges, d.t_junction_edges)),
-                ("holes capped", d.holes.to_string()),
+                ("rims closed", d.holes.to_string()),
                 ("area", format!("{} m²", measure(d.area))),
                 (
                     "volume",
