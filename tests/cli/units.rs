@@ -178,3 +178,37 @@ fn a_unit_is_doubted_where_it_has_no_effect() {
         assert!(!text.contains(words), "{text}");
     }
 }
+
+/// Velocities and temperatures that no gas has are doubted, where a case is in SI units.
+#[test]
+fn velocities_and_temperatures_of_no_explosion_are_doubted() {
+    let inlet = |u: &str| format!("{{ type = \"inlet\", rho = 1.2, u = {u} }}");
+    let air = "T = 288, p = 101325";
+    for (gas, state, side, words) in [
+        (
+            AIR,
+            air,
+            inlet("-2e4"),
+            "key boundary.x_max.u: -20000 m/s is faster than the gas of any explosion: check the exponent",
+        ),
+        ("", "rho = 1.2, p = 1e5, u = 3e5", "\"wall\"".into(), "key initial.uniform.u: 300000 m/s is faster"),
+        (
+            AIR,
+            "T = 288e3, p = 101325",
+            "\"wall\"".into(),
+            "key initial.uniform.T: 288000 K is hotter than the gas of any explosion",
+        ),
+    ] {
+        let text = said(gas, state, &side, "");
+        assert!(text.contains(words), "{text}");
+    }
+    for (gas, state, side) in [
+        (AIR, air, inlet("-5e3")),
+        (AIR, "T = 9e4, p = 101325", "\"wall\"".into()),
+        ("", "rho = 1, p = 1, u = 3e4", "\"wall\"".into()),
+        ("gas_constant = 1", "T = 2e5, p = 2e5", "\"wall\"".into()),
+    ] {
+        let text = said(gas, state, &side, "");
+        assert!(!text.contains("check the exponent"), "{state}: {text}");
+    }
+}

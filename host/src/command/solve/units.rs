@@ -4,7 +4,7 @@
 //! only where the case itself says that it is in SI units, by a gas constant in J/(kg K) beside a temperature; and the ambient pressure
 //! where it is at odds with every pressure of the beginning, in whatever unit.
 
-use super::case::{StateKeys, side_word};
+use super::case::{StateKeys, VELOCITIES, side_word};
 use super::case_file::CaseFile;
 use crate::picture::ticks::number_to;
 use crate::words::written;
@@ -32,6 +32,12 @@ const LEAST: f64 = 1000.0;
 
 /// A pressure above this many Pa, a thousand atmospheres, is doubted: gas burnt in a closed room has about eight.
 const MOST: f64 = 1e8;
+
+/// A temperature above this many K is doubted: that of detonations is a few thousand.
+const HOTTEST: f64 = 1e5;
+
+/// A velocity above this many m/s is doubted: gas that bursts into a vacuum reaches a few thousand.
+const FASTEST: f64 = 1e4;
 
 /// Lowest pressures of gas that is meant to be in Pa, whatever else the case says.
 const ATMOSPHERES: [f64; 2] = [1e4, 1e6];
@@ -70,7 +76,8 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
             said.push(file.remark("gas.gas_constant", reason));
         }
     }
-    let is_pascal = within(lowest, ATMOSPHERES) || file.case.gas.gas_constant.is_some_and(|r| within(r, SI_GASES));
+    let is_si = file.case.gas.gas_constant.is_some_and(|r| within(r, SI_GASES));
+    let is_pascal = is_si || within(lowest, ATMOSPHERES);
     if let Some((key, p)) = first(&|keys| keys.p.filter(|p| is_pascal && *p > MOST)) {
         let (p, atmospheres) = (written(p), number_to(p / 101_325.0, p / 1e7));
         let reason = format!(
@@ -78,6 +85,7 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
         );
         said.push(file.remark(&format!("{key}.p"), reason));
     }
+    said.extend(beyond_sense(file, &states, is_si, is_pascal));
     if let Some(p) = file.case.output.ambient.filter(|p| *p > 0.0 && FAR_BELOW * p < lowest) {
         let reason = format!(
             "{p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"
@@ -98,6 +106,24 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
         said.push(file.remark("output.ambient", reason));
     }
     said
+}
+
+/// Temperatures of a case in K, if it `is_si`, and velocities in m/s, if it has pressures in Pa, that no gas has: the first of each.
+fn beyond_sense(file: &CaseFile, states: &[(String, &StateKeys)], is_si: bool, is_pascal: bool) -> Vec<String> {
+    let hot = states.iter().find_map(|(key, keys)| Some((key, keys.temperature.filter(|t| is_si && *t > HOTTEST)?)));
+    let hot = hot.map(|(key, t)| {
+        let reason = format!("{} K is hotter than the gas of any explosion: check the exponent", written(t));
+        file.remark(&format!("{key}.T"), reason)
+    });
+    let fast = states.iter().find_map(|(key, keys)| {
+        let mut all = VELOCITIES.into_iter().zip([keys.u, keys.v, keys.w]);
+        all.find_map(|(name, u)| Some((key, name, u.filter(|u| is_pascal && u.abs() > FASTEST)?)))
+    });
+    let fast = fast.map(|(key, name, u)| {
+        let reason = format!("{} m/s is faster than the gas of any explosion: check the exponent", written(u));
+        file.remark(&format!("{key}.{name}"), reason)
+    });
+    hot.into_iter().chain(fast).collect()
 }
 
 /// What a gas constant may be instead of one in J/(kg K), beside a temperature in the table `key` and pressures in Pa.
