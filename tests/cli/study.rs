@@ -549,6 +549,10 @@ fn grids_of_as_many_cells_and_files_of_solids_are_told_apart() {
     assert_eq!(again, wanted(1.0, 0.125));
     assert!(said.contains("2 points are kept from before"), "{said}");
     dir.write("block.obj", surface(0.25).as_bytes());
+    let refused = stderr(&voidage(&[&"study", &case, &"-o", &out]));
+    assert!(refused.contains("holds a finished study of another case, another geometry"), "{refused}");
+    // As if the one before had not come to its end.
+    fs::remove_file(out.join("study.json")).expect("a report");
     let (changed, said) = study();
     assert_eq!(changed, wanted(0.015625, 0.015625));
     assert!(said.contains("all is measured anew"), "{said}");
