@@ -250,3 +250,27 @@ fn what_stands_in_a_solid_does_not_matter() {
         assert!(run(stream([0.0; 2])) == run(other), "{degrees}°");
     }
 }
+
+/// A cell whose face at the side of the domain a solid closes took its slope to what the side would let in.
+#[test]
+fn what_a_side_would_let_in_does_not_matter_behind_a_solid() {
+    let n = [24, 24];
+    // The wall goes through cells of the first column, all of whose faces at the side are closed.
+    let open = open_fractions(n, [0.0; 2], 0.1, |low, high| half_space([1.0, 0.3], 0.75, low, high));
+    assert!((0..n[1]).all(|j| open.faces[0][j * (n[0] + 1)] == 0.0));
+    assert!((0..n[1]).any(|j| open.volume[j * n[0]] > 0.0));
+    let run = |side: Boundary<f64, 2>| {
+        let sides = [[side, Boundary::Wall], [Boundary::Wall; 2]];
+        let mut flow: Flow<f64, 2> = flow(n, 0.1, sides, &open, PressureForm::Geometric);
+        let near = |x: [f64; 2]| (x[0] - 0.6).hypot(x[1] - 1.8) < 0.5;
+        flow.fill(|x| Primitive { pressure: if near(x) { 4.0 } else { 1.0 }, ..stream([0.0; 2]) });
+        flow.run(0.8, 0.5).unwrap();
+        let seen = (0..flow.len()).filter(|&c| open.volume[c] > 0.0).map(|c| flow.get(c));
+        seen.map(|w| [w.density, w.velocity[0], w.velocity[1], w.pressure].map(f64::to_bits)).collect::<Vec<_>>()
+    };
+    let wall = run(Boundary::Wall);
+    let far = Primitive { density: 3.0, velocity: [0.5, -0.1], pressure: 2.0 };
+    for side in [Boundary::ZeroGradient, Boundary::FarField(stream([0.0; 2])), Boundary::FarField(far)] {
+        assert!(run(side) == wall, "{side:?}");
+    }
+}
