@@ -34,7 +34,7 @@ fn halves<R: Real>(x: R) -> [R; 2] {
 
 /// What rounding takes away from `a b`, which is `value`.
 #[inline(always)]
-fn rest_of_product<R: Real>(a: R, b: R, value: R) -> R {
+pub(crate) fn rest_of_product<R: Real>(a: R, b: R, value: R) -> R {
     let ([ah, al], [bh, bl]) = (halves(a), halves(b));
     ((ah * bh - value) + ah * bl + al * bh) + al * bl
 }

@@ -251,7 +251,7 @@ fn by_sections<V: Vector>(
     // Shares were rounded, and their sum.
     let rounded = real(8.0) * V::Scalar::EPSILON * sum;
     let sum = Bounds { lower: (sum - rounded).to_f64(), upper: (sum + rounded).to_f64() };
-    let found = share_of_union(near, sides, sum, rule.tol.to_f64())?;
+    let found = share_of_union(near, sides, sum, rule.tol.to_f64(), usize::MAX)?;
     let bounds = Bounds { lower: real(found.lower), upper: real(found.upper) };
     (bounds.upper - bounds.lower <= real(2.0) * rule.tol).then_some(bounds)
 }

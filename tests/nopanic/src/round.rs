@@ -46,7 +46,7 @@ fn quadrics<V: Vector>(grid: &Grid<V::Scalar>, p: [V; 3], r: [V::Scalar; 2], cel
     let excess = excess(solids.iter().flatten(), cell, enough).map_or(1, |[low, high]| (low + high) as usize);
     let sum_of_shares = Bounds { lower: enough, upper: tol };
     let union =
-        share_of_union(solids.iter().flatten(), cell, sum_of_shares, tol).map_or(2, |found| found.lower as usize);
+        share_of_union(solids.iter().flatten(), cell, sum_of_shares, tol, k).map_or(2, |found| found.lower as usize);
     sum ^ excess ^ union
 }
 

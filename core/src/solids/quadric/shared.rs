@@ -51,19 +51,20 @@ fn meet(a: &[P2; 3], b: &[P2; 3]) -> [P2; 3] {
 }
 
 /// Bounds of the share of a cell or face that the union of some solids has, from bounds of the sum of their shares; of cells about `tol` apart, of
-/// faces as close as rounding allows. `cell` and none as in [`excess`].
+/// faces as close as rounding allows. `cell` and none as in [`excess`]; none, too, if that takes more slices of cells than `most`.
 #[must_use]
 pub fn share_of_union<'a>(
     solids: impl IntoIterator<Item = &'a QuadricSolid>,
     cell: [P2; 3],
     sum: Bounds<f64>,
     tol: f64,
+    most: usize,
 ) -> Option<Bounds<f64>> {
     let (mut size, mut close) = (1.0, tol);
     for [lo, hi] in cell {
         if lo < hi { size *= hi - lo } else { close = CLOSE_AREAS }
     }
-    let [low, high] = excess(solids, cell, close * size)?.map(|common| common / size);
+    let [low, high] = excess_within(solids, cell, close * size, most)?.map(|common| common / size);
     let (lower, upper) = ((sum.lower - high).max(0.0), (sum.upper - low).min(1.0));
     // Where rounding makes them contradict each other, what lies between them.
     Some(Bounds { lower: lower.min(upper), upper: lower.max(upper) })
@@ -74,6 +75,16 @@ pub fn share_of_union<'a>(
 /// more in the cell than this is made for, or they are so large that rounding leaves nothing to rely on.
 #[must_use]
 pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2; 3], enough: f64) -> Option<P2> {
+    excess_within(solids, cell, enough, usize::MAX)
+}
+
+/// The same; none if it takes more than so many slices.
+fn excess_within<'a>(
+    solids: impl IntoIterator<Item = &'a QuadricSolid>,
+    cell: [P2; 3],
+    enough: f64,
+    mut slices: usize,
+) -> Option<P2> {
     let flat = Axis::ALL.into_iter().find(|&n| cell[n][0] == cell[n][1]);
     let mut parts: Vec<OnePart, MOST_AT_HAND> = Vec::new();
     for (solid, body) in solids.into_iter().enumerate() {
@@ -117,8 +128,11 @@ pub fn excess<'a>(solids: impl IntoIterator<Item = &'a QuadricSolid>, cell: [P2;
             let most = holding.last().copied().unwrap_or(f64::INFINITY);
             let [low, high] = match plane {
                 None if most <= share => [0.0, most],
-                _ => common_of(of_set().chain([one]), &extent, plane, share),
+                _ => common_of(of_set().chain([one]), &extent, plane, share, &mut slices),
             };
+            if slices == 0 && high - low > share {
+                return None;
+            }
             // Of huge solids rounding may leave nothing to rely on.
             if sets > MOST_SETS || !(low - high <= enough) {
                 return None;
@@ -187,12 +201,13 @@ fn common_of<'a>(
     extent: &[P2; 3],
     plane: Option<(Axis, f64)>,
     share: f64,
+    slices: &mut usize,
 ) -> P2 {
     let all = parts.clone().map(|p| p.part);
     if parts.count() == 2 {
-        common::<2>(all, extent, plane, share)
+        common::<2>(all, extent, plane, share, slices)
     } else {
-        common::<MOST_PARTS>(all, extent, plane, share)
+        common::<MOST_PARTS>(all, extent, plane, share, slices)
     }
 }
 
@@ -201,12 +216,13 @@ fn reaches(extent: &[P2; 3], flat: Option<Axis>) -> bool {
     Axis::ALL.into_iter().zip(extent).all(|(n, [lo, hi])| lo < hi || (flat == Some(n) && lo == hi))
 }
 
-/// Bounds of the volume that up to `N` parts have in common in a box, or of the area in a plane across an axis at a coordinate.
+/// Bounds of the volume that up to `N` parts have in common in a box, or of the area in a plane across an axis at a coordinate; `slices` as in [`volume`].
 fn common<'a, const N: usize>(
     parts: impl Iterator<Item = &'a Part> + Clone,
     extent: &[P2; 3],
     plane: Option<(Axis, f64)>,
     enough: f64,
+    slices: &mut usize,
 ) -> P2 {
     let Some((n, coordinate)) = plane else {
         let all = extent.iter().fold(1.0, |all, [lo, hi]| all * (hi - lo));
@@ -218,8 +234,8 @@ fn common<'a, const N: usize>(
         let found = prism::<N>(parts.clone(), extent, enough).or_else(of_upright).or_else(of_pipes);
         return match found {
             Some([low, high]) if high - low <= enough => [low, high],
-            Some(found) => narrower(found, volume::<N>(parts, extent, enough)),
-            None => volume::<N>(parts, extent, enough),
+            Some(found) => narrower(found, volume::<N>(parts, extent, enough, slices)),
+            None => volume::<N>(parts, extent, enough, slices),
         };
     };
     upright::area(parts.clone(), extent, (n, coordinate))
@@ -268,8 +284,13 @@ impl Sample {
     }
 }
 
-/// Bounds of the volume that up to `N` parts have in common in a box.
-fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, extent: &[P2; 3], enough: f64) -> P2 {
+/// Bounds of the volume that up to `N` parts have in common in a box; `left` is how many slices there may still be.
+fn volume<'a, const N: usize>(
+    parts: impl Iterator<Item = &'a Part> + Clone,
+    extent: &[P2; 3],
+    enough: f64,
+    left: &mut usize,
+) -> P2 {
     let n = across(parts.clone(), extent);
     let [first, last] = extent[n];
     let [u, v] = n.others();
@@ -283,6 +304,7 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
         Sample { at, root: found.area.map(Real::sqrt), height: found.height, length: found.length }
     };
     let most = (SLICES * Real::sqrt(all * (last - first) / enough)).clamp(512.0, MOST_SLICES) as usize;
+    let most = most.min(*left);
     let mut found = [0.0; 2];
     let mut waiting: Vec<(P2, f64), MOST_RANGES> = Vec::new();
     let _ = waiting.push(([first, last], enough));
@@ -299,6 +321,7 @@ fn volume<'a, const N: usize>(parts: impl Iterator<Item = &'a Part> + Clone, ext
             found = [found[0] + bounds[0], found[1] + bounds[1]];
         }
     }
+    *left = left.saturating_sub(spent);
     found
 }
 

@@ -59,6 +59,12 @@ impl QuadricSolid {
         QuadricSolid { parts: parts.iter().copied().collect() }
     }
 
+    /// How many parts it is made of that share no volume: three of a capsule, else one.
+    #[must_use]
+    pub fn part_count(&self) -> usize {
+        self.parts.len()
+    }
+
     /// Its parts, which share no volume.
     pub(super) fn parts(&self) -> &[Part] {
         &self.parts

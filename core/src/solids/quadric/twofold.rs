@@ -1,6 +1,8 @@
 //! Differences and products with their rounding errors: what remains of a distance that nearly cancels.
 //!
-//! References: O. Møller, BIT 5 (1965) and D. Knuth, TAOCP 2, for sums; T. Dekker, Numerische Mathematik 18 (1971), for products.
+//! References: O. Møller, BIT 5 (1965) and D. Knuth, TAOCP 2, for sums.
+
+use crate::number::space::rest_of_product;
 
 /// A number as a rounded value and what the rounding took away.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,14 +22,8 @@ pub(super) fn difference(a: f64, b: f64) -> Twofold {
 /// `a · b`, exactly but for overflow and underflow.
 #[inline(always)]
 fn product(a: f64, b: f64) -> Twofold {
-    let halves = |x: f64| {
-        let scaled = x * 134_217_729.0;
-        let high = scaled - (scaled - x);
-        (high, x - high)
-    };
     let value = a * b;
-    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
-    Twofold { value, rest: ((ah * bh - value) + ah * bl + al * bh) + al * bl }
+    Twofold { value, rest: rest_of_product(a, b, value) }
 }
 
 /// `a0 b0 + a1 b1`, to about twice the digits.

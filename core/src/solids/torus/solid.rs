@@ -406,11 +406,14 @@ enum Cell {
 }
 
 impl Ring {
-    /// With its centre in the planes of a grid that it misses by rounding: flat ends that should lie in a plane do.
+    /// Flat ends in the planes of a grid that they miss by rounding. Nothing else moves: what touches a plane goes on to do so.
     fn in_planes<R: Real>(&self, grid: &Grid<R>) -> Self {
         let mut ring = *self;
         for n in Axis::ALL {
-            ring.center[n] = grid.plane_at(n as usize, ring.center[n]).unwrap_or(ring.center[n]);
+            let is_along = |inward: &P3| inward[n].abs() > 1.0 - 8.0 * f64::EPSILON;
+            if self.ends.as_ref().is_some_and(|ends| ends.inward.iter().any(is_along)) {
+                ring.center[n] = grid.plane_at(n as usize, ring.center[n]).unwrap_or(ring.center[n]);
+            }
         }
         ring
     }

@@ -78,6 +78,14 @@ impl FormulaSolid {
         Some(FormulaSolid { body, number: 0, bounds: Aabb { min, max }, kind, partners: Vec::new() })
     }
 
+    /// Of how many parts sections are made.
+    pub(super) fn part_count(&self) -> usize {
+        match &self.kind {
+            Kind::Quadric(solid, _) => solid.part_count(),
+            Kind::Torus(..) => 1,
+        }
+    }
+
     /// As GJK sees it, if it is convex.
     #[must_use]
     pub fn convex(&self) -> Option<Convex<'static>> {

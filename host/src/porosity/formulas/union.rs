@@ -14,8 +14,11 @@ use voidage_core::solids::quadric::{QuadricSolid, share_of_union};
 pub(super) const FIRST: usize = 1 << 15;
 const MOST: usize = 1 << 21;
 
-/// Up to so many solids have few enough sets that sections tell what each of these has in common sooner than planes do.
-const FEW: usize = 4;
+/// So many parts of solids, a capsule having three, have few enough sets that sections tell what each of these has in common sooner than planes do.
+const FEW: usize = 6;
+
+/// How many slices sections may take before planes are tried.
+const FIRST_SLICES: usize = 1 << 14;
 
 /// Bounds of the union of some solids in one cell or face, from what is known of it and the sum of their shares; about `tol` apart. Sections of
 /// faces are exact, and best for what few solids have in common; planes for more solids, and for tori.
@@ -27,12 +30,15 @@ pub(super) fn union_of(
 ) -> Bounds<f64> {
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
     let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most }));
-    let by_sections = || by_sections(solids, sum, cell, tol);
-    let sections_first = solids.len() <= FEW || cell.size().min_element() == 0.0;
-    let ways: [&dyn Fn() -> Option<Bounds<f64>>; 3] = if sections_first {
-        [&by_sections, &|| by_planes(FIRST), &|| by_planes(MOST)]
+    let by_sections = |most: usize| by_sections(solids, (sum, cell), tol, most);
+    let (few_slices, all_slices) = (|| by_sections(FIRST_SLICES), || by_sections(usize::MAX));
+    let (few_planes, all_planes) = (|| by_planes(FIRST), || by_planes(MOST));
+    let parts = || solids.iter().map(|solid| solid.part_count()).sum::<usize>();
+    let sections_first = cell.size().min_element() == 0.0 || parts() <= FEW;
+    let ways: [&dyn Fn() -> Option<Bounds<f64>>; 4] = if sections_first {
+        [&few_slices, &few_planes, &all_slices, &all_planes]
     } else {
-        [&|| by_planes(FIRST), &by_sections, &|| by_planes(MOST)]
+        [&few_planes, &few_slices, &all_planes, &all_slices]
     };
     let mut found = known;
     for way in ways {
@@ -45,8 +51,13 @@ pub(super) fn union_of(
 }
 
 /// The union of solids of which all have closed forms, by what they have in common; `sum` is that of their shares. None if there are too many of
-/// them.
-fn by_sections(solids: &[&FormulaSolid], sum: Bounds<f64>, cell: Aabb<DVec3>, tol: f64) -> Option<Bounds<f64>> {
+/// them, or it takes more slices than `most`.
+fn by_sections(
+    solids: &[&FormulaSolid],
+    (sum, cell): (Bounds<f64>, Aabb<DVec3>),
+    tol: f64,
+    most: usize,
+) -> Option<Bounds<f64>> {
     fn quadric<'s>(s: &&'s FormulaSolid) -> Option<&'s QuadricSolid> {
         match &s.kind {
             Kind::Quadric(solid, _) => Some(solid),
@@ -55,7 +66,7 @@ fn by_sections(solids: &[&FormulaSolid], sum: Bounds<f64>, cell: Aabb<DVec3>, to
     }
     let quadrics: Vec<&QuadricSolid> = solids.iter().map(quadric).collect::<Option<_>>()?;
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
-    share_of_union(quadrics, sides, sum, tol)
+    share_of_union(quadrics, sides, sum, tol, most)
 }
 
 /// Does a solid end in the plane of a face? Where two touch without that, their sections share no area.
