@@ -7,6 +7,7 @@ use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
 use voidage_core::convex::shape::{Capsule, Cone, Cylinder, Sphere};
+use voidage_core::solids::torus::TorusShape;
 use voidage_tests::effort::cases;
 use voidage_tests::quadrature::{Exact, common_volume};
 use voidage_tests::quadric::volume;
@@ -492,5 +493,69 @@ fn rods_in_cups_of_many_facets() {
         if n < cases(2) {
             agree(&found, &run(&edges, &bodies, Method::Gjk), &what);
         }
+    }
+}
+
+/// Each has three parts: where four overlap, there are too many sets of these for sections, and planes take no time; where two or three meet in a node, sections
+/// serve better, to any tolerance.
+#[test]
+fn capsules_in_one_cell() {
+    let capsule = |from: [f64; 3], to: [f64; 3], radius: f64| {
+        Form::Capsule(Capsule { from: DVec3::from_array(from), to: DVec3::from_array(to), radius })
+    };
+    let four = |n: usize| {
+        let low = DVec3::new(0.25 * (n % 2) as f64, 0.0, 0.1 * (n / 2) as f64);
+        let (from, to) = (low + DVec3::new(0.0, 0.001, 0.0), low + DVec3::new(0.1, 1.0 / 3.0, 0.001));
+        capsule(from.to_array(), to.to_array(), 0.5)
+    };
+    let (corner, node) = ([0.096, 0.121, 0.108], [0.07, 0.134, 0.098]);
+    let ends = [[0.153, 0.235, -0.25], [-0.319, 0.404, -0.095], [-0.143, 0.531, 0.074]];
+    let quarter = || vec![0.0, 0.25];
+    let cells = [
+        (
+            Edges([vec![-0.69, 0.077], vec![-0.82, -0.091], vec![-0.059, 0.53]]),
+            (0..4).map(four).collect::<Vec<_>>(),
+            1e-5,
+        ),
+        (
+            Edges([quarter(), quarter(), quarter()]),
+            vec![capsule(corner, [0.053, 0.049, 0.234], 0.12), capsule(corner, [-0.097, 0.229, -0.284], 0.12)],
+            1e-6,
+        ),
+        (Edges([quarter(), quarter(), quarter()]), ends.map(|end| capsule(node, end, 0.1)).to_vec(), 1e-5),
+    ];
+    for (edges, forms, finest) in cells {
+        let solid = |tol: f64| {
+            let options = Options { tol, ..Options::default() };
+            let found = porosity(&edges.grid(None).expect("a grid"), &formulas(&forms), options);
+            assert!(found.max_gap <= tol, "{tol}: {} in {forms:?}", found.max_gap);
+            found.solid_volume / edges.0.iter().map(|e| e[1] - e[0]).product::<f64>()
+        };
+        let [rough, fine] = [1e-4, finest].map(solid);
+        assert!((rough - fine).abs() < 1e-4, "{rough} {fine} in {forms:?}");
+    }
+}
+
+/// Pipes and tori that touch a plane of the grid from below, whose axes miss another plane by rounding: nothing puts them there.
+#[test]
+fn what_touches_a_plane_goes_on_to_touch_it() {
+    let tenths: Vec<f64> = (0..11).map(|i| -0.5 + f64::from(i) * 0.1).collect();
+    let edges = Edges([tenths.clone(), tenths.clone(), tenths]);
+    let axis = edges.0[2][4];
+    assert!(axis != -0.1 && (axis + 0.1).abs() < 1e-15 && -0.1 + 0.1 == 0.0);
+    let pipe = Form::Cylinder(Cylinder::new(DVec3::new(-0.5, -0.05, -0.1), DVec3::new(0.5, -0.05, -0.1), 0.1));
+    let ring = |angle: f64| TorusShape {
+        center: DVec3::new(0.0, 0.3, -0.1),
+        axis: DVec3::Z,
+        start: DVec3::X,
+        angle,
+        radius: 0.15,
+        tube: 0.1,
+    };
+    for form in [pipe, Form::Torus(ring(360.0)), Form::Torus(ring(90.0))] {
+        let found = run(&edges, &formulas(std::slice::from_ref(&form)), Method::Auto);
+        let above = &found.beta.z[500..600];
+        let least = above.iter().fold(1.0, |least: f64, open| least.min(*open));
+        assert!(least > 1.0 - 1e-12, "{form:?}: {:e}", 1.0 - least);
     }
 }

@@ -66,11 +66,14 @@ impl<'a> ToPlanes<'a> {
         }
     }
 
-    /// The ends of an axis, which is along one of the grid if it misses that by rounding: its flat ends lie in planes then.
-    fn ends(&self, ends: [DVec3; 2]) -> [DVec3; 2] {
-        let [from, to] = ends.map(|p| self.corner(p, None));
-        let is_off = (to - from).abs().cmpgt(self.near);
-        if is_off.bitmask().count_ones() == 1 { [from, DVec3::select(is_off, to, from)] } else { [from, to] }
+    /// The ends of an axis, which is along one of the grid if it misses that by rounding: its flat ends lie in planes then. Across the axis nothing moves
+    /// into a plane: what touches one goes on to do so.
+    fn ends(&self, [from, to]: [DVec3; 2]) -> [DVec3; 2] {
+        let along = (to - from).abs().cmpgt(self.near);
+        if along.bitmask().count_ones() != 1 {
+            return [from, to];
+        }
+        [from, to].map(|p| DVec3::select(along, self.corner(p, None), from))
     }
 
     /// A corner, its coordinates replaced by those of the planes that it misses by rounding.
