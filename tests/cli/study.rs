@@ -321,6 +321,15 @@ fn a_finished_study_is_not_replaced() {
     assert!(before[2] == tables()[2]);
     assert!(run(LISTS, &["--force"]).status.success());
     assert!(before[2] != tables()[2]);
+    // One of which everything is left out has no points, and is known again.
+    let nothing = "title = \"none\"\nareas = false\n[[scene]]\nname = \"ring\"\n[[scene.solid]]\nshape = \"torus\"\ncenter = [0.5, 0.5, 0.5]\n\
+        axis = [0, 0, 1]\nradius = 0.3\ntube = 0.1\n[[grid]]\norigin = [0, 0, 0]\nspacing = [0.1, 0.1, 0.1]\ncells = [10, 10, 10]\n\
+        [[method]]\nname = \"leaf\"\nmethod = \"gjk\"\nleaf = \"plane\"\n";
+    for more in [&["--force"][..], &[]] {
+        let output = run(nothing, more);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert_eq!(tables()[2].iter().filter(|byte| **byte == b'\n').count(), 1);
+    }
 }
 
 /// Pictures have all panels, the floor and the legend; as SVG they are text that can be searched.

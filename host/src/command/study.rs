@@ -53,6 +53,7 @@ pub fn study(args: &StudyArgs) -> Result<()> {
     dir.iter().try_for_each(|dir| session::keep_results(dir, &name, args.force))?;
     let mut session = Session::new(&mut progress, dir, name, found::plan(&case), args.force);
     let found = found::measure(&case, &scenes, command_line(), &mut session)?;
+    session.finish()?;
     match dir {
         Some(dir) => write(found, dir, &mut progress),
         None => print(format!("{}\n", page::markdown(&found, &[])).as_bytes()),

@@ -142,6 +142,19 @@ impl<'a> Session<'a> {
         kept.map_err(|e| Error::io(&path, "write", &e))
     }
 
+    /// A finished study has its own points beside its tables, be it their first line alone: by that it is known again.
+    ///
+    /// # Errors
+    /// The file of points cannot be written.
+    pub fn finish(&mut self) -> Result<()> {
+        let Some(path) = self.path.clone().filter(|_| self.file.is_none()) else { return Ok(()) };
+        let there = std::fs::read_to_string(&path).unwrap_or_default();
+        if head_of(&there).is_none_or(|head| head != self.head) {
+            self.file = Some(self.begin(&path)?);
+        }
+        Ok(())
+    }
+
     /// Keeps the points of a file, if they are of the same study. A line that was cut off counts for nothing.
     fn take(&mut self, text: &str, path: &Path) {
         if head_of(text).is_none_or(|head| head != self.head) {
