@@ -50,6 +50,7 @@ use surface_layers::finish;
 use targets::targets;
 use voidage_core::grid::Grid;
 use voidage_core::surface::bins::{Group, Surface};
+use voidage_core::surface::error::is_computable;
 use voidage_core::surface::layer::Layers;
 use windows::{batches, windows};
 use worker::{Summary, Target, WantedOfLayer, Workers};
@@ -272,9 +273,6 @@ fn with_surface(scene: &Scene, beside: &Road) -> bool {
     options.resistance && options.areas && beside.is_empty() && all_known && levels(bodies) == [0.0]
 }
 
-/// With larger coordinates the core does not compute.
-const LARGEST: f64 = 0.25 * f64::MAX;
-
 /// The surfaces of all bodies, made of the triangles that `own` gives for a body's number, and which of them are broken: those with a
 /// coordinate that is no number, which some scale or turn has made too large: of these nothing can be said.
 fn surfaces<'a>(
@@ -284,7 +282,7 @@ fn surfaces<'a>(
     let mut broken = Vec::new();
     let surface = |(number, body): (usize, &bodies::Body)| {
         let mut own = own(number, body);
-        if !own.iter().flatten().all(|p| p.is_finite() && p.abs().max_element() <= LARGEST) {
+        if !own.iter().flatten().all(|&p| is_computable(p)) {
             broken.push(number);
             own = &[];
         }

@@ -371,6 +371,33 @@ fn walls_in_single_precision() {
     assert!(shared > 3000 && wide == 0, "{shared} open in part, {wide} of them near the origin not known");
 }
 
+/// The plane that halves a cell far from the origin is rounded: what is on its sides counts by its width.
+#[test]
+fn parts_of_cells_far_off_count_by_their_width() {
+    let from = 700.1_f32;
+    let to = (0..1501).fold(from, |x, _| x.next_up());
+    let middle = from + 0.5 * (to - from);
+    let [below, above] = [f64::from(middle - from), f64::from(to - middle)].map(|w| w / f64::from(to - from));
+    assert!((below - above).abs() > 5e-4);
+    let cell = [from, to];
+    let grid = Grid::new(&cell, &cell, &cell).expect("a grid");
+    for axes in [[0, 1], [1, 2], [2, 0]] {
+        let half = |axis: usize| {
+            let mut corner = Vec3::splat(to).as_dvec3();
+            corner[axis] = f64::from(middle);
+            let body = cuboid(Vec3::splat(from).as_dvec3(), corner);
+            body.iter().map(|t| t.map(|p| p.as_vec3())).collect::<Vec<_>>()
+        };
+        let halves = axes.map(half);
+        let surfaces = halves.each_ref().map(|body| Surface::new(body));
+        let found = fields(&grid, &surfaces, Given { pieces: 0, ..PLENTY });
+        assert_eq!(found.reports[0].divided, 1);
+        let [low, high] = [0, 1].map(|n| f64::from(found.bounds[n][0][0]));
+        let truth = above * above;
+        assert!(low - 1e-5 <= truth && truth <= high + 1e-5 && high - low < 1e-4, "{truth} in {low}..{high}");
+    }
+}
+
 #[test]
 fn no_input_panics() {
     let double = (0..50_000).filter(|&seed| never_panics::<DVec3>(seed)).count();

@@ -4,6 +4,7 @@ use crate::grid::fields::{ShapeMismatch, at_least};
 use crate::grid::{Grid, Located, locate};
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
+use crate::surface::error::is_computable;
 use core::fmt;
 use core::iter::from_fn;
 use core::ops::Range;
@@ -195,9 +196,7 @@ impl<'a, V: Vector> Bins<'a, V> {
             return Err(BinsError::TooMany);
         }
         for (body, Surface { triangles, .. }) in bodies.iter().enumerate() {
-            // Differences and sums of a few coordinates must be finite, too.
-            let most = V::Scalar::MAX * V::Scalar::from_f64(0.25);
-            let broken = triangles.iter().position(|t| !t.iter().all(|p| p.is_finite() && p.norm_max() <= most));
+            let broken = triangles.iter().position(|t| !t.iter().all(|&p| is_computable(p)));
             if let Some(triangle) = broken {
                 return Err(BinsError::NotFinite { body, triangle });
             }

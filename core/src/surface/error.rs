@@ -1,8 +1,14 @@
 //! What is wrong with a body's surface, and why it cannot be added.
 
 use crate::grid::fields::ShapeMismatch;
-use crate::number::real::Real;
+use crate::number::real::{Real, Vector};
 use core::fmt;
+
+/// Whether surfaces may have the corner `point`: differences and sums of a few of its coordinates are finite, too.
+#[must_use]
+pub fn is_computable<V: Vector>(point: V) -> bool {
+    point.is_finite() && point.norm_max() <= V::Scalar::MAX * V::Scalar::from_f64(0.25)
+}
 
 /// What is wrong with a body's surface in one layer; zero, but for rounding, if it is closed and does not cross itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::grid::{Grid, Located};
 use crate::number::real::{Real, Vector};
-use crate::surface::error::SurfaceError;
+use crate::surface::error::{SurfaceError, is_computable};
 
 /// The cells `i0..i0+ni` × `j0..j0+nj` of a layer that a body reaches.
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +24,7 @@ impl Window {
         for &id in ids {
             let missing = SurfaceError::NoTriangle { id, triangles: triangles.len() };
             for corner in triangles.get(id as usize).ok_or(missing)? {
-                // Differences and sums of a few coordinates must be finite, too.
-                if !(corner.is_finite() && corner.norm_max() <= R::MAX * R::from_f64(0.25)) {
+                if !is_computable(*corner) {
                     return Err(SurfaceError::NotFinite { id });
                 }
                 (lo, hi) = (lo.min(*corner), hi.max(*corner));

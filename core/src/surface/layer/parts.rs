@@ -65,7 +65,7 @@ pub(super) fn parts<V: Vector, O: OtherBodies<V>>(
     spare: SpareMemory<V>,
 ) -> Option<Parts<V::Scalar>> {
     let SmallGrid { bins, mut layer, mut scratch, mut spare } = SmallGrid::new(site, grid, layers, spare)?;
-    let mut means = Means::default();
+    let mut means = Means::new(grid);
     let count = grid.cells()[2];
     for k in 0..count {
         let part = Site { grid, bins: &bins, k, areas: true, ..*site };
@@ -81,56 +81,85 @@ pub(super) fn parts<V: Vector, O: OtherBodies<V>>(
     Some(means.finish())
 }
 
-/// Sums of the bounds of open fractions, lower and upper, and their number.
+/// Sums of the bounds of open fractions, lower and upper, by the parts' shares of the whole.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum<R> {
     lower: R,
     upper: R,
-    count: usize,
 }
 
 impl<R: Real> Sum<R> {
-    fn add(&mut self, (lower, sum): (&R, &R)) {
-        self.lower += R::ONE - sum.min(R::ONE);
-        self.upper += R::ONE - *lower;
-        self.count += 1;
+    fn add(&mut self, share: R, (lower, sum): (&R, &R)) {
+        self.lower += share * (R::ONE - sum.min(R::ONE));
+        self.upper += share * (R::ONE - *lower);
     }
 
     /// Bounds of the mean solid fraction.
     fn mean(self) -> Bounds<R> {
-        let count = R::from_usize(self.count.max(1));
-        Bounds { lower: self.lower / count, upper: self.upper / count }.complement()
+        let within = |open: R| open.min(R::ONE);
+        Bounds { lower: within(self.lower), upper: within(self.upper) }.complement()
     }
 }
 
 /// Sums over a small grid: its cells, and the faces in each plane, `[axis][plane]`.
-#[derive(Default)]
 struct Means<R> {
+    /// Shares of the parts along each axis: halves but for rounding, which far from the origin is a share of a small part.
+    shares: [[R; 2]; 3],
     cell: Sum<R>,
     planes: [[Sum<R>; 3]; 3],
 }
 
 impl<R: Real> Means<R> {
+    fn new(grid: &Grid<R>) -> Self {
+        let shares = |axis| match *grid.edges(axis) {
+            [first, middle, last] => {
+                let share = (middle - first) / (last - first);
+                // Means of what is alike in all parts are exact by halves.
+                let is_half = (share - R::HALF).abs() <= R::from_f64(8.0) * R::EPSILON;
+                if is_half { [R::HALF; 2] } else { [share, R::ONE - share] }
+            }
+            _ => [R::ONE; 2],
+        };
+        Means { shares: [0, 1, 2].map(shares), cell: Sum::default(), planes: Default::default() }
+    }
+
+    fn cells_along_x(layer: &Layer<R>) -> usize {
+        layer.lower.cells[0].clamp(1, 2)
+    }
+
     fn add_layer(&mut self, layer: &Layer<R>, k: usize) {
-        let [nx, _] = layer.lower.cells;
-        layer.lower.cell.iter().zip(&*layer.sum.cell).for_each(|share| self.cell.add(share));
-        for (at, share) in layer.lower.x.iter().zip(&*layer.sum.x).enumerate() {
-            self.add_face(0, at.checked_rem(nx + 1).unwrap_or(0), share);
+        let nx = Self::cells_along_x(layer);
+        for (at, bounds) in layer.lower.cell.iter().zip(&*layer.sum.cell).enumerate() {
+            let share = self.share(0, at % nx) * self.share(1, at / nx) * self.share(2, k);
+            self.cell.add(share, bounds);
         }
-        for (at, share) in layer.lower.y.iter().zip(&*layer.sum.y).enumerate() {
-            self.add_face(1, at / nx.max(1), share);
+        for (at, bounds) in layer.lower.x.iter().zip(&*layer.sum.x).enumerate() {
+            self.add_face(0, at % (nx + 1), [(1, at / (nx + 1)), (2, k)], bounds);
+        }
+        for (at, bounds) in layer.lower.y.iter().zip(&*layer.sum.y).enumerate() {
+            self.add_face(1, at / nx, [(0, at % nx), (2, k)], bounds);
         }
         self.add_plane(layer, k);
     }
 
     fn add_plane(&mut self, layer: &Layer<R>, plane: usize) {
-        layer.lower.z.iter().zip(&*layer.sum.z).for_each(|share| self.add_face(2, plane, share));
+        let nx = Self::cells_along_x(layer);
+        for (at, bounds) in layer.lower.z.iter().zip(&*layer.sum.z).enumerate() {
+            self.add_face(2, plane, [(0, at % nx), (1, at / nx)], bounds);
+        }
     }
 
-    fn add_face(&mut self, axis: usize, plane: usize, share: (&R, &R)) {
+    /// A face in a plane normal to `axis`, with its place along the two other axes.
+    fn add_face(&mut self, axis: usize, plane: usize, across: [(usize, usize); 2], bounds: (&R, &R)) {
+        let [one, other] = across.map(|(axis, at)| self.share(axis, at));
         if let Some(sum) = self.planes.get_mut(axis).and_then(|planes| planes.get_mut(plane)) {
-            sum.add(share);
+            sum.add(one * other, bounds);
         }
+    }
+
+    /// The share of part `at` along an axis.
+    fn share(&self, axis: usize, at: usize) -> R {
+        self.shares.get(axis).and_then(|shares| shares.get(at)).copied().unwrap_or_default()
     }
 
     fn finish(&self) -> Parts<R> {
