@@ -67,7 +67,7 @@ proptest! {
 #[test]
 fn cones_with_a_line_along_an_axis() {
     let mut within = 0;
-    for seed in 0..cases(1200) as u64 {
+    for seed in 0..cases(2000) as u64 {
         let (solid, exact) = solid_of(&mut Random::new(seed), Family::Oblique, Kind::Leaning);
         if !is_within_grid(&exact) {
             continue;
@@ -81,7 +81,7 @@ fn cones_with_a_line_along_an_axis() {
         assert!((sum / volume(&exact) - 1.0).abs() < 1e-11, "{seed}: {exact:?}: {sum} {}", volume(&exact));
         assert!(found.worst < 1e-9, "{seed}: {exact:?}: {}", found.worst);
     }
-    assert!(within * 5 > cases(1200), "{within}");
+    assert!(within * 5 > cases(2000), "{within}");
     let compared = (0..cases(24) as u64).filter(|&seed| match agrees_of(Family::Oblique, Kind::Leaning, seed) {
         Err(TestCaseError::Reject(_)) => false,
         found => {
@@ -89,7 +89,7 @@ fn cones_with_a_line_along_an_axis() {
             true
         }
     });
-    assert!(compared.count() * 3 >= cases(24));
+    assert!(compared.count() * 3 > cases(24));
 }
 
 /// Cones that lie on a plane of the grid have nothing below it and block nothing in it.
