@@ -504,3 +504,42 @@ fn solids_without_names_are_told_together() {
     assert!(columns["force_x"].last().expect("a line").abs() > 0.1);
     assert!(stderr(&of("\"\"")).contains("is an empty text in place of a name"), "{}", stderr(&of("\"\"")));
 }
+
+/// Gas at rest, 1 bar above the surroundings, in a closed box. What lies inside a cell beside a wall of the box has gas on all sides; what stands on the wall has
+/// not, nor has a false floor, below which the flow has no gas.
+#[test]
+fn obstacles_just_above_a_wall_have_gas_below() {
+    let at = Scratch::new();
+    let solid = |name: &str, [a, b]: [[f64; 3]; 2]| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = \"box\"\nmin = {a:?}\nmax = {b:?}\n")
+    };
+    let bars = [
+        solid("low", [[0.52, -1.0, 0.01], [0.57, 2.0, 0.06]]),
+        solid("high", [[0.82, -1.0, 0.75], [0.87, 2.0, 0.78]]),
+        solid("aside", [[1.0, 0.01, 0.32], [2.0, 0.03, 0.38]]),
+        solid("end", [[2.32, 0.31, 0.3], [2.38, 0.38, 0.5]]),
+        solid("kerb", [[1.52, -1.0, -1.0], [1.57, 2.0, 0.05]]),
+    ];
+    let floor = solid("floor", [[-1.0, -1.0, 0.01], [3.0, 3.0, 0.03]]);
+    for (scene, wanted) in [
+        (bars.concat(), &[("low", 0.0), ("high", 0.0), ("aside", 0.0), ("end", 0.0), ("kerb", -1e5 * 0.05 * 0.8)][..]),
+        (floor, &[("floor", -1e5 * 2.4 * 0.8)]),
+    ] {
+        fs::write(at.file("scene.toml"), scene).expect("written");
+        let more = "[time]\nmax_steps = 3\n[output]\nformats = []\nambient = 1e5\nforces = [\"*\"]\n";
+        let box_of_gas = case(0.0, more).replace("u = 0, p = 1e5 }\n[boundary]", "u = 0, p = 2e5 }\n[boundary]");
+        let walls = box_of_gas.replace("{ type = \"far-field\", rho = 1.2, u = 0, p = 1e5 }", "\"wall\"");
+        solved(&at, &walls, "out", &["-q", "--force"]);
+        let log = log(&at, "out");
+        for (n, axis) in AXES.iter().enumerate() {
+            let mut sum = 0.0;
+            for (name, force) in wanted {
+                let (own, force) = (&log[&format!("{name} force_{axis}")], if n == 2 { *force } else { 0.0 });
+                assert!(own.iter().all(|f| (f - force).abs() < 1e-6), "{name} along {axis}: {own:?}, not {force}");
+                sum += force;
+            }
+            let all = &log[&format!("force_{axis}")];
+            assert!(all.iter().all(|f| (f - sum).abs() < 1e-6), "along {axis}: {all:?}, not {sum}");
+        }
+    }
+}

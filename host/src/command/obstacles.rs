@@ -10,7 +10,7 @@ use crate::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag, fill_
 use crate::porosity::resistance::{Resistance, resistance, shadows, unseen_frontal_area};
 use crate::porosity::shadows::{HIDDEN, Shadows};
 use crate::porosity::snap;
-use crate::porosity::throat::{self, Faces};
+use crate::porosity::throat::{self, Faces, LoweredSide};
 use crate::porosity::{Options, Porosity, levels};
 use crate::words::counted;
 use voidage_core::grid::Grid;
@@ -42,6 +42,8 @@ pub struct Obstacles {
     pub lowered_faces: usize,
     /// Faces closed beside cells that thin walls divide.
     pub closed_faces: usize,
+    /// Lowered faces in sides of the grid whose obstacles have gas all around.
+    pub surrounded: Vec<LoweredSide>,
     /// Cells with gas on two sides of what stands in them, hidden passages not counted again.
     pub divided: DividedCells,
 }
@@ -87,7 +89,11 @@ pub fn obstacles(
         let division = Division::find(grid, bodies, &result.beta, &shadows);
         match wanted.faces {
             Faces::Plane => (0, ClosedCells { left: division.told(grid, &result.beta, Some(&shadows)), faces: 0 }),
-            Faces::Throat => (throat::lower(grid, result, &shadows), division.close(grid, result, &shadows)),
+            Faces::Throat => {
+                let sides = throat::lowered_sides(grid, &result.beta, &shadows);
+                found.surrounded = division.surrounded(grid, &result.beta, sides);
+                (throat::lower(grid, result, &shadows), division.close(grid, result, &shadows))
+            }
         }
     });
     if wanted.faces == Faces::Plane {

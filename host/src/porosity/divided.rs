@@ -14,6 +14,7 @@ mod parts;
 use super::Porosity;
 use super::fields::FieldSet;
 use super::shadows::{HIDDEN, LEAST_HIDDEN, Shadows, around, place_of_cell};
+use super::throat::LoweredSide;
 use crate::geometry::bodies::Bodies;
 use cells::CellParts;
 use closing::Closing;
@@ -88,6 +89,31 @@ impl Division {
         let closing = Closing::new(grid, (&parts, &cells), (&result.beta, shadows));
         leaking.retain(|&n| !closing.keeps_one_side(n));
         ClosedCells { faces: closing.close(grid, result), left: DividedCells::of(grid, &leaking) }
+    }
+
+    /// Of faces in sides of the grid that are to be lowered, those of obstacles that have gas all around: neither do they reach the side, nor are they walls that keep
+    /// gas apart, one side of which the flow leaves out. `beta` holds the open fractions in the planes of faces. Runs in the current rayon pool.
+    #[must_use]
+    pub fn surrounded(&self, grid: &Grid<f64>, beta: &FieldSet, mut sides: Vec<LoweredSide>) -> Vec<LoweredSide> {
+        let mut cells: Vec<usize> = sides.iter().map(|side| side.cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        if cells.is_empty() {
+            return sides;
+        }
+        let mut parts = CellParts::none(grid);
+        let walls = if self.add(grid, &mut parts, &cells).is_empty() {
+            Vec::new()
+        } else {
+            let (all, leaking) = self.leaking(grid, beta, |_| false);
+            along_walls(grid, &all, &leaking)
+        };
+        sides.retain(|&LoweredSide { cell, axis, side, shown, passes }| {
+            // By points: rounding may hold apart what touches.
+            let is_open = |parts: &Parts| parts.open_share(axis, side) > 0.5 * (shown + passes);
+            walls.binary_search(&cell).is_err() && parts.of(cell).is_none_or(is_open)
+        });
+        sides
     }
 
     /// The parts of all cells that may let gas pass but for some that are told already, and of those beside them; and which of the former let it pass.

@@ -27,6 +27,59 @@ pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usiz
     lower_within(grid, result, shadows, ([0; 3], grid.cells()))
 }
 
+/// A face in a side of the grid that is lowered to what an obstacle in its cell leaves open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoweredSide {
+    /// The cell, x fastest.
+    pub cell: usize,
+    /// Axis of the face.
+    pub axis: usize,
+    /// 0 for the low side of the grid, 1 for the high one.
+    pub side: usize,
+    /// Open fraction in the plane of the face.
+    pub shown: f64,
+    /// Open fraction once it is lowered.
+    pub passes: f64,
+}
+
+/// The faces in sides of the grid that [`lower`] will lower; `beta` holds the open fractions in the planes of faces.
+#[must_use]
+pub fn lowered_sides(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows) -> Vec<LoweredSide> {
+    let mut found = Vec::new();
+    for (axis, &cell) in (0..3).flat_map(|axis| shadows.standing.iter().map(move |cell| (axis, cell))) {
+        let (place, count) = (place_of_cell(grid, cell)[axis], grid.cells()[axis]);
+        let ends = [place == 0, place + 1 == count];
+        if ends == [false; 2] {
+            continue;
+        }
+        let open = faces_of_nth_cell(grid, axis, cell).map(|face| beta.faces(axis)[face]);
+        let Some((passes, wanted)) = face_to_lower(shadows, (axis, cell), open, (place, count)) else { continue };
+        for side in (0..2).filter(|&side| wanted[side] && ends[side]) {
+            found.push(LoweredSide { cell, axis, side, shown: open[side], passes: passes.clamp(0.0, open[side]) });
+        }
+    }
+    found
+}
+
+/// What passes a cell along an axis, if its faces, `open` in their planes, show more, and which of them is lowered to that. The cell is one of `count` along the
+/// axis, at a place.
+fn face_to_lower(
+    shadows: &Shadows,
+    (axis, n): (usize, usize),
+    open: [f64; 2],
+    (place, count): (usize, usize),
+) -> Option<(f64, [bool; 2])> {
+    let passes = 1.0 - shadows.tau[axis][n];
+    let hidden = open[0].min(open[1]) - passes;
+    if !(hidden > LEAST) {
+        return None;
+    }
+    // Positive for the high face.
+    let aside = open[0] - open[1] + hidden * (2.0 * shadows.place[axis][n]);
+    let (before_middle, behind_middle) = (2 * place + 1 < count, 2 * place + 1 > count);
+    Some((passes, if aside.abs() > LEAST { [aside < 0.0, aside > 0.0] } else { [!before_middle, !behind_middle] }))
+}
+
 /// The same for a grid that is a part of a larger one, whose middle counts: `first` is its first cell there, and the larger one has so many `cells`.
 pub fn lower_within(
     grid: &Grid<f64>,
@@ -43,17 +96,8 @@ pub fn lower_within(
             shadows.standing.iter().map(|&n| faces(n).map(|face| open[face])).collect()
         };
         for (&n, open) in shadows.standing.iter().zip(before) {
-            let place_in_row = 2 * (first[axis] + place_of_cell(grid, n)[axis]) + 1;
-            let passes = 1.0 - shadows.tau[axis][n];
-            let hidden = open[0].min(open[1]) - passes;
-            if !(hidden > LEAST) {
-                continue;
-            }
-            // Positive for the high face.
-            let aside = open[0] - open[1] + hidden * (2.0 * shadows.place[axis][n]);
-            let (before_middle, behind_middle) = (place_in_row < count, place_in_row > count);
-            let wanted =
-                if aside.abs() > LEAST { [aside < 0.0, aside > 0.0] } else { [!before_middle, !behind_middle] };
+            let place = first[axis] + place_of_cell(grid, n)[axis];
+            let Some((passes, wanted)) = face_to_lower(shadows, (axis, n), open, (place, count)) else { continue };
             for (face, _) in faces(n).into_iter().zip(wanted).filter(|(_, wanted)| *wanted) {
                 let lower_to = |set: &mut FieldSet, most: f64| {
                     let open = &mut set.faces_mut(axis)[face];

@@ -1,11 +1,13 @@
 //! The force of the gas on all that stands in it.
 //!
-//! A step tells what acts on the walls of each cell and what its drag takes ([`CellPush`]): what the gas loses in momentum, the solids feel. Pressures
-//! are counted from that of the surroundings, so that what leans on a wall of the domain feels the difference alone. Under gravity solids lose the weight of
-//! the gas that they displace. Walls of the domain do not count.
+//! A step tells what acts on the walls of each cell and what its drag takes ([`CellPush`]): what the gas loses in momentum, the solids feel, but for what leans
+//! through them on a wall of the domain ([`FreeSides`]). Pressures are counted from that of the surroundings, so that what leans on a wall of the domain feels the
+//! difference alone. Under gravity solids lose the weight of the gas that they displace. Walls of the domain do not count.
 
 use crate::flow::{CellPush, Flow};
+use crate::porosity::throat::LoweredSide;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use voidage_core::flow::PressureForm;
 
 /// Cells are summed in portions of this many, so that the bits of the sum do not depend on the number of threads.
@@ -81,10 +83,39 @@ impl<const D: usize> Weights<D> {
     }
 }
 
+/// Faces in walls of the domain that are lowered for obstacles with gas all around. What acts on the closed part there acts on both sides of the obstacle: it leans on
+/// the wall of the domain alone.
+///
+/// By cell, axis of the flow and side (0 low, 1 high), the share of what is closed.
+#[derive(Debug, Clone, Default)]
+pub struct FreeSides(BTreeMap<(usize, usize, usize), f64>);
+
+impl FreeSides {
+    /// Of a flow with these axes.
+    #[must_use]
+    pub fn new<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], surrounded: &[LoweredSide]) -> Self {
+        let faces: Vec<&[f64]> = flow.faces().collect();
+        let free = |&LoweredSide { cell, axis, side, shown, passes }: &LoweredSide| {
+            let (d, at) = (live.iter().position(|live| *live == axis)?, flow.coordinates(cell));
+            // The paper's form pushes what no face shows.
+            let counts = flow.stands(d, side, at).is_wall() && flow.scheme.pressure == PressureForm::Geometric;
+            let closed = 1.0 - faces.get(d)?[flow.face(d, at, side)];
+            let share = ((shown - passes) / closed).min(1.0);
+            (counts && closed > 0.0).then_some(((cell, d, side), share))
+        };
+        FreeSides(surrounded.iter().filter_map(free).collect())
+    }
+
+    /// Which share of what is closed at a side of a cell counts.
+    pub(super) fn counts(&self, cell: usize, d: usize, side: usize) -> f64 {
+        self.0.get(&(cell, d, side)).map_or(1.0, |share| 1.0 - share)
+    }
+}
+
 /// Force on all solids along x, y and z, from the walls that the flow watches; per metre of the axes that do not flow. The same bits for any number of
 /// threads.
 #[must_use]
-pub fn force_on_all<const D: usize>(flow: &Flow<f64, D>, live: [usize; D]) -> [f64; 3] {
+pub fn force_on_all<const D: usize>(flow: &Flow<f64, D>, live: [usize; D], free_sides: &FreeSides) -> [f64; 3] {
     let (cells, pushes) = flow.watched_walls();
     let of_portion = |(cells, pushes): (&[usize], &[CellPush<f64, D>])| {
         let mut sum = [0.0; D];
@@ -98,6 +129,11 @@ pub fn force_on_all<const D: usize>(flow: &Flow<f64, D>, live: [usize; D]) -> [f
     let mut force = [0.0; 3];
     for (d, axis) in live.into_iter().enumerate() {
         force[axis] = portions.iter().fold(0.0, |sum, portion| sum + portion[d]);
+    }
+    for (&(cell, d, side), share) in &free_sides.0 {
+        let Ok(place) = cells.binary_search(&cell) else { continue };
+        let push = share * pushes[place].sides[d][side] * flow.area(d, flow.coordinates(cell));
+        force[live[d]] += if side == 0 { push } else { -push };
     }
     force
 }

@@ -161,7 +161,7 @@ impl<const D: usize> Series<D> {
         let (floors, change) = (flow.total.floored, flow.total.floor_change);
         let momentum = change.momentum.iter().fold(0.0, |sum, m| sum + m) * across;
         let floor_energy = of_energy(change.energy);
-        let [x, y, z] = force_on_all(flow, setup.live).map(|force| force * across);
+        let [x, y, z] = force_on_all(flow, setup.live, &setup.free_sides).map(|force| force * across);
         let mut line = format!(
             "{steps},{time},{dt},{mass},{energy},{mach},{floors},{},{momentum},{floor_energy},{x},{y},{z}",
             change.density * across

@@ -2,7 +2,7 @@
 
 use super::case::{GasKeys, LimiterName, Model, Pressure, RiemannName, side_word};
 use super::case_file::CaseFile;
-use super::force::pushed_cells;
+use super::force::{FreeSides, pushed_cells};
 use super::inlet::Inlet;
 use super::mixture::mixture;
 use super::open_parts::{OpenParts, Standing};
@@ -45,6 +45,8 @@ pub struct Setup<const D: usize> {
     pub patches: Vec<PatchReport>,
     /// The cells in which the gas pushes something.
     pub pushed: Vec<usize>,
+    /// What counts for no solid at the sides of the domain.
+    pub free_sides: FreeSides,
     /// Shares of the solids whose forces are kept.
     pub solids: Option<SolidShares<D>>,
     /// What was left out because nothing needs it.
@@ -112,14 +114,15 @@ pub fn setup<const D: usize>(
 
     let (keys, usual) = (&case.porosity, Treatment::default());
     let treatment = Treatment { jump: keys.jump.unwrap_or(usual.jump), merge: keys.merge.unwrap_or(usual.merge) };
-    let (mut report, mut by_law, mut bodies) = (None, None, None);
+    let (mut report, mut by_law, mut bodies, mut surrounded) = (None, None, None, Vec::new());
     let (space, measured) = space::load(file, edges, live, progress)?;
     let parts = open_parts(file, edges, &beginning, space.as_ref(), progress)?;
     states.settle(&mut beginning, &parts, edges)?;
     match space {
         None => skipped.push("porosity: every cell and face is open".into()),
         Some(space) => {
-            let Space { volume, faces, drag, scene } = space;
+            let Space { volume, faces, drag, scene, .. } = space;
+            surrounded = space.surrounded;
             bodies = scene.map(|scene| scene.bodies).filter(|_| space::has_law(file));
             by_law = drag;
             report = Some(fill(file, &mut flow, (volume, faces), (edges, live, treatment), progress)?);
@@ -150,11 +153,26 @@ pub fn setup<const D: usize>(
         }
     }
     let pushed = pushed_cells(&flow);
-    let solids =
-        (!measured.is_empty()).then(|| SolidShares::new(&measured, &flow, &pushed, !space::given_otherwise(file)));
+    let free_sides = FreeSides::new(&flow, live, &surrounded);
+    let solids = (!measured.is_empty())
+        .then(|| SolidShares::new(&measured, &flow, (&pushed, &free_sides), !space::given_otherwise(file)));
     let regions = region_report::report(file, (&flow, &parts), &edges, live, progress)?;
     let patches = sides::report(file, &flow, &edges, live, progress)?;
-    Ok(Setup { flow, live, edges, cfl, inlets, treatment, space: report, regions, patches, pushed, solids, skipped })
+    Ok(Setup {
+        flow,
+        live,
+        edges,
+        cfl,
+        inlets,
+        treatment,
+        space: report,
+        regions,
+        patches,
+        pushed,
+        free_sides,
+        solids,
+        skipped,
+    })
 }
 
 /// What the regions of the beginning keep of the cells that they hold in part.

@@ -9,7 +9,7 @@
 //! What acts on the walls of a cell comes from the step, side by side (`CellPush`); a solid feels of each side the share of what is closed there that is its own.
 
 use super::arrays::position;
-use super::force::{Weights, drags, taken_volume};
+use super::force::{FreeSides, Weights, drags, taken_volume};
 use crate::error::Result;
 use crate::files::csv;
 use crate::flow::Flow;
@@ -144,6 +144,8 @@ struct Parts<'a, const D: usize> {
     others: usize,
     /// Whether resistances given for solids act.
     own_counts: bool,
+    /// What counts for no solid.
+    free_sides: &'a FreeSides,
 }
 
 /// Weights of what acts in a cell on each group.
@@ -259,8 +261,13 @@ impl<const D: usize> Parts<'_, D> {
         // What acts along borders is for those who close the faces of the cell.
         let of = |weights: &Weights<D>| weights.sides.as_flattened().iter().sum::<f64>();
         let all: f64 = found.0.values().map(of).sum();
-        for weights in found.0.values_mut().filter(|_| all > 0.0) {
-            weights.along = of(weights) / all;
+        for weights in found.0.values_mut() {
+            if all > 0.0 {
+                weights.along = of(weights) / all;
+            }
+            for (d, side) in (0..D).flat_map(|d| [(d, 0), (d, 1)]) {
+                weights.sides[d][side] *= self.free_sides.counts(cell, d, side);
+            }
         }
         if weighs {
             let (volume, displaced) = (self.flow.volume(at), taken_volume(self.flow, cell));
@@ -287,7 +294,12 @@ pub struct SolidShares<const D: usize> {
 impl<const D: usize> SolidShares<D> {
     /// From what solids have alone, in a flow around all of them that pushes something in some cells; resistances given for them may count or not.
     #[must_use]
-    pub fn new(measured: &[Measured<D>], flow: &Flow<f64, D>, pushed: &[usize], own_counts: bool) -> Self {
+    pub fn new(
+        measured: &[Measured<D>],
+        flow: &Flow<f64, D>,
+        (pushed, free_sides): (&[usize], &FreeSides),
+        own_counts: bool,
+    ) -> Self {
         let names: Vec<String> = measured.iter().map(|m| m.name.clone()).collect();
         let mut shares = vec![Vec::new(); names.len()];
         let mut by_cell: BTreeMap<usize, Vec<(usize, Part<D>)>> = BTreeMap::new();
@@ -295,7 +307,7 @@ impl<const D: usize> SolidShares<D> {
             m.cells.iter().for_each(|part| by_cell.entry(part.cell).or_default().push((group, *part)));
         }
         let Some(others) = names.len().checked_sub(1) else { return SolidShares { names, shares } };
-        let mut parts = Parts { flow, by_cell, others, own_counts };
+        let mut parts = Parts { flow, by_cell, others, own_counts, free_sides };
         parts.match_ends();
         let faces: Vec<&[f64]> = flow.faces().collect();
         for &cell in pushed {

@@ -15,7 +15,7 @@ use crate::geometry::scene::is_scene;
 use crate::grid::{AXES, Edges};
 use crate::keys::reader::nearest;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
-use crate::porosity::throat::Faces;
+use crate::porosity::throat::{Faces, LoweredSide};
 use crate::porosity::{FieldSet, Options};
 use std::path::{Path, PathBuf};
 
@@ -28,6 +28,8 @@ pub struct Space<const D: usize> {
     pub faces: [Vec<f64>; D],
     /// `cr` of the axes that flow, by the law of the case.
     pub drag: Option<[Vec<f64>; D]>,
+    /// Faces in sides of the grid that obstacles with gas all around have lowered.
+    pub surrounded: Vec<LoweredSide>,
     /// The solids; none where the open fractions come from files.
     pub scene: Option<SceneBodies>,
 }
@@ -94,7 +96,7 @@ pub fn load<const D: usize>(
                 .collect::<Result<_>>()?;
             let mut faces = faces.into_iter();
             let faces = std::array::from_fn(|_| faces.next().unwrap_or_default());
-            (Space { volume: read("v", cells)?, faces, drag: None, scene: None }, Vec::new())
+            (Space { volume: read("v", cells)?, faces, drag: None, surrounded: Vec::new(), scene: None }, Vec::new())
         }
         (None, None) => return Ok((None, Vec::new())),
         (Some(_), Some(_)) => return Err(file.wrong("porosity", "takes scene or from, not both")),
@@ -201,7 +203,8 @@ fn from_scene<const D: usize>(
     let FieldSet { v, x, y, z } = result.beta;
     let faces = [x, y, z];
     let faces = live.map(|d| faces[d].to_vec());
-    Ok((Space { volume: v.to_vec(), faces, drag, scene: Some(SceneBodies { bodies, options }) }, solids))
+    let (surrounded, scene) = (found.surrounded, Some(SceneBodies { bodies, options }));
+    Ok((Space { volume: v.to_vec(), faces, drag, surrounded, scene }, solids))
 }
 
 /// Names of the solids whose forces are asked for; `*` stands for all.
