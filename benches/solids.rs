@@ -13,7 +13,7 @@ use voidage::geometry::scene::{self, load};
 use voidage::grid::Edges;
 use voidage::porosity::{Options, porosity};
 use voidage_benches::{is_asked, once, porosity_seconds};
-use voidage_core::convex::shape::Cylinder;
+use voidage_core::convex::shape::{Cylinder, Sphere};
 use voidage_core::solids::torus::TorusShape;
 use voidage_tests::random::Random;
 use voidage_tests::solids::{formulas, sixteen_balls};
@@ -33,6 +33,7 @@ fn main() {
     case("10000 pipes, oblique", || pipes(10_000, true, &hall), &hall);
     let balls: Vec<Form> = sixteen_balls().into_iter().map(Form::Sphere).collect();
     case("16 balls", || formulas(&balls), &Edges::cube(0.0, 1.0, 100));
+    case("1000 overlapping balls", || overlapping_balls(1000), &Edges::cube(0.0, 1.0, 50));
     case("200 elbows, aligned", || elbows(200, false, &rack), &rack);
     case("200 elbows, oblique", || elbows(200, true, &rack), &rack);
     let platform = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host/examples/study/platform_scene.toml");
@@ -44,6 +45,13 @@ fn main() {
     let mut bodies = Bodies::default();
     load::add(&platform, &mut bodies).expect("solids");
     case("the shipped platform", || bodies, &edges);
+}
+
+/// Balls of 0.05 m radius in a unit box, of which half is filled.
+fn overlapping_balls(count: usize) -> Bodies {
+    let random = &mut Random::new(17);
+    let ball = |_| Form::Sphere(Sphere { center: random.point(DVec3::ZERO, DVec3::ONE), radius: 0.05 });
+    formulas(&(0..count).map(ball).collect::<Vec<_>>())
 }
 
 /// Pipes of 0.05 to 0.25 m radius and 2 to 12 m length in a grid.

@@ -1,6 +1,7 @@
 //! Porosity of bodies on grids: known solids, oracles, invariances, ground truth.
 
 mod architecture;
+mod balls;
 mod bends;
 mod beside;
 mod boxes;

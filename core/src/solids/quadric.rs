@@ -31,12 +31,13 @@
 //! 5. `aligned`: the shares of a pipe along an axis of the grid in a layer; `spread`: those of any part
 //! 6. `solid`: what callers use; `shapes`: the shapes that GJK knows, as such solids
 //! 7. `tangent`: planes between which a part lies in a box
-//! 8. `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
+//! 8. `balls`: the union of balls; `slice`: what several parts have in common of a rectangle in a plane; `concave`: bounds of concave functions;
 //!    `polygon`, `moving`, `panels`: polygons in planes that rise, and the volumes that they pass through; `third`: what an ellipse leaves of them; `sample`: what planes tell of a body; `crossing`: what
 //!    two or three pipes have in common of a box, by planes along two axes; `upright`: two pipes along axes of the grid; `shared`: what several solids share of a cell or face
 
 mod aligned;
 mod arc;
+mod balls;
 mod concave;
 mod cone;
 mod crossing;

@@ -63,6 +63,14 @@ impl Part {
         Part { origin, curved, ends, xi }
     }
 
+    /// Its centre and radius, if it is a whole ball.
+    pub fn ball(&self) -> Option<([f64; 3], f64)> {
+        match (&self.curved.wall, &self.ends) {
+            (&Wall::Ball { radius }, [None, None]) => Some((self.origin, radius)),
+            _ => None,
+        }
+    }
+
     /// A pipe without those ends that are far from a box: all of it is on their inner sides. None if both are near, or it is no pipe.
     pub fn without_far_ends(&self, place: [[f64; 2]; 3]) -> Option<Self> {
         if !matches!(self.curved.wall, Wall::Cylinder { .. }) {

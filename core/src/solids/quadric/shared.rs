@@ -7,6 +7,7 @@
 //! Pipes along one axis of the grid have the same slice everywhere; two others are looked at by planes along both of them ([`super::crossing`]; along
 //! two axes of the grid, [`super::upright`]).
 
+use super::balls;
 use super::concave::{crossing, lowest, squares};
 use super::crossing::Crossing;
 use super::part::Part;
@@ -37,6 +38,9 @@ const MOST_SETS: usize = 400;
 /// Areas that solids have in common are wanted this close, as a share of a face.
 const CLOSE_AREAS: f64 = 1e-13;
 
+/// Discs of balls are measured at once where that is so close, as a share of a face.
+const CLOSE_DISCS: f64 = 1e-12;
+
 /// A part of one of the solids, and where it may be in the cell.
 #[derive(Clone, Copy)]
 struct OnePart<'a> {
@@ -51,10 +55,10 @@ fn meet(a: &[P2; 3], b: &[P2; 3]) -> [P2; 3] {
 }
 
 /// Bounds of the share of a cell or face that the union of some solids has, from bounds of the sum of their shares; of cells about `tol` apart, of
-/// faces as close as rounding allows. `cell` and none as in [`excess`]; none, too, if that takes more slices of cells than `most`.
+/// faces, and of cells that balls alone reach, as close as rounding allows. `cell` and none as in [`excess`]; none, too, if that takes more slices of cells than `most`.
 #[must_use]
 pub fn share_of_union<'a>(
-    solids: impl IntoIterator<Item = &'a QuadricSolid>,
+    solids: impl IntoIterator<Item = &'a QuadricSolid, IntoIter: Clone>,
     cell: [P2; 3],
     sum: Bounds<f64>,
     tol: f64,
@@ -64,10 +68,24 @@ pub fn share_of_union<'a>(
     for [lo, hi] in cell {
         if lo < hi { size *= hi - lo } else { close = CLOSE_AREAS }
     }
-    let [low, high] = excess_within(solids, cell, close * size, most)?.map(|common| common / size);
+    let solids = solids.into_iter();
+    let of_balls = balls::union(solids.clone().flat_map(QuadricSolid::parts), cell)
+        .filter(|[low, high]| low <= high)
+        .map(|of| of.map(|x| (x / size).clamp(0.0, 1.0)))
+        .map(|[lower, upper]| Bounds { lower, upper });
+    // Sections of faces are exact, too, and keep more digits of balls that are large against them.
+    let room = if close < tol { CLOSE_DISCS } else { tol };
+    if let Some(found) = of_balls.filter(|found| found.gap() <= room) {
+        return Some(found);
+    }
+    let Some([low, high]) = excess_within(solids, cell, close * size, most).map(|common| common.map(|x| x / size))
+    else {
+        return of_balls;
+    };
     let (lower, upper) = ((sum.lower - high).max(0.0), (sum.upper - low).min(1.0));
     // Where rounding makes them contradict each other, what lies between them.
-    Some(Bounds { lower: lower.min(upper), upper: lower.max(upper) })
+    let found = Bounds { lower: lower.min(upper), upper: lower.max(upper) };
+    Some(of_balls.filter(|of| of.gap() < found.gap()).unwrap_or(found))
 }
 
 /// Bounds of the sum of the volumes of some solids in a cell, given by its low and high coordinates, less the volume of their union there; of

@@ -65,6 +65,12 @@ impl QuadricSolid {
         self.parts.len()
     }
 
+    /// Whether it is a ball.
+    #[must_use]
+    pub fn is_ball(&self) -> bool {
+        self.parts.iter().all(|part| part.ball().is_some())
+    }
+
     /// Its parts, which share no volume.
     pub(super) fn parts(&self) -> &[Part] {
         &self.parts

@@ -21,7 +21,7 @@ const FEW: usize = 6;
 const FIRST_SLICES: usize = 1 << 14;
 
 /// Bounds of the union of some solids in one cell or face, from what is known of it and the sum of their shares; about `tol` apart. Sections of
-/// faces are exact, and best for what few solids have in common; planes for more solids, and for tori.
+/// faces are exact, and best for what few solids have in common; planes for more solids, and for tori. The union of balls has a closed form.
 pub(super) fn union_of(
     solids: &[&FormulaSolid],
     cell: Aabb<DVec3>,
@@ -34,7 +34,8 @@ pub(super) fn union_of(
     let (few_slices, all_slices) = (|| by_sections(FIRST_SLICES), || by_sections(usize::MAX));
     let (few_planes, all_planes) = (|| by_planes(FIRST), || by_planes(MOST));
     let parts = || solids.iter().map(|solid| solid.part_count()).sum::<usize>();
-    let sections_first = cell.size().min_element() == 0.0 || parts() <= FEW;
+    let are_balls = || solids.iter().all(|solid| matches!(&solid.kind, Kind::Quadric(ball, _) if ball.is_ball()));
+    let sections_first = cell.size().min_element() == 0.0 || parts() <= FEW || are_balls();
     let ways: [&dyn Fn() -> Option<Bounds<f64>>; 4] = if sections_first {
         [&few_slices, &few_planes, &all_slices, &all_planes]
     } else {
