@@ -258,29 +258,30 @@ pub fn edges(source: &GridSpec, scene: Option<[DVec3; 2]>, warnings: &mut Vec<St
             let [lo, end] = round_box(lo, lo + count * *d);
             if bounds.is_some() && (end - hi).cmpgt(DVec3::splat(*d * 1e-6)).any() {
                 warnings.push(format!(
-                    "grid: the box is not a whole number of cells of {d} m; it now ends at ({:.6}, {:.6}, {:.6})",
-                    end.x, end.y, end.z
+                    "grid: the box is not a whole number of cells of {} m; it now ends at {}",
+                    written(*d),
+                    corner(end)
                 ));
             }
             Edges::uniform(lo, end, cells)
         }
     };
+    let rising = || edges.0.iter().all(|along| along.windows(2).all(|w| w[0] < w[1]));
     match (source, scene) {
-        (GridSpec::Cells(_, None) | GridSpec::Spacing(_, None), Some(scene)) => apart(edges, scene),
+        (GridSpec::Cells(_, None) | GridSpec::Spacing(_, None), Some(scene)) if edges.explained().is_err() => {
+            Err(Error::new(format!("the scene {}, for a grid around it", too_small(scene))))
+        }
+        (GridSpec::Cells(_, Some(bounds)) | GridSpec::Spacing(_, Some(bounds)), _) if !rising() => {
+            let cells = edges.cells().map(|n| n.to_string()).join(" × ");
+            Err(Error::usage(format!("grid: the box {}, for {cells} cells", too_small(*bounds))))
+        }
         _ => Ok(edges),
     }
 }
 
-/// The edges around a scene, if there are numbers for them all.
-fn apart(edges: Edges, [lo, hi]: [DVec3; 2]) -> Result<Edges> {
-    match edges.explained() {
-        Ok(_) => Ok(edges),
-        Err(_) => Err(Error::new(format!(
-            "the scene reaches from {} to {}: it is too small, or too far from the origin for its size, for a grid around it",
-            corner(lo),
-            corner(hi)
-        ))),
-    }
+/// What there is to say of a box that has not numbers enough for all edges within it or around it.
+fn too_small([lo, hi]: [DVec3; 2]) -> String {
+    format!("reaches from {} to {}: it is too small, or too far from the origin for its size", corner(lo), corner(hi))
 }
 
 fn corner(p: DVec3) -> String {

@@ -156,6 +156,21 @@ fn what_a_grid_file_says_twice_is_warned_of() {
     assert!(message.contains("grid.json: x, y, z are given; origin"), "{message}");
 }
 
+/// A box that has not numbers enough for its cells is told as it was given.
+#[test]
+fn a_box_too_far_from_the_origin_for_its_cells_is_told() {
+    let scene = fixture("analytic_boxes_aligned.stl");
+    for more in [["--cells", "64x4x4"], ["--spacing", "0.015625"]] {
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> =
+            vec![&"porosity", &scene, &"--bounds", &"1e15,0,0,1000000000000001,1,1"];
+        all.extend(more.iter().map(|m| m as &dyn AsRef<std::ffi::OsStr>));
+        let output = voidage(&all);
+        let told =
+            "grid: the box reaches from (1e15, 0, 0) to (1.000000000000001e15, 1, 1): it is too small, or too far";
+        assert!(output.status.code() == Some(2) && stderr(&output).contains(told), "{}", stderr(&output));
+    }
+}
+
 #[test]
 fn errors_name_file_place_and_reason() {
     let out = Scratch::new();

@@ -133,6 +133,7 @@ fn the_suffix_tells_the_format() {
         (&["-o", "a.png", "--png", "b.png"], "b.png: --png and -o ask for the same"),
         (&["--slice", "x=0"], "--slice cuts a picture: give --png"),
         (&["--slice", "x=9", "--png", "a.png"], "--slice x=9: the grid reaches from"),
+        (&["--slice", "x=1e17", "--png", "a.png"], "--slice x=1e17: the grid reaches from"),
         (&["--slice", "q=9", "--png", "a.png"], "the axis is x, y or z"),
         (&["--show", "a_w", "--png", "a.png"], "did you mean a_x? (known: beta_v, a_x, "),
         (&["--show", "s", "--resistance"], "--show s: give --png"),

@@ -16,6 +16,7 @@ use crate::picture::png;
 use crate::porosity::Porosity;
 use crate::porosity::drag::ObstacleDrag;
 use crate::porosity::resistance::Resistance;
+use crate::words::written;
 use std::path::{Path, PathBuf};
 
 /// The arguments with what `-o` asks for in the place that its suffix tells.
@@ -286,10 +287,10 @@ pub(super) fn slices(args: &PorosityArgs, edges: &Edges) -> Result<[Option<f64>;
     let mut through = [None; 3];
     for &(axis, at) in &args.slice {
         if let Some(why) = edges.misses(axis, at) {
-            return Err(Error::usage(format!("--slice {}={at}: {why}", AXES[axis])));
+            return Err(Error::usage(format!("--slice {}={}: {why}", AXES[axis], written(at))));
         }
         if let Some(other) = through[axis].replace(at) {
-            let axis = AXES[axis];
+            let (axis, other, at) = (AXES[axis], written(other), written(at));
             return Err(Error::usage(format!("--slice {axis}={other} and {axis}={at}: one plane across each axis")));
         }
     }
