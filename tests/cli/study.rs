@@ -319,8 +319,16 @@ fn a_finished_study_is_not_replaced() {
     assert!(before == tables());
     assert!(run(LISTS, &["--quick"]).status.success());
     assert!(before[2] == tables()[2]);
+    let old = ["study_flows.csv", "study_left_out.csv", "study_scaling.svg", "study_flows.png"];
+    old.iter().chain(&["mine.csv"]).for_each(|name| fs::write(out.join(name), "old").expect("written"));
     assert!(run(LISTS, &["--force"]).status.success());
     assert!(before[2] != tables()[2]);
+    // What the study before has left would speak for this one; what is not of a study stays.
+    assert!(
+        old.iter().all(|name| !out.join(name).exists())
+            && out.join("mine.csv").exists()
+            && out.join("study.svg").exists()
+    );
     // One of which everything is left out has no points, and is known again.
     let nothing = "title = \"none\"\nareas = false\n[[scene]]\nname = \"ring\"\n[[scene.solid]]\nshape = \"torus\"\ncenter = [0.5, 0.5, 0.5]\n\
         axis = [0, 0, 1]\nradius = 0.3\ntube = 0.1\n[[grid]]\norigin = [0, 0, 0]\nspacing = [0.1, 0.1, 0.1]\ncells = [10, 10, 10]\n\
@@ -328,7 +336,8 @@ fn a_finished_study_is_not_replaced() {
     for more in [&["--force"][..], &[]] {
         let output = run(nothing, more);
         assert!(output.status.success(), "{}", stderr(&output));
-        assert_eq!(tables()[2].iter().filter(|byte| **byte == b'\n').count(), 1);
+        let points = fs::read_to_string(out.join("points.jsonl")).expect("a file");
+        assert!(points.lines().count() == 1 && !out.join("study.csv").exists() && !out.join("study.svg").exists());
     }
 }
 

@@ -22,6 +22,7 @@ pub mod values;
 
 use crate::command::cli::StudyArgs;
 use crate::command::progress::{Progress, print};
+use crate::command::solve::frames::forget;
 use crate::command::stages::command_line;
 use crate::command::streams::{INPUT, check_directory, text_of};
 use crate::command::template;
@@ -70,19 +71,26 @@ fn write(mut found: StudyFindings, dir: &Path, progress: &mut Progress) -> Resul
         ("study_scaling.csv", scaling::table(&found.scalings)),
         ("study_left_out.csv", left_out::table(&found.left_out)),
     ];
-    for (name, table) in tables.iter().filter(|(_, table)| !table.rows.is_empty()) {
-        put(name, &table.csv())?;
+    for (name, table) in &tables {
+        match table.rows.is_empty() {
+            // What another study has left would speak for this one.
+            true => forget(&dir.join(name))?,
+            false => put(name, &table.csv())?,
+        }
     }
     let pictures = pictures::pictures(&found);
-    let mut drawn = false;
+    let mut old: Vec<&str> = pictures::NAMES.to_vec();
     for (name, picture) in &pictures {
         if let (Some(canvas), Some(svg)) = (picture.canvas(), picture.svg()) {
             canvas.write(&dir.join(format!("{name}.png")))?;
             put(&format!("{name}.svg"), &svg)?;
-            drawn = true;
+            old.retain(|other| other != name);
         }
     }
-    if !drawn {
+    for name in &old {
+        ["png", "svg"].iter().try_for_each(|suffix| forget(&dir.join(format!("{name}.{suffix}"))))?;
+    }
+    if old.len() == pictures::NAMES.len() {
         progress.warn("no picture: nothing in this study has an error to draw");
     }
     found.warnings.clone_from(&progress.warnings);

@@ -12,7 +12,10 @@ use std::collections::BTreeMap;
 /// An error of a row that a picture shows.
 type Error = fn(&Row) -> Option<f64>;
 
-/// The pictures of a study by the names of their files.
+/// The files of all pictures that a study may have, without suffix.
+pub const NAMES: [&str; 4] = ["study", "study_cells", "study_flows", "study_scaling"];
+
+/// The pictures of a study by the names of their files, each one of [`NAMES`].
 #[must_use]
 pub fn pictures(found: &StudyFindings) -> Vec<(String, Panels)> {
     let mut all = Vec::new();
