@@ -14,4 +14,4 @@ pub mod npy;
 pub mod vtr;
 pub mod whole;
 
-pub use whole::{atomically, check_takes_files, check_target, discard_unfinished, together, written};
+pub use whole::{atomically, check_takes_files, check_target, destination, discard_unfinished, together, written};

@@ -17,6 +17,41 @@ fn a_report_does_not_replace_the_scene() {
     assert!(fs::read(&scene).expect("a file") == before);
 }
 
+/// Two outputs of one file are one, however its path is written, and also where nothing is there yet.
+#[test]
+#[cfg(unix)]
+fn two_outputs_do_not_share_a_file() {
+    let (at, skid) = (Scratch::new(), fixture("cad_skid.stl"));
+    fs::create_dir(at.file("sub")).expect("a directory");
+    for name in ["a", "b"] {
+        std::os::unix::fs::symlink("behind", at.file(name)).expect("a link");
+    }
+    std::os::unix::fs::symlink("sub", at.file("other")).expect("a link");
+    for (report, picture, is_one) in [
+        ("new", "sub/../new", true),
+        ("new", "absent/../new", true),
+        ("sub/x", "other/./x", true),
+        ("a", "b", true),
+        ("sub/x", "other/y", false),
+        ("sub/x", "x", false),
+    ] {
+        let out = voidage(&[
+            &"porosity",
+            &skid,
+            &"--cells",
+            &"4x4x4",
+            &"--npy",
+            &at.file("sub"),
+            &"--report",
+            &at.file(report),
+            &"--png",
+            &at.file(picture),
+        ]);
+        let refused = stderr(&out).contains("an output would replace another file of this run");
+        assert_eq!(refused, is_one, "{report}, {picture}: {}", stderr(&out));
+    }
+}
+
 const TUBE: &str = "[grid]\nx = { points = [0, 1], cells = [1000] }\n[gas]\nmodel = \"ideal\"\ngamma = 1.4\n[initial]\n\
     uniform = { rho = 1, p = 1 }\n[boundary]\nx_min = \"wall\"\nx_max = \"wall\"\n[time]\nend = 1e6\n";
 

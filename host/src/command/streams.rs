@@ -2,7 +2,7 @@
 
 use crate::command::progress::print;
 use crate::error::{Error, Result};
-use crate::files::{check_takes_files, check_target, json};
+use crate::files::{check_takes_files, check_target, destination, json};
 use serde::Serialize;
 use std::ffi::OsStr;
 use std::io::{ErrorKind, Read};
@@ -121,11 +121,11 @@ fn check_names(path: &Path) -> Result<()> {
 /// Bytes of a file name that nearly every disk takes.
 const USUAL_NAME: usize = 255;
 
-/// `output` would replace `input`.
+/// `output` would replace `input`, or what another output has put there, however the paths of both are written.
 #[must_use]
 pub fn replaces(output: &Path, input: &Path) -> bool {
-    let same = || matches!((output.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    !is_stream(input) && !is_device(output) && (output == input || same())
+    let streams = is_stream(output) || is_stream(input);
+    !streams && !is_device(output) && (output == input || destination(output) == destination(input))
 }
 
 /// Makes the directory of an output.

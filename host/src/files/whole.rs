@@ -10,7 +10,7 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -75,6 +75,30 @@ fn followed(path: &Path) -> PathBuf {
         target = directory(&target).join(next);
     }
     target
+}
+
+/// The file that a path leads to, links followed, also where nothing is there yet: two paths of one file lead to the same.
+#[must_use]
+pub fn destination(path: &Path) -> PathBuf {
+    if let Ok(found) = fs::canonicalize(path) {
+        return found;
+    }
+    let target = followed(path);
+    let resolved = |above: &Path| {
+        let above = if above.as_os_str().is_empty() { Path::new(".") } else { above };
+        fs::canonicalize(above).ok()
+    };
+    let nearest = target.ancestors().skip(1).find_map(|above| Some((above, resolved(above)?)));
+    let Some((above, mut place)) = nearest else { return target };
+    for name in target.strip_prefix(above).unwrap_or(&target).components() {
+        match name {
+            // Of a directory that is not there yet, and can be no link.
+            Component::ParentDir => drop(place.pop()),
+            Component::CurDir => {}
+            other => place.push(other),
+        }
+    }
+    place
 }
 
 /// A temporary beside the target, links followed.
