@@ -37,7 +37,7 @@ fn a_surface_through_a_pipe() {
     for (arguments, words) in [
         (&["porosity", "-", "--grid", "-"][..], "- stands for the scene and --grid"),
         (&["porosity", "-", "--zones", "-", "--report", "r.json"], "- stands for the scene and --zones"),
-        (&["porosity", "-", "-"], "- stands for the scene and the scene"),
+        (&["porosity", "-", "-"], "- stands for one file of a scene"),
     ] {
         let twice = piped(arguments, SCENE.as_bytes(), &at);
         let said = stderr(&twice);

@@ -75,7 +75,9 @@ fn check_inputs(args: &PorosityArgs) -> Result<()> {
     let scenes = args.scene.scene.iter().map(|path| ("the scene", path));
     let others = [("--grid", &args.grid), ("--zones", &args.zones)];
     let all = scenes.chain(others.into_iter().filter_map(|(what, path)| Some((what, path.as_ref()?))));
-    let piped: Vec<&str> = all.filter(|(_, path)| is_stream(path)).map(|(what, _)| what).collect();
+    let mut piped: Vec<&str> = all.filter(|(_, path)| is_stream(path)).map(|(what, _)| what).collect();
+    // Two files of one scene are refused where it is read.
+    piped.dedup();
     if piped.len() < 2 {
         return Ok(());
     }
