@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, Colour, GREY, INK, Style, WHITE, text_width};
 use super::colour::ColourMap;
-use super::ticks::{Ticks, ticks};
+use super::ticks::{Ticks, end_ticks, ticks};
 
 /// Height of the numbers at the ticks, in pixels.
 pub const SMALL: f64 = 9.5;
@@ -16,6 +16,10 @@ pub const BELOW: usize = 52;
 /// Length of a tick, and its distance from the number.
 const TICK: usize = 5;
 const TICK_GAP: f64 = 5.0;
+/// Pixels between numbers side by side, at least.
+const NUMBER_GAP: f64 = 16.0;
+/// Pixels from one number to the next above it, at least.
+const LEAST_APART: f64 = 2.0 * SMALL;
 /// Cells at least this many pixels wide and high are outlined.
 const OUTLINED: f64 = 11.0;
 /// Pixels between lines of hatching.
@@ -221,18 +225,26 @@ fn level_ticks(axis: &EdgeAxis, width: usize) -> Ticks {
         let widest = marks.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
         let room = match marks.at[..] {
             [a, b, ..] => axis.pixel(b, width) - axis.pixel(a, width),
-            _ => f64::INFINITY,
+            // One number is no scale.
+            _ => break,
         };
-        if widest + 16.0 <= room || wanted == 1 {
+        if widest + NUMBER_GAP <= room {
             return marks;
         }
     }
-    ticks(low, high, 1)
+    let ends = end_ticks(low, high);
+    let widest = ends.labels.iter().map(|l| text_width(l, SMALL)).fold(0.0, f64::max);
+    if widest + NUMBER_GAP <= width as f64 { ends } else { ticks(low, high, 1) }
 }
 
 fn upright_ticks(axis: &EdgeAxis, height: usize) -> Ticks {
     let [low, high] = axis.ends();
-    ticks(low, high, (height / 42).max(1))
+    let round = ticks(low, high, (height / 42).max(1));
+    match round.at[..] {
+        [_, _, ..] => round,
+        _ if height as f64 >= LEAST_APART => end_ticks(low, high),
+        _ => round,
+    }
 }
 
 /// The cells that a pixel covers, each with its share of the pixel.

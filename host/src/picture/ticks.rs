@@ -35,6 +35,16 @@ pub fn ticks(low: f64, high: f64, wanted: usize) -> Ticks {
     Ticks { at, labels, power }
 }
 
+/// Marks at both ends, with numbers to about a hundredth of what lies between: for axes too short for round numbers.
+#[must_use]
+pub fn end_ticks(low: f64, high: f64) -> Ticks {
+    let Ticks { power, .. } = ticks(low, high, 1);
+    let unit = 10f64.powi(power);
+    let fine = 1e-2 * (high - low) / unit;
+    let label = |v: f64| if v.abs() < fine { "0".to_owned() } else { number_to(v, fine) };
+    Ticks { at: vec![low, high], labels: [low, high].map(|v| label(v / unit)).to_vec(), power }
+}
+
 /// The next 1, 2 or 5 times a power of ten, and that power. Rounding does not push a round number to the next.
 fn round_step(rough: f64) -> (f64, i32) {
     let exponent = rough.log10().floor() as i32;
@@ -107,6 +117,16 @@ fn shorter(digits: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ends_of_a_short_axis() {
+        let of = |low, high| (end_ticks(low, high).labels.join(" "), end_ticks(low, high).power);
+        assert_eq!(of(-2.623, 5.844), ("−2.62 5.84".to_owned(), 0));
+        assert_eq!(of(0.0, 1.0), ("0 1".to_owned(), 0));
+        assert_eq!(of(1e-9, 250.0), ("0 250".to_owned(), 0));
+        assert_eq!(of(0.0, 2.5e-6), ("0 2.5".to_owned(), -6));
+        assert_eq!(of(6_200_000.0, 6_200_003.5), ("6200000 6200003.5".to_owned(), 0));
+    }
 
     #[test]
     fn round_numbers_in_the_range() {
