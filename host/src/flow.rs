@@ -84,6 +84,11 @@ pub struct Flow<R: Scalar, const D: usize> {
 /// Share of the stable step that careful steps take.
 const CAREFUL_SHARE: f64 = 0.2;
 
+/// A CFL number of steps that are to be stable; NaN is none.
+fn is_stable<R: Scalar>(cfl: R) -> bool {
+    cfl > R::ZERO && cfl <= R::ONE
+}
+
 impl<R: Scalar, const D: usize> Flow<R, D> {
     /// A flow on cells of the given widths; the state is to be set.
     pub fn new(widths: [Vec<R>; D], gas: Gas<R>, boundaries: [[Boundary<R, D>; 2]; D]) -> Self {
@@ -459,8 +464,11 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// One stable step that does not pass `end`; a step that would need floors is repeated with less.
     ///
     /// # Errors
-    /// As [`Flow::stable_dt`] and [`Flow::step`]; `end` lies before the time reached, or one of them is NaN; or a stable step is too short to advance the time.
+    /// As [`Flow::stable_dt`] and [`Flow::step`]; `cfl` is above 1; `end` lies before the time reached, or one of them is NaN; or a stable step is too short to advance the time.
     pub fn advance(&mut self, cfl: R, end: R) -> Result<R, Error> {
+        if !is_stable(cfl) {
+            return Err(Error::Step);
+        }
         let longest = self.stable_dt(cfl)?;
         let done = stable_step(self.time, end, longest, |dt| self.attempt(dt))?;
         self.accept(done.time, &done.report);
@@ -471,9 +479,9 @@ impl<R: Scalar, const D: usize> Flow<R, D> {
     /// Stable steps until `end`; none, if that is not after the time reached.
     ///
     /// # Errors
-    /// As [`Flow::advance`]; a `cfl` that is not positive also if there is no step to do.
+    /// As [`Flow::advance`]; a `cfl` that is not above 0 and at most 1 also if there is no step to do.
     pub fn run(&mut self, cfl: R, end: R) -> Result<(), Error> {
-        if !(cfl > R::ZERO) {
+        if !is_stable(cfl) {
             return Err(Error::Step);
         }
         // Written so that a time or an end that is NaN is refused by a step.

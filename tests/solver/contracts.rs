@@ -262,7 +262,7 @@ fn a_run_that_cannot_advance_ends_with_an_error() {
     let walls = [[Boundary::Wall; 2]; 2];
     let mut flow = Flow::<f64, 2>::uniform([4, 3], [0.1; 2], Gas::Ideal { gamma: 1.4 }, walls);
     flow.fill(|_| Primitive { density: 1.2, velocity: [0.0; 2], pressure: 1e5 });
-    for cfl in [0.0, -0.5, f64::NAN] {
+    for cfl in [0.0, -0.5, f64::NAN, 1.01, 5.0, f64::INFINITY] {
         assert_eq!(flow.run(cfl, 1.0), Err(Error::Step), "CFL number {cfl}");
         assert_eq!(flow.run(cfl, 0.0), Err(Error::Step), "CFL number {cfl} where no step is left to do");
         assert_eq!(flow.advance(cfl, 1.0).err(), Some(Error::Step), "CFL number {cfl}");

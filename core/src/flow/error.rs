@@ -51,7 +51,8 @@ pub enum Error {
         /// The axis of the side.
         axis: usize,
     },
-    /// A step that is negative or not finite, a CFL number that is not positive, or an end of a run that is NaN or lies before the time reached.
+    /// A step that is negative or not finite, a CFL number that is not positive or, where steps are to be stable, is above 1, or an end of a run that is
+    /// NaN or lies before the time reached.
     Step,
     /// A stable step that is too short to advance the time.
     Stalled,
@@ -105,7 +106,7 @@ impl fmt::Display for Error {
             }
             Error::Side { axis } => write!(f, "what stands outside a side of axis {axis} is no state of the gas"),
             Error::Step => f.write_str(
-                "the step is negative or not finite, the CFL number is not positive, or the end of the run is not a number or lies before the time reached",
+                "the step is negative or not finite, the CFL number is not above 0 and at most 1, or the end of the run is not a number or lies before the time reached",
             ),
             Error::Drag { axis, cell } => {
                 write!(f, "a coefficient of drag along axis {axis} in cell {cell} is negative or not finite")
