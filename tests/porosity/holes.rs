@@ -12,6 +12,17 @@ fn bodies(triangles: Vec<Triangle>) -> Bodies {
     bodies
 }
 
+/// A scale that would mirror a body, or leave nothing of it, is refused.
+#[test]
+fn a_scale_is_above_zero() {
+    let ball = Mesh { name: "ball".into(), ..Mesh::from(sphere([0.0; 3].into(), 1.0, 5)) };
+    for scale in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+        let mut bodies = Bodies::default();
+        let told = bodies.add(&ball, scale).expect_err("no scale").to_string();
+        assert!(told.contains("a scale is above 0 and finite") && bodies.bodies.is_empty(), "{scale}: {told}");
+    }
+}
+
 /// The three triangles beside a fourth are missing: each is put back by itself, whichever of their edges comes first.
 #[test]
 fn holes_that_share_corners_are_closed_one_by_one() {

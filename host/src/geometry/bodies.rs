@@ -172,10 +172,15 @@ impl Bodies {
     /// Add the bodies of a mesh; its coordinates are multiplied by `scale`.
     ///
     /// # Errors
-    /// If nothing in it has an area, or a coordinate is beyond all measure.
+    /// If nothing in it has an area, a coordinate is beyond all measure, or `scale` is not above 0 and finite.
     pub fn add(&mut self, mesh: &Mesh, scale: f64) -> Result<()> {
         if mesh.triangles.is_empty() {
             return Err(mesh.error("no triangles: nothing solid"));
+        }
+        if !(scale > 0.0 && scale.is_finite()) {
+            return Err(
+                mesh.error(format!("coordinates cannot be multiplied by {scale}: a scale is above 0 and finite"))
+            );
         }
         let scaled: Vec<_> = mesh.triangles.iter().map(|t| t.map(|p| p * scale)).collect();
         // Each coordinate by itself: the largest of several passes over NaN.
