@@ -406,6 +406,17 @@ fn a_plate_between_planes_is_told() {
     }
 }
 
+/// Of several sides between planes the one is told that counts: a thin screen's where the gas enters or leaves, not its edges.
+#[test]
+fn of_a_screen_between_planes_its_thin_sides_are_told() {
+    let at = Scratch::new();
+    let screen = "[[solid]]\nname = \"screen\"\nshape = \"box\"\nmin = [0.07, 0.1, 1.43]\nmax = [2.93, 2.9, 1.47]\nporosity = 0.5\ncr = 10\n\
+        [grid]\norigin = [0, 0, 0]\nspacing = [1, 1, 1]\ncells = [3, 3, 3]\n";
+    fs::write(at.file("screen.toml"), screen).expect("written");
+    let told = stderr(&voidage(&[&"porosity", &at.file("screen.toml"), &"--drag", &"bluff"]));
+    assert!(told.contains("between planes of the grid (at z = 1.47)"), "{told}");
+}
+
 /// Where the law takes the rim of a solid body for obstacles, the cure is told with the warning, and it is one.
 #[test]
 fn drag_of_a_rim_names_its_cure() {

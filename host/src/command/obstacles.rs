@@ -200,12 +200,16 @@ fn warn_of_tight(grid: &Grid<f64>, bodies: &Bodies, options: Options, progress: 
 fn warn_of_partly_filled(grid: &Grid<f64>, bodies: &Bodies, progress: &mut Progress) {
     let resists = |b: &&Body| b.porosity > 0.0 && b.porosity < 1.0 && b.drag.cr.is_some_and(|cr| cr > 0.0);
     let near = snap::near(grid);
+    // Of several sides the one that lies off by the largest share of the body: of a screen, one of those that the gas goes through.
     let between_planes = |b: &Body| {
-        let mut sides = (0..3).flat_map(|axis| b.bounds.map(|corner| (axis, corner[axis])));
-        sides.find(|&(axis, at)| {
+        let sides = (0..3).flat_map(|axis| b.bounds.map(|corner| (axis, corner[axis])));
+        let off = |(axis, at): (usize, f64)| (snap::nearest(grid, axis, at) - at).abs();
+        let between = sides.filter(|&(axis, at)| {
             let is_within = grid.edges(axis).first() < Some(&at) && Some(&at) < grid.edges(axis).last();
-            is_within && (snap::nearest(grid, axis, at) - at).abs() > near[axis]
-        })
+            is_within && off((axis, at)) > near[axis]
+        });
+        let share = |side: (usize, f64)| off(side) / (b.bounds[1] - b.bounds[0])[side.0];
+        between.min_by(|&a, &b| share(b).total_cmp(&share(a)))
     };
     let mut all = bodies.bodies.iter().filter(resists).filter_map(|b| Some((b, between_planes(b)?)));
     if let Some((first, (axis, at))) = all.next() {
