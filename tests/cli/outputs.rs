@@ -92,7 +92,7 @@ fn reports_of_porosity_and_inspect() {
         "porosity",
         &[
             run("a.json", &[&"porosity", &skid, &scene, &"--spacing", &"0.3", &"--drag", &"pdr"]),
-            run("b.json", &[&"porosity", &crack, &"--cells", &"6x6x6"]),
+            run("b.json", &[&"porosity", &crack, &"--cells", &"6x6x6", &"--bounds-fields", &"--npy", &at.file("npy")]),
             run("d.json", &[&"porosity", &of_file, &"--cells", &"6x6x6"]),
         ],
     );

@@ -42,6 +42,36 @@ fn a_run_with_everything() {
     assert_eq!(count("closed"), beta.iter().filter(|&&b| b == 0.0).count());
 }
 
+/// Where cells have bounds, so has the volume: the sums of theirs, which hold the truth.
+#[test]
+fn the_solid_volume_has_the_bounds_of_its_cells() {
+    let at = Scratch::new();
+    let ball = "[[solid]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n[grid]\norigin = [-2, -2, -2]\nspacing = [0.5, 0.5, 1]\ncells = [8, 8, 4]\n";
+    fs::write(at.file("ball.toml"), ball).expect("written");
+    let (scene, report, arrays) = (at.file("ball.toml"), at.file("report.json"), at.file("npy"));
+    let run = |more: &[&dyn AsRef<std::ffi::OsStr>]| {
+        let mut all: Vec<&dyn AsRef<std::ffi::OsStr>> =
+            vec![&"porosity", &scene, &"--report", &report, &"--npy", &arrays];
+        all.extend(more);
+        let output = voidage(&all);
+        assert!(output.status.success(), "{}", stderr(&output));
+        (stdout(&output), json(&report)["solid_volume_bounds"].clone())
+    };
+    let (told, bounds) = run(&[&"--method", &"gjk", &"--depth", &"2", &"--bounds-fields"]);
+    let [low, high] = [0, 1].map(|n| bounds[n].as_f64().expect("a number"));
+    let sum = |name: &str| {
+        npy::read(&arrays.join(name)).expect("an array").1.iter().map(|open| (1.0 - open) * 0.25).sum::<f64>()
+    };
+    assert!(
+        (low - sum("beta_v_upper.npy")).abs() < 1e-12 && (high - sum("beta_v_lower.npy")).abs() < 1e-12,
+        "{bounds}"
+    );
+    let truth = 4.0 / 3.0 * std::f64::consts::PI;
+    assert!(low < truth && truth < high && high - low < 0.5, "{bounds}");
+    assert!(told.contains(" ± ") && !run(&[&"--bounds-fields"]).0.contains(" ± "), "{told}");
+    assert!(run(&[]).1.is_null());
+}
+
 #[test]
 fn any_number_of_threads_writes_the_same_bytes() {
     let run = |threads: &str| {

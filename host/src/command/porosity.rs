@@ -73,7 +73,7 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
             }
             _ => Vec::new(),
         };
-        let report = Report::new(args, &edges, &bodies, &result, (&found, congestion));
+        let report = Report::new(args, (&grid, &edges), &bodies, &result, (&found, congestion));
         files::write(args, (&edges, through), (&result, &found), &report, &mut progress)?;
         report.summary(&progress);
         if let Some(path) = &args.report {

@@ -1,6 +1,7 @@
 //! A value for every cell and face, whole and by layers.
 
 use crate::huge::HugeVec;
+use rayon::prelude::*;
 use voidage_core::grid::Grid;
 use voidage_core::surface::layer::{LayerSlices, OpenLayer};
 
@@ -38,6 +39,18 @@ impl FieldSet {
     pub fn new(grid: &Grid<f64>, areas: bool) -> Self {
         let faces = |axis| HugeVec::zeros(if areas { grid.face_shape(axis).iter().product() } else { 0 });
         FieldSet { v: HugeVec::zeros(grid.cell_count()), x: faces(0), y: faces(1), z: faces(2) }
+    }
+
+    /// The volume of solid in all cells of a grid.
+    #[must_use]
+    pub fn blocked_volume(&self, grid: &Grid<f64>) -> f64 {
+        let [nx, ny, _] = grid.cells();
+        let width = |axis: usize| grid.edges(axis).windows(2).map(|e| e[1] - e[0]);
+        let row = |row: &[f64]| row.iter().zip(width(0)).map(|(open, width)| (1.0 - open) * width).sum::<f64>();
+        let layer =
+            |layer: &[f64]| layer.chunks_exact(nx).zip(width(1)).map(|(cells, width)| row(cells) * width).sum::<f64>();
+        let layers: Vec<f64> = self.v[..].par_chunks_exact(nx * ny).map(layer).collect();
+        layers.iter().zip(width(2)).map(|(area, height)| area * height).sum()
     }
 
     /// The faces normal to an axis.

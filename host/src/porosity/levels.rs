@@ -109,7 +109,7 @@ impl<'a> RunningSum<'a> {
             ambiguous: now.cells.ambiguous.max(all.cells.ambiguous),
         };
         Porosity {
-            solid_volume: blocked_volume(&self.grid, &beta.v),
+            solid_volume: beta.blocked_volume(&self.grid),
             beta,
             bounds: sets.next().zip(sets.next()).map(<[FieldSet; 2]>::from),
             cells,
@@ -156,15 +156,4 @@ fn rows(
     };
     z.flat_map(move |k| y.clone().map(move |j| [window.cells[0].start, j, k]))
         .map(move |at| [row(whole, at), row(part, [0, 1, 2].map(|a| at[a] - first[a]))])
-}
-
-/// The volume of solid in all cells of a grid.
-fn blocked_volume(grid: &Grid<f64>, open: &[f64]) -> f64 {
-    let [nx, ny, _] = grid.cells();
-    let width = |axis: usize| grid.edges(axis).windows(2).map(|e| e[1] - e[0]);
-    let row = |row: &[f64]| row.iter().zip(width(0)).map(|(open, width)| (1.0 - open) * width).sum::<f64>();
-    let layer =
-        |layer: &[f64]| layer.chunks_exact(nx).zip(width(1)).map(|(cells, width)| row(cells) * width).sum::<f64>();
-    let layers: Vec<f64> = open.par_chunks_exact(nx * ny).map(layer).collect();
-    layers.iter().zip(width(2)).map(|(area, height)| area * height).sum()
 }

@@ -4,6 +4,7 @@ use super::fields::FieldSet;
 use super::snap::OffPlanes;
 use super::surface_fields::SurfaceFields;
 use std::sync::Arc;
+use voidage_core::grid::Grid;
 
 /// Cells by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -73,6 +74,15 @@ pub struct Porosity {
 }
 
 impl Porosity {
+    /// Bounds of the solid volume within the grid, the sums of those of its cells, if they were asked for.
+    #[must_use]
+    pub fn solid_volume_bounds(&self, grid: &Grid<f64>) -> Option<[f64; 2]> {
+        let [most_solid, least_solid] = self.bounds.as_ref()?;
+        let [low, high] = [least_solid, most_solid].map(|set| set.blocked_volume(grid));
+        // Sums of equal terms in another order may differ by rounding.
+        Some([low.min(self.solid_volume), high.max(self.solid_volume)])
+    }
+
     /// Adds what another union of the same bodies has cost, and takes over where its bodies fail to close.
     pub(super) fn add_work(&mut self, other: &Porosity) {
         self.divided += other.divided;

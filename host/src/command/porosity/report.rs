@@ -8,7 +8,7 @@ use crate::command::stages::command_line;
 use crate::command::version::{BUILD, Build};
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
-use crate::picture::ticks::{measure, part};
+use crate::picture::ticks::{measure, part, plain_to};
 use crate::porosity::congestion::Congestion;
 use crate::porosity::divided::DividedCells;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
@@ -19,6 +19,7 @@ use crate::words::counted;
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use voidage_core::grid::Grid;
 
 /// What `--report` writes.
 #[derive(Debug, Clone, Serialize)]
@@ -29,6 +30,9 @@ pub(super) struct Report {
     grid: GridReport,
     /// Of the union, within the grid in m³.
     solid_volume: f64,
+    /// Least and most of the same in m³, with `--bounds-fields`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solid_volume_bounds: Option<[f64; 2]>,
     bodies: usize,
     triangles: usize,
     roads: RoadReport,
@@ -86,6 +90,9 @@ struct DragReport {
     capped: usize,
 }
 
+/// Bounds of the solid volume within this share of it are as close as it is written.
+const EXACT: f64 = 1e-9;
+
 impl ObstacleReport {
     fn new(args: &PorosityArgs, (found, obstacles): (&Resistance, &Obstacles), congestion: Vec<Congestion>) -> Self {
         let drag = args.drag.zip(obstacles.drag.as_ref()).map(|(law, drag)| DragReport {
@@ -132,7 +139,7 @@ struct GridReport {
 impl Report {
     pub(super) fn new(
         args: &PorosityArgs,
-        edges: &Edges,
+        (grid, edges): (&Grid<f64>, &Edges),
         bodies: &Bodies,
         result: &Porosity,
         (obstacles, congestion): (&Obstacles, Vec<Congestion>),
@@ -159,6 +166,7 @@ impl Report {
             command: command_line(),
             grid: GridReport { cells: edges.cells(), bounds: edges.bounds(), unit: "m" },
             solid_volume: result.solid_volume,
+            solid_volume_bounds: result.solid_volume_bounds(grid),
             bodies: bodies.bodies.len(),
             triangles: bodies.triangles.len(),
             roads: RoadReport {
@@ -202,7 +210,11 @@ impl Report {
             let bodies = counted(self.roads.subdivision, "body", "bodies");
             progress.say(format!("subdivided    {bodies}, queries of GJK: {}", self.gjk.queries));
         }
-        progress.say(format!("solid volume  {} m³", measure(self.solid_volume)));
+        let volume = self.solid_volume;
+        let apart = self.solid_volume_bounds.map_or(0.0, |[low, high]| (volume - low).max(high - volume));
+        let apart =
+            if apart > EXACT * volume { format!(" ± {}", plain_to(apart, 0.1 * apart)) } else { String::new() };
+        progress.say(format!("solid volume  {}{apart} m³", measure(volume)));
         progress.say(format!(
             "cells         {} open, {} cut, {} closed; {} with a union of bodies to find",
             c.open, c.cut, c.closed, c.ambiguous
