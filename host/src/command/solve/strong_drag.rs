@@ -6,6 +6,7 @@ use crate::command::progress::Progress;
 use crate::flow::Flow;
 use crate::geometry::bodies::{Bodies, Body};
 use crate::grid::Edges;
+use crate::picture::ticks::number;
 use crate::words::counted;
 use glam::DVec3;
 
@@ -44,9 +45,10 @@ pub fn warn<const D: usize>(
     if count > 0 {
         let [x, y, z] = centre(edges, place).map(|x| x as f32);
         progress.warn(format!(
-            "drag: {} more than {MOST} dynamic pressures from a stream, the one at ({x}, {y}, {z}) m {largest:.3e}: through few such cells more gas passes \
+            "drag: {} more than {MOST} dynamic pressures from a stream, the one at ({x}, {y}, {z}) m {}: through few such cells more gas passes \
              than should; what gas cannot pass should be solid{}",
             counted(count, "cell takes", "cells take"),
+            number(largest),
             bodies.and_then(|bodies| of_a_rim(bodies, edges, place)).unwrap_or_default()
         ));
     }
