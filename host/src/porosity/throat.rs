@@ -27,6 +27,42 @@ pub fn lower(grid: &Grid<f64>, result: &mut Porosity, shadows: &Shadows) -> usiz
     lower_within(grid, result, shadows, ([0; 3], grid.cells()))
 }
 
+/// The same for a grid that is a part of a larger one, whose middle counts: `first` is its first cell there, and the larger one has so many `cells`.
+pub fn lower_within(
+    grid: &Grid<f64>,
+    result: &mut Porosity,
+    shadows: &Shadows,
+    (first, count): ([usize; 3], [usize; 3]),
+) -> usize {
+    let mut lowered = 0;
+    let Porosity { beta, bounds, max_gap, .. } = result;
+    for axis in 0..3 {
+        let (faces, count) = (|n: usize| faces_of_nth_cell(grid, axis, n), count[axis]);
+        let before: Vec<[f64; 2]> = {
+            let open = beta.faces(axis);
+            shadows.standing.iter().map(|&n| faces(n).map(|face| open[face])).collect()
+        };
+        for (&n, open) in shadows.standing.iter().zip(before) {
+            let place = first[axis] + place_of_cell(grid, n)[axis];
+            let Some((passes, wanted)) = face_to_lower(shadows, (axis, n), open, (place, count)) else { continue };
+            for (face, _) in faces(n).into_iter().zip(wanted).filter(|(_, wanted)| *wanted) {
+                let lower_to = |set: &mut FieldSet, most: f64| {
+                    let open = &mut set.faces_mut(axis)[face];
+                    *open = open.min(most.clamp(0.0, 1.0));
+                };
+                lower_to(beta, passes);
+                if let Some([lowest, highest]) = bounds {
+                    lower_to(lowest, passes - shadows.doubt);
+                    lower_to(highest, passes + shadows.doubt);
+                }
+                *max_gap = max_gap.max(2.0 * shadows.doubt);
+                lowered += 1;
+            }
+        }
+    }
+    lowered
+}
+
 /// A face in a side of the grid that is lowered to what an obstacle in its cell leaves open.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoweredSide {
@@ -78,40 +114,4 @@ fn face_to_lower(
     let aside = open[0] - open[1] + hidden * (2.0 * shadows.place[axis][n]);
     let (before_middle, behind_middle) = (2 * place + 1 < count, 2 * place + 1 > count);
     Some((passes, if aside.abs() > LEAST { [aside < 0.0, aside > 0.0] } else { [!before_middle, !behind_middle] }))
-}
-
-/// The same for a grid that is a part of a larger one, whose middle counts: `first` is its first cell there, and the larger one has so many `cells`.
-pub fn lower_within(
-    grid: &Grid<f64>,
-    result: &mut Porosity,
-    shadows: &Shadows,
-    (first, count): ([usize; 3], [usize; 3]),
-) -> usize {
-    let mut lowered = 0;
-    let Porosity { beta, bounds, max_gap, .. } = result;
-    for axis in 0..3 {
-        let (faces, count) = (|n: usize| faces_of_nth_cell(grid, axis, n), count[axis]);
-        let before: Vec<[f64; 2]> = {
-            let open = beta.faces(axis);
-            shadows.standing.iter().map(|&n| faces(n).map(|face| open[face])).collect()
-        };
-        for (&n, open) in shadows.standing.iter().zip(before) {
-            let place = first[axis] + place_of_cell(grid, n)[axis];
-            let Some((passes, wanted)) = face_to_lower(shadows, (axis, n), open, (place, count)) else { continue };
-            for (face, _) in faces(n).into_iter().zip(wanted).filter(|(_, wanted)| *wanted) {
-                let lower_to = |set: &mut FieldSet, most: f64| {
-                    let open = &mut set.faces_mut(axis)[face];
-                    *open = open.min(most.clamp(0.0, 1.0));
-                };
-                lower_to(beta, passes);
-                if let Some([lowest, highest]) = bounds {
-                    lower_to(lowest, passes - shadows.doubt);
-                    lower_to(highest, passes + shadows.doubt);
-                }
-                *max_gap = max_gap.max(2.0 * shadows.doubt);
-                lowered += 1;
-            }
-        }
-    }
-    lowered
 }
