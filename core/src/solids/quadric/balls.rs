@@ -165,15 +165,17 @@ impl Around {
             // What lies between the two, and by how much that changes within reach.
             let between = if alike { (plane.height - new.height).abs() } else { plane.height + new.height };
             let change = 2.0 * sine * self.reach;
-            match between {
-                _ if between > change + near => {}
-                _ if !alike && between < -change => return Added::Closed,
-                _ if sine <= ONE_PLANE && between.abs() <= 4.0 * near => {
-                    self.taken_as_one += 4.0 * near;
-                    return if alike { Added::Cut } else { Added::Closed };
-                }
-                _ => return Added::Unsure,
+            if between > change + near {
+                continue;
             }
+            if !alike && between < -change {
+                return Added::Closed;
+            }
+            if !(sine <= ONE_PLANE && between.abs() <= 4.0 * near) {
+                return Added::Unsure;
+            }
+            self.taken_as_one += 4.0 * near;
+            return if alike { Added::Cut } else { Added::Closed };
         }
         if self.planes.push(new).is_ok() { Added::Cut } else { Added::Unsure }
     }
