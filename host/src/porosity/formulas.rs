@@ -47,12 +47,12 @@ pub struct FormulaMemory {
     pub shared: usize,
 }
 
-/// Sums for the places of one kind: zeros, but in blocks that are marked.
+/// Sums for the places of one kind, block by block: zeros, but in blocks that are marked.
 #[derive(Debug, Default)]
 struct Sums {
-    values: Vec<f64>,
+    values: Vec<[f64; BLOCK]>,
     /// How many entries each place has, up to two.
-    entries: Vec<u8>,
+    entries: Vec<[u8; BLOCK]>,
     marked: Vec<bool>,
 }
 
@@ -61,36 +61,60 @@ const BLOCK: usize = 8;
 
 impl Sums {
     fn make_room(&mut self, places: usize) {
-        if self.values.len() < places {
-            self.values.resize(places, 0.0);
-            self.entries.resize(places, 0);
-            self.marked.resize(places.div_ceil(BLOCK), false);
+        let blocks = places.div_ceil(BLOCK);
+        if self.values.len() < blocks {
+            self.values.resize(blocks, [0.0; BLOCK]);
+            self.entries.resize(blocks, [0; BLOCK]);
+            self.marked.resize(blocks, false);
         }
     }
 
+    fn value(&self, at: usize) -> f64 {
+        self.values[at / BLOCK][at % BLOCK]
+    }
+
     fn add(&mut self, at: usize, share: f64) {
-        self.values[at] += share;
+        self.values[at / BLOCK][at % BLOCK] += share;
         self.marked[at / BLOCK] = true;
     }
 
     /// Counts an entry of a place.
     fn count(&mut self, at: usize) {
-        self.entries[at] = (self.entries[at] + 1).min(2);
+        let entries = &mut self.entries[at / BLOCK][at % BLOCK];
+        *entries = (*entries + 1).min(2);
         self.marked[at / BLOCK] = true;
     }
 
-    /// First places of the blocks that are marked.
-    fn blocks(&self) -> impl Iterator<Item = usize> {
-        self.marked.iter().enumerate().filter(|(_, marked)| **marked).map(|(block, _)| block * BLOCK)
+    /// Is an entry of a place the only one?
+    fn is_single(&self, at: usize) -> bool {
+        self.entries[at / BLOCK][at % BLOCK] == 1
+    }
+
+    /// Adds them, as the shares of bodies, to lower bounds and sums. A call of its own: its loop is done by vectors because the slices are apart.
+    #[inline(never)]
+    fn add_to(&self, lower: &mut [f64], sum: &mut [f64]) {
+        let ((lower, lower_rest), (sum, sum_rest)) = (lower.as_chunks_mut::<BLOCK>(), sum.as_chunks_mut::<BLOCK>());
+        let add = |share: f64, lower: &mut f64, sum: &mut f64| {
+            // Zeros change nothing.
+            let share = if share > FULL { 1.0 } else { share };
+            *lower = if share > *lower { share } else { *lower };
+            *sum += share;
+        };
+        for (n, (shares, _)) in self.values.iter().zip(&self.marked).enumerate().filter(|(_, (_, marked))| **marked) {
+            if let (Some(lower), Some(sum)) = (lower.get_mut(n), sum.get_mut(n)) {
+                (0..BLOCK).for_each(|at| add(shares[at], &mut lower[at], &mut sum[at]));
+            } else {
+                let rest = lower_rest.iter_mut().zip(&mut *sum_rest);
+                shares.iter().zip(rest).for_each(|(share, (lower, sum))| add(*share, lower, sum));
+            }
+        }
     }
 
     /// Zeros everywhere.
     fn clear(&mut self) {
-        let blocks = self.values.chunks_mut(BLOCK).zip(self.entries.chunks_mut(BLOCK)).zip(&mut self.marked);
-        for ((values, entries), marked) in blocks {
+        for ((marked, values), entries) in self.marked.iter_mut().zip(&mut self.values).zip(&mut self.entries) {
             if std::mem::take(marked) {
-                values.fill(0.0);
-                entries.fill(0);
+                (*values, *entries) = ([0.0; BLOCK], [0; BLOCK]);
             }
         }
     }
@@ -210,7 +234,7 @@ fn tell_shares(
 fn settle(FormulaMemory { sums, entries, .. }: &mut FormulaMemory) {
     entries.retain(|&(kind, at, _, [share, error])| {
         let (sums, at) = (&mut sums[usize::from(kind)], at as usize);
-        let alone = sums.entries[at] == 1 && error == 0.0;
+        let alone = sums.is_single(at) && error == 0.0;
         if alone {
             sums.add(at, share);
         }
@@ -222,17 +246,7 @@ fn settle(FormulaMemory { sums, entries, .. }: &mut FormulaMemory) {
 fn add_alone(sums: &[Sums; 4], layer: &mut Layer<f64>) {
     for (sums, kind) in sums.iter().zip(KINDS) {
         let (lower, sum) = values(layer, kind);
-        for first in sums.blocks() {
-            let block = first..lower.len().min(first + BLOCK);
-            for ((share, lower), sum) in
-                sums.values[block.clone()].iter().zip(&mut lower[block.clone()]).zip(&mut sum[block])
-            {
-                // Zeros change nothing.
-                let share = if *share > FULL { 1.0 } else { *share };
-                *lower = if share > *lower { share } else { *lower };
-                *sum += share;
-            }
-        }
+        sums.add_to(lower, sum);
     }
 }
 
@@ -271,7 +285,7 @@ fn add_shared(
         shares.clear();
         place.iter().for_each(|entry| add_share(&mut shares, entry));
         let place = Place { solids, grid, kind, range: cell(grid, kind, at, part), shares: &shares };
-        let alone = sums[number(kind)].values[at];
+        let alone = sums[number(kind)].value(at);
         let (mut found, known) = place.apart_and_meeting(alone, &mut bodies);
         if !bodies.is_empty() {
             *shared += usize::from(kind == RangeKind::Cells);
