@@ -35,7 +35,7 @@ pub fn without_nested(solids: Vec<FormulaSolid>, porosity: impl Fn(usize) -> f64
         return solids;
     }
     held.sort_by_key(|(n, _)| *n);
-    let (mut held, mut left) = (held.as_slice(), Vec::new());
+    let (mut held, mut left) = (held.as_slice(), Vec::with_capacity(solids.len()));
     for (n, solid) in solids.into_iter().enumerate() {
         let own = held.partition_point(|(m, _)| *m == n);
         let (parts, rest) = held.split_at(own);

@@ -72,22 +72,33 @@ fn pair_of_solids(a: &Kind, b: &Kind) -> Option<Pair> {
     }
 }
 
-/// A box around a solid, and the solid's number.
+/// A box around a solid, along axes in some order, and the solid's number.
 #[derive(Clone, Copy)]
 struct Boxed {
-    bounds: Aabb<DVec3>,
+    min: [f64; 3],
+    max: [f64; 3],
     n: usize,
 }
 
-/// The axis along which boxes are shortest for the room that all of them take up: most pairs of them are apart along it.
-fn widest_axis(boxes: &[Boxed]) -> usize {
+impl Boxed {
+    /// Do boxes touch that do so along the first axis?
+    fn touches(&self, other: &Self) -> bool {
+        let touch = |axis: usize| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis];
+        touch(1) && touch(2)
+    }
+}
+
+/// The axes, first those along which boxes are shortest for the room that all of them take up: most pairs of them are apart along these.
+fn widest_axes(solids: &[FormulaSolid]) -> [usize; 3] {
     let (mut all, mut sizes) = (Aabb { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }, DVec3::ZERO);
-    for Boxed { bounds, .. } in boxes {
+    for FormulaSolid { bounds, .. } in solids {
         all = Aabb { min: all.min.min(bounds.min), max: all.max.max(bounds.max) };
         sizes += bounds.size();
     }
     let filled = sizes / all.size();
-    [1, 2].into_iter().fold(0, |best, axis| if filled[axis] < filled[best] { axis } else { best })
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&a, &b| filled[a].total_cmp(&filled[b]));
+    axes
 }
 
 /// What `look` finds for two solids, for each two whose boxes touch.
@@ -95,13 +106,17 @@ pub(super) fn of_touching_boxes<T: Send>(
     solids: &[FormulaSolid],
     look: impl Fn(usize, usize) -> Option<T> + Sync,
 ) -> Vec<T> {
-    let mut boxes: Vec<Boxed> = solids.iter().enumerate().map(|(n, s)| Boxed { bounds: s.bounds, n }).collect();
-    let axis = widest_axis(&boxes);
-    boxes.sort_by(|a, b| a.bounds.min[axis].total_cmp(&b.bounds.min[axis]));
+    let axes = widest_axes(solids);
+    let boxed = |(n, s): (usize, &FormulaSolid)| {
+        let [min, max] = [s.bounds.min, s.bounds.max].map(|corner| axes.map(|axis| corner[axis]));
+        Boxed { min, max, n }
+    };
+    let mut boxes: Vec<Boxed> = solids.iter().enumerate().map(boxed).collect();
+    boxes.sort_by(|a, b| a.min[0].total_cmp(&b.min[0]));
     let of_one = |(at, one): (usize, &Boxed)| {
         let (boxes, look, one) = (&boxes, &look, *one);
-        let later = boxes[at + 1..].iter().take_while(move |other| other.bounds.min[axis] <= one.bounds.max[axis]);
-        later.filter(move |other| one.bounds.touches(other.bounds)).filter_map(move |other| look(one.n, other.n))
+        let later = boxes[at + 1..].iter().take_while(move |other| other.min[0] <= one.max[0]);
+        later.filter(move |other| one.touches(other)).filter_map(move |other| look(one.n, other.n))
     };
     boxes.par_iter().enumerate().flat_map_iter(of_one).collect()
 }
