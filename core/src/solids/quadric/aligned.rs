@@ -43,6 +43,18 @@ struct Section {
     v: P2,
 }
 
+impl Section {
+    /// By the share of the area; sides and lines as those of [`AlignedPipe::share`].
+    fn new(area: f64, [u, v]: [[Twofold; 2]; 2], [u_lines, v_lines]: [[Span; 2]; 2]) -> Self {
+        let share = |line: &Span, sides: &[Twofold; 2]| line.share_of([sides[0].value, sides[1].value]);
+        Section {
+            area,
+            u: [share(&u_lines[0], &u), share(&u_lines[1], &u)],
+            v: [share(&v_lines[0], &v), share(&v_lines[1], &v)],
+        }
+    }
+}
+
 impl<'a> AlignedPipe<'a> {
     /// None if it is no cylinder, or not along an axis.
     pub fn new(part: &'a Part) -> Option<Self> {
@@ -55,17 +67,18 @@ impl<'a> AlignedPipe<'a> {
             let at = end.center[along];
             if end.inward[along] > 0.0 { ends[0] = ends[0].max(at) } else { ends[1] = ends[1].min(at) }
         }
-        let section = Part { ends: [None; 2], ..*part }.plane(along, part.origin[along]);
+        let section = part.plane_with([None; 2], along, part.origin[along]);
         Some(AlignedPipe { part, along, ends, section })
     }
 
     /// Tells what cells `cells[n]` along each axis `n` have of it, by edges of the grid: their indices, whether each is the last of these along its
-    /// axis, and shares; of a cell without a share those of its faces may be left out where they are 0. Returns by how much the worst share
-    /// left 0 to 1.
+    /// axis, and shares; of a cell without a share those of its faces may be left out where they are 0. `recall` tells the share of its section that cells
+    /// along z have, by their indices along x and y, or computes it if it is not known. Returns by how much the worst share left 0 to 1.
     pub fn tell<R: Real>(
         &self,
         edges: [&[R]; 3],
         cells: &[Range<usize>; 3],
+        recall: &mut impl FnMut([usize; 2], &dyn Fn() -> f64) -> f64,
         tell: &mut impl FnMut([usize; 3], [bool; 3], &Shares),
     ) -> f64 {
         let n = self.along;
@@ -94,7 +107,10 @@ impl<'a> AlignedPipe<'a> {
                 } else {
                     let v_lines = [right.map_or_else(|| v_line(x[0]), |r| r.1), v_line(x[1])];
                     right = Some((x[1], v_lines[1]));
-                    self.section([x, [low, high]], [[lower, upper], v_lines])
+                    let (sides, lines) = ([x, [low, high]], [[lower, upper], v_lines]);
+                    let share = || self.share(sides, lines);
+                    let share = if n == Axis::Z { recall([a, b], &share) } else { share() };
+                    Section::new(share, sides, lines)
                 };
                 worst = if section.area.is_nan() { f64::INFINITY } else { worst.max(section.area - 1.0) };
                 worst = worst.max(-section.area);
@@ -135,19 +151,16 @@ impl<'a> AlignedPipe<'a> {
         let [x, y] = [x, y].map(|side| side.map(|value| Twofold { value, rest: 0.0 }));
         let lines = [y.map(|at| self.line(u, at)), x.map(|at| self.line(v, at))];
         let [long, wide] = [x, y].map(|[low, high]| high.value - low.value);
-        self.section([x, y], lines).area * (long * wide)
+        self.share([x, y], lines) * (long * wide)
     }
 
-    fn section(&self, [u, v]: [[Twofold; 2]; 2], [u_lines, v_lines]: [[Span; 2]; 2]) -> Section {
+    /// The share that it has of a rectangle across it, by the rectangle's sides along both axes and the lines along these.
+    fn share(&self, [u, v]: [[Twofold; 2]; 2], [u_lines, v_lines]: [[Span; 2]; 2]) -> f64 {
         let sides = Rectangle { u: u.map(|x| x.value), v: v.map(|x| x.value) };
         let face = self.part.face(&self.section, &sides, &[u_lines[0], v_lines[1], u_lines[1], v_lines[0]]);
         let FaceFlux { area, whole, .. } = face;
         let all = (sides.u[1] - sides.u[0]) * (sides.v[1] - sides.v[0]);
-        Section {
-            area: if whole { 1.0 } else { area / all },
-            u: u_lines.map(|line| line.share_of(sides.u)),
-            v: v_lines.map(|line| line.share_of(sides.v)),
-        }
+        if whole { 1.0 } else { area / all }
     }
 
     /// Shares of the cell between two planes across the pipe.

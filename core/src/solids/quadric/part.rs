@@ -47,6 +47,9 @@ pub(super) struct FaceFlux {
     pub whole: bool,
 }
 
+/// Flat ends of a part.
+pub(super) type Ends<'a> = [Option<&'a End>; 2];
+
 /// The planes on both sides of a cell along each axis.
 pub(super) type Sides<'a> = [[&'a Plane; 2]; 3];
 
@@ -71,35 +74,41 @@ impl Part {
         }
     }
 
-    /// A pipe without those ends that are far from a box: all of it is on their inner sides. None if both are near, or it is no pipe.
-    pub fn without_far_ends(&self, place: [[f64; 2]; 3]) -> Option<Self> {
+    /// All of its ends.
+    fn all_ends(&self) -> Ends<'_> {
+        let [one, other] = &self.ends;
+        [one.as_ref(), other.as_ref()]
+    }
+
+    /// Its ends; of a pipe without those that are far from a box: all of it is on their inner sides.
+    pub fn ends_near(&self, place: [[f64; 2]; 3]) -> Ends<'_> {
+        let [one, other] = self.all_ends();
         if !matches!(self.curved.wall, Wall::Cylinder { .. }) {
-            return None;
+            return [one, other];
         }
-        let far = |end: &End| {
+        let is_near = |end: &&End| {
             let (mut least, mut size) = (0.0, 0.0);
             for n in Axis::ALL {
                 let [low, high] = place[n].map(|x| end.inward[n] * (x - end.center[n]));
                 (least, size) = (least + low.min(high), size + low.abs() + high.abs());
             }
-            least > FAR_END * size
+            !(least > FAR_END * size)
         };
-        let [one, other] = self.ends.each_ref().map(|end| end.as_ref().is_some_and(far));
-        if !(one || other) {
-            return None;
-        }
-        let [first, second] = self.ends;
-        Some(Part { ends: [first.filter(|_| !one), second.filter(|_| !other)], ..*self })
+        [one.filter(is_near), other.filter(is_near)]
     }
 
     /// A plane across axis `n`.
-    #[inline]
     pub fn plane(&self, n: Axis, coordinate: f64) -> Plane {
+        self.plane_with(self.all_ends(), n, coordinate)
+    }
+
+    /// The same where only some of its ends matter.
+    #[inline]
+    pub fn plane_with(&self, [low, high]: Ends, n: Axis, coordinate: f64) -> Plane {
         let h = difference(coordinate, self.origin[n]);
         let section = Section { conic: self.curved.conic(n, h), ellipse: self.curved.ellipse(n, h) };
         // Written out: `map` of an array of these is not inlined.
-        let line = |end: &Option<End>| end.as_ref().map(|end| end.line(n, coordinate));
-        let [low, high] = &self.ends;
+        let line = |end: Option<&End>| end.map(|end| end.line(n, coordinate));
         Plane { n, coordinate, h, section, lines: [line(low), line(high)] }
     }
 
@@ -107,12 +116,6 @@ impl Part {
     #[inline]
     pub fn span(&self, m: Axis, planes: [&Plane; 2]) -> Span {
         self.curved.span(m, planes.map(|p| p.h))
-    }
-
-    /// The same inside the ends too, by what it has inside the curved surface.
-    pub fn span_between_ends(&self, m: Axis, planes: [&Plane; 2], span: Span) -> Span {
-        let inside = |end: &End| end.span(m, planes.map(|p| p.coordinate));
-        self.ends.iter().flatten().map(inside).fold(span, Span::intersection)
     }
 
     /// Area and flux of a face, `spans` those of its sides in the order of [`Rectangle::corners`].
@@ -347,7 +350,7 @@ impl Part {
 
     /// Tells of each flat end in a cell what its inward normal has along ξ, the integral of ξ − ξₘ over the end as seen along ξ, and its area so.
     fn moments_of_ends(&self, sides: &Sides, mut tell: impl FnMut(f64, f64, f64)) {
-        if self.ends.iter().all(Option::is_none) {
+        if sides[self.xi][0].lines.iter().all(Option::is_none) {
             return;
         }
         let [u, v] = self.xi.others();
@@ -409,6 +412,12 @@ impl Part {
             }
         }
     }
+}
+
+/// What the line where two planes meet has between some ends too, by what it has inside the curved surface; arguments as those of [`Part::span`].
+pub(super) fn span_between(ends: &Ends, m: Axis, planes: [&Plane; 2], span: Span) -> Span {
+    let inside = |end: &&End| end.span(m, planes.map(|p| p.coordinate));
+    ends.iter().flatten().map(inside).fold(span, Span::intersection)
 }
 
 /// By how much of the square of a cell's size a pipe in it may fail to close: rounding is far below, and a section more or less is beyond.

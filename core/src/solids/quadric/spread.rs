@@ -2,7 +2,7 @@
 
 use super::aligned::{AlignedPipe, Shares};
 use super::outline::Rectangle;
-use super::part::{FaceFlux, Part, Plane};
+use super::part::{Ends, FaceFlux, Part, Plane, span_between};
 use super::wall::Span;
 use super::window::{EVERYWHERE, reached, reached_of};
 use crate::grid::Grid;
@@ -20,6 +20,8 @@ fn rectangle(u: [&Plane; 2], v: [&Plane; 2]) -> Rectangle {
 /// A part over one row of cells: planes below and above along y and z, and lines along x, `[y][z]`.
 struct Row<'a> {
     part: &'a Part,
+    /// Those of its ends that matter.
+    ends: Ends<'a>,
     j: usize,
     y: [&'a Plane; 2],
     z: [&'a Plane; 2],
@@ -58,7 +60,7 @@ impl Columns {
             Some(column) if column.at == at && column.row == Some(j) => return,
             Some(column) if column.at == at => column,
             _ => {
-                let plane = part.plane(Axis::X, x);
+                let plane = part.plane_with(row.ends, Axis::X, x);
                 let y_lines = [z0, z1].map(|z| part.span(Axis::Y, [z, &plane]));
                 let (z_lines, face) = ([Span::EMPTY; 2], FaceFlux::default());
                 slot.insert(Column { at, plane, y_lines, row: None, z_lines, face })
@@ -81,10 +83,15 @@ struct CellShares {
 
 impl<'a> Row<'a> {
     /// `below`: the lines along x between it and the row below, if they are known.
-    fn new(part: &'a Part, j: usize, [y, z]: [[&'a Plane; 2]; 2], below: Option<[Span; 2]>) -> Self {
+    fn new(
+        (part, ends): (&'a Part, Ends<'a>),
+        j: usize,
+        [y, z]: [[&'a Plane; 2]; 2],
+        below: Option<[Span; 2]>,
+    ) -> Self {
         let [y0, y1] = y.map(|y| move || z.map(|z| part.span(Axis::X, [y, z])));
         let x_lines = [below.unwrap_or_else(y0), y1()];
-        Row { part, j, y, z, x_lines }
+        Row { part, ends, j, y, z, x_lines }
     }
 
     /// The run along x, from the part's origin, in which whole cells of the row are inside.
@@ -96,7 +103,7 @@ impl<'a> Row<'a> {
                 if !(line.lo < line.hi) {
                     return Span::EMPTY;
                 }
-                run = run.intersection(self.part.span_between_ends(Axis::X, [self.y[j], self.z[k]], line));
+                run = run.intersection(span_between(&self.ends, Axis::X, [self.y[j], self.z[k]], line));
             }
         }
         run
@@ -148,7 +155,7 @@ impl HighFaces {
     }
 }
 
-/// What a part has of a face in a plane between two layers.
+/// What a part has of a face in a plane between two layers; or a pipe along z of the cells beside it.
 #[derive(Clone, Copy, Debug)]
 pub struct FaceBetween(FaceFlux);
 
@@ -206,13 +213,10 @@ pub(super) fn layer<R: Real, B: FacesBetween>(
     if lowest > zs[1] || highest < zs[0] {
         return 0.0;
     }
-    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, number, between, visit };
     if let Some(pipe) = AlignedPipe::new(part) {
-        let cells = [reached(xs, part.extent(Axis::X)), reached(ys, part.extent(Axis::Y)), k..k + 1];
-        return pipe.tell([xs, ys, grid.edges(2)], &cells, &mut |[i, j, _], [last, last_row, _], shares| {
-            told.tell_cell(i, (j, last_row), last, shares);
-        });
+        return layer_of_aligned(&pipe, NumberedPart { part, number, between }, grid, k, areas, visit);
     }
+    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, number, between, visit };
     let within = part.extent_within([EVERYWHERE, EVERYWHERE, zs]);
     let runs = part.runs(zs);
     let (across, rows) = (reached(xs, within[0]), reached(ys, within[1]));
@@ -220,9 +224,9 @@ pub(super) fn layer<R: Real, B: FacesBetween>(
         let edge = |n: usize| edges.get(n).map_or(f64::NAN, |e| e.to_f64());
         [edge(cells.start), edge(cells.end)]
     };
-    let without = part.without_far_ends([around(xs, &across), around(ys, &rows), zs]);
-    let near = without.as_ref().unwrap_or(part);
-    let z = zs.map(|z| near.plane(Axis::Z, z));
+    let ends = part.ends_near([around(xs, &across), around(ys, &rows), zs]);
+    // Written out: `map` of an array moves planes about.
+    let z = [part.plane_with(ends, Axis::Z, zs[0]), part.plane_with(ends, Axis::Z, zs[1])];
     // Planes between rows by the parity of their numbers, and the row that stands below the next one.
     let mut planes: [Option<Plane>; 2] = [None, None];
     let mut below: Option<(usize, [Span; 2])> = None;
@@ -236,17 +240,42 @@ pub(super) fn layer<R: Real, B: FacesBetween>(
         let [even_plane, odd_plane] = &mut planes;
         let (low, high) = if j % 2 == 0 { (even_plane, odd_plane) } else { (odd_plane, even_plane) };
         if known.is_none() {
-            *low = Some(near.plane(Axis::Y, y0.to_f64()));
+            *low = Some(part.plane_with(ends, Axis::Y, y0.to_f64()));
         }
-        *high = Some(near.plane(Axis::Y, y1.to_f64()));
+        *high = Some(part.plane_with(ends, Axis::Y, y1.to_f64()));
         let (Some(low), Some(high)) = (low, high) else { break };
-        let row = Row::new(near, j, [[low, high], z.each_ref()], known);
+        let row = Row::new((part, ends), j, [[low, high], z.each_ref()], known);
         let (own, other) = if j % 2 == 0 { (&mut even, &odd) } else { (&mut odd, &even) };
         let at_hand = AtHand { columns: &mut columns, below: other, own };
         told.row(xs, &row, last_row, reached_of(xs, &across, run), at_hand);
         below = Some((j, row.x_lines[1]));
     }
     told.worst
+}
+
+/// The same of a pipe along an axis. Of one along z layers leave each other what they have of its section.
+fn layer_of_aligned<R: Real, B: FacesBetween>(
+    pipe: &AlignedPipe,
+    NumberedPart { part, number, between }: NumberedPart<B>,
+    grid: &Grid<R>,
+    k: usize,
+    areas: bool,
+    visit: &mut impl FnMut(RangeKind, usize, f64),
+) -> f64 {
+    let (edges, [nx, ny, _]) = ([0, 1, 2].map(|axis| grid.edges(axis)), grid.cells());
+    let mut recall = |[i, j]: [usize; 2], share: &dyn Fn() -> f64| {
+        let at = j * nx + i;
+        let known = between.below(number, at);
+        let face = known.unwrap_or_else(|| FaceBetween(FaceFlux { area: share(), ..FaceFlux::default() }));
+        between.above(number, at, face);
+        face.0.area
+    };
+    let mut told = Teller { cells: [nx, ny], areas, worst: 0.0, number, between: &mut (), visit };
+    let mut tell = |[i, j, _]: [usize; 3], [last, last_row, _]: [bool; 3], shares: &Shares| {
+        told.tell_cell(i, (j, last_row), last, shares);
+    };
+    let cells = [reached(edges[0], part.extent(Axis::X)), reached(edges[1], part.extent(Axis::Y)), k..k + 1];
+    pipe.tell(edges, &cells, &mut recall, &mut tell)
 }
 
 struct Teller<'v, F, B> {
@@ -272,7 +301,7 @@ impl<F: FnMut(RangeKind, usize, f64), B: FacesBetween> Teller<'_, F, B> {
         let inside = row.inside();
         let from_origin = |i: usize| xs.get(i).map_or(f64::NAN, |x| x.to_f64() - row.part.origin[0]);
         // A face in the plane of an end that does not belong to the part is none of it.
-        let open = row.part.ends.iter().flatten().any(|end| !end.closed);
+        let open = row.ends.iter().flatten().any(|end| !end.closed);
         let covers = |lo: f64, hi: f64| if open { inside.lo < lo && inside.hi > hi } else { inside.covers(lo, hi) };
         own.begin(j, cells.start);
         for i in cells.clone() {
