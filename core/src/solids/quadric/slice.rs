@@ -472,22 +472,25 @@ impl<'a, const N: usize> Slice<'a, N> {
         // Straight sides lie within chords of concave ones if their ends do.
         let Boundary::Wall(_) = chosen else { return ([chosen; 2], None) };
         let width = b.v - a.v;
-        let places = |boundary: Boundary| [a, b].map(|row| sign * self.place(row, side, boundary));
-        let own = places(chosen);
+        // Written out: `map` of arrays, and `all` of a chain, call functions.
+        let place = |row: &Row<N>, boundary: Boundary| sign * self.place(row, side, boundary);
+        let own = [place(a, chosen), place(b, chosen)];
         let along = (own[1] - own[0]) / width;
         // How far its tangents, where they meet, are from its chord.
-        let slopes = [a, b].map(|row| sign * self.slope(row, side, chosen) - along);
-        let (at, bulge) = below_tangents([0.0; 2], slopes, width);
+        let slope = |row: &Row<N>| sign * self.slope(row, side, chosen) - along;
+        let (at, bulge) = below_tangents([0.0; 2], [slope(a), slope(b)], width);
         let within = |boundary: Boundary| {
-            let other = places(boundary);
-            let room = [other[0] - own[0], other[1] - own[1]];
-            boundary == chosen
-                || bulge <= room[0] + (room[1] - room[0]) * (at / width) + self.tie.get()
+            if boundary == chosen {
+                return true;
+            }
+            let room = [place(a, boundary) - own[0], place(b, boundary) - own[1]];
+            bulge <= room[0] + (room[1] - room[0]) * (at / width) + self.tie.get()
                 || self.same(a, b, side, [chosen, boundary])
         };
-        let walls = (0..self.walls.len()).map(|n| Boundary::Wall(n as u8));
-        let ends = self.ends.iter().enumerate().filter(|(_, e)| e.side == side).map(|(n, _)| Boundary::End(n as u8));
-        let proved = walls.chain(ends).chain([Boundary::Window]).all(within);
+        let mut ends = self.ends.iter().enumerate().filter(|(_, e)| e.side == side);
+        let proved = (0..self.walls.len()).all(|n| within(Boundary::Wall(n as u8)))
+            && ends.all(|(n, _)| within(Boundary::End(n as u8)))
+            && within(Boundary::Window);
         ([chosen; 2], (!proved).then(|| a.v + at.limited(0.2 * width, 0.8 * width)))
     }
 

@@ -21,7 +21,7 @@ pub(super) const EVERYWHERE: Extent = [f64::NEG_INFINITY, f64::INFINITY];
 const NOWHERE: [Extent; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
 
 fn widened([lo, hi]: Extent) -> Extent {
-    let margin = (lo.abs().max(hi.abs()) + (hi - lo)) * MARGIN;
+    let margin = (lo.abs().larger(hi.abs()) + (hi - lo)) * MARGIN;
     [lo - margin, hi + margin]
 }
 
@@ -59,7 +59,7 @@ impl Stretch {
         let along = b[axis] - a[axis];
         if along != 0.0 {
             let (s, t) = ((lo - a[axis]) / along, (hi - a[axis]) / along);
-            [first.max(s.min(t)), last.min(s.max(t))]
+            [first.larger(s.smaller(t)), last.smaller(s.larger(t))]
         } else if a[axis] < lo || a[axis] > hi {
             [f64::INFINITY, f64::NEG_INFINITY]
         } else {
@@ -78,7 +78,7 @@ impl Stretch {
         let shares = [first - margin, last + margin];
         let [s, t] = shares.map(|share| a[axis] + share.clamp(0.0, 1.0) * (b[axis] - a[axis]));
         let reach = self.radius * part.curved.across[axis];
-        Some(widened([s.min(t) - reach, s.max(t) + reach]))
+        Some(widened([s.smaller(t) - reach, s.larger(t) + reach]))
     }
 }
 
@@ -157,7 +157,8 @@ impl Part {
                 [extent(Axis::X), extent(Axis::Y), extent(Axis::Z)]
             }
         };
-        Axis::ALL.map(|n| [place[n][0].max(around[n][0]), place[n][1].min(around[n][1])])
+        let common = |n: Axis| [place[n][0].larger(around[n][0]), place[n][1].smaller(around[n][1])];
+        [common(Axis::X), common(Axis::Y), common(Axis::Z)]
     }
 
     /// Rows between two planes across z.
