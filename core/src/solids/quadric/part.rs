@@ -244,7 +244,11 @@ impl Part {
 
     /// Its area in the plane across axis `n` at a coordinate, between planes along the two axes after that one.
     fn area_across(&self, n: Axis, coordinate: f64, [[left, right], [front, back]]: [[&Plane; 2]; 2]) -> f64 {
-        let ([u, v], plane) = (n.others(), self.plane(n, coordinate));
+        // With the ends that the planes around it have.
+        let [one, other] = self.all_ends();
+        let [has_one, has_other] = left.lines.each_ref().map(Option::is_some);
+        let ends = [one.filter(|_| has_one), other.filter(|_| has_other)];
+        let ([u, v], plane) = (n.others(), self.plane_with(ends, n, coordinate));
         let rectangle = Rectangle { u: [left, right].map(|p| p.h.value), v: [front, back].map(|p| p.h.value) };
         // Planes in the order of the axes after the line's.
         let u_line = |side: &Plane| self.span(u, [side, &plane]);

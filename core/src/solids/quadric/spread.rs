@@ -155,7 +155,7 @@ impl HighFaces {
     }
 }
 
-/// What a part has of a face in a plane between two layers; or a pipe along z of the cells beside it.
+/// What a part has of a face in a plane between two layers; or a pipe along z, the share of its section in the cells beside it.
 #[derive(Clone, Copy, Debug)]
 pub struct FaceBetween(FaceFlux);
 
