@@ -247,7 +247,7 @@ fn two_cubes_apart_feel_what_each_feels_alone() {
 #[test]
 fn copies_and_parts_are_one_solid() {
     let at = Scratch::new();
-    let rack = cube("rack", [0.53, 0.21, 0.17], 0.11) + "array = { count = [2, 1, 2], step = [0.5, 0, 0.3] }\n";
+    let rack = cube("rack", [0.53, 0.21, 0.17], 0.2) + "array = { count = [2, 1, 2], step = [0.5, 0, 0.3] }\n";
     let parts = "o a\nv 1.6 .2 .2\nv 1.8 .2 .2\nv 1.6 .4 .2\nv 1.6 .2 .4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n\
                  o b\nv 1.6 .5 .2\nv 1.8 .5 .2\nv 1.6 .7 .2\nv 1.6 .5 .4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
     fs::write(at.file("parts.obj"), parts).expect("written");

@@ -15,6 +15,7 @@ mod inclined;
 mod invariance;
 mod low_mach;
 mod mixed;
+mod narrowing;
 mod patches;
 mod plane_shocks;
 mod reference;

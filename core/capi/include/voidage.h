@@ -374,7 +374,7 @@ typedef struct {
   const double *beta_v;
   /* Open fractions of the faces normal to x, y, z; needed with beta_v along axes that are not dead. */
   const double *beta[3];
-  /* Differences of open area above this share of the wider duct are jumps, and conserve total pressure; 0 stands for 0.1, infinity for none. */
+  /* Differences of open area above this share of the wider duct, at one face or over many in a row, are jumps, and conserve total pressure; 0 stands for 0.1, infinity for none. */
   double jump;
   /* Acceleration along x, y, z. */
   double gravity[3];

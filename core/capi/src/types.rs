@@ -318,7 +318,7 @@ pub struct Case<R> {
     pub beta_v: *const R,
     /// Open fractions of the faces normal to x, y, z; needed with `beta_v` along axes that are not dead.
     pub beta: [*const R; 3],
-    /// Differences of open area above this share of the wider duct are jumps, and conserve total pressure; 0 stands for 0.1, infinity for none.
+    /// Differences of open area above this share of the wider duct, at one face or over many in a row, are jumps, and conserve total pressure; 0 stands for 0.1, infinity for none.
     pub jump: R,
     /// Acceleration along x, y, z.
     pub gravity: [R; 3],

@@ -3,13 +3,13 @@
 use crate::flow::boundary::Boundary;
 use crate::flow::kernel::contractions::Contractions;
 use crate::flow::kernel::face_fluxes::Openings;
+use crate::flow::kernel::fluxes_at_breaks::{apart, changes_apart, fluxes_at_breaks};
 use crate::flow::kernel::mixed::{self, Carried};
 use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::shocks::{Pressures, fluxes_along_shocks};
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
-use crate::flow::kernel::walls_and_jumps::{apart, changes_apart, fluxes_at_breaks};
 use crate::flow::porosity::flags::{break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::problem::PressureForm;
@@ -79,7 +79,7 @@ pub(in crate::flow) fn fluxes_x<R: Real, const D: usize, const ENERGY: bool, con
         let last = Some(n).filter(|_| marks[n - 1] & break_high(0) != 0);
         let broken = marked(marks, break_low(0)).chain(last);
         let flux = FluxBlock { values: work.flux, n: m };
-        let contractions = Contractions::new(slab, work.contractions);
+        let contractions = Contractions::new(slab, work.contractions, work.window);
         fluxes_at_breaks::<R, D, MIXED>(slab, (0, row.at), contractions, broken, [work.left, work.right], flux);
     }
     let flux = FluxBlock { values: work.flux, n: m };
@@ -421,7 +421,7 @@ fn fluxes_under<R: Real, const D: usize, const ENERGY: bool, const MIXED: bool>(
         ghosts::<R, D, MIXED>(slab, (d, false), at, below_state, &mut work.right[..f]);
     }
     let seen = Pressures { window: work.window, ranges: work.ranges };
-    let contractions = Contractions::new(slab, work.contractions);
+    let contractions = Contractions::new(slab, work.contractions, work.window);
     let to = (&mut work.flux[..f], &mut *work.coefficients.pace, &mut *work.strength);
     fluxes_of_faces::<R, D, ENERGY, MIXED>(slab, d, at, [below_state, &work.right[..f]], (seen, contractions), to);
     let last = mesh.cells()[d];

@@ -10,9 +10,9 @@
 
 use crate::flow::face_gas::MixedFace;
 use crate::flow::fallback::POSITIVE;
+use crate::flow::kernel::fluxes_at_breaks::apart;
 use crate::flow::kernel::rows::{self, FluxBlock};
 use crate::flow::kernel::slab::Slab;
-use crate::flow::kernel::walls_and_jumps::apart;
 use crate::flow::riemann::{Rusanov, Solver};
 use crate::number::real::Real;
 

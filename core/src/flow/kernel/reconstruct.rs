@@ -1,6 +1,6 @@
 //! From the cells of a row to its half-step states: slopes, the half step with drag, and first order where it must be.
 
-use crate::flow::kernel::contractions::{Contractions, contractions_at};
+use crate::flow::kernel::contractions::{Contractions, sections_at};
 use crate::flow::kernel::inclined_walls::slip_along_walls;
 use crate::flow::kernel::mixed;
 use crate::flow::kernel::row_slopes::{self, Differences, HalfWeights, RowBeside};
@@ -8,7 +8,7 @@ use crate::flow::kernel::rows::{self, Rate, StateBlock, var};
 use crate::flow::kernel::scratch::{RowCoefficients, Work};
 use crate::flow::kernel::shocks::Pressures;
 use crate::flow::kernel::slab::{Place, RowAt, Slab};
-use crate::flow::kernel::walls_and_jumps::{
+use crate::flow::kernel::slopes_at_breaks::{
     CellSlopes, flatten_beside_closed_faces, limited, slopes_at_boundaries, slopes_at_breaks,
 };
 use crate::flow::limiter::{Limiter, Minmod, MonotonizedCentral, Slope, Steep, Unlimited, VanLeer};
@@ -27,7 +27,7 @@ pub(in crate::flow) fn reconstruct<R: Real, const D: usize, const MIXED: bool>(
     work: &mut Work<'_, R, D>,
     first_order_cells: &mut usize,
 ) {
-    let contractions = Contractions::new(slab, work.contractions);
+    let contractions = Contractions::new(slab, work.contractions, work.window);
     coefficients(slab, (row, place), contractions, &mut work.coefficients);
     match slab.problem.scheme.limiter {
         Limiter::AroraRoe => slopes::<R, D, Steep, MIXED, true>(slab, row, place, work),
@@ -91,7 +91,7 @@ fn slopes<R: Real, const D: usize, S: Slope, const MIXED: bool, const BY_WAVES: 
         } else {
             (&work.window[slab.block(l, j - 1)], &work.window[slab.block(l, j + 1)], 0)
         };
-        let at_breaks = (Contractions::new(slab, work.contractions), (l, j));
+        let at_breaks = (Contractions::new(slab, work.contractions, work.window), (l, j));
         let cells = (&RowBeside { below, here, above, shift, n, padded }, at_breaks);
         let widths = slab.problem.mesh.widths[d];
         let gravity = slab.problem.gravity[d];
@@ -264,7 +264,7 @@ fn coefficients<R: Real, const D: usize>(
         let (ducts, sides) = (medium.ducts(d, row.at), contractions.at_sides(slab, d, place));
         for i in marked(marks, break_low(d) | break_high(d)) {
             let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
-            let (low, high) = ducts.sections(i, contractions_at(&sides, i, breaks));
+            let (low, high) = ducts.sections(i, sections_at(slab, (d, row.at, i), (&ducts, &sides), breaks));
             let scale = half_dt / mesh.widths[d][row.at[d] + if d == 0 { i } else { 0 }];
             of_row.rate[d][i] = R::HALF * (low + high) * of_row.spare[i] * scale;
             of_row.widening[d][i] = (high - low) * of_row.spare[i] * scale;

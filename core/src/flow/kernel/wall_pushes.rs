@@ -4,9 +4,9 @@
 //! they agree on what passes the open part. At a closed face nothing passes. At a jump of porosity the stationary wave between them leaves momentum to the
 //! walls of both cells; what passes the throat is then taken from the cell that has less wall there.
 
+use crate::flow::kernel::fluxes_at_breaks::apart;
 use crate::flow::kernel::rows::var;
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, Slab};
-use crate::flow::kernel::walls_and_jumps::apart;
 use crate::flow::porosity::areas::Ducts;
 use crate::flow::porosity::cell_walls::Border;
 use crate::flow::porosity::fractions::least_volume;

@@ -1,7 +1,7 @@
 //! Which faces are walls or porosity jumps, and which cells small, sealed or cut by an inclined wall, found once from the open fractions.
 
 use crate::flow::error::{Error, fits};
-use crate::flow::porosity::areas::Ducts;
+use crate::flow::porosity::areas::{Ducts, IN_NARROW, LEAST};
 use crate::flow::porosity::flags::{BORDER, INCLINED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE, rounding};
 use crate::number::real::Real;
@@ -14,23 +14,36 @@ fn exceeds<R: Real>(fraction: R, limit: R) -> bool {
 /// Whether a face is a jump: the ducts differ, or the face is narrower than both, by more than `threshold`; in narrow ducts,
 /// where such a difference cannot occur, by more than three times that share of the wider one (a smooth duct that closes to a
 /// point has large shares of small differences: those below a fifth of the threshold do not count).
-fn is_jump<R: Real>(left: R, face: R, right: R, threshold: R) -> bool {
+fn is_jump<R: Real>([left, right]: [R; 2], face: R, threshold: R) -> bool {
     let (least, most) = (R::smaller(left, right), R::larger(left, right));
     let difference = R::larger(most - least, least - face);
-    let narrow = exceeds(difference, R::from_f64(3.0) * threshold * most) && is_wall(difference, threshold);
+    let narrow = exceeds(difference, R::from_f64(IN_NARROW) * threshold * most) && is_wall(difference, threshold);
     exceeds(difference, threshold) || narrow
 }
 
-/// Whether the low or high face of a cell is an open one and a jump.
+/// Whether the low or high face of a cell is an open one and a jump by itself.
+fn jumps_suddenly<R: Real>(own: &Ducts<'_, R>, high: bool, threshold: R) -> bool {
+    let (open, (left, right)) = (own.opening(0, high), own.beside(0, high));
+    open > R::ZERO && is_jump([left, right], open, threshold)
+}
+
+/// Where the duct narrows over many cells, what it does at each face counts from this share of the threshold on.
+const GRADUAL: f64 = 0.01;
+
+/// Whether the low or high face of a cell is an open one and a jump, alone or with others of a duct that narrows over many cells.
 fn jumps_at<R: Real>(own: &Ducts<'_, R>, high: bool, threshold: R) -> bool {
-    let (openings, (left, right)) = (own.openings(0), own.beside(0, high));
-    let open = if high { openings.1 } else { openings.0 };
-    open > R::ZERO && is_jump(left, open, right, threshold)
+    let open = own.opening(0, high);
+    let differ = |threshold: R| move |ends: [R; 2]| is_jump(ends, R::smaller(ends[0], ends[1]), threshold);
+    let gradual = || {
+        own.gentleness(0, high) > R::ZERO
+            && own.narrows_through(0, high, differ(R::from_f64(GRADUAL) * threshold), differ(threshold))
+    };
+    jumps_suddenly(own, high, threshold) || (open > R::ZERO && gradual())
 }
 
 /// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
 fn is_wall<R: Real>(width: R, threshold: R) -> bool {
-    exceeds(width, R::from_f64(0.2) * threshold)
+    exceeds(width, R::from_f64(LEAST) * threshold)
 }
 
 /// Writes the marks of all cells: which faces are walls or jumps (differences of the open fraction above `threshold`; infinity
@@ -70,7 +83,7 @@ pub(in crate::flow) fn mark<R: Real, const D: usize>(
     Ok(())
 }
 
-/// Marks the cells that a border askew to the grid crosses, where the porosity jumps at one of their faces or at one of a cell beside: the stationary wave of a border
+/// Marks the cells that a border askew to the grid crosses, where the porosity jumps suddenly at one of their faces or at one of a cell beside: the stationary wave of a border
 /// acts at all faces of a cell or at none.
 fn mark_borders<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R, marks: &mut [u8]) {
     // Until all are known: a cell at a border without a jump of its own, and one beside a cell that has one.
@@ -79,7 +92,8 @@ fn mark_borders<R: Real, const D: usize>(medium: &Medium<'_, R, D>, threshold: R
     let mesh = &medium.mesh;
     for (cell, mark) in marks.iter_mut().enumerate() {
         let at = mesh.coordinates(cell);
-        let jumps = |d: usize| [false, true].into_iter().any(|high| jumps_at(&medium.ducts(d, at), high, threshold));
+        let jumps =
+            |d: usize| [false, true].into_iter().any(|high| jumps_suddenly(&medium.ducts(d, at), high, threshold));
         *mark = match medium.holds_border(at) {
             true if (0..D).any(jumps) => BORDER,
             true => ALONE,

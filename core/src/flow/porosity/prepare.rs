@@ -2,6 +2,7 @@
 //! the outside. [`prepare`] is the only way to a [`Prepared`] space, and only such a space enters a problem.
 
 use crate::flow::error::Error;
+use crate::flow::porosity::areas::SUDDEN;
 use crate::flow::porosity::clusters::{Clusters, clusters};
 use crate::flow::porosity::flags::{BORDER, KIND, SMALL, break_high, break_low, is};
 use crate::flow::porosity::fractions::{Mesh, Porosity, SMALL_SHARE};
@@ -11,7 +12,7 @@ use crate::number::real::Real;
 /// How porosity enters: the share of the duct above which a difference counts as a jump, and whether small cells merge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Treatment<R> {
-    /// Differences above this share of the wider duct are jumps and get the throat map; infinity for none.
+    /// Differences above this share of the wider duct, at one face or over many in a row, are jumps and get the throat map; infinity for none.
     pub jump: R,
     /// Merge cells of little volume behind open faces. Without it the step shrinks with their volume.
     pub merge: bool,
@@ -19,7 +20,7 @@ pub struct Treatment<R> {
 
 impl<R: Real> Default for Treatment<R> {
     fn default() -> Self {
-        Treatment { jump: R::from_f64(0.1), merge: true }
+        Treatment { jump: R::from_f64(SUDDEN), merge: true }
     }
 }
 

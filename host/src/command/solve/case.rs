@@ -65,7 +65,7 @@ pub struct PorosityKeys {
     pub depth: Option<u32>,
     /// Directory with `beta_v.npy` and the face fields of the axes that flow.
     pub from: Option<PathBuf>,
-    /// Differences of the open fraction above this share are jumps and get the throat map; `inf` for none.
+    /// Differences of the open fraction above this share, at one face or over many in a row, are jumps and get the throat map; `inf` for none.
     pub jump: Option<f64>,
     /// As `voidage porosity --faces`; `throat` if left out: a wall that leaks in silence is worse than a narrower face.
     pub faces: Option<Faces>,

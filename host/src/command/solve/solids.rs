@@ -22,7 +22,6 @@ use crate::porosity::throat::{self, Faces};
 use crate::porosity::{Options, porosity};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use voidage_core::flow::PressureForm;
 
 /// Name under which the force on all other solids is told.
 pub const OTHERS: &str = "others";
@@ -183,7 +182,7 @@ impl<const D: usize> Parts<'_, D> {
         own.chain(by_volume.iter().map(|(group, share)| (*group, share * (1.0 - given / all)))).collect()
     }
 
-    /// Shares of the weight of the gas displaced in a cell, and of what is not given for solids of its drag, by the volumes of the solids in it.
+    /// Shares by the volumes of the solids in a cell: of the weight of the gas displaced there, of what is not given for solids of its drag, and of walls in no face.
     fn volume_shares(&self, cell: usize) -> Vec<(usize, f64)> {
         self.shares_of(&[cell], |part| part.volume).unwrap_or_else(|| self.shares(&[cell]))
     }
@@ -230,17 +229,12 @@ impl<const D: usize> Parts<'_, D> {
     /// What of all that acts in a cell is for each group.
     fn in_cell(&self, faces: &[&[f64]], cell: usize) -> Shares<D> {
         let (at, here) = (self.flow.coordinates(cell), self.of(cell));
-        // Walls that are in no face count in the paper's form alone.
-        let in_no_face = self.flow.scheme.pressure == PressureForm::Paper;
         let weighs = drags(self.flow, cell) || self.flow.gravity.iter().any(|g| *g != 0.0);
-        let by_volume = if in_no_face || weighs { self.volume_shares(cell) } else { Vec::new() };
+        let by_volume = self.volume_shares(cell);
         let mut found = Shares::default();
         for (d, side) in (0..faces.len()).flat_map(|d| [(d, 0), (d, 1)]) {
             let closed = 1.0 - faces[d][self.flow.face(d, at, side)];
             if closed == 0.0 {
-                for (group, share) in by_volume.iter().filter(|_| in_no_face) {
-                    found.of(*group).sides[d][side] = share * self.flow.area(d, at);
-                }
                 continue;
             }
             let area = self.flow.area(d, at) / closed;
@@ -261,10 +255,18 @@ impl<const D: usize> Parts<'_, D> {
         // What acts along borders is for those who close the faces of the cell.
         let of = |weights: &Weights<D>| weights.sides.as_flattened().iter().sum::<f64>();
         let all: f64 = found.0.values().map(of).sum();
-        for weights in found.0.values_mut() {
-            if all > 0.0 {
-                weights.along = of(weights) / all;
+        if all > 0.0 {
+            found.0.values_mut().for_each(|weights| weights.along = of(weights) / all);
+        }
+        // Walls that are in no face: in the paper's form, and in a cell whose duct is narrower than its wider face.
+        for (d, side) in (0..faces.len()).flat_map(|d| [(d, 0), (d, 1)]) {
+            if faces[d][self.flow.face(d, at, side)] == 1.0 {
+                by_volume
+                    .iter()
+                    .for_each(|(group, share)| found.of(*group).sides[d][side] = share * self.flow.area(d, at));
             }
+        }
+        for weights in found.0.values_mut() {
             for (d, side) in (0..D).flat_map(|d| [(d, 0), (d, 1)]) {
                 weights.sides[d][side] *= self.free_sides.counts(cell, d, side);
             }

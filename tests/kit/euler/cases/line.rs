@@ -190,7 +190,7 @@ pub(super) fn beta_formula(case: &Case) -> String {
     text.split(", ").next().unwrap_or(text).to_string()
 }
 
-/// Smooth porosity from a formula: cell averages, point values on the faces. A smooth duct has no jumps.
+/// Smooth porosity from a formula: cell averages, point values on the faces.
 pub(super) fn formula_porosity(line: &Line, formula: &str) -> Result<(Vec<f64>, [Vec<f64>; 1]), Trouble> {
     let volume: Result<Vec<f64>, Trouble> =
         (0..line.n).map(|i| formula_mean(formula, line.edge(i), line.edge(i + 1))).collect();
@@ -198,7 +198,7 @@ pub(super) fn formula_porosity(line: &Line, formula: &str) -> Result<(Vec<f64>, 
     Ok((volume?, [faces.ok_or_else(|| Trouble::Field(formula.into()))?]))
 }
 
-/// A duct that narrows smoothly to a point: no jumps to map; nothing to merge, its cells are as wide as their faces.
+/// A duct that narrows smoothly to a point, solved without jumps; nothing to merge, its cells are as wide as their faces.
 pub(super) fn smooth_duct() -> Treatment<f64> {
     Treatment { jump: f64::INFINITY, merge: true }
 }

@@ -168,7 +168,7 @@ pub fn nozzle<R: Scalar>(choice: FlowChoice) -> Result<FlowOutcome> {
     let n = choice.cells;
     let volume = (0..n).map(|i| R::from_f64(mean(|x| [nozzle_area(x)], edge(i), edge(i + 1), &[])[0])).collect();
     let faces = (0..=n).map(|i| R::from_f64(nozzle_area(edge(i)))).collect();
-    // A smooth duct has no jumps, however coarse the grid.
+    // Solved without jumps, however coarse the grid.
     let smooth = Treatment { jump: R::INFINITY, merge: true };
     flow.set_porosity(volume, [faces], smooth).map_err(refused)?;
     fill(&mut flow, &edge, &[], |x| subsonic(flux, nozzle_area(x)));

@@ -1,19 +1,15 @@
-//! Where a row of cells breaks: walls (closed faces) and porosity jumps. Slopes beside them, and the fluxes there.
+//! Fluxes where a row of cells breaks: at walls (closed faces) and porosity jumps.
 //!
-//! A wall is treated as a `wall` boundary of the domain is, to the bit: the gas beside it meets its mirror image, in the slopes
-//! and in the Riemann problem. Without the mirror the velocity at the wall would be that of the cell's middle, and a slow flow
-//! would stagnate at a pressure wrong by rho c u. At a jump both cells are flat along the axis and the throat map acts.
+//! A wall is treated as a `wall` boundary of the domain is, to the bit: the gas beside it meets its mirror image. At a jump the throat map acts.
 
 use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
-use crate::flow::kernel::contractions::{AtFaces, Contractions, contractions_at};
-use crate::flow::kernel::row_slopes::{self, Differences, HalfWeights, RowBeside, Three};
+use crate::flow::kernel::contractions::{AtFaces, Contractions};
 use crate::flow::kernel::rows::{self, FluxBlock, var};
-use crate::flow::kernel::slab::{Place, RowAt, Slab, place_of, tightened};
-use crate::flow::limiter::{Slope, wall_slope};
+use crate::flow::kernel::slab::{RowAt, Slab, place_of, tightened};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::cell_walls::Border;
-use crate::flow::porosity::flags::{any_marked, break_high, break_low, marked};
+use crate::flow::porosity::flags::{break_low, marked};
 use crate::flow::porosity::fractions::Medium;
 use crate::flow::porosity::jump::{JumpFaces, JumpFlux, jump_fluxes, mixed_jump_fluxes};
 use crate::flow::porosity::oblique_jump::ObliqueJump;
@@ -25,217 +21,6 @@ use crate::number::real::Real;
 
 /// Jump faces of one group, whose fluxes are found side by side. The number changes no result.
 const LANES: usize = 4;
-
-/// Variables of a state in three dimensions: density, three velocities, pressure.
-const MOST: usize = 5;
-
-/// Differences along an axis for a single cell, without gravity towards its mirror images.
-pub(in crate::flow) struct Single<R> {
-    scale: (R, R),
-    half_weight: Option<HalfWeights<R>>,
-}
-
-impl<R: Real> Differences<R> for Single<R> {
-    fn is_even(&self) -> bool {
-        false
-    }
-
-    fn scale(&self, _: usize) -> (R, R) {
-        self.scale
-    }
-
-    fn half_weight(&self, _: usize) -> Option<HalfWeights<R>> {
-        self.half_weight
-    }
-}
-
-/// Values of all variables in the cells below, here and above.
-type CellValues<R> = [[R; 3]; MOST];
-
-/// Slopes of all variables of a cell by a limiter: [`limited`].
-type LimitCall<R> = fn(&CellValues<R>, &Single<R>, Option<&[R]>) -> [R; MOST];
-
-/// Slopes along an axis one cell at a time, for any limiter and any widths.
-pub(in crate::flow) struct CellSlopes<'a, R> {
-    pub axis: &'a dyn Differences<R>,
-    /// 1/c² of the cells of the row, as [`row_slopes::slopes`] takes it.
-    pub compliance: Option<&'a [R]>,
-    pub limit: LimitCall<R>,
-}
-
-/// Slopes of all variables of a cell by a limiter.
-pub(in crate::flow) fn limited<R: Real, S: Slope, const D: usize>(
-    three: &CellValues<R>,
-    axis: &Single<R>,
-    compliance: Option<&[R]>,
-) -> [R; MOST] {
-    let mut slope = [R::ZERO; MOST];
-    let of = |v: usize| (&three[v][..1], &three[v][1..2], &three[v][2..]);
-    row_slopes::slopes::<R, S, D>(of, axis, compliance, &mut slope, 1);
-    slope
-}
-
-/// Sets the slopes along axis `d` to 0 in the cells of a row that have a closed face on that axis: the slope took its value from
-/// beyond the face, where another gas flows, where a side of the domain puts what cannot come in, or where there is none and the state is whatever
-/// the caller left in the solid.
-///
-/// At walls that are aligned with the grid [`slopes_at_breaks`] puts the slope towards the mirror image in its place. At inclined ones the slope along
-/// the other axes stays. The difference on the open side alone would be of second order, and let shocks overshoot at the wall by twice as much.
-// Called, not inlined: each limiter would hold its own.
-#[inline(never)]
-pub(in crate::flow) fn flatten_beside_closed_faces<R: Real, const D: usize, const MIXED: bool>(
-    slab: &Slab<'_, R, D>,
-    d: usize,
-    row: RowAt<D>,
-    out: &mut [R],
-) {
-    let Some(medium) = &slab.medium else { return };
-    let n = slab.size.n;
-    let (low, high) = medium.ducts(d, row.at).rows(n);
-    // One pass without branches: most rows have none.
-    let least = |row: &[R]| row.iter().fold(R::ONE, |least, open| R::smaller(least, *open));
-    if R::smaller(least(low), least(high)) > R::ZERO {
-        return;
-    }
-    for i in 0..n {
-        if !(R::smaller(low[i], high[i]) > R::ZERO) {
-            for v in 0..D + 2 + usize::from(MIXED) {
-                out[v * n + i] = R::ZERO;
-            }
-        }
-    }
-}
-
-/// Corrects the slopes along axis `d` in the cells of a row that have a wall or a jump of porosity on one side, where the usual slope took a value
-/// from beyond it: at a wall that value is mirrored, at a jump the slope is 0. Where gas flows along an inclined wall the correction fades out.
-pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bool>(
-    slab: &Slab<'_, R, D>,
-    (d, row): (usize, RowAt<D>),
-    (cells, (contractions, place)): (&RowBeside<'_, R>, (Contractions<'_, R>, Place)),
-    slopes: &CellSlopes<'_, R>,
-    out: &mut [R],
-) {
-    let n = cells.n;
-    let Some(medium) = &slab.medium else { return };
-    let marks = &medium.porosity.marks[row.start..][..n];
-    if !any_marked(marks, break_low(d) | break_high(d)) {
-        return;
-    }
-    let (ducts, sides) = (medium.ducts(d, row.at), contractions.at_sides(slab, d, place));
-    for i in marked(marks, break_low(d) | break_high(d)) {
-        let (low, high) = ducts.openings(i);
-        let breaks = [ducts.breaks(i, false), ducts.breaks(i, true)];
-        let [a, b] = flatness(slab, (d, row.at, i), &sides, breaks);
-        let share = if breaks == [true; 2] { R::larger(a, b) } else { R::smaller(a, b) };
-        let mut blend = |v: usize, slope: R| {
-            let own = &mut out[v * n + i];
-            *own = if share >= R::ONE { slope } else { *own + share * (slope - *own) };
-        };
-        if MIXED {
-            // Flat at a jump; beside a wall, where a capacity meets itself, a limited slope is.
-            blend(D + 2, R::ZERO);
-        }
-        if (breaks[0] & (low > R::ZERO)) | (breaks[1] & (high > R::ZERO)) {
-            (0..D + 2).for_each(|v| blend(v, R::ZERO));
-            continue;
-        }
-        let mut three = [[R::ZERO; 3]; MOST];
-        for (v, three) in three[..D + 2].iter_mut().enumerate() {
-            let (below, here, above) = cells.values(v);
-            *three = [below[i], here[i], above[i]];
-        }
-        let slope = slope_at_walls::<R, D>(d, breaks, three, i, slopes);
-        (0..D + 2).for_each(|v| blend(v, slope[v]));
-    }
-}
-
-/// How far the slopes along axis `d` of cell `i` of the row from `at` on fall to those of a contraction, beside its low and its high face, as far as they
-/// break: as the gas passes, at the border of a porous body all the way. 1 beside a face that is no break.
-fn flatness<R: Real, const D: usize>(
-    slab: &Slab<'_, R, D>,
-    (d, at, i): (usize, [usize; D], usize),
-    sides: &[AtFaces<'_, R, D>; 2],
-    breaks: [bool; 2],
-) -> [R; 2] {
-    let shares = contractions_at(sides, i, breaks);
-    core::array::from_fn(|side| {
-        let mut face = at;
-        face[0] += i;
-        face[d] += side;
-        let on_border = shares[side] < R::ONE && slab.has_border(d, face);
-        if on_border { R::ONE } else { shares[side] }
-    })
-}
-
-/// Slopes along axis `d` of all variables in cell `i` of a row with a wall on its low side, its high side, or both, where it meets
-/// its mirror image. `three` are the values below, here and above.
-fn slope_at_walls<R: Real, const D: usize>(
-    d: usize,
-    walls: [bool; 2],
-    mut three: CellValues<R>,
-    i: usize,
-    slopes: &CellSlopes<'_, R>,
-) -> [R; MOST] {
-    let image = |wall: bool, own: R, mirrored: R| if wall { mirrored } else { own };
-    for (v, [below, here, above]) in three[..D + 2].iter_mut().enumerate() {
-        let mirrored = if v == 1 + d { -*here } else { *here };
-        *below = image(walls[0], *below, mirrored);
-        *above = image(walls[1], *above, mirrored);
-    }
-    let ((a, b), weights) = (slopes.axis.scale(i), slopes.axis.half_weight(i));
-    let single = Single {
-        scale: (image(walls[0], a, R::ONE), image(walls[1], b, R::ONE)),
-        half_weight: weights.map(|[low, high]| {
-            let free = [R::ZERO; 2];
-            [if walls[0] { free } else { low }, if walls[1] { free } else { high }]
-        }),
-    };
-    let mut slope = (slopes.limit)(&three, &single, slopes.compliance.map(|c| &c[i..=i]));
-    slope[1 + d] = match walls {
-        [true, true] => R::ZERO,
-        [low, _] => {
-            let (velocity, away) = (three[1 + d], if low { single.scale.1 } else { single.scale.0 });
-            let [below, here, above] = velocity;
-            wall_slope(here, R::smaller(away, R::ONE) * if low { above - here } else { here - below }, !low)
-        }
-    };
-    slope
-}
-
-/// Slopes of the velocity along `d` in the cells of a row beside a `wall` boundary of that axis.
-pub(in crate::flow) fn slopes_at_boundaries<'a, R: Real, const D: usize>(
-    slab: &Slab<'_, R, D>,
-    d: usize,
-    row: RowAt<D>,
-    (below, here, above): Three<'a, R>,
-    axis: &impl Differences<R>,
-    out: &mut [R],
-) {
-    let n = slab.size.n;
-    let cells = slab.problem.mesh.cells()[d];
-    let out = &mut out[(1 + d) * n..][..n];
-    let beside = |side: usize| if side == 0 { 0 } else { cells - 1 };
-    for side in [0, 1] {
-        let range = match d {
-            0 => beside(side)..beside(side) + 1,
-            _ if row.at[d] == beside(side) => 0..n,
-            _ => 0..0,
-        };
-        for i in range {
-            let mut at = row.at;
-            at[0] = i;
-            let walls = [false, true].map(|high| slab.problem.side(d, high, at).is_wall());
-            if !walls[side] {
-                continue;
-            }
-            let (a, b) = axis.scale(i);
-            let [a, b] = [a, b].map(|scale| R::smaller(scale, R::ONE));
-            let away = if side == 0 { b * (above[i] - here[i]) } else { a * (here[i] - below[i]) };
-            let alone = cells == 1 && walls == [true; 2];
-            out[i] = if alone { R::ZERO } else { wall_slope(here[i], away, side == 1) };
-        }
-    }
-}
 
 /// Replaces the fluxes at the broken faces of a row along or across axis `d`, by their places; `at` names the first of them. `states`
 /// are those on the left and on the right.
@@ -251,7 +36,7 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, const MIXED: bo
     let ducts = medium.ducts(d, at);
     let contractions = contractions.at_faces(slab, d, place_of(at));
     let row = BrokenRow { slab, medium, ducts, contractions, d, at, states };
-    let mut group = [0; LANES];
+    let (mut group, mut shares) = ([0; LANES], [R::ONE; LANES]);
     let mut count = 0;
     for i in broken {
         let border = row.border(i);
@@ -263,10 +48,15 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, const MIXED: bo
             oblique_jump::<R, D>(&row, i, &border, &mut flux);
             continue;
         }
-        group[count] = i;
+        let acts = row.contractions.jump_share(i, row.ducts.gentleness(i, false));
+        if acts == R::ZERO {
+            (1..D).for_each(|c| flux.values[apart(c, D, MIXED) * flux.n + i] = flux.values[(1 + c) * flux.n + i]);
+            continue;
+        }
+        (group[count], shares[count]) = (i, acts);
         count += 1;
         if count == LANES {
-            jump_group::<R, D, MIXED>(&row, &group, count, &mut flux);
+            jump_group::<R, D, MIXED>(&row, (&group, &shares), count, &mut flux);
             count = 0;
         }
     }
@@ -274,7 +64,7 @@ pub(in crate::flow) fn fluxes_at_breaks<R: Real, const D: usize, const MIXED: bo
         // A last group of fewer faces repeats its first one.
         let first = group[0];
         group[count..].fill(first);
-        jump_group::<R, D, MIXED>(&row, &group, count, &mut flux);
+        jump_group::<R, D, MIXED>(&row, (&group, &shares), count, &mut flux);
     }
 }
 
@@ -321,10 +111,10 @@ impl<R: Real, const D: usize> BrokenRow<'_, R, D> {
     }
 }
 
-/// Fluxes at the first `count` jump faces of a group.
+/// Fluxes at the first `count` jump faces of a group, each as far as it acts as one; the rest is the flux that is there.
 fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     row: &BrokenRow<'_, R, D>,
-    group: &[usize; LANES],
+    (group, shares): (&[usize; LANES], &[R; LANES]),
     count: usize,
     flux: &mut FluxBlock<'_, R>,
 ) {
@@ -358,17 +148,21 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
     let faces =
         JumpFaces { states, ducts: areas, throat, references: [gather(0, D + 2), gather(1, D + 2)], acoustic_weight };
     let tell = |l: usize, f: JumpFlux<R, D>| {
-        let mut put = |v: usize, value: R| flux.values[v * flux.n + group[l]] = value;
+        let mut put = |v: usize, value: R| {
+            let own = &mut flux.values[v * flux.n + group[l]];
+            *own = share(*own, value, shares[l]);
+            *own
+        };
         put(0, f.mass);
         put(1, f.normal[0]);
-        for c in 1..D {
-            put(1 + c, f.momentum[c]);
-            put(apart(c, D, MIXED), f.momentum[c]);
-        }
+        let across: [R; D] = core::array::from_fn(|c| if c == 0 { R::ZERO } else { put(1 + c, f.momentum[c]) });
         put(D + 1, f.energy);
         put(D + 2, f.normal[1]);
         if MIXED {
-            (0..2).for_each(|v| put(D + 3 + v, f.carried[v]));
+            (0..2).for_each(|v| _ = put(D + 3 + v, f.carried[v]));
+        }
+        for c in 1..D {
+            flux.values[apart(c, D, MIXED) * flux.n + group[l]] = across[c];
         }
     };
     if MIXED {
