@@ -187,8 +187,9 @@ fn progress_without_a_terminal() {
     fs::write(at.file("case.toml"), wind("end = 1000", "")).expect("a case");
     let mut command = Command::new(program());
     command.arg("solve").arg(at.file("case.toml")).arg("-o").arg(at.file("out")).args(["--threads", "1"]);
+    let begin = Instant::now();
     let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("the program runs");
-    let (begin, pipe) = (Instant::now(), child.stderr.take().expect("a pipe"));
+    let pipe = child.stderr.take().expect("a pipe");
     let line = BufReader::new(pipe).lines().map_while(Result::ok).find(|line| line.starts_with("step "));
     assert!(begin.elapsed() >= Duration::from_secs(10), "{line:?} after {:?}", begin.elapsed());
     assert!(line.as_ref().is_some_and(|l| l.contains("  t = ") && l.ends_with(" left")), "{line:?}");
