@@ -87,6 +87,8 @@ impl<R: Real, const D: usize> AtFaces<'_, R, D> {
     }
 
     /// How far the gas beside a face is fast, has a shock in it, or is two gases: there a duct without jumps loses nothing, and a throat may choke.
+    // Called, not inlined: all that asks for it would hold its own.
+    #[inline(never)]
     fn needs_no_throat(&self, face: usize) -> R {
         let [below, above] = self.beside.map(|row| {
             let value = |v: usize| row.states.get(v * self.padded + face).copied().unwrap_or(R::ONE);

@@ -159,6 +159,8 @@ pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bo
 
 /// Brings what stands beyond the jumps of cell `i` to its duct, in `three`, as far as each `acts`. Tells how far the slope there stays: not beside a sudden jump,
 /// nor where a stream chokes.
+// Called, not inlined: each limiter would hold its own.
+#[inline(never)]
 fn beyond_jumps<R: Real, const D: usize, const MIXED: bool>(
     slab: &Slab<'_, R, D>,
     cells: &RowBeside<'_, R>,

@@ -149,7 +149,7 @@ impl<'a, R: Real> Ducts<'a, R> {
         let turn = if self.periodic { (n - 1) * c } else { 0 };
         let below_cell = if k > 0 { cell - c } else { cell + turn };
         let above_cell = if k < n { cell } else { cell - c - turn };
-        let duct = |f: usize, c: usize| duct_area(self.open[f], self.open[f + s], self.volume[c]);
+        let duct = |f: usize, c: usize| duct_area(self.open[f], self.open[f + s], self.volume_of(c));
         (duct(below, below_cell), duct(above, above_cell))
     }
 
@@ -226,7 +226,7 @@ impl<'a, R: Real> Ducts<'a, R> {
     /// Width of the gas in a cell: its duct area, or its open volume if that is larger, as in a cell between two closed faces. A closed face
     /// is a wall of this area.
     pub fn width(&self, i: usize) -> R {
-        R::larger(self.duct(i), self.volume[self.start + i])
+        R::larger(self.duct(i), self.volume(i))
     }
 
     /// Area that a closed face has as a wall of the cell beside it: [`Ducts::width`]; 0 in a sealed cell, where nothing moves.
@@ -238,7 +238,13 @@ impl<'a, R: Real> Ducts<'a, R> {
     /// `beta_v` of a cell.
     #[inline(always)]
     pub fn volume(&self, i: usize) -> R {
-        self.volume[self.start + i]
+        self.volume_of(self.start + i)
+    }
+
+    /// That of a cell of the mesh, by its flat index.
+    #[inline(always)]
+    fn volume_of(&self, cell: usize) -> R {
+        self.volume.get(cell).copied().unwrap_or(R::ZERO)
     }
 
     /// A cell is marked small.
