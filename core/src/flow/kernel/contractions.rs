@@ -141,7 +141,9 @@ pub(in crate::flow) fn contractions_at<R: Real, const D: usize>(
     i: usize,
     breaks: [bool; 2],
 ) -> [R; 2] {
-    core::array::from_fn(|side| if breaks[side] { sides[side].of(i) } else { R::ONE })
+    // Not by a function of arrays, which would be called.
+    let at = |side: usize| if breaks[side] { sides[side].of(i) } else { R::ONE };
+    [at(0), at(1)]
 }
 
 /// Whether the low and the high face of cell `i` of the row from `at` on, as far as they break, are at the border of a porous body askew to the grid.
@@ -150,12 +152,11 @@ pub(in crate::flow) fn borders_at<R: Real, const D: usize>(
     (d, at, i): (usize, [usize; D], usize),
     breaks: [bool; 2],
 ) -> [bool; 2] {
-    core::array::from_fn(|side| {
-        let mut face = at;
-        face[0] += i;
-        face[d] += side;
-        breaks[side] && slab.has_border(d, face)
-    })
+    let mut face = at;
+    face[0] += i;
+    let low = breaks[0] && slab.has_border(d, face);
+    face[d] += 1;
+    [low, breaks[1] && slab.has_border(d, face)]
 }
 
 /// How far the low and the high face of cell `i` of the row from `at` on, as far as they break, have the duct's own area over the half step: at a wall as
@@ -167,12 +168,17 @@ pub(in crate::flow) fn sections_at<R: Real, const D: usize>(
     (ducts, sides): (&Ducts<'_, R>, &[AtFaces<'_, R, D>; 2]),
     breaks: [bool; 2],
 ) -> [R; 2] {
-    let (contractions, on_border) = (contractions_at(sides, i, breaks), borders_at(slab, (d, at, i), breaks));
-    core::array::from_fn(|side| {
+    let contractions = contractions_at(sides, i, breaks);
+    let section = |side: usize| {
         let high = side == 1;
-        let fades = breaks[side] & !on_border[side] & (ducts.opening(i, high) > R::ZERO);
-        contractions[side] * if fades { sides[side].jump_share(i, ducts.gentleness(i, high)) } else { R::ONE }
-    })
+        if !(breaks[side] & (ducts.opening(i, high) > R::ZERO)) {
+            return contractions[side];
+        }
+        let gentle = ducts.gentleness(i, high);
+        let fades = gentle > R::ZERO && !borders_at(slab, (d, at, i), breaks)[side];
+        contractions[side] * if fades { sides[side].jump_share(i, gentle) } else { R::ONE }
+    };
+    [section(0), section(1)]
 }
 
 /// Finds them for the row of cells from `at` on, which comes into the window at a place; `outside` the domain stands no wall.

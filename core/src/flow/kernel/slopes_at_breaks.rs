@@ -127,38 +127,37 @@ pub(in crate::flow) fn slopes_at_breaks<R: Real, const D: usize, const MIXED: bo
             continue;
         }
         let share = if breaks == [true; 2] { R::larger(a, b) } else { R::smaller(a, b) };
-        let mut three = [[R::ZERO; 3]; MOST];
-        for (v, three) in three[..D + 2].iter_mut().enumerate() {
-            let (below, here, above) = cells.values(v);
-            *three = [below[i], here[i], above[i]];
-        }
         // Behind a closed face that is no wall may stand anything.
-        let flat = (!breaks[0] & !open[0]) | (!breaks[1] & !open[1]);
-        let stays = if flat {
-            R::ZERO
-        } else {
-            beyond_jumps::<R, D, MIXED>(slab, cells, &mut three, (&ducts, d, i), [gentle, acts])
-        };
-        // Of a mixed gas beside a wall, where its capacity meets itself, a limited slope is flat.
-        let of_capacity = if MIXED && walls == [false; 2] { out[(D + 2) * n + i] } else { R::ZERO };
-        let slope = if stays > R::ZERO {
-            let walls =
-                [false, true].map(|high| walls[usize::from(high)] || is_beside_wall(slab, d, (row.at, i), high));
-            slope_at_walls::<R, D>(d, walls, three, i, slopes)
-        } else {
-            [R::ZERO; MOST]
-        };
+        let flat =
+            [0, 1].map(|side| if jumps[side] { !(gentle[side] > R::ZERO) } else { !(breaks[side] || open[side]) });
+        let mut slope = [R::ZERO; MOST];
+        let mut of_capacity = R::ZERO;
+        if flat == [false; 2] {
+            let mut three = [[R::ZERO; 3]; MOST];
+            for (v, three) in three[..D + 2].iter_mut().enumerate() {
+                let (below, here, above) = cells.values(v);
+                *three = [below[i], here[i], above[i]];
+            }
+            let stays = beyond_jumps::<R, D, MIXED>(slab, cells, &mut three, (&ducts, d, i), [gentle, acts]);
+            if stays > R::ZERO {
+                let beside_wall =
+                    [false, true].map(|high| walls[usize::from(high)] || is_beside_wall(slab, d, (row.at, i), high));
+                slope = slope_at_walls::<R, D>(d, beside_wall, three, i, slopes).map(|slope| stays * slope);
+                // Of a mixed gas beside a wall, where its capacity meets itself, a limited slope is flat.
+                if MIXED && walls == [false; 2] {
+                    of_capacity = stays * out[(D + 2) * n + i];
+                }
+            }
+        }
         for v in 0..D + 2 + usize::from(MIXED) {
             let own = &mut out[v * n + i];
-            let slope =
-                if !(stays > R::ZERO) { R::ZERO } else { stays * if v == D + 2 { of_capacity } else { slope[v] } };
-            *own = share_of(*own, slope, share);
+            *own = share_of(*own, if v == D + 2 { of_capacity } else { slope[v] }, share);
         }
     }
 }
 
-/// Brings what stands beyond the jumps of cell `i` to its duct, in `three`, as far as each `acts`. Tells how far the slope there stays: not beside a sudden jump,
-/// nor where a stream chokes.
+/// Brings what stands beyond the jumps of cell `i`, none of them sudden, to its duct, in `three`, as far as each `acts`. Tells how far the slope there stays: not
+/// where a stream chokes.
 // Called, not inlined: each limiter would hold its own.
 #[inline(never)]
 fn beyond_jumps<R: Real, const D: usize, const MIXED: bool>(
@@ -170,19 +169,14 @@ fn beyond_jumps<R: Real, const D: usize, const MIXED: bool>(
 ) -> R {
     let mut stays = R::ONE;
     for side in (0..2).filter(|&side| acts[side] > R::ZERO) {
-        let mut by_side = R::ZERO;
-        if gentle[side] > R::ZERO {
-            let gas = if MIXED {
-                let (below, _, above) = cells.values(D + 2);
-                ThroatGas::new(Gas::Ideal { gamma: mixed::gamma_of([below[i], above[i]][side]) })
-            } else {
-                slab.throat
-            };
-            if bring_to_duct::<R, D>(three, ducts.beside(i, side == 1), (d, side, acts[side]), &gas) {
-                by_side = gentle[side];
-            }
-        }
-        stays = R::smaller(stays, share_of(R::ONE, by_side, acts[side]));
+        let gas = if MIXED {
+            let (below, _, above) = cells.values(D + 2);
+            ThroatGas::new(Gas::Ideal { gamma: mixed::gamma_of([below[i], above[i]][side]) })
+        } else {
+            slab.throat
+        };
+        let passes = bring_to_duct::<R, D>(three, ducts.beside(i, side == 1), (d, side, acts[side]), &gas);
+        stays = R::smaller(stays, share_of(R::ONE, if passes { gentle[side] } else { R::ZERO }, acts[side]));
     }
     stays
 }
@@ -228,7 +222,8 @@ fn flatness<R: Real, const D: usize>(
     breaks: [bool; 2],
 ) -> ([R; 2], [bool; 2]) {
     let (shares, on_border) = (contractions_at(sides, i, breaks), borders_at(slab, (d, at, i), breaks));
-    (core::array::from_fn(|side| if on_border[side] { R::ONE } else { shares[side] }), on_border)
+    let at = |side: usize| if on_border[side] { R::ONE } else { shares[side] };
+    ([at(0), at(1)], on_border)
 }
 
 /// Slopes along axis `d` of all variables in cell `i` of a row with a wall on its low side, its high side, or both, where it meets

@@ -53,18 +53,8 @@ impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
     }
 }
 
-/// How alike two values are that are not below 0: 1 if they differ by up to `full`, a share of the larger one, 0 if by `none` or more.
-#[inline(always)]
-fn alike<R: Real>([a, b]: [R; 2], [full, none]: [f64; 2]) -> R {
-    let most = R::larger(a, b);
-    let left = R::from_f64(none) * most - (a - b).abs();
-    if !(left > R::ZERO) {
-        return R::ZERO;
-    }
-    R::smaller(left / (R::from_f64(none - full) * most), R::ONE)
-}
-
-/// Faces of a cell that are alike by this are those of a duct that narrows gently.
+/// Faces of a cell that differ by less than the first share of the wider one are those of a duct that narrows gently, by more than the second those of a duct
+/// that ends.
 const GENTLE_CELL: [f64; 2] = [0.1, 0.2];
 
 /// Directional duct area of a cell with open fractions `a` and `b` of its two faces: the larger one, as before a wall or an orifice, wherever in the cell that stands.
@@ -72,8 +62,14 @@ const GENTLE_CELL: [f64; 2] = [0.1, 0.2];
 #[inline(always)]
 fn duct_area<R: Real>(a: R, b: R, volume: R) -> R {
     let (least, most) = (R::smaller(a, b), R::larger(a, b));
+    let [full, none] = GENTLE_CELL;
+    let left = R::from_f64(none) * most - (most - least);
+    if !(left > R::ZERO) {
+        return most;
+    }
     let middle = R::larger(least, R::smaller(most, volume));
-    most - alike([a, b], GENTLE_CELL) * (most - middle)
+    let range = R::from_f64(none - full) * most;
+    if left >= range { middle } else { most - left / range * (most - middle) }
 }
 
 /// Difference of areas that makes a sudden jump, by default.
@@ -88,7 +84,7 @@ pub(in crate::flow) const LEAST: f64 = 0.2;
 /// How far a face between two ducts is one of many in a duct that narrows gently, not a sudden jump: 1 up to the difference that makes one, 0 from half as much
 /// again on.
 #[inline(always)]
-fn gentleness<R: Real>([left, right]: [R; 2], face: R) -> R {
+pub(super) fn gentleness<R: Real>([left, right]: [R; 2], face: R) -> R {
     let (least, most) = (R::smaller(left, right), R::larger(left, right));
     let difference = most - R::smaller(least, face);
     if difference >= R::from_f64(1.5 * SUDDEN) {
@@ -134,23 +130,32 @@ impl<'a, R: Real> Ducts<'a, R> {
         duct_area(a, b, self.volume(i))
     }
 
-    /// The two duct areas at the low (or high) face of a cell. Beyond the domain stands the cell on the other side if the axis is
-    /// periodic, else a copy of the inner cell.
+    /// Indices of the low face and of the cell itself, for the two cells at the low (or high) face of a cell. Beyond the domain stands the cell on the
+    /// other side if the axis is periodic, else a copy of the inner cell.
     #[inline(always)]
-    pub fn beside(&self, i: usize, high: bool) -> (R, R) {
+    fn cells_beside(&self, i: usize, high: bool) -> [(usize, usize); 2] {
         let (s, n, k) = (self.stride, self.cells, self.place + self.step * i + usize::from(high));
         let face = self.low + i + if high { s } else { 0 };
         let around = if self.periodic { (n - 1) * s } else { 0 };
-        // Low faces of both cells.
-        let below = if k > 0 { face - s } else { face + around };
-        let above = if k < n { face } else { face - s - around };
         let c = self.cell_stride;
         let cell = self.start + i + if high { c } else { 0 };
         let turn = if self.periodic { (n - 1) * c } else { 0 };
-        let below_cell = if k > 0 { cell - c } else { cell + turn };
-        let above_cell = if k < n { cell } else { cell - c - turn };
-        let duct = |f: usize, c: usize| duct_area(self.open[f], self.open[f + s], self.volume_of(c));
-        (duct(below, below_cell), duct(above, above_cell))
+        let below = if k > 0 { (face - s, cell - c) } else { (face + around, cell + turn) };
+        let above = if k < n { (face, cell) } else { (face - s - around, cell - c - turn) };
+        [below, above]
+    }
+
+    /// Directional duct area of a cell by the indices of its low face and of itself.
+    #[inline(always)]
+    fn duct_of(&self, (face, cell): (usize, usize)) -> R {
+        duct_area(self.open[face], self.open[face + self.stride], self.volume_of(cell))
+    }
+
+    /// The two duct areas at the low (or high) face of a cell. Beyond the domain stand cells as told by [`Ducts::cells_beside`].
+    #[inline(always)]
+    pub fn beside(&self, i: usize, high: bool) -> (R, R) {
+        let [below, above] = self.cells_beside(i, high);
+        (self.duct_of(below), self.duct_of(above))
     }
 
     /// Open fraction of the low (or high) face of a cell.
@@ -162,8 +167,13 @@ impl<'a, R: Real> Ducts<'a, R> {
     /// How far a jump at the low (or high) face of a cell is one of many of a duct that narrows gently: 0 where it is a sudden one.
     #[inline(always)]
     pub fn gentleness(&self, i: usize, high: bool) -> R {
-        let (left, right) = self.beside(i, high);
-        gentleness([left, right], self.opening(i, high))
+        let ([below, above], face) = (self.cells_beside(i, high), self.opening(i, high));
+        // Most jumps are far from gentle, which costs less to see: a duct has at least nine tenths of its wider face.
+        let widest = R::larger(self.open[below.0], self.open[above.0 + self.stride]);
+        if R::from_f64(0.9) * widest - face >= R::from_f64(1.6 * SUDDEN) {
+            return R::ZERO;
+        }
+        gentleness([self.duct_of(below), self.duct_of(above)], face)
     }
 
     /// Whether the narrower of the two cells at the low face of a cell is narrower, by more than rounding, than the cells on both sides of it. Beyond the
@@ -180,7 +190,7 @@ impl<'a, R: Real> Ducts<'a, R> {
     /// Open fractions of the two faces, and duct area, of the cell at place `k` along the axis on the line of cell `i`; none beyond a domain that is not periodic.
     fn on_line(&self, i: usize, k: isize) -> Option<([R; 2], R)> {
         let (here, n) = (self.place + self.step * i, self.cells as isize);
-        let k = if self.periodic { k.checked_rem_euclid(n)? } else { k };
+        let k = if self.periodic && !(0..n).contains(&k) { k.checked_rem_euclid(n)? } else { k };
         let k = usize::try_from(k).ok().filter(|&k| k < self.cells)?;
         let at = |first: usize, stride: usize| (first + k * stride).checked_sub(here * stride);
         let low = at(self.low + i, self.stride)?;
@@ -189,21 +199,17 @@ impl<'a, R: Real> Ducts<'a, R> {
         Some((openings, duct_area(a, b, *self.volume.get(at(self.start + i, self.cell_stride)?)?)))
     }
 
-    /// Whether the low (or high) face of a cell is one of those in a row that all narrow the duct, or all widen it, and are a jump together. Of the two areas
-    /// beside a face `changes` tells whether they differ enough to go on, of the two at the ends of such a row `jump` whether they differ as those of a jump do.
+    /// Whether the low (or high) face of a cell, with ducts of the areas `ends` beside it, is one of those in a row that all narrow the duct, or all widen it, and
+    /// are a jump together. Of the two areas beside a face `changes` tells whether they differ enough to go on, of the two at the ends of such a row `jump` whether
+    /// they differ as those of a jump do.
     pub fn narrows_through(
         &self,
-        i: usize,
-        high: bool,
+        (i, high): (usize, bool),
+        mut ends: [R; 2],
         changes: impl Fn([R; 2]) -> bool,
         jump: impl Fn([R; 2]) -> bool,
     ) -> bool {
-        let ends = self.beside(i, high);
-        let mut ends = [ends.0, ends.1];
         let widens = ends[1] > ends[0];
-        if !changes(ends) {
-            return false;
-        }
         let above = (self.place + self.step * i + usize::from(high)) as isize;
         for side in [0, 1] {
             for steps in 0..self.cells as isize {
@@ -261,35 +267,36 @@ impl<'a, R: Real> Ducts<'a, R> {
 
     /// An area for the low or high face of a cell: its open fraction, at a jump as told, at a wall that of the wall.
     #[inline(always)]
-    fn area(&self, i: usize, high: bool, at_jump: impl Fn(R) -> R) -> R {
+    fn area(&self, i: usize, high: bool, at_jump: impl FnOnce(R) -> R) -> R {
         let open = self.opening(i, high);
-        let breaks = self.breaks(i, high);
-        if breaks & !(open > R::ZERO) {
-            return self.wall(i);
+        if !self.breaks(i, high) {
+            open
+        } else if open > R::ZERO {
+            at_jump(open)
+        } else {
+            self.wall(i)
         }
-        // Found in any case: a selection costs less than a wrong guess.
-        let jump = at_jump(open);
-        if breaks { jump } else { open }
     }
 
     /// Areas with which the duct of a cell meets its low and high face: the open fraction of the face where nothing breaks; at a jump from that
     /// (for a `contraction` of 0) to the duct's own (1); at a wall from 0 to that of the wall.
     #[inline(always)]
     pub fn sections(&self, i: usize, contraction: [R; 2]) -> (R, R) {
-        let section = |high: bool| {
-            let open = self.opening(i, high);
-            share(open, self.area(i, high, |_| self.duct(i)), contraction[usize::from(high)])
-        };
-        (section(false), section(true))
+        let duct = |_| self.duct(i);
+        let (low, high) = (self.area(i, false, duct), self.area(i, true, duct));
+        (share(self.opening(i, false), low, contraction[0]), share(self.opening(i, true), high, contraction[1]))
     }
 
     /// The largest areas that the flux may act on at the low and high face of a cell: at a jump that of a throat that is not pinched, or the open fraction.
     #[inline(always)]
     pub fn passages(&self, i: usize) -> (R, R) {
-        let throat = |high: bool| {
-            let (left, right) = self.beside(i, high);
-            move |open: R| R::larger(open, throat_area(left, open, right, false))
-        };
-        (self.area(i, false, throat(false)), self.area(i, true, throat(true)))
+        (self.area(i, false, |open| self.throat(i, false, open)), self.area(i, true, |open| self.throat(i, true, open)))
+    }
+
+    /// The largest area that the flux may act on at an open jump.
+    #[inline(always)]
+    fn throat(&self, i: usize, high: bool, open: R) -> R {
+        let (left, right) = self.beside(i, high);
+        R::larger(open, throat_area(left, open, right, false))
     }
 }

@@ -1,7 +1,7 @@
 //! Which faces are walls or porosity jumps, and which cells small, sealed or cut by an inclined wall, found once from the open fractions.
 
 use crate::flow::error::{Error, fits};
-use crate::flow::porosity::areas::{Ducts, IN_NARROW, LEAST};
+use crate::flow::porosity::areas::{Ducts, IN_NARROW, LEAST, gentleness};
 use crate::flow::porosity::flags::{BORDER, INCLINED, SMALL, break_high, break_low};
 use crate::flow::porosity::fractions::{Medium, Mesh, Porosity, SMALL_SHARE, rounding};
 use crate::number::real::Real;
@@ -32,13 +32,16 @@ const GRADUAL: f64 = 0.01;
 
 /// Whether the low or high face of a cell is an open one and a jump, alone or with others of a duct that narrows over many cells.
 fn jumps_at<R: Real>(own: &Ducts<'_, R>, high: bool, threshold: R) -> bool {
-    let open = own.opening(0, high);
+    let (open, (left, right)) = (own.opening(0, high), own.beside(0, high));
+    let ends = [left, right];
     let differ = |threshold: R| move |ends: [R; 2]| is_jump(ends, R::smaller(ends[0], ends[1]), threshold);
+    let changes = differ(R::from_f64(GRADUAL) * threshold);
     let gradual = || {
-        own.gentleness(0, high) > R::ZERO
-            && own.narrows_through(0, high, differ(R::from_f64(GRADUAL) * threshold), differ(threshold))
+        changes(ends)
+            && gentleness(ends, open) > R::ZERO
+            && own.narrows_through((0, high), ends, changes, differ(threshold))
     };
-    jumps_suddenly(own, high, threshold) || (open > R::ZERO && gradual())
+    open > R::ZERO && (is_jump(ends, open, threshold) || gradual())
 }
 
 /// Whether a closed face is a wall to a cell as wide as this. The point to which a smooth duct closes is none.
