@@ -24,6 +24,9 @@ fn a_solid_flush_with_the_grid_is_within() {
         let text = said(&cylinder("pipe", [0.0, 0.5, 0.5], [1.0, 0.5, 0.5], radius));
         assert!(!text.contains("beyond the grid"), "{text}");
     }
+    let ring =
+        said("[[solid]]\nshape = \"torus\"\ncenter = [0.5, 0.5, 0.1]\naxis = [0, 0, 1]\nradius = 0.4\ntube = 0.1\n");
+    assert!(!ring.contains("beyond the grid"), "{ring}");
     let askew = said(&cylinder("pipe", [0.0, 0.5, 0.3], [1.0, 0.5, 0.3], 0.3));
     assert!(!askew.contains("beyond the grid"), "{askew}");
     let beyond = said(&cylinder("pipe", [0.0, 0.5, 0.5], [1.0 + 1e-9, 0.5, 0.5], 0.3));

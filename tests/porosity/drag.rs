@@ -10,7 +10,7 @@ use voidage::porosity::drag::{DragCoefficients, DragLaw, ObstacleDrag, drag};
 use voidage::porosity::resistance::{Resistance, resistance};
 use voidage::porosity::rod::Rod;
 use voidage::porosity::{Options, Porosity, porosity};
-use voidage_core::convex::shape::{Cylinder, Sphere};
+use voidage_core::convex::shape::{Capsule, Cylinder, Sphere};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::solids::torus::TorusShape;
 use voidage_tests::solids::{cuboid, formulas, scene, sphere, turned_box};
@@ -172,6 +172,76 @@ fn surface_that_others_hide_does_not_count() {
     check(&with_panel, [2.0 * 0.16, 2.0 * 0.16, 2.0 * 0.16 + 5.0 * 2.0 * 0.04]);
 }
 
+/// Frontal area of the union of some balls in a box along an axis, each ball's share of it multiplied by its weight: by lines.
+fn seen_of_balls(balls: &[(Sphere<DVec3>, f64)], cell: Aabb<DVec3>, axis: usize) -> f64 {
+    const LINES: usize = 400;
+    let [across, up] = [1, 2].map(|n| (axis + n) % 3);
+    let size = cell.size();
+    let ends = |ball: &Sphere<DVec3>, line: DVec3| {
+        let beside = [across, up].map(|n| (line[n] - ball.center[n]).powi(2)).iter().sum::<f64>();
+        let square = ball.radius * ball.radius - beside;
+        (square > 0.0).then(|| [-1.0, 1.0].map(|side| ball.center[axis] + side * square.sqrt()))
+    };
+    let mut sum = 0.0;
+    for (i, j) in (0..LINES * LINES).map(|n| (n % LINES, n / LINES)) {
+        let mut line = cell.min;
+        line[across] += size[across] * (i as f64 + 0.5) / LINES as f64;
+        line[up] += size[up] * (j as f64 + 0.5) / LINES as f64;
+        let all: Vec<_> = balls.iter().map(|(ball, _)| ends(ball, line)).collect();
+        for (own, ((_, weight), of_ball)) in balls.iter().zip(&all).enumerate() {
+            for &at in of_ball.iter().flatten().filter(|&&at| at > cell.min[axis] && at < cell.max[axis]) {
+                let hides =
+                    |(n, other): (usize, &Option<[f64; 2]>)| n != own && other.is_some_and(|[a, b]| a < at && at < b);
+                sum += if all.iter().enumerate().any(hides) { 0.0 } else { 0.5 * weight };
+            }
+        }
+    }
+    sum * size[across] * size[up] / (LINES * LINES) as f64
+}
+
+/// Thin cells beside a wide one make its facets small, and many of them.
+#[test]
+fn surface_is_hidden_in_wide_cells_beside_thin_ones() {
+    let line = vec![0.0, 0.1, 1.0];
+    let edges = Edges([line.clone(), line.clone(), line]);
+    let cell = Aabb { min: DVec3::splat(0.1), max: DVec3::ONE };
+    let ball = |x: f64, y: f64, radius: f64, cd: f64| (Sphere { center: DVec3::new(x, y, 0.4), radius }, cd);
+    let balls = [ball(0.4, 0.4, 0.3, 1.0), ball(0.6, 0.4, 0.3, 1.0), ball(0.5, 0.5, 0.25, 10.0)];
+    let mut bodies = formulas(&balls.map(|(ball, _)| Form::Sphere(ball)));
+    bodies.bodies.iter_mut().zip(balls).for_each(|(body, (_, cd))| body.drag.cd = Some(cd));
+    let usual = DragCoefficients::default();
+    let found = drag_of(&edges, &bodies, DragLaw::Bluff, usual);
+    assert_eq!(found.unproved, 0);
+    // With one coefficient for all the area counts that the union shows.
+    bodies.bodies.iter_mut().for_each(|body| body.drag.cd = Some(1.0));
+    let of_one = drag_of(&edges, &bodies, DragLaw::Bluff, usual);
+    let ones = balls.map(|(ball, _)| (ball, 1.0));
+    for axis in 0..3 {
+        let ratio = found.cr[axis][7] / of_one.cr[axis][7];
+        let truth = seen_of_balls(&balls, cell, axis) / seen_of_balls(&ones, cell, axis);
+        assert!((ratio / truth - 1.0).abs() < 2e-3, "axis {axis}: {ratio}, by lines {truth}");
+    }
+}
+
+/// Of two rods one is wholly inside the other within a cell, and so near its surface that no proof tells it in some parts of the cell.
+#[test]
+fn surface_is_hidden_but_for_parts_without_a_proof() {
+    let edges = Edges([vec![0.0, 0.24, 0.34, 1.0], vec![0.0, 0.5, 1.0], vec![0.0, 0.25, 0.5, 0.75, 1.0]]);
+    let inner = Cylinder::new(DVec3::new(0.28, 1.0, 0.02), DVec3::new(0.44, 1.35, 0.47), 0.21);
+    let outer = Capsule { from: DVec3::new(0.265, 0.94, 0.08), to: DVec3::new(0.61, 0.96, 0.12), radius: 0.26 };
+    let mut bodies = formulas(&[Form::Cylinder(inner), Form::Capsule(outer)]);
+    let of = |bodies: &Bodies| drag_of(&edges, bodies, DragLaw::Bluff, DragCoefficients::default());
+    bodies.bodies[1].drag.cd = Some(2.0);
+    let [mixed, one] = [0.0, 2.0].map(|cd| {
+        bodies.bodies[0].drag.cd = Some(cd);
+        of(&bodies)
+    });
+    for axis in 0..3 {
+        let [found, truth] = [&mixed, &one].map(|drag| drag.cr[axis][5]);
+        assert!((found / truth - 1.0).abs() < 1e-3, "axis {axis}: {found} instead of {truth}");
+    }
+}
+
 /// The table of congestion of some zones.
 fn table(edges: &Edges, bodies: &Bodies, zones: &[[DVec3; 2]]) -> Vec<Congestion> {
     let grid = edges.grid(None).expect("a grid");
@@ -270,6 +340,35 @@ fn ends_of_classes_and_zones() {
                 assert!(apart.abs() < 1e-10, "{found:?}");
             }
         }
+    }
+}
+
+/// What only touches a side of a zone, in rounded coordinates, is whole in the zone on one side of it, and not in the other.
+#[test]
+fn curved_bodies_on_a_side_of_a_zone() {
+    let radius = 0.1;
+    let [from, to] = [0.5, 3.5].map(|x| DVec3::new(x, 2.0, 2.0 + radius));
+    let ring = TorusShape {
+        center: DVec3::new(2.0, 2.0, 2.0 + radius),
+        axis: DVec3::Z,
+        start: DVec3::X,
+        radius: 1.0,
+        tube: radius,
+        angle: 360.0,
+    };
+    for form in [
+        Form::Cylinder(Cylinder::new(from, to, radius)),
+        Form::Capsule(Capsule { from, to, radius }),
+        Form::Sphere(Sphere { center: from, radius }),
+        Form::Torus(ring),
+    ] {
+        let bodies = formulas(std::slice::from_ref(&form));
+        let [low, high] = [DVec3::ZERO, DVec3::splat(4.0)];
+        let found = table(&edges(8, 0.5), &bodies, &[[low, high], [low, high.with_z(2.0)], [low.with_z(2.0), high]]);
+        assert!(found[1].sizes.is_empty(), "{form:?}: {:?}", found[1]);
+        let [whole, above] = [0, 2].map(|n| found[n].sizes[0]);
+        assert_eq!(above.frontal_area, whole.frontal_area, "{form:?}");
+        assert_eq!([above.length, above.solid_volume], [whole.length, whole.solid_volume], "{form:?}");
     }
 }
 

@@ -413,17 +413,51 @@ pub(super) struct Row<'m, V> {
 impl<'m, V: Vector> Row<'m, V> {
     /// From the bins of layer `k` for the row between `lo` and `hi` along y; none if the memory does not hold it.
     pub fn new(bins: &Bins<V>, k: usize, [lo, hi]: [V::Scalar; 2], memory: Rest<'m, V>) -> Option<Self> {
-        let (numbers, groups) = memory;
+        let in_row = |group: &&Group<V>| !(group.sheet || group.bounds.max.y() <= lo || group.bounds.min.y() >= hi);
+        let groups = bins.groups(k).iter().filter(in_row).map(|group| (group, bins.ids(group)));
+        let reaches = |corners: [V; 3]| {
+            let [a, b, c] = corners.map(Vector::y);
+            a.max(b).max(c) > lo && a.min(b).min(c) < hi
+        };
+        let (RowTriangles { groups, ids }, rest) = RowTriangles::gather(bins, groups, reaches, memory)?;
+        Some(Row { groups, ids, rest })
+    }
+
+    /// Those triangles.
+    pub fn triangles(&self) -> RowTriangles<'m, V> {
+        RowTriangles { groups: self.groups, ids: self.ids }
+    }
+
+    /// The triangles of one of its groups.
+    pub fn ids(&self, group: &Group<V>) -> &'m [u32] {
+        self.triangles().ids(group)
+    }
+}
+
+/// Triangles that reach a row of cells or a part of it, by body.
+#[derive(Clone, Copy)]
+pub(super) struct RowTriangles<'m, V> {
+    /// The bodies, without sheets.
+    pub groups: &'m [Group<V>],
+    ids: &'m [u32],
+}
+
+impl<'m, V: Vector> RowTriangles<'m, V> {
+    /// Of some groups with their triangles, those that `reach`; and the memory left over. None if the memory does not hold them.
+    fn gather<'g>(
+        bins: &Bins<V>,
+        of: impl Iterator<Item = (&'g Group<V>, &'g [u32])>,
+        reach: impl Fn([V; 3]) -> bool,
+        (numbers, groups): Rest<'m, V>,
+    ) -> Option<(Self, Rest<'m, V>)>
+    where
+        V: 'g,
+    {
         let (mut used, mut count) = (0, 0);
-        for group in bins.groups(k) {
-            if group.sheet || group.bounds.max.y() <= lo || group.bounds.min.y() >= hi {
-                continue;
-            }
+        for (group, ids) in of {
             let first = used;
-            for &t in bins.ids(group) {
-                let [a, b, c] = bins.corners(group, t);
-                let [a, b, c] = [a.y(), b.y(), c.y()];
-                if a.max(b).max(c) > lo && a.min(b).min(c) < hi {
+            for &t in ids {
+                if reach(bins.corners(group, t)) {
                     *numbers.get_mut(used)? = t;
                     used += 1;
                 }
@@ -432,12 +466,25 @@ impl<'m, V: Vector> Row<'m, V> {
             count += 1;
         }
         let (ids, numbers) = numbers.split_at_mut_checked(used)?;
-        let (row, groups) = groups.split_at_mut_checked(count)?;
-        Some(Row { groups: row, ids, rest: (numbers, groups) })
+        let (own, groups) = groups.split_at_mut_checked(count)?;
+        Some((RowTriangles { groups: own, ids }, (numbers, groups)))
+    }
+
+    /// Those whose boxes reach a part of the row, or stand beside it at higher x; the bodies stay, without triangles, too.
+    pub fn narrowed(self, bins: &Bins<V>, part: Aabb<V>, memory: Rest<'m, V>) -> Option<(Self, Rest<'m, V>)> {
+        let (lo, hi) = (part.min, part.max);
+        let groups = self.groups.iter().map(|group| (group, self.ids(group)));
+        let reaches = |[a, b, c]: [V; 3]| {
+            let along =
+                |of: fn(V) -> V::Scalar| of(a).max(of(b)).max(of(c)) >= of(lo) && of(a).min(of(b)).min(of(c)) <= of(hi);
+            let beyond = |of: fn(V) -> V::Scalar| of(a).max(of(b)).max(of(c)) >= of(lo);
+            along(V::y) && along(V::z) && beyond(V::x)
+        };
+        Self::gather(bins, groups, reaches, memory)
     }
 
     /// The triangles of one of its groups.
-    pub fn ids(&self, group: &Group<V>) -> &'m [u32] {
+    pub fn ids(self, group: &Group<V>) -> &'m [u32] {
         self.ids.get(group.run()).unwrap_or_default()
     }
 }

@@ -80,6 +80,12 @@ pub fn obstacles(
                 counted(drag.capped, "cell", "cells")
             ));
         }
+        if drag.unproved > 0 {
+            progress.warn(format!(
+                "drag: in parts of {} that bodies of different C_D share it is not known for certain what one hides of another; each counts there with all its frontal area",
+                counted(drag.unproved, "cell", "cells")
+            ));
+        }
         found.drag = Some(drag);
         warn_of_gratings(bodies, progress);
         warn_of_partly_filled(grid, bodies, progress);
@@ -137,7 +143,7 @@ fn warn_of_hidden_passages(bodies: &Bodies, shadows: &Shadows, progress: &mut Pr
     for (axis, hidden) in AXES.into_iter().zip(shadows.hidden) {
         let Some([i, j, k]) = hidden.first else { continue };
         progress.warn(format!(
-            "{}: {} blocked along {axis} by more than {:.0} % between two faces that show nothing of it, the first at cell {i}, {j}, {k} \
+            "{}: {} blocked along {axis} by more than {:.0} % between two faces that show next to nothing of it, the first at cell {i}, {j}, {k} \
              (counted from 0): gas passes through; with throat faces such walls are tight",
             bodies.files(),
             counted(hidden.cells, "cell is", "cells are"),

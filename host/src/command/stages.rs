@@ -229,7 +229,10 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &G
     };
     // What is flush with the grid but for rounding is within.
     let near = snap::near(grid);
-    let room = |b: &Body| near + b.single.map_or(DVec3::ZERO, |s| s.error(b.bounds[0]).max(s.error(b.bounds[1])));
+    // The ends of a curved solid are rounded away from it, those of a torus by most.
+    let rounded = |b: &Body| if b.form.is_some() { (b.bounds[1] - b.bounds[0]) * 1e-11 } else { DVec3::ZERO };
+    let single = |b: &Body| b.single.map_or(DVec3::ZERO, |s| s.error(b.bounds[0]).max(s.error(b.bounds[1])));
+    let room = |b: &Body| near + single(b) + rounded(b);
     let beyond = |b: &Body| {
         let room = room(b);
         (b.bounds[0] + room).cmplt(lo).any() || (b.bounds[1] - room).cmpgt(hi).any()

@@ -178,7 +178,9 @@ impl Obstacle {
 
     /// What a box holds of it; none if that is nothing.
     fn within(&self, bodies: &Bodies, within: Aabb<DVec3>, options: Options) -> Option<Part> {
-        let Aabb { min, max } = self.bounds;
+        // What is known of the ends of a curved body is rounded away from it: where it touches a side it ends there.
+        let trace = self.bounds.size() * TRACE;
+        let Aabb { min, max } = Aabb { min: self.bounds.min + trace, max: self.bounds.max - trace };
         if min.cmpge(within.min).all() && max.cmple(within.max).all() {
             return Some(Part { share: 1.0, frontal: self.area.frontal });
         }

@@ -63,6 +63,9 @@ pub struct ObstacleDrag {
     pub capped: usize,
     /// Bodies taken for round, and for sharp.
     pub bodies: [usize; 2],
+    /// Cells that bodies of different C_D share in which more than the tolerance of the frontal area is where no proof tells what one hides of another; all of it
+    /// counts there.
+    pub unproved: usize,
 }
 
 /// Largest blockage of a row that enters the law: α is 210 there.
@@ -95,11 +98,11 @@ pub fn drag(
         own => [1.0, 0.0, own.cd.unwrap_or(coefficients.sharp)],
     };
     let weights: Vec<[f64; 3]> = bodies.bodies.iter().zip(&round).map(weight).collect();
-    let sums = with_solid_layers(grid, bodies, options, |grid, SolidLayers { layers, .. }| {
+    let (sums, unproved) = with_solid_layers(grid, bodies, options, |grid, SolidLayers { layers, .. }| {
         let [nx, ny, nz] = grid.cells();
         let mut sums = vec![[[0.0; 3]; 3]; nx * ny * nz];
         let workers = Workers::new();
-        sums.par_chunks_mut(nx * ny).enumerate().for_each(|(k, sums)| {
+        let unproved = sums.par_chunks_mut(nx * ny).enumerate().map(|(k, sums)| {
             layers.weighted_frontal_areas(k, &weights, sums).expect(FITS);
             let is_hidden = |(c, [all, ..]): (usize, &[[f64; 3]; 3])| {
                 let volume = grid.cell_box([c % nx, c / nx, k]).map_or(0.0, |cell| cell.size().element_product());
@@ -107,15 +110,18 @@ pub fn drag(
                 (0..3).any(|axis| all[axis] > seen(axis) * (1.0 + HIDDEN))
             };
             let hidden: Vec<bool> = sums.iter().enumerate().map(is_hidden).collect();
-            if hidden.contains(&true) {
-                workers.beside(grid, layers, |memory| {
-                    layers.visible_frontal_areas(k, (&weights, &hidden), sums, memory).expect(FITS);
-                });
+            if !hidden.contains(&true) {
+                return 0;
             }
+            workers.beside(grid, layers, |memory| {
+                layers.visible_frontal_areas(k, (&weights, &hidden), sums, memory).expect(FITS)
+            })
         });
-        sums
+        let unproved = unproved.sum();
+        (sums, unproved)
     });
     let mut found = ObstacleDrag {
+        unproved,
         bodies: [true, false].map(|kind| round.iter().filter(|&&r| r == kind).count()),
         ..ObstacleDrag::default()
     };

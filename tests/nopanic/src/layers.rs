@@ -83,7 +83,7 @@ fn porous<V: Vector>(grid: &Grid<V::Scalar>, layers: &Layers<V>, at: usize) -> u
     let all = layers.weighted_frontal_areas(at, &weights, sums);
     let wanted = (&weights[..], wanted.get(..at).unwrap_or_default());
     let visible = layers.visible_frontal_areas(at, wanted, sums, &mut memory);
-    let weighted = usize::from(all.is_ok()) ^ usize::from(visible.is_ok());
+    let weighted = usize::from(all.is_ok()) ^ visible.unwrap_or(1);
     porosity ^ weighted ^ unproved ^ usize::from(finished.is_ok()) ^ shadowed(layers, &known, (kept, sides.get(..used).unwrap_or_default()), at)
 }
 

@@ -6,7 +6,7 @@ use super::memory::LayerMemory;
 use crate::grid::fields::exactly;
 use crate::number::aabb::Aabb;
 use crate::number::real::{Real, Vector};
-use crate::surface::bins::{Bins, Group, Row};
+use crate::surface::bins::{Bins, Group, Rest, Row, RowTriangles};
 use crate::surface::cell_unions::{side_areas, with_least_blur};
 use crate::surface::clip::Polygon;
 use crate::surface::surface_area::{SurfaceArea, add_weighted, gather_weighted};
@@ -15,6 +15,9 @@ use heapless::Vec;
 
 /// Frontal areas along x, y and z, by weight.
 type Weighted<R, const N: usize> = [[R; 3]; N];
+
+/// Those, and the sum over the axes of frontal areas without weights.
+type WithSum<R, const N: usize> = (Weighted<R, N>, R);
 
 /// A cell is cut at this share of its size into parts: a place in which no face is likely to lie.
 const CUT: f64 = 0.487_3;
@@ -48,7 +51,8 @@ impl<V: Vector> Layers<'_, V> {
     }
 
     /// Replaces such sums in those cells that are `wanted` by the same over the surface of the union, each part with the weights of the body that it is of; where
-    /// all bodies in a cell have the same weights, or their union has no proof, the sums stay.
+    /// all bodies in a cell have the same weights, the sums stay. Tells in how many cells more than the tolerance of the frontal area is in parts where the union
+    /// has no proof: there all of it counts.
     ///
     /// # Errors
     /// [`LayerError`]: no such layer, a slice of wrong length, memory of another grid.
@@ -58,12 +62,12 @@ impl<V: Vector> Layers<'_, V> {
         (weights, wanted): (&[[V::Scalar; N]], &[bool]),
         sums: &mut [Weighted<V::Scalar, N>],
         memory: &mut LayerMemory<V>,
-    ) -> Result<(), LayerError> {
+    ) -> Result<usize, LayerError> {
         let [nx, ny] = self.cells_of_layer(k, Some(memory))?;
         exactly(nx * ny, wanted.len())?;
         exactly(nx * ny, sums.len())?;
         let LayerMemory { numbers, groups, union, .. } = memory;
-        let mut cells = wanted.iter().zip(sums);
+        let (mut cells, mut unproved, zero) = (wanted.iter().zip(sums), 0, V::Scalar::ZERO);
         for j in 0..ny {
             let mut row = None;
             for (i, (_, sum)) in cells.by_ref().take(nx).enumerate().filter(|(_, (wanted, _))| **wanted) {
@@ -71,16 +75,20 @@ impl<V: Vector> Layers<'_, V> {
                 if row.is_none() {
                     row = Row::new(&self.bins, k, [cell.min.y(), cell.max.y()], (&mut *numbers, &mut *groups));
                 }
-                let Some(row) = &row else { continue };
-                let around = Around { bins: &self.bins, k, row };
+                let Some(row) = &mut row else {
+                    unproved += 1;
+                    continue;
+                };
+                let around = Around { bins: &self.bins, k, row: row.triangles() };
                 if around.weights_differ(cell, weights) {
-                    let place = (around, cell);
-                    let (limits, mut left) = ((self.options.tol, MOST_LEVELS), MOST_EFFORT);
-                    *sum = in_parts(union.reborrow(), place, weights, limits, &mut left).unwrap_or(*sum);
+                    let memory = (union.reborrow(), (&mut *row.rest.0, &mut *row.rest.1));
+                    let mut found = InParts { tol: self.options.tol, left: MOST_EFFORT, proved: zero, doubtful: zero };
+                    *sum = found.sums(memory, (around, cell), weights, MOST_LEVELS);
+                    unproved += usize::from(found.doubtful > found.tol * (found.proved + found.doubtful));
                 }
             }
         }
-        Ok(())
+        Ok(unproved)
     }
 }
 
@@ -95,7 +103,7 @@ fn reaches<V: Vector>(group: &Group<V>, cell: Aabb<V>) -> bool {
 struct Around<'a, V> {
     bins: &'a Bins<'a, V>,
     k: usize,
-    row: &'a Row<'a, V>,
+    row: RowTriangles<'a, V>,
 }
 
 impl<'a, V: Vector> Around<'a, V> {
@@ -123,40 +131,112 @@ impl<'a, V: Vector> Around<'a, V> {
     }
 }
 
-/// The weighted areas of the surface of the union in a cell; where that has no proof, in its parts, so many levels of them, while triangles are `left` to be
-/// looked at. Calls itself, once a level.
-fn in_parts<V: Vector, const N: usize>(
-    mut memory: UnionMemory<V::Scalar>,
-    (around, cell): (Around<V>, Aabb<V>),
-    weights: &[[V::Scalar; N]],
-    (tol, levels): (V::Scalar, u32),
-    left: &mut usize,
-) -> Option<Weighted<V::Scalar, N>> {
-    *left = left.checked_sub(around.triangle_count(cell))?;
-    let whole = with_least_blur(tol, |blur| of_union(memory.reborrow(), (around, cell), blur, weights));
-    if whole.is_some() {
-        return whole;
-    }
-    let levels = levels.checked_sub(1)?;
-    let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
-    let cut = [0, 1, 2].map(|n| lo[n] + (hi[n] - lo[n]) * V::Scalar::from_f64(CUT));
-    let mut sums = [[V::Scalar::ZERO; 3]; N];
-    for part in 0..8 {
-        let corner = |low: [V::Scalar; 3], high: [V::Scalar; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|n| if part >> n & 1 == 1 { high[n] } else { low[n] });
-            V::new(x, y, z)
+/// The search for weighted areas of a cell in its parts.
+struct InParts<R> {
+    tol: R,
+    /// So many triangles may still be looked at.
+    left: usize,
+    /// Frontal areas of the surface of the union, summed over the axes: where it has a proof, and of all surface where it has none.
+    proved: R,
+    doubtful: R,
+}
+
+impl<R: Real> InParts<R> {
+    /// The weighted areas of the surface of the union in a cell; where that has no proof, in its parts, so many `levels` of them; where these have none, of all
+    /// surface. The triangles of each part are listed in the second memory, as far as it goes. Calls itself, once a level.
+    fn sums<V: Vector<Scalar = R>, const N: usize>(
+        &mut self,
+        (mut memory, (numbers, groups)): (UnionMemory<R>, Rest<V>),
+        (around, cell): (Around<V>, Aabb<V>),
+        weights: &[[R; N]],
+        levels: u32,
+    ) -> Weighted<R, N> {
+        let narrowed = around.row.narrowed(around.bins, cell, (&mut *numbers, &mut *groups));
+        let (row, rest) = narrowed.unwrap_or((around.row, Default::default()));
+        let around = Around { row, ..around };
+        let affordable = self.left.checked_sub(around.triangle_count(cell));
+        self.left = affordable.unwrap_or(0);
+        let mut whole = || with_least_blur(self.tol, |blur| of_union(memory.reborrow(), (around, cell), blur, weights));
+        if let Some((sums, area)) = affordable.and_then(|_| whole()) {
+            self.proved += area;
+            return sums;
+        }
+        let Some(levels) = affordable.and(levels.checked_sub(1)) else {
+            let (sums, area) = of_all(around, cell, weights);
+            self.doubtful += area;
+            return sums;
         };
-        let part = Aabb { min: corner(lo, cut), max: corner(cut, hi) };
-        let found = in_parts(memory.reborrow(), (around, part), weights, (tol, levels), left)?;
-        for (sum, found) in sums.iter_mut().zip(found) {
-            *sum = [0, 1, 2].map(|n| sum[n] + found[n]);
+        let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
+        let cut = [0, 1, 2].map(|n| lo[n] + (hi[n] - lo[n]) * R::from_f64(CUT));
+        let mut sums = [[R::ZERO; 3]; N];
+        for part in 0..8 {
+            let corner = |low: [R; 3], high: [R; 3]| {
+                let [x, y, z] = [0, 1, 2].map(|n| if part >> n & 1 == 1 { high[n] } else { low[n] });
+                V::new(x, y, z)
+            };
+            let part = Aabb { min: corner(lo, cut), max: corner(cut, hi) };
+            let memory = (memory.reborrow(), (&mut *rest.0, &mut *rest.1));
+            let found = self.sums(memory, (around, part), weights, levels);
+            for (sum, found) in sums.iter_mut().zip(found) {
+                *sum = [0, 1, 2].map(|n| sum[n] + found[n]);
+            }
+        }
+        sums
+    }
+}
+
+/// Adds the frontal areas of a piece of surface, multiplied by some weights, to such sums, and the sum over the axes to another.
+fn add<R: Real, const N: usize>(
+    (sums, all): (&mut Weighted<R, N>, &mut R),
+    weights: &[R; N],
+    piece: &Polygon<R>,
+    across: [R; 3],
+) {
+    let area = SurfaceArea::of_framed(piece, across).frontal;
+    add_weighted(sums, weights, area);
+    let [x, y, z] = area;
+    *all += x + y + z;
+}
+
+/// The weighted areas of all surface in a cell, and its frontal areas summed over the axes.
+fn of_all<V: Vector, const N: usize>(
+    around: Around<V>,
+    cell: Aabb<V>,
+    weights: &[[V::Scalar; N]],
+) -> WithSum<V::Scalar, N> {
+    let (across, mut sums, mut all) = (side_areas(cell), [[V::Scalar::ZERO; 3]; N], V::Scalar::ZERO);
+    let bodies = around.bodies(cell).map(|group| (group, around.row.ids(group)));
+    let sheets = around.sheets(cell).map(|group| (group, around.bins.ids(group)));
+    for (group, ids) in bodies.chain(sheets) {
+        let Some(weights) = weights.get(group.body as usize) else { continue };
+        // Nothing fails here.
+        _ = pieces(around.bins, (group, ids), cell, |piece| {
+            add((&mut sums, &mut all), weights, piece, across);
+            Ok(())
+        });
+    }
+    (sums, all)
+}
+
+/// What each of some triangles of a body has inside a cell, in the frame of the cell.
+fn pieces<V: Vector>(
+    bins: &Bins<V>,
+    (group, ids): (&Group<V>, &[u32]),
+    cell: Aabb<V>,
+    mut tell: impl FnMut(&Polygon<V::Scalar>) -> Result<(), NoProof>,
+) -> Result<(), NoProof> {
+    let (frame, triangles) = (Frame::of(cell), bins.triangles(group));
+    let (mut scratch, mut piece) = (Default::default(), Polygon::default());
+    for corners in ids.iter().filter_map(|&id| triangles.get(id as usize)) {
+        if frame.inside(&corners.map(Vector::to_array), cell, &mut scratch, &mut piece).is_some() {
+            tell(&piece)?;
         }
     }
-    Some(sums)
+    Ok(())
 }
 
 /// Does a body that has no surface inside a part of a cell of the row fill it? Then all beams from its middle to higher x leave the body once more than they enter it.
-fn fills<V: Vector>(bins: &Bins<V>, row: &Row<V>, group: &Group<V>, cell: Aabb<V>) -> bool {
+fn fills<V: Vector>(bins: &Bins<V>, row: RowTriangles<V>, group: &Group<V>, cell: Aabb<V>) -> bool {
     let (lo, hi) = (cell.min.to_array(), cell.max.to_array());
     let far = group.bounds.max.x().max(hi[0]) + (hi[0] - lo[0]);
     let beyond = Aabb { min: V::new((lo[0] + hi[0]) * V::Scalar::HALF, lo[1], lo[2]), max: V::new(far, hi[1], hi[2]) };
@@ -173,14 +253,15 @@ fn fills<V: Vector>(bins: &Bins<V>, row: &Row<V>, group: &Group<V>, cell: Aabb<V
     leaving > V::Scalar::ONE
 }
 
-/// The weighted areas of the surface of the union in a cell, and of the sheets outside it, and the error of that.
+/// The weighted areas of the surface of the union in a cell, and of the sheets outside it; the frontal areas summed over the axes; and the error of the union.
 fn of_union<V: Vector, const N: usize>(
     memory: UnionMemory<V::Scalar>,
     (around, cell): (Around<V>, Aabb<V>),
     blur: V::Scalar,
     weights: &[[V::Scalar; N]],
-) -> Result<(Weighted<V::Scalar, N>, V::Scalar), NoProof> {
+) -> Result<(WithSum<V::Scalar, N>, V::Scalar), NoProof> {
     let Around { bins, row, .. } = around;
+    let (across, mut sums, mut all) = (side_areas(cell), [[V::Scalar::ZERO; 3]; N], V::Scalar::ZERO);
     let mut union = CellUnion::new(memory, cell, blur);
     let mut bodies: Vec<u32, MOST_BODIES> = Vec::new();
     for group in around.bodies(cell) {
@@ -189,26 +270,19 @@ fn of_union<V: Vector, const N: usize>(
         if union.part_count() > before {
             bodies.push(group.body).map_err(|_| NoProof::Full)?;
         } else if fills(bins, row, group, cell) {
-            return Ok(([[V::Scalar::ZERO; 3]; N], V::Scalar::ZERO));
+            return Ok(((sums, all), V::Scalar::ZERO));
         }
     }
-    let (across, mut sums) = (side_areas(cell), [[V::Scalar::ZERO; 3]; N]);
     let found = union.cell_and_surface(&mut |own, kept| {
-        let area = SurfaceArea::of_framed(kept, across).frontal;
         if let Some(weights) = bodies.get(own).and_then(|&body| weights.get(body as usize)) {
-            add_weighted(&mut sums, weights, area);
+            add((&mut sums, &mut all), weights, kept, across);
         }
     })?;
-    let (frame, mut scratch, mut piece) = (Frame::of(cell), Default::default(), Polygon::default());
     for group in around.sheets(cell) {
-        let (triangles, Some(weights)) = (bins.triangles(group), weights.get(group.body as usize)) else { continue };
-        for corners in bins.ids(group).iter().filter_map(|&id| triangles.get(id as usize)) {
-            if frame.inside(&corners.map(Vector::to_array), cell, &mut scratch, &mut piece).is_some() {
-                union.free_parts(&piece, |part| {
-                    add_weighted(&mut sums, weights, SurfaceArea::of_framed(part, across).frontal);
-                })?;
-            }
-        }
+        let Some(weights) = weights.get(group.body as usize) else { continue };
+        pieces(bins, (group, bins.ids(group)), cell, |piece| {
+            union.free_parts(piece, |part| add((&mut sums, &mut all), weights, part, across)).map(|_| ())
+        })?;
     }
-    Ok((sums, found.error))
+    Ok(((sums, all), found.error))
 }

@@ -88,6 +88,8 @@ struct DragReport {
     sharp_bodies: usize,
     /// Cells and axes where the blockage of a row was limited to 0.95.
     capped: usize,
+    /// Cells that bodies of different C_D share in parts of which each counts with all its frontal area.
+    unproved: usize,
 }
 
 /// Bounds of the solid volume within this share of it are as close as it is written.
@@ -101,6 +103,7 @@ impl ObstacleReport {
             round_bodies: drag.bodies[0],
             sharp_bodies: drag.bodies[1],
             capped: drag.capped,
+            unproved: drag.unproved,
         });
         let Shadows { hidden, inexact, .. } = &*found.shadows;
         ObstacleReport {
