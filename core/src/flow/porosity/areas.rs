@@ -169,7 +169,8 @@ impl<'a, R: Real> Ducts<'a, R> {
     pub fn gentleness(&self, i: usize, high: bool) -> R {
         let ([below, above], face) = (self.cells_beside(i, high), self.opening(i, high));
         // Most jumps are far from gentle, which costs less to see: a duct has at least nine tenths of its wider face.
-        let widest = R::larger(self.open[below.0], self.open[above.0 + self.stride]);
+        let at = |face: usize| self.open.get(face).copied().unwrap_or(R::ZERO);
+        let widest = R::larger(at(below.0), at(above.0 + self.stride));
         if R::from_f64(0.9) * widest - face >= R::from_f64(1.6 * SUDDEN) {
             return R::ZERO;
         }
