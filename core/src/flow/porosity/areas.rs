@@ -145,10 +145,16 @@ impl<'a, R: Real> Ducts<'a, R> {
         [below, above]
     }
 
+    /// Open fraction of a face of the axis, by its index; 0 of one that does not exist.
+    #[inline(always)]
+    fn at(&self, face: usize) -> R {
+        self.open.get(face).copied().unwrap_or(R::ZERO)
+    }
+
     /// Directional duct area of a cell by the indices of its low face and of itself.
     #[inline(always)]
     fn duct_of(&self, (face, cell): (usize, usize)) -> R {
-        duct_area(self.open[face], self.open[face + self.stride], self.volume_of(cell))
+        duct_area(self.at(face), self.at(face + self.stride), self.volume_of(cell))
     }
 
     /// The two duct areas at the low (or high) face of a cell. Beyond the domain stand cells as told by [`Ducts::cells_beside`].
@@ -169,8 +175,7 @@ impl<'a, R: Real> Ducts<'a, R> {
     pub fn gentleness(&self, i: usize, high: bool) -> R {
         let ([below, above], face) = (self.cells_beside(i, high), self.opening(i, high));
         // Most jumps are far from gentle, which costs less to see: a duct has at least nine tenths of its wider face.
-        let at = |face: usize| self.open.get(face).copied().unwrap_or(R::ZERO);
-        let widest = R::larger(at(below.0), at(above.0 + self.stride));
+        let widest = R::larger(self.at(below.0), self.at(above.0 + self.stride));
         if R::from_f64(0.9) * widest - face >= R::from_f64(1.6 * SUDDEN) {
             return R::ZERO;
         }
