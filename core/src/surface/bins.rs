@@ -403,9 +403,8 @@ fn layer_span<V: Vector>(grid: &Grid<V::Scalar>, triangle: &[V; 3]) -> Range<usi
 
 /// The triangles that reach one row of cells of a layer, by body, and the memory left over.
 pub(super) struct Row<'m, V> {
-    /// The bodies, without sheets.
-    pub groups: &'m [Group<V>],
-    ids: &'m [u32],
+    /// The triangles.
+    pub triangles: RowTriangles<'m, V>,
     /// What the parts of a divided cell may use.
     pub rest: Rest<'m, V>,
 }
@@ -419,18 +418,8 @@ impl<'m, V: Vector> Row<'m, V> {
             let [a, b, c] = corners.map(Vector::y);
             a.max(b).max(c) > lo && a.min(b).min(c) < hi
         };
-        let (RowTriangles { groups, ids }, rest) = RowTriangles::gather(bins, groups, reaches, memory)?;
-        Some(Row { groups, ids, rest })
-    }
-
-    /// Those triangles.
-    pub fn triangles(&self) -> RowTriangles<'m, V> {
-        RowTriangles { groups: self.groups, ids: self.ids }
-    }
-
-    /// The triangles of one of its groups.
-    pub fn ids(&self, group: &Group<V>) -> &'m [u32] {
-        self.triangles().ids(group)
+        let (triangles, rest) = RowTriangles::gather(bins, groups, reaches, memory)?;
+        Some(Row { triangles, rest })
     }
 }
 

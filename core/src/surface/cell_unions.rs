@@ -344,14 +344,14 @@ pub(super) fn bodies_in<'u, V: Vector>(
 ) -> Result<CellUnion<'u, V::Scalar>, NoProof> {
     let mut union = CellUnion::new(memory, cell, blur);
     let mut different: Vec<&Group<V>, MOST_COMPARED> = Vec::new();
-    for group in row.groups.iter() {
+    for group in row.triangles.groups.iter() {
         if group.bounds.max.x() <= cell.min.x() || group.bounds.min.x() >= cell.max.x() {
             continue;
         }
         if different.iter().any(|other| are_same(site.bins, row, [other, group])) {
             continue;
         }
-        union.add(cell, false, site.bins.triangles(group), row.ids(group).iter().copied())?;
+        union.add(cell, false, site.bins.triangles(group), row.triangles.ids(group).iter().copied())?;
         let _ = different.push(group);
     }
     Ok(union)
@@ -361,7 +361,7 @@ pub(super) fn bodies_in<'u, V: Vector>(
 fn are_same<V: Vector>(bins: &Bins<V>, row: &Row<V>, [a, b]: [&Group<V>; 2]) -> bool {
     let triangles = |group: &Group<V>| {
         let all = bins.triangles(group);
-        row.ids(group).iter().map(move |&id| all.get(id as usize))
+        row.triangles.ids(group).iter().map(move |&id| all.get(id as usize))
     };
     let corners = |group: &Group<V>| [group.bounds.min, group.bounds.max].map(Vector::to_array);
     corners(a) == corners(b) && triangles(a).eq(triangles(b))

@@ -146,17 +146,16 @@ pub(in crate::flow) fn contractions_at<R: Real, const D: usize>(
     [at(0), at(1)]
 }
 
-/// Whether the low and the high face of cell `i` of the row from `at` on, as far as they break, are at the border of a porous body askew to the grid.
-pub(in crate::flow) fn borders_at<R: Real, const D: usize>(
+/// Whether the low (0) or high (1) face of cell `i` of the row from `at` on is at the border of a porous body askew to the grid.
+pub(in crate::flow) fn border_at<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, at, i): (usize, [usize; D], usize),
-    breaks: [bool; 2],
-) -> [bool; 2] {
+    side: usize,
+) -> bool {
     let mut face = at;
     face[0] += i;
-    let low = breaks[0] && slab.has_border(d, face);
-    face[d] += 1;
-    [low, breaks[1] && slab.has_border(d, face)]
+    face[d] += side;
+    slab.has_border(d, face)
 }
 
 /// How far the low and the high face of cell `i` of the row from `at` on, as far as they break, have the duct's own area over the half step: at a wall as
@@ -175,7 +174,7 @@ pub(in crate::flow) fn sections_at<R: Real, const D: usize>(
             return contractions[side];
         }
         let gentle = ducts.gentleness(i, high);
-        let fades = gentle > R::ZERO && !borders_at(slab, (d, at, i), breaks)[side];
+        let fades = gentle > R::ZERO && !border_at(slab, (d, at, i), side);
         contractions[side] * if fades { sides[side].jump_share(i, gentle) } else { R::ONE }
     };
     [section(0), section(1)]

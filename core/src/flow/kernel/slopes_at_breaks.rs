@@ -6,7 +6,7 @@
 //! Beyond a jump of a gentle contraction the slope sees the neighbour as it would be in a duct of this cell's area: a steady stream is flat then, and loses
 //! nothing, and waves keep their second order. Where the gas is fast or a shock stands it sees it as it is. Beside a sudden jump both cells are flat.
 
-use crate::flow::kernel::contractions::{AtFaces, Contractions, borders_at, contractions_at};
+use crate::flow::kernel::contractions::{AtFaces, Contractions, border_at, contractions_at};
 use crate::flow::kernel::mixed;
 use crate::flow::kernel::row_slopes::{self, Differences, HalfWeights, RowBeside, Three};
 use crate::flow::kernel::slab::{Place, RowAt, Slab};
@@ -221,7 +221,8 @@ fn flatness<R: Real, const D: usize>(
     sides: &[AtFaces<'_, R, D>; 2],
     breaks: [bool; 2],
 ) -> ([R; 2], [bool; 2]) {
-    let (shares, on_border) = (contractions_at(sides, i, breaks), borders_at(slab, (d, at, i), breaks));
+    let shares = contractions_at(sides, i, breaks);
+    let on_border = [0, 1].map(|side| breaks[side] && border_at(slab, (d, at, i), side));
     let at = |side: usize| if on_border[side] { R::ONE } else { shares[side] };
     ([at(0), at(1)], on_border)
 }

@@ -126,8 +126,7 @@ impl<'a, R: Real> Ducts<'a, R> {
     /// Directional duct area of a cell.
     #[inline(always)]
     pub fn duct(&self, i: usize) -> R {
-        let (a, b) = self.openings(i);
-        duct_area(a, b, self.volume(i))
+        self.duct_of((self.low + i, self.start + i))
     }
 
     /// Indices of the low face and of the cell itself, for the two cells at the low (or high) face of a cell. Beyond the domain stands the cell on the

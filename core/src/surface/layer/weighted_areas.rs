@@ -79,7 +79,7 @@ impl<V: Vector> Layers<'_, V> {
                     unproved += 1;
                     continue;
                 };
-                let around = Around { bins: &self.bins, k, row: row.triangles() };
+                let around = Around { bins: &self.bins, k, row: row.triangles };
                 if around.weights_differ(cell, weights) {
                     let memory = (union.reborrow(), (&mut *row.rest.0, &mut *row.rest.1));
                     let mut found = InParts { tol: self.options.tol, left: MOST_EFFORT, proved: zero, doubtful: zero };
