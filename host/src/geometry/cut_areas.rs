@@ -1,13 +1,16 @@
 //! Areas of a curved solid's surface inside a box: frontal areas along x, y, z and wetted area.
 //!
-//! Every surface here is swept by circles, or ellipses: quadrics of revolution, mapped or not, by those across their axis, flat ends by those about their
-//! middle, tori by those of the tube. On each the sides of the box cut arcs, between whose ends all integrals but one have closed forms (the wetted area of an
+//! Cylinders and cones are made of straight lines, see `ruled`. Every other surface here is swept by circles, or ellipses: balls, mapped or not, by those
+//! across an axis, flat ends by those about their middle, tori by those of the tube. On each the sides of the box cut arcs, between whose ends all integrals but one have closed forms (the wetted area of an
 //! ellipsoid is a sum of its own). Over the circles they are summed by the rules of Gauss and Kronrod between all places where something changes: where an
 //! arc appears, where an edge of the box pierces the surface, where its outline crosses a side. For quadrics these are roots of quadratics: of the
 //! planes of the sides and those of the outlines, which touch the circles or meet each other on the surface.
 
+mod ruled;
+
 use super::form::Form;
 use glam::DVec3;
+use ruled::Ruled;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::kronrod::{panel, plus};
@@ -45,15 +48,15 @@ pub fn in_box(form: &Form, within: Aabb<DVec3>) -> Option<SurfaceArea<f64>> {
                 [DVec3::X, DVec3::Y, DVec3::Z].map(|e| s.apply(s.shape().center + e * s.shape().semi_axes) - center);
             add(Swept::ball(center, half, [-1.0, 1.0]));
         }
-        Form::Cylinder(s) => cone(s.ends(), [s.base_radius(); 2]).for_each(add),
-        Form::Cone(s) => cone(s.ends(), [s.base_radius(), s.top_radius()]).for_each(add),
+        Form::Cylinder(s) => sum = cone(s.ends(), [s.base_radius(); 2], within),
+        Form::Cone(s) => sum = cone(s.ends(), [s.base_radius(), s.top_radius()], within),
         Form::Capsule(s) => {
             let along = (s.to - s.from).try_normalize().unwrap_or(DVec3::Z);
             let (u, v) = along.any_orthonormal_pair();
             let axes = [u, v, along].map(|e| e * s.radius);
             add(Swept::ball(s.from, axes, [-1.0, 0.0]));
             add(Swept::ball(s.to, axes, [0.0, 1.0]));
-            add(Swept::between([s.from, s.to], [s.radius; 2]));
+            sum = plus(sum, Ruled::between([s.from, s.to], [s.radius; 2]).inside(within), 1.0);
         }
         Form::Torus(s) => torus(s).into_iter().flatten().for_each(add),
         Form::Box(_) | Form::Hull(_) => return None,
@@ -63,10 +66,11 @@ pub fn in_box(form: &Form, within: Aabb<DVec3>) -> Option<SurfaceArea<f64>> {
 }
 
 /// A cone between two discs, and these.
-fn cone(ends: [DVec3; 2], radii: [f64; 2]) -> impl Iterator<Item = Swept> {
+fn cone(ends: [DVec3; 2], radii: [f64; 2], within: Aabb<DVec3>) -> Sums {
     let along = (ends[1] - ends[0]).normalize_or_zero();
-    [Swept::between(ends, radii), Swept::disc(ends[0], -along, radii[0]), Swept::disc(ends[1], along, radii[1])]
-        .into_iter()
+    let discs = [Swept::disc(ends[0], -along, radii[0]), Swept::disc(ends[1], along, radii[1])];
+    let round = Ruled::between(ends, radii).inside(within);
+    discs.into_iter().fold(round, |sum, disc| plus(sum, disc.inside(within), 1.0))
 }
 
 /// A torus, or a part of one and its ends.
@@ -86,6 +90,12 @@ fn torus(shape: &TorusShape<DVec3>) -> [Option<Swept>; 3] {
         (shape.angle < 360.0).then(|| Swept::disc(shape.center + out * shape.radius, way * sign, shape.tube))
     };
     [Some(ring), end(0.0, -1.0), end(angle, 1.0)]
+}
+
+/// Does a box from `lo` to `hi` touch that from the origin to `size`?
+fn touch([lo, hi]: [DVec3; 2], size: DVec3) -> bool {
+    let slack = size * 1e-9;
+    hi.cmpge(-slack).all() && lo.cmple(size + slack).all()
 }
 
 /// A surface swept by circles.
@@ -129,21 +139,6 @@ impl Swept {
         Swept::Quadric(Quadric { origin, axes, square: [1.0, 0.0, -1.0], range, normal: None })
     }
 
-    /// A cone between two discs, without these.
-    fn between([from, to]: [DVec3; 2], radii: [f64; 2]) -> Self {
-        let (u, v) = (to - from).try_normalize().unwrap_or(DVec3::Z).any_orthonormal_pair();
-        let large = radii[0].max(radii[1]);
-        let [a, b] = radii.map(|radius| if large > 0.0 { radius / large } else { 0.0 });
-        let square = [a * a, 2.0 * a * (b - a), (b - a) * (b - a)];
-        Swept::Quadric(Quadric {
-            origin: from,
-            axes: [u * large, v * large, to - from],
-            square,
-            range: [0.0, 1.0],
-            normal: None,
-        })
-    }
-
     fn disc(origin: DVec3, normal: DVec3, radius: f64) -> Self {
         let (u, v) = normal.try_normalize().unwrap_or(DVec3::Z).any_orthonormal_pair();
         let axes = [u * radius, v * radius, DVec3::ZERO];
@@ -165,8 +160,7 @@ impl Swept {
                 [-1.0, 1.0].map(|side| *center + side * (radius + tube) * (1.0 + 1e-9))
             }
         };
-        let slack = size * 1e-9;
-        hi.cmpge(-slack).all() && lo.cmple(size + slack).all()
+        touch([lo, hi], size)
     }
 
     /// What it has inside a box.

@@ -57,7 +57,7 @@ impl Roads {
         for (body, known) in convex.iter_mut().enumerate() {
             match (known.as_ref(), &bodies.bodies[body].form) {
                 // Whatever the method: no other measures it.
-                (_, Some(Form::Torus(shape))) => formulas.extend(FormulaSolid::torus(body, shape)),
+                (_, Some(Form::Torus(shape))) => formulas.extend(FormulaSolid::torus(body, &planes.torus(shape))),
                 (Some(Known::Round(shape)), _) if options.method == Method::Auto => {
                     if let Some(form) = FormulaSolid::new(body, *shape) {
                         formulas.push(form);

@@ -10,6 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::convex::shape::{Cone, Cylinder};
 use voidage_core::grid::{Grid, Located};
+use voidage_core::solids::torus::TorusShape;
 
 /// A copy of the bodies' triangles with such corners moved; none if there are no such corners.
 #[must_use]
@@ -55,25 +56,49 @@ impl<'a> ToPlanes<'a> {
     pub fn form(&self, form: &Form) -> Form {
         match form {
             Form::Cylinder(s) => {
-                let [from, to] = self.ends(s.ends());
+                let [from, to] = self.ends(s.ends(), s.base_radius());
                 Form::Cylinder(Cylinder::new(from, to, s.base_radius()))
             }
             Form::Cone(s) => {
-                let [from, to] = self.ends(s.ends());
+                let [from, to] = self.ends(s.ends(), s.base_radius().max(s.top_radius()));
                 Form::Cone(Cone::truncated(from, to, s.base_radius(), s.top_radius()))
             }
             other => other.clone(),
         }
     }
 
-    /// The ends of an axis, which is along one of the grid if it misses that by rounding: its flat ends lie in planes then. Across the axis nothing moves
-    /// into a plane: what touches one goes on to do so.
-    fn ends(&self, [from, to]: [DVec3; 2]) -> [DVec3; 2] {
-        let along = (to - from).abs().cmpgt(self.near);
+    /// The ends of an axis, which is along one of the grid if discs of that radius about them miss that by rounding: they lie in planes then. Across the axis
+    /// nothing moves into a plane: what touches one goes on to do so.
+    fn ends(&self, [from, to]: [DVec3; 2], radius: f64) -> [DVec3; 2] {
+        let way = (to - from).abs();
+        let along = (way * (radius / way.max_element()).max(1.0)).cmpgt(self.near);
         if along.bitmask().count_ones() != 1 {
             return [from, to];
         }
         [from, to].map(|p| DVec3::select(along, self.corner(p, None), from))
+    }
+
+    /// A torus, its axis and its beginning along axes of the grid if no point of it misses that by more than rounding; flat ends across one are in a plane.
+    #[must_use]
+    pub fn torus(&self, torus: &TorusShape<DVec3>) -> TorusShape<DVec3> {
+        let reach = torus.radius + torus.tube;
+        let aligned = |direction: DVec3| {
+            let unit = direction / direction.abs().max_element();
+            let along = (unit.abs() * reach).cmpgt(self.near);
+            if along.bitmask().count_ones() == 1 { DVec3::select(along, unit, DVec3::ZERO) } else { direction }
+        };
+        let [axis, start] = [torus.axis, torus.start].map(aligned);
+        let is_aligned = |d: DVec3| d.cmpne(DVec3::ZERO).bitmask().count_ones() == 1;
+        let mut across = DVec3::ZERO;
+        if torus.angle < 360.0 && is_aligned(axis) && is_aligned(start) {
+            // The first end is across the third direction; of an odd number of quarter turns the last is across the first.
+            across = axis.cross(start).abs();
+            if torus.angle % 180.0 == 90.0 {
+                across += start.abs();
+            }
+        }
+        let center = DVec3::select(across.cmpgt(DVec3::ZERO), self.corner(torus.center, None), torus.center);
+        TorusShape { center, axis, start, ..*torus }
     }
 
     /// A corner, its coordinates replaced by those of the planes that it misses by rounding.
