@@ -80,6 +80,27 @@ fn probes_in_solids_have_no_values() {
     assert_eq!(last.split(',').count(), table.lines().next().expect("a head").split(',').count());
 }
 
+/// Keys about what a case does not have: treatments of porosity, drag along an axis of one cell, pictures.
+#[test]
+fn keys_of_what_is_not_there_are_named() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX).expect("a file");
+    let whole = case("", "", "");
+    for (porosity, words) in [
+        ("jump = 0.5", "key porosity.jump: goes with porosity.scene or porosity.from: without them all is open"),
+        ("merge = false", "key porosity.merge: goes with porosity.scene or porosity.from"),
+        ("scene = \"box.toml\"\n[drag]\ncr = [0, 0, 5]", "key drag.cr: acts along z, which has one cell"),
+        ("scene = \"box.toml\"\n[drag]\nlinear = [1, 0, 5]", "key drag.linear: acts along z, which has one cell"),
+    ] {
+        let text = stderr(&solve(&at, &whole.replace("scene = \"box.toml\"", porosity), "out", &[]));
+        assert!(text.contains(words), "{text}");
+    }
+    let drawn = stderr(&solved(&at, &case("", "", "slice = [0.5, 0.5]\nformats = [\"png\"]"), "out", &["--force"]));
+    assert!(!drawn.contains("pictures"), "{drawn}");
+    let text = stderr(&solved(&at, &case("", "", "range = { speed = [0, 9] }"), "out", &["--force"]));
+    assert!(text.contains("key output.range: is of pictures: formats has no png"), "{text}");
+}
+
 #[test]
 fn ends_of_a_box_in_the_wrong_order_are_refused() {
     let at = Scratch::new();

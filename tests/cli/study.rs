@@ -394,7 +394,7 @@ fn tints_tell_tolerances_and_depths_apart() {
         assert!(page.contains(heading) && page.matches(left_out).count() == 1, "{page}");
     }
     // A study that lacks nothing says nothing of the kind.
-    fs::write(&case, text.replace("\"gjk\"", "\"auto\"")).expect("written");
+    fs::write(&case, text.replace("\"gjk\"", "\"auto\"").replace("leaf = \"solid\"\n", "")).expect("written");
     let output = voidage(&[&"study", &case, &"-q", &"-o", &out, &"--force"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let page = fs::read_to_string(out.join("study.md")).expect("a page");
@@ -574,4 +574,27 @@ fn grids_of_as_many_cells_and_files_of_solids_are_told_apart() {
     let (changed, said) = study();
     assert_eq!(changed, wanted(0.015625, 0.015625));
     assert!(said.contains("all is measured anew"), "{said}");
+}
+
+/// What would change nothing is refused, and a study in which no method fits any scene has failed.
+#[test]
+fn a_study_of_nothing_is_an_error() {
+    let dir = Scratch::new();
+    let case = dir.file("case.toml");
+    let ball = "[[scene]]\nname = \"ball\"\n[[scene.solid]]\nshape = \"sphere\"\ncenter = [0.5, 0.5, 0.5]\nradius = 0.4\n\
+        [[grid]]\norigin = [0, 0, 0]\nspacing = [0.25, 0.25, 0.25]\ncells = [4, 4, 4]\n";
+    let sod = "[[flow]]\nproblem = \"sod\"\ncells = 20\norder = 1\nlimiter = \"mc\"\n";
+    for (keys, words) in [
+        (format!("{ball}[[method]]\nmethod = \"surface\"\n"), "nothing was measured"),
+        (format!("{ball}[[method]]\nleaf = \"half\"\n"), "leaf has no effect: it is of the method gjk"),
+        (sod.to_owned(), "limiter has no effect: order 1 has no slopes to limit"),
+    ] {
+        fs::write(&case, format!("repeats = 1\n{keys}")).expect("written");
+        let output = voidage(&[&"study", &case]);
+        assert!(!output.status.success() && stderr(&output).contains(words), "{keys}: {}", stderr(&output));
+    }
+    fs::write(&case, format!("repeats = 1\n{}", sod.replace("limiter = \"mc\"\n", ""))).expect("written");
+    let output = voidage(&[&"study", &case]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(!stdout(&output).contains("Orders of convergence"), "of a single grid: {}", stdout(&output));
 }

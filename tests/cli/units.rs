@@ -44,12 +44,34 @@ fn kilopascals_in_a_case_with_temperatures_are_doubted() {
 /// Colours are given in kPa, pressures of states in Pa.
 #[test]
 fn colours_in_pascals_are_doubted() {
-    let air =
-        |range: &str| said(AIR, "T = 288, p = 101325", "\"wall\"", &format!("range = {{ overpressure = {range} }}"));
+    let air = |range: &str| {
+        said(
+            AIR,
+            "T = 288, p = 101325",
+            "\"wall\"",
+            &format!("formats = [\"png\"]\nrange = {{ overpressure = {range} }}"),
+        )
+    };
     let text = air("[0, 3e5]");
     let words = "key output.range.overpressure: 300000 kPa is a hundred times the highest pressure of the case, 101325 Pa, or more; these ends are in kPa";
     assert!(text.contains(words), "{text}");
     assert!(!air("[-0.5, 2]").contains("overpressure") && !air("[-100, 9000]").contains("overpressure"));
+}
+
+/// A density in g/cm³ or in g/m³ makes gas that no case means.
+#[test]
+fn densities_in_grams_are_doubted() {
+    let text = said(AIR, "rho = 0.0012, p = 101325", "\"wall\"", "");
+    let words =
+        "key initial.uniform.rho: at 101325 Pa a density of 0.0012 is that of gas of 294206 K; densities are in kg/m³";
+    assert!(text.contains(words), "{text}");
+    let text = said(AIR, "rho = 1225, p = 101325", "\"wall\"", "");
+    assert!(text.contains("is that of gas of 0.288 K; densities are in kg/m³"), "{text}");
+    for (gas, state) in [(AIR, "rho = 1.225, p = 101325"), (AIR, "rho = 0.2, p = 8e5"), ("", "rho = 1225, p = 101325")]
+    {
+        let text = said(gas, state, "\"wall\"", "");
+        assert!(!text.contains("densities"), "{text}");
+    }
 }
 
 #[test]

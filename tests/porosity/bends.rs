@@ -183,3 +183,49 @@ fn ends_that_miss_planes_by_rounding_lie_in_them() {
         assert_close(&one.beta, &other.beta, 1e-9, &format!("{form:?}"));
     }
 }
+
+/// A bend flush with a pipe whose axis misses one of the grid by rounding, as programs write it, is the bend without that: its end lies in the plane.
+#[test]
+fn bends_that_miss_an_axis_by_rounding_end_in_planes() {
+    let edges = Edges([even(-1.5, 0.6, 5), even(-1.5, 0.5, 6), even(-1.5, 3.0 / 7.0, 7)]);
+    let run = |axis: DVec3, start: DVec3, angle: f64, pipe: [DVec3; 2], moved: DVec3| {
+        let bend = TorusShape { center: moved, axis, start, radius: 0.4, tube: 0.25, angle };
+        let pipe = Cylinder::new(pipe[0], pipe[1], 0.25);
+        let (grid, options) = (edges.grid(None).expect("a grid"), Options { bounds: true, ..Options::default() });
+        porosity(&grid, &formulas(&[Form::Torus(bend), Form::Cylinder(pipe)]), options)
+    };
+    for (angle, pipe) in [
+        (180.0, [DVec3::new(0.0, 0.0, -0.4), DVec3::new(0.0, 0.5, -0.4)]),
+        (90.0, [DVec3::new(0.0, -0.4, 0.0), DVec3::new(0.0, -0.4, -0.5)]),
+    ] {
+        let exact = run(DVec3::X, DVec3::Z, angle, pipe, DVec3::ZERO);
+        let whole = PI * 0.25 * 0.25 * (0.4 * f64::to_radians(angle) + 0.5);
+        assert!((exact.solid_volume - whole).abs() < 1e-9, "{angle}: {}", exact.solid_volume);
+        for (tilt, turn) in [(1.1e-15, 0.0), (-7e-16, 2e-16), (3e-16, -1.5e-16)] {
+            let (axis, start) = (DVec3::new(1.0, -tilt, 1.7e-17), DVec3::new(-1.7e-17, turn, 1.0));
+            let found = run(axis, start, angle, pipe, DVec3::new(0.0, turn, -turn));
+            assert!(found.max_gap <= 1e-4, "{angle}, {tilt:e}: {:e}", found.max_gap);
+            assert!((found.solid_volume - whole).abs() < 1e-9, "{angle}, {tilt:e}: {}", found.solid_volume);
+            assert_close(&found.beta, &exact.beta, 1e-4, "beside the bend on an axis");
+        }
+    }
+}
+
+/// Of a disc that is much wider than thick the ends miss an axis of the grid by more than its axis does.
+#[test]
+fn thin_discs_askew_are_not_straightened() {
+    let (thick, tilt) = (1e-8, 1e-5);
+    let half = DVec3::new(1.0, tilt, 0.0).normalize() * (0.5 * thick);
+    let edges = Edges([vec![-2.0, -tilt / 4.0, tilt / 3.0, 2.0], vec![-2.0, 0.0, 2.0], vec![-2.0, 2.0]]);
+    let disc = formulas(&[Form::Cylinder(Cylinder::new(-half, half, 1.0))]);
+    let found = porosity(&edges.grid(None).expect("a grid"), &disc, Options { bounds: true, ..Options::default() });
+    // A plane x = c cuts it in the strip |y + c / tilt| < thick / (2 tilt) of the disc, all of which lies on one side of y = 0.
+    for (plane, c) in [(1, -tilt / 4.0), (2, tilt / 3.0)] {
+        let (y, width) = (-c / tilt, thick / tilt * (1.0 + tilt * tilt).sqrt());
+        let strip = 2.0 * (1.0 - y * y).sqrt() * width;
+        let faces = [0, 1].map(|row| found.beta.x[4 * row + plane]);
+        let expected = if y < 0.0 { [1.0 - strip / 8.0, 1.0] } else { [1.0, 1.0 - strip / 8.0] };
+        let miss = (faces[0] - expected[0]).abs().max((faces[1] - expected[1]).abs());
+        assert!(miss < 1e-9, "{plane}: {faces:?}, {expected:?}");
+    }
+}

@@ -24,8 +24,9 @@ const LEAST_APART: f64 = 2.0 * SMALL;
 const OUTLINED: f64 = 11.0;
 /// Pixels between lines of hatching.
 const HATCH: usize = 6;
-/// Solid fraction from which a cell is hatched.
+/// Solid fraction from which a cell is hatched, and open fraction: what is so little open is no part of the solid drawn without hatching.
 const LEAST_HATCHED: f64 = 5e-4;
+const LEAST_OPEN: f64 = 1e-9;
 /// Share of ink in the outlines.
 const OUTLINE: f64 = 0.13;
 
@@ -131,7 +132,7 @@ impl Heatmap<'_> {
         for (y, row) in rows.iter().rev().enumerate() {
             for (x, column) in columns.iter().enumerate().filter(|(x, _)| (x + y) % HATCH < 2) {
                 let share = mean(row, column, blocked);
-                if (LEAST_HATCHED..1.0 - LEAST_HATCHED).contains(&share) {
+                if (LEAST_HATCHED..1.0 - LEAST_OPEN).contains(&share) {
                     let colour = if (x + y).is_multiple_of(HATCH) { INK } else { WHITE };
                     canvas.blend(area.x + x, area.y + y, colour, 0.3 + 0.5 * share);
                 }
@@ -329,6 +330,7 @@ mod tests {
                 (0..3600).map(|n| far(canvas.get(n % 60, n / 60))).max().unwrap_or(0)
             };
             assert_eq!([changed(0.0), changed(1.0)], [0, 0]);
+            assert!(changed(1.0 - 2e-4) > 60, "a cell that is nearly solid looks open");
             assert!(changed(0.1) > 60 && changed(0.6) > changed(0.1), "{value}: {} {}", changed(0.1), changed(0.6));
         }
     }

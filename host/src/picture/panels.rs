@@ -81,7 +81,7 @@ impl Panel {
 }
 
 /// Colours that also differ in lightness; used in turn.
-const COLOURS: [Colour; 8] = [
+const COLOURS: [Colour; 14] = [
     [32, 84, 147],
     [214, 84, 32],
     [46, 139, 87],
@@ -90,6 +90,12 @@ const COLOURS: [Colour; 8] = [
     [90, 90, 90],
     [60, 160, 190],
     [200, 60, 110],
+    [110, 66, 28],
+    [150, 190, 60],
+    [20, 20, 20],
+    [235, 150, 165],
+    [0, 90, 84],
+    [165, 160, 225],
 ];
 const GRID: Colour = [226, 229, 233];
 const BAND: Colour = [238, 240, 243];

@@ -224,8 +224,11 @@ impl Report {
         ));
         if let Some(ObstacleReport { totals, .. }) = &self.obstacles {
             let Totals { frontal_area: [x, y, z], wetted_area, .. } = *totals;
+            // The frontal areas of any surface come to half of it or more.
+            let in_planes = 2.0 * (x + y + z) < wetted_area * (1.0 - EXACT);
             let [x, y, z, wetted] = [x, y, z, wetted_area].map(|area| part(area, wetted_area, self.digits));
-            progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {wetted} m²"));
+            let note = if in_planes { " with that in planes of the grid, which has no frontal area here" } else { "" };
+            progress.say(format!("frontal area  {x}, {y}, {z} m² along x, y, z; wetted {wetted} m²{note}"));
         }
         progress.say(format!(
             "largest gap   {}",

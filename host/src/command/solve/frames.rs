@@ -180,14 +180,16 @@ pub fn remove_old(dir: &Path) -> Result<()> {
 /// Name of the list of frames.
 pub const SERIES: &str = "flow.pvd";
 
-/// Writes the list of frames with their times that ParaView opens as one series.
+/// Writes the list of frames with their times that ParaView opens as one series; a run that went on with other formats has none of some times.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn series(path: &Path, times: &[f64]) -> Result<()> {
     let mut text =
         String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n");
-    for (n, time) in times.iter().enumerate() {
+    let frames = path.with_file_name("frames");
+    let there = |n: &usize| frames.join(frame_name(*n, "vtr")).exists();
+    for (n, time) in times.iter().enumerate().filter(|(n, _)| there(n)) {
         let file = frame_name(n, "vtr");
         let _ = writeln!(text, "    <DataSet timestep=\"{time}\" part=\"0\" file=\"frames/{file}\"/>"); // a String takes anything
     }

@@ -13,6 +13,7 @@ use super::region_report::RegionReport;
 use super::setup::{Setup, SpaceReport};
 use super::sides::PatchReport;
 use super::solids::{OTHERS, SolidForce};
+use super::stepping::two_digits;
 use crate::command::progress::Progress;
 use crate::command::version::{BUILD, Build};
 use crate::grid::AXES;
@@ -297,8 +298,8 @@ impl Report {
         let short_of = |end| format!(", stopped by max_steps before the end at {} s", to_six_digits(end));
         let short = self.end_not_reached.map_or_else(String::new, short_of);
         progress.say(format!("steps         {} to t = {} s{short}", self.steps, to_six_digits(self.time)));
-        let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {}", share(e)));
-        progress.say(format!("drift         mass {}{energy}", share(self.mass_drift)));
+        let energy = self.energy_drift.map_or_else(String::new, |e| format!(", energy {}", two_digits(e)));
+        progress.say(format!("drift         mass {}{energy}", two_digits(self.mass_drift)));
         progress.say(format!(
             "repairs       {} to first order, {}, {} repeated",
             counted(self.fallbacks, "fallback", "fallbacks"),
@@ -307,9 +308,10 @@ impl Report {
         ));
         if self.floors > 0 {
             let FloorChange { mass, momentum: [x, y, z], energy } = &self.floor_change;
-            let energy = energy.map_or_else(String::new, |e| format!(", energy by {e:.1e}"));
-            let momentum = format!("({x:.1e}, {y:.1e}, {z:.1e})");
-            progress.say(format!("floors        changed the mass by {mass:.1e}, the momentum by {momentum}{energy}"));
+            let energy = energy.map_or_else(String::new, |e| format!(", energy by {}", two_digits(e)));
+            let [mass, x, y, z] = [*mass, *x, *y, *z].map(two_digits);
+            let momentum = format!("({x}, {y}, {z})");
+            progress.say(format!("floors        changed the mass by {mass}, the momentum by {momentum}{energy}"));
         }
         // Where all solids are asked for nothing acts on the others.
         let acts = |f: &&ForceReport| f.largest.name != OTHERS || f.largest.largest > 0.0;
@@ -348,11 +350,6 @@ const ENOUGH_CELLS: f64 = 8.0;
 
 /// What is said of a region of fewer.
 const FEW_CELLS: &str = ": few for a blast, whose peaks come out too low; --refine-check tells by how much";
-
-/// A share in two digits.
-fn share(of: f64) -> String {
-    if of == 0.0 { "0".to_owned() } else { format!("{of:.1e}") }
-}
 
 /// The largest values of both runs, a line a place.
 fn say_refine_check(RefineCheck { cells: [nx, ny, nz], peaks, .. }: &RefineCheck, progress: &Progress) {

@@ -6,6 +6,7 @@ use super::force::{FreeSides, pushed_cells};
 use super::inlet::Inlet;
 use super::mixture::mixture;
 use super::open_parts::{OpenParts, Standing};
+use super::output_keys::{Format, RangeKeys};
 use super::ranges::NOT_NEGATIVE;
 use super::region_report::{self, RegionReport};
 use super::regions::Region;
@@ -104,7 +105,7 @@ pub fn setup<const D: usize>(
     let widths = live.map(|d| edges.widths(d));
     let Sides { boundaries, patches, feed, mut inlets } = sides::sides(file, &states, edges, &beginning.cells)?;
     // After keys that are refused: of these nothing else is said.
-    units::doubts(file, ends).into_iter().for_each(|doubt| progress.warn(doubt));
+    units::doubts(file, ends).into_iter().chain(without_pictures(file)).for_each(|doubt| progress.warn(doubt));
     let mut flow = Flow::new(widths, gas, boundaries);
     flow.patches = patches;
     (flow.feed_sides, flow.feed_patches) = feed;
@@ -328,6 +329,18 @@ fn gravity<const D: usize>(file: &CaseFile, live: [usize; D]) -> Result<[f64; D]
     Ok(live.map(|d| g[d]))
 }
 
+/// Keys of pictures in a case that asks for none.
+fn without_pictures(file: &CaseFile) -> Vec<String> {
+    let output = &file.case.output;
+    if output.formats().contains(&Format::Png) {
+        return Vec::new();
+    }
+    let RangeKeys { speed, overpressure } = &output.range;
+    let keys = [("slice", output.slice.is_some()), ("range", speed.is_some() || overpressure.is_some())];
+    let given = keys.into_iter().filter(|(_, given)| *given);
+    given.map(|(key, _)| file.remark(&format!("output.{key}"), "is of pictures: formats has no png")).collect()
+}
+
 type Coefficients<const D: usize> = [[Vec<f64>; D]; 2];
 
 /// Quadratic and linear coefficients of the live axes; empty where zero. None if all are.
@@ -342,6 +355,10 @@ fn drag<const D: usize>(
     let from = keys.from.as_ref().map(|dir| file.fields("drag.from", dir, edges)).transpose()?;
     let mut all: Coefficients<D> = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
     for (n, (name, constants)) in [("cr", keys.cr), ("linear", keys.linear)].into_iter().enumerate() {
+        let idle = |axis: &usize| constants.is_some_and(|all| all[*axis] != 0.0) && !live.contains(axis);
+        if let Some(axis) = (0..3).find(idle) {
+            return Err(file.wrong(&format!("drag.{name}"), format!("acts along {}, which has one cell", AXES[axis])));
+        }
         for (d, &axis) in live.iter().enumerate() {
             let array = from.as_ref().map(|dir| dir.join(format!("{name}_{}.npy", AXES[axis])));
             all[n][d] = match (array.filter(|path| path.exists()), constants) {

@@ -286,5 +286,10 @@ fn check(file: &CaseFile, keys: &PorosityKeys) -> Result<()> {
     match given.iter().find(|(_, given)| *given && keys.scene.is_none()) {
         Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene: it is about the solids of a scene")),
         None => law(file).map(drop),
+    }?;
+    let treated = [("porosity.jump", keys.jump.is_some()), ("porosity.merge", keys.merge.is_some())];
+    match treated.iter().find(|(_, given)| *given && keys.scene.is_none() && keys.from.is_none()) {
+        Some((key, _)) => Err(file.wrong(key, "goes with porosity.scene or porosity.from: without them all is open")),
+        None => Ok(()),
     }
 }

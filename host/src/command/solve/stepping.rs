@@ -69,9 +69,15 @@ fn floored<const D: usize>(setup: &Setup<D>, floors: usize) -> Option<String> {
     if shares.iter().all(|(_, share)| *share <= MOST_FLOORED) {
         return None;
     }
-    let shares: Vec<String> = shares.iter().map(|(name, share)| format!("{share:.1e} of its {name}")).collect();
+    let shares: Vec<String> =
+        shares.iter().map(|(name, share)| format!("{} of its {name}", two_digits(*share))).collect();
     let (shares, last) = (shares.join(", "), state_of(setup, cell));
     Some(format!("floors have changed what the domain holds by {shares}, the last in {last}"))
+}
+
+/// A share, or a change, in two digits.
+pub fn two_digits(of: f64) -> String {
+    if of == 0.0 { "0".to_owned() } else { format!("{of:.1e}") }
 }
 
 /// The speed by which mass becomes the momentum that changes of momentum are measured against: sqrt(E/rho), and in a barotropic gas

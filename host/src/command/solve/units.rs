@@ -108,12 +108,25 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
     said
 }
 
-/// Temperatures of a case in K, if it `is_si`, and velocities in m/s, if it has pressures in Pa, that no gas has: the first of each.
+/// Temperatures of a case in K and densities in kg/m³, if it `is_si`, and velocities in m/s, if it has pressures in Pa, that no gas has: the first of each.
 fn beyond_sense(file: &CaseFile, states: &[(String, &StateKeys)], is_si: bool, is_pascal: bool) -> Vec<String> {
     let hot = states.iter().find_map(|(key, keys)| Some((key, keys.temperature.filter(|t| is_si && *t > HOTTEST)?)));
     let hot = hot.map(|(key, t)| {
         let reason = format!("{} K is hotter than the gas of any explosion: check the exponent", written(t));
         file.remark(&format!("{key}.T"), reason)
+    });
+    let dense = states.iter().find_map(|(key, keys)| {
+        let (rho, p) = (keys.rho?, keys.p.filter(|p| is_si && *p >= LEAST)?);
+        let t = p / (rho * file.case.gas.gas_constant?);
+        (!(COLD..=HOTTEST).contains(&t)).then(|| {
+            let reason = format!(
+                "at {} Pa a density of {} is that of gas of {} K; densities are in kg/m³",
+                written(p),
+                written(rho),
+                number_to(t, t / 1e3)
+            );
+            file.remark(&format!("{key}.rho"), reason)
+        })
     });
     let fast = states.iter().find_map(|(key, keys)| {
         let mut all = VELOCITIES.into_iter().zip([keys.u, keys.v, keys.w]);
@@ -123,7 +136,7 @@ fn beyond_sense(file: &CaseFile, states: &[(String, &StateKeys)], is_si: bool, i
         let reason = format!("{} m/s is faster than the gas of any explosion: check the exponent", written(u));
         file.remark(&format!("{key}.{name}"), reason)
     });
-    hot.into_iter().chain(fast).collect()
+    hot.into_iter().chain(dense).chain(fast).collect()
 }
 
 /// What a gas constant may be instead of one in J/(kg K), beside a temperature in the table `key` and pressures in Pa.

@@ -163,7 +163,11 @@ pub fn parts(found: &StudyFindings) -> Vec<(&'static str, Vec<String>, Listing)>
     }
     if !found.flows.is_empty() {
         let orders = runs::orders(&found.flows);
-        parts.push(("Orders of convergence", flow_sentences(found, &orders), runs::order_table(&orders)));
+        let words = flow_sentences(found, &orders);
+        // On a single grid nothing falls.
+        if !orders.is_empty() || words.len() > 1 {
+            parts.push(("Orders of convergence", words, runs::order_table(&orders)));
+        }
         parts.push(("Flows", vec![], runs::table(&found.flows)));
     }
     if !found.scalings.is_empty() {

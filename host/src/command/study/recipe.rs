@@ -56,7 +56,11 @@ impl Recipe {
 pub fn recipes(mut keys: StrictTable, areas: bool) -> Result<Vec<Recipe>> {
     let name = keys.named()?;
     let methods = keys.get("method", some(choice::<Method>))?.unwrap_or_else(|| vec![Method::default()]);
-    let leaves = keys.get("leaf", some(choice::<Leaf>))?.unwrap_or_else(|| vec![Leaf::default()]);
+    let given = keys.get("leaf", some(choice::<Leaf>))?;
+    if given.is_some() && !methods.contains(&Method::Gjk) {
+        return Err(keys.fail("leaf has no effect: it is of the method gjk, which subdivides bodies"));
+    }
+    let leaves = given.unwrap_or_else(|| vec![Leaf::default()]);
     let depths = keys.get("depth", some(depth))?;
     let tols = keys.get("tol", some(table::fraction))?.unwrap_or_else(|| vec![Options::default().tol]);
     let precisions = keys.get("precision", some(choice::<Precision>))?.unwrap_or_else(|| vec![Precision::F64]);
@@ -64,14 +68,14 @@ pub fn recipes(mut keys: StrictTable, areas: bool) -> Result<Vec<Recipe>> {
     let mut all: Vec<Recipe> = Vec::new();
     for (&method, &leaf, &precision) in product(&methods, &leaves, &precisions) {
         // Without subdivision no part is left to be judged.
-        let leaf = if method == Method::Surface { Leaf::Plane } else { leaf };
+        let leaf = if method == Method::Gjk { leaf } else { Leaf::Plane };
         if precision == Precision::F32 && (method == Method::Gjk || leaf != Leaf::Plane) {
             continue;
         }
         for (&depth, &tol, ()) in product(depths.as_deref().unwrap_or(&[leaf.depth()]), &tols, &[()]) {
             let mut parts = vec![
                 (methods.len(), word(method)),
-                (leaves.len(), format!("{} leaf", word(leaf))),
+                (if method == Method::Gjk { leaves.len() } else { 1 }, format!("{} leaf", word(leaf))),
                 (precisions.len(), precision.name().to_owned()),
             ];
             let family = varied(&name, &parts);

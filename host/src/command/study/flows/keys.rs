@@ -57,8 +57,12 @@ pub fn flow_recipes(mut keys: StrictTable) -> Result<Vec<FlowRecipe>> {
     let name = if given || problems.len() > 1 { name } else { problems.first().map_or(name, |p| word(*p)) };
     let cells = keys.need("cells", some(cells))?;
     let fluxes = keys.get("riemann", some(choice::<RiemannName>))?.unwrap_or_else(|| vec![RiemannName::Hllc]);
-    let limiters = keys.get("limiter", some(choice::<LimiterName>))?.unwrap_or_else(|| vec![LimiterName::Steep]);
+    let limiters = keys.get("limiter", some(choice::<LimiterName>))?;
     let orders = keys.get("order", some(order))?.unwrap_or_else(|| vec![2]);
+    if limiters.is_some() && !orders.contains(&2) {
+        return Err(keys.fail("limiter has no effect: order 1 has no slopes to limit"));
+    }
+    let limiters = limiters.unwrap_or_else(|| vec![LimiterName::Steep]);
     let precisions = keys.get("precision", some(choice::<Precision>))?.unwrap_or_else(|| vec![Precision::F64]);
     let threads = keys.get("threads", some(few))?.unwrap_or_else(|| vec![1]);
     keys.finish()?;
