@@ -89,8 +89,8 @@ fn keys_of_what_is_not_there_are_named() {
     for (porosity, words) in [
         ("jump = 0.5", "key porosity.jump: goes with porosity.scene or porosity.from: without them all is open"),
         ("merge = false", "key porosity.merge: goes with porosity.scene or porosity.from"),
-        ("scene = \"box.toml\"\n[drag]\ncr = [0, 0, 5]", "key drag.cr: acts along z, which has one cell"),
-        ("scene = \"box.toml\"\n[drag]\nlinear = [1, 0, 5]", "key drag.linear: acts along z, which has one cell"),
+        ("scene = \"box.toml\"\n[drag]\ncr = [0, 0, 5]", "key drag.cr: acts only along z, which has one cell"),
+        ("scene = \"box.toml\"\n[drag]\nlinear = [0, 0, 5]", "key drag.linear: acts only along z, which has one cell"),
     ] {
         let text = stderr(&solve(&at, &whole.replace("scene = \"box.toml\"", porosity), "out", &[]));
         assert!(text.contains(words), "{text}");

@@ -576,16 +576,15 @@ fn grids_of_as_many_cells_and_files_of_solids_are_told_apart() {
     assert!(said.contains("all is measured anew"), "{said}");
 }
 
-/// What would change nothing is refused, and a study in which no method fits any scene has failed.
+/// What would change nothing is refused; on a single grid there are no orders.
 #[test]
-fn a_study_of_nothing_is_an_error() {
+fn keys_without_effect_are_refused() {
     let dir = Scratch::new();
     let case = dir.file("case.toml");
     let ball = "[[scene]]\nname = \"ball\"\n[[scene.solid]]\nshape = \"sphere\"\ncenter = [0.5, 0.5, 0.5]\nradius = 0.4\n\
         [[grid]]\norigin = [0, 0, 0]\nspacing = [0.25, 0.25, 0.25]\ncells = [4, 4, 4]\n";
     let sod = "[[flow]]\nproblem = \"sod\"\ncells = 20\norder = 1\nlimiter = \"mc\"\n";
     for (keys, words) in [
-        (format!("{ball}[[method]]\nmethod = \"surface\"\n"), "nothing was measured"),
         (format!("{ball}[[method]]\nleaf = \"half\"\n"), "leaf has no effect: it is of the method gjk"),
         (sod.to_owned(), "limiter has no effect: order 1 has no slopes to limit"),
     ] {

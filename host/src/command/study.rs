@@ -55,9 +55,6 @@ pub fn study(args: &StudyArgs) -> Result<()> {
     let mut session = Session::new(&mut progress, dir, name, found::plan(&case), args.force);
     let found = found::measure(&case, &scenes, command_line(), &mut session)?;
     session.finish()?;
-    if found.is_empty() {
-        return Err(Error::file(path, "nothing was measured: no method fits any of the scenes, as the warnings tell"));
-    }
     match dir {
         Some(dir) => write(found, dir, &mut progress),
         None => print(format!("{}\n", page::markdown(&found, &[])).as_bytes()),

@@ -21,16 +21,18 @@ pub(in crate::flow) fn push_walls<R: Real, const D: usize>(
     cells: CellsBeside,
 ) {
     let Some(walls) = slab.walls else { return };
+    let medium = slab.medium.as_ref().map(|medium| (medium, medium.ducts(faces.d, faces.at)));
     for (i, push) in walls.of_row(slab.first + cells.start, slab.reported.clone()) {
         let (mut now, face, side) = (push.get(), cells.face + i, usize::from(cells.high));
         now.mass[faces.d][side] = faces.flux.get(face).copied().unwrap_or(R::ZERO);
-        if let Some(medium) = &slab.medium {
-            let ducts = medium.ducts(faces.d, faces.at);
-            let mut own = medium.mesh.coordinates(cells.start + i);
-            let breaks = medium.ducts(faces.d, own).breaks(0, cells.high);
-            own[faces.d] += usize::from(cells.high);
-            let border = if breaks { slab.border(faces.d, own) } else { None };
-            let (closed, along) = at_face(slab, faces, (&ducts, &border), face, cells.high);
+        if let Some((medium, ducts)) = &medium {
+            let cell = cells.start + i;
+            let border = medium.breaks(cell, faces.d, cells.high).then(|| {
+                let mut at = medium.mesh.coordinates(cell);
+                at[faces.d] += usize::from(cells.high);
+                slab.border(faces.d, at)
+            });
+            let (closed, along) = at_face(slab, faces, (ducts, &border.flatten()), face, cells.high);
             (now.sides[faces.d][side], now.along[faces.d][side]) = (closed, along);
         }
         push.set(now);

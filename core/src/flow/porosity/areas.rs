@@ -51,6 +51,12 @@ impl<'a, R: Real, const D: usize> Medium<'a, R, D> {
             marks: self.porosity.marks.get(start..).unwrap_or_default(),
         }
     }
+
+    /// The low or high face of a cell, by its flat index, along axis `d` is a jump or a wall.
+    pub fn breaks(&self, cell: usize, d: usize, high: bool) -> bool {
+        let flag = if high { break_high(d) } else { break_low(d) };
+        self.porosity.marks.get(cell).is_some_and(|marks| marks & flag != 0)
+    }
 }
 
 /// Faces of a cell that differ by less than the first share of the wider one are those of a duct that narrows gently, by more than the second those of a duct

@@ -355,9 +355,11 @@ fn drag<const D: usize>(
     let from = keys.from.as_ref().map(|dir| file.fields("drag.from", dir, edges)).transpose()?;
     let mut all: Coefficients<D> = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
     for (n, (name, constants)) in [("cr", keys.cr), ("linear", keys.linear)].into_iter().enumerate() {
-        let idle = |axis: &usize| constants.is_some_and(|all| all[*axis] != 0.0) && !live.contains(axis);
-        if let Some(axis) = (0..3).find(idle) {
-            return Err(file.wrong(&format!("drag.{name}"), format!("acts along {}, which has one cell", AXES[axis])));
+        // The same along all axes may stand in a case of fewer.
+        let acts = constants.filter(|all| live.iter().all(|&axis| all[axis] == 0.0)).unwrap_or_default();
+        if let Some(axis) = (0..3).find(|&axis| acts[axis] != 0.0) {
+            let reason = format!("acts only along {}, which has one cell", AXES[axis]);
+            return Err(file.wrong(&format!("drag.{name}"), reason));
         }
         for (d, &axis) in live.iter().enumerate() {
             let array = from.as_ref().map(|dir| dir.join(format!("{name}_{}.npy", AXES[axis])));

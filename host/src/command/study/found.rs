@@ -61,12 +61,6 @@ pub struct StudyReport<'a> {
 }
 
 impl StudyFindings {
-    /// Has nothing been measured?
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty() && self.flows.is_empty() && self.scalings.is_empty() && self.left_out.is_empty()
-    }
-
     /// For programs.
     #[must_use]
     pub fn report(&self) -> StudyReport<'_> {
