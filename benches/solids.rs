@@ -29,6 +29,8 @@ fn main() {
     let hall = Edges::uniform(DVec3::ZERO, DVec3::new(100.0, 100.0, 30.0), [200, 200, 60]);
     case("1000 pipes, aligned", || pipes(1000, false, &rack), &rack);
     case("1000 pipes, oblique", || pipes(1000, true, &rack), &rack);
+    case("120 pipes apart, aligned", || pipes_apart(false, &rack), &rack);
+    case("120 pipes apart, oblique", || pipes_apart(true, &rack), &rack);
     case("10000 pipes, aligned", || pipes(10_000, false, &hall), &hall);
     case("10000 pipes, oblique", || pipes(10_000, true, &hall), &hall);
     let balls: Vec<Form> = sixteen_balls().into_iter().map(Form::Sphere).collect();
@@ -66,6 +68,20 @@ fn pipes(count: usize, oblique: bool, edges: &Edges) -> Bodies {
         Form::Cylinder(Cylinder::new(middle - half, middle + half, radius))
     };
     formulas(&(0..count).map(pipe).collect::<Vec<_>>())
+}
+
+/// Long pipes along x, or nearly so, of 0.05 to 0.25 m radius, none of which meets another.
+fn pipes_apart(oblique: bool, edges: &Edges) -> Bodies {
+    let random = &mut Random::new(18);
+    let [lo, hi] = edges.bounds();
+    let pipe = |n: usize| {
+        let place = DVec3::new(0.0, (n % 20) as f64 + 0.5, (n / 20) as f64 + 0.5) / DVec3::new(1.0, 20.0, 6.0);
+        let middle = lo + (hi - lo) * place + random.vector::<DVec3>(1.0) * DVec3::new(0.0, 0.5, 0.5);
+        let [from, to] = [2.0, hi.x - 2.0].map(|x| middle.with_x(x + random.between(-1.0, 1.0)));
+        let aside = if oblique { DVec3::new(0.0, 1.1, 0.7) } else { DVec3::ZERO };
+        Form::Cylinder(Cylinder::new(from, to + aside, random.between(0.05, 0.25)))
+    };
+    formulas(&(0..120).map(pipe).collect::<Vec<_>>())
 }
 
 /// Elbows of a quarter turn, of pipes of 0.05 to 0.25 m radius, bent by three of their diameters.
