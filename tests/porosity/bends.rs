@@ -229,3 +229,22 @@ fn thin_discs_askew_are_not_straightened() {
         assert!(miss < 1e-9, "{plane}: {faces:?}, {expected:?}");
     }
 }
+
+/// Far from the origin an axis cannot be told better than by rounding: a flange there is as straight as its pipe, and blocks the plane that it ends in.
+#[test]
+fn thin_discs_far_from_the_origin_are_straight() {
+    let corner = DVec3::new(5e5, 5.8e6, 64.0);
+    let edges = Edges([0, 1, 2].map(|axis| (0..=4).map(|n| corner[axis] + 0.5 * f64::from(n)).collect()));
+    let run = |miss: f64| {
+        let from = corner + DVec3::new(1.0, 0.98, 1.1);
+        let to = DVec3::new(from.x + miss, corner.y + 1.0, from.z);
+        let flange = formulas(&[Form::Cylinder(Cylinder::new(from, to, 0.3))]);
+        porosity(&edges.grid(None).expect("a grid"), &flange, Options { bounds: true, ..Options::default() })
+    };
+    let (straight, blocked) = (run(0.0), |found: &Porosity| found.beta.y.iter().map(|b| 1.0 - b).sum::<f64>());
+    // The plane of its end, faces of 0.25 m².
+    assert!((0.25 * blocked(&straight) - PI * 0.09).abs() < 1e-8, "{}", blocked(&straight));
+    for miss in [6e-11, -6e-11, 1.2e-10] {
+        assert_close(&run(miss).beta, &straight.beta, 1e-8, "a flange that misses its axis by rounding");
+    }
+}

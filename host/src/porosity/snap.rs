@@ -12,6 +12,9 @@ use voidage_core::convex::shape::{Cone, Cylinder};
 use voidage_core::grid::{Grid, Located};
 use voidage_core::solids::torus::TorusShape;
 
+/// Coordinates that were rounded twice, as of ends that were turned or moved, are right within this share of the largest.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
 /// A copy of the bodies' triangles with such corners moved; none if there are no such corners.
 #[must_use]
 pub fn into_planes(grid: &Grid<f64>, bodies: &Bodies) -> Option<Vec<[DVec3; 3]>> {
@@ -67,11 +70,13 @@ impl<'a> ToPlanes<'a> {
         }
     }
 
-    /// The ends of an axis, which is along one of the grid if discs of that radius about them miss that by rounding: they lie in planes then. Across the axis
-    /// nothing moves into a plane: what touches one goes on to do so.
+    /// The ends of an axis, which is along one of the grid if it misses that by rounding, and so do discs of that radius about its ends, or no coordinate of
+    /// them tells more: its flat ends lie in planes then. Across the axis nothing moves into a plane: what touches one goes on to do so.
     fn ends(&self, [from, to]: [DVec3; 2], radius: f64) -> [DVec3; 2] {
         let way = (to - from).abs();
-        let along = (way * (radius / way.max_element()).max(1.0)).cmpgt(self.near);
+        let told = ROUNDED * from.abs().max(to.abs()).max_element();
+        let discs = (way * (radius / way.max_element()).max(1.0)).cmpgt(self.near) & way.cmpgt(DVec3::splat(told));
+        let along = way.cmpgt(self.near) | discs;
         if along.bitmask().count_ones() != 1 {
             return [from, to];
         }
