@@ -66,7 +66,7 @@ fn densities_in_grams_are_doubted() {
         "key initial.uniform.rho: at 101325 Pa a density of 0.0012 is that of gas of 294207 K; densities are in kg/m³";
     assert!(text.contains(words), "{text}");
     let text = said(AIR, "rho = 1225, p = 101325", "\"wall\"", "");
-    assert!(text.contains("is that of gas of 0.288 K; densities are in kg/m³"), "{text}");
+    assert!(text.contains("is that of gas of 0.2882 K; densities are in kg/m³"), "{text}");
     for (gas, state) in [(AIR, "rho = 1.225, p = 101325"), (AIR, "rho = 0.2, p = 8e5"), ("", "rho = 1225, p = 101325")]
     {
         let text = said(gas, state, "\"wall\"", "");
