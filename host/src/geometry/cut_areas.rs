@@ -7,30 +7,23 @@
 //! planes of the sides and those of the outlines, which touch the circles or meet each other on the surface.
 
 mod ruled;
+mod sums;
 
 use super::form::Form;
 use glam::DVec3;
 use ruled::Ruled;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use sums::{ERROR, MOST_HALVINGS, Sums, roots, summed, touch};
 use voidage_core::number::aabb::Aabb;
-use voidage_core::number::kronrod::{panel, plus};
+use voidage_core::number::kronrod::plus;
 use voidage_core::solids::torus::TorusShape;
 use voidage_core::surface::surface_area::SurfaceArea;
-
-/// A panel is accepted where both rules differ by less than this share of the largest side of the box. That is the error of the coarser one.
-const ERROR: f64 = 1e-12;
-
-/// A panel is not halved more often.
-const MOST_HALVINGS: u32 = 40;
 
 /// Planes are parallel if the square of the sine of their angle is less.
 const PARALLEL: f64 = 1e-28;
 
 /// An end all of which is this near to a plane, as a share of the box, lies in it.
 const IN_PLANE: f64 = 1e-12;
-
-/// Areas along x, y and z, not yet halved, and the wetted area.
-type Sums = [f64; 4];
 
 /// What the surface of a curved solid has inside a box, in m²; none of solids that are bounded by planes. Surface in the plane of a side has no frontal
 /// area, and is wetted if its normal points into the box. Within 1e-10 of the largest side of the box.
@@ -90,12 +83,6 @@ fn torus(shape: &TorusShape<DVec3>) -> [Option<Swept>; 3] {
         (shape.angle < 360.0).then(|| Swept::disc(shape.center + out * shape.radius, way * sign, shape.tube))
     };
     [Some(ring), end(0.0, -1.0), end(angle, 1.0)]
-}
-
-/// Does a box from `lo` to `hi` touch that from the origin to `size`?
-fn touch([lo, hi]: [DVec3; 2], size: DVec3) -> bool {
-    let slack = size * 1e-9;
-    hi.cmpge(-slack).all() && lo.cmple(size + slack).all()
 }
 
 /// A surface swept by circles.
@@ -404,16 +391,6 @@ fn roots_within(polynomial: &[f64], roots: &mut [f64; 4]) -> usize {
     count
 }
 
-/// Real roots of `c₀ + c₁ t + c₂ t²`.
-fn roots([c0, c1, c2]: [f64; 3]) -> [Option<f64>; 2] {
-    let under = c1 * c1 - 4.0 * c2 * c0;
-    if !(under >= 0.0) {
-        return [None; 2];
-    }
-    let q = -0.5 * (c1 + under.sqrt().copysign(c1));
-    [(c2 != 0.0).then(|| q / c2), (q != 0.0).then(|| c0 / q)]
-}
-
 impl Circle {
     /// The sums over what lies in a box from the origin to `size`.
     fn inside(&self, size: DVec3) -> Sums {
@@ -495,16 +472,4 @@ impl Cuts {
         let ends = angles.iter().copied().skip(1).chain([first + TAU]);
         std::iter::once(first).chain(angles.iter().copied().skip(1)).zip(ends).map(|(from, to)| [from, to])
     }
-}
-
-/// The integral of `at` from one place to another. Calls itself for halves, at most so many levels deep.
-fn summed(at: &mut dyn FnMut(f64) -> Sums, [from, to]: [f64; 2], tolerance: f64, halvings: u32) -> Sums {
-    let error = |d: Sums| d.into_iter().map(f64::abs).fold(0.0, f64::max);
-    let [fine, coarse] = panel([from, to], &mut *at, |d| error(d) <= tolerance);
-    let middle = (from + to) * 0.5;
-    if !(error(plus(fine, coarse, -1.0)) > tolerance) || halvings == 0 {
-        return fine;
-    }
-    let halves = [[from, middle], [middle, to]].map(|half| summed(at, half, tolerance, halvings - 1));
-    plus(halves[0], halves[1], 1.0)
 }

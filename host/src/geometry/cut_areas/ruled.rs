@@ -4,7 +4,7 @@
 //! all lines where something changes: those on which an edge of the box pierces the surface, or a side cuts one of its two end circles, and those of its
 //! outlines seen along x, y and z. Between these the sums are trigonometric polynomials for a cylinder, smooth for a cone.
 
-use super::{ERROR, MOST_HALVINGS, Sums, roots, summed, touch};
+use super::sums::{ERROR, MOST_HALVINGS, Sums, roots, summed, touch};
 use glam::DVec3;
 use std::f64::consts::TAU;
 use voidage_core::number::aabb::Aabb;
