@@ -13,7 +13,7 @@ use super::form::Form;
 use glam::DVec3;
 use ruled::Ruled;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use sums::{ERROR, MOST_HALVINGS, Sums, roots, summed, touch};
+use sums::{ERROR, MOST_HALVINGS, Sums, arcs, roots, summed, touch};
 use voidage_core::number::aabb::Aabb;
 use voidage_core::number::kronrod::plus;
 use voidage_core::solids::torus::TorusShape;
@@ -464,12 +464,8 @@ impl Cuts {
         }
     }
 
-    /// The arcs between them, which make up the circle.
+    /// The arcs between them.
     fn arcs(&mut self) -> impl Iterator<Item = [f64; 2]> {
-        let angles = &mut self.angles[..self.count];
-        angles.sort_by(f64::total_cmp);
-        let first = angles.first().copied().unwrap_or(0.0);
-        let ends = angles.iter().copied().skip(1).chain([first + TAU]);
-        std::iter::once(first).chain(angles.iter().copied().skip(1)).zip(ends).map(|(from, to)| [from, to])
+        arcs(&mut self.angles[..self.count])
     }
 }

@@ -4,7 +4,7 @@
 //! all lines where something changes: those on which an edge of the box pierces the surface, or a side cuts one of its two end circles, and those of its
 //! outlines seen along x, y and z. Between these the sums are trigonometric polynomials for a cylinder, smooth for a cone.
 
-use super::sums::{ERROR, MOST_HALVINGS, Sums, roots, summed, touch};
+use super::sums::{ERROR, MOST_HALVINGS, Sums, arcs, roots, summed, touch};
 use glam::DVec3;
 use std::f64::consts::TAU;
 use voidage_core::number::aabb::Aabb;
@@ -46,10 +46,9 @@ impl Turns {
         }
     }
 
-    fn sorted(&mut self) -> &[f64] {
-        let angles = &mut self.angles.as_flattened_mut()[..self.count];
-        angles.sort_unstable_by(f64::total_cmp);
-        angles
+    /// The arcs between them.
+    fn arcs(&mut self) -> impl Iterator<Item = [f64; 2]> {
+        arcs(&mut self.angles.as_flattened_mut()[..self.count])
     }
 }
 
@@ -82,11 +81,8 @@ impl Ruled {
         let largest = (size.x * size.y).max(size.y * size.z).max(size.z * size.x);
         let normals = self.normals();
         let mut turns = self.changes(size, &normals);
-        let angles = turns.sorted();
-        let first = angles.first().copied().unwrap_or(0.0);
-        let ends = angles.iter().copied().skip(1).chain([first + TAU]);
         let mut sum = [0.0; 4];
-        for (from, to) in std::iter::once(first).chain(angles.iter().copied().skip(1)).zip(ends) {
+        for [from, to] in turns.arcs() {
             let mut at = |turn: f64| self.line(turn, &normals, size);
             // Between two such lines either all have a piece in the box or none.
             if from < to && at((from + to) * 0.5) != [0.0; 4] {

@@ -1,6 +1,7 @@
 //! Sums of areas over panels, and what else surfaces swept by circles and by lines share.
 
 use glam::DVec3;
+use std::f64::consts::TAU;
 use voidage_core::number::kronrod::{panel, plus};
 
 /// A panel is accepted where both rules differ by less than this share of the largest side of the box. That is the error of the coarser one.
@@ -26,6 +27,14 @@ pub(super) fn roots([c0, c1, c2]: [f64; 3]) -> [Option<f64>; 2] {
     }
     let q = -0.5 * (c1 + under.sqrt().copysign(c1));
     [(c2 != 0.0).then(|| q / c2), (q != 0.0).then(|| c0 / q)]
+}
+
+/// The arcs between some angles, which make up the circle; without any the whole from 0.
+pub(super) fn arcs(angles: &mut [f64]) -> impl Iterator<Item = [f64; 2]> {
+    angles.sort_unstable_by(f64::total_cmp);
+    let first = angles.first().copied().unwrap_or(0.0);
+    let ends = angles.iter().copied().skip(1).chain([first + TAU]);
+    std::iter::once(first).chain(angles.iter().copied().skip(1)).zip(ends).map(|(from, to)| [from, to])
 }
 
 /// The integral of `at` from one place to another. Calls itself for halves, at most so many levels deep.
