@@ -99,3 +99,19 @@ fn regions_outside_are_named() {
         }
     }
 }
+
+/// Files that lie outside the grid are named beside scenes.
+#[test]
+fn files_outside_the_grid_are_named_beside_scenes() {
+    let at = Scratch::new();
+    let cube = "[[solid]]\nname = \"box\"\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [0.5, 0.5, 0.5]\n";
+    let scene = at.write("scene.toml", [cube, GRID].concat().as_bytes());
+    let far = "v 9 9 9\nv 10 9 9\nv 9 10 9\nv 9 9 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    let far = at.write("far.obj", far.as_bytes());
+    let said = stderr(&voidage(&[&"porosity", &scene, &far]));
+    assert!(said.contains("far.obj: outside the grid"), "{said}");
+    let file = "[[solid]]\nname = \"moved\"\nshape = \"file\"\npath = \"far.obj\"\ntranslate = [-8.9, -8.9, -8.9]\n";
+    let moved = at.write("moved.toml", [GRID, file].concat().as_bytes());
+    let said = stderr(&voidage(&[&"porosity", &moved]));
+    assert!(!said.contains("outside the grid"), "{said}");
+}

@@ -563,26 +563,6 @@ fn links_to_nothing_are_followed() {
     assert!(fs::symlink_metadata(at.file("link.json")).expect("the link").is_symlink());
 }
 
-/// Files that lie outside the grid are named beside scenes.
-#[test]
-fn files_outside_the_grid_are_named_beside_scenes() {
-    let at = Scratch::new();
-    at.write("scene.toml", [BOX, GRID].concat().as_bytes());
-    let far = "v 9 9 9\nv 10 9 9\nv 9 10 9\nv 9 9 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-    at.write("far.obj", far.as_bytes());
-    let said = stderr(&run(&at, &["porosity", "scene.toml", "far.obj"]));
-    assert!(said.contains("far.obj: outside the grid"), "{said}");
-    at.write(
-        "moved.toml",
-        format!(
-            "{GRID}[[solid]]\nname = \"moved\"\nshape = \"file\"\npath = \"far.obj\"\ntranslate = [-8.9, -8.9, -8.9]\n"
-        )
-        .as_bytes(),
-    );
-    let said = stderr(&run(&at, &["porosity", "moved.toml"]));
-    assert!(!said.contains("outside the grid"), "{said}");
-}
-
 /// An inlet whose gas has no way out does not meet its velocity, and says so.
 #[test]
 fn an_inlet_without_a_way_out_says_so() {
