@@ -51,7 +51,10 @@ fn what_a_case_lacks_has_a_place() {
         (1, "case.toml: line 15, column 15: gas is missing; the file ends here\n"),
         (2, "case.toml: line 16, column 15: initial is missing; the file ends here\n"),
         (3, "case.toml: line 16, column 15: time is missing; the file ends here\n"),
-        (4, "case.toml: line 11, column 14: key boundary.x_min: is missing; the file ends here\n"),
+        (
+            4,
+            "case.toml: line 11, column 14: key boundary.x_min: is missing: a table with type, or a word such as \"wall\"; the file ends here\n",
+        ),
     ] {
         let text: String = (0..5).filter(|n| *n != left_out).map(|n| parts[n]).collect();
         fails(&solve(&at, &text, "out", &[]), 1, &[words, " ^\n"]);
@@ -199,7 +202,10 @@ fn lists_are_asked_for_in_brackets() {
     let uniform =
         |spacing: &str, cells: &str| format!("[grid]\norigin = [0, 0, 0]\nspacing = {spacing}\ncells = {cells}\n");
     for (grid, words) in [
-        (uniform("0.5", "[2, 2, 2]"), "key grid.spacing: takes a list, in brackets, not a number"),
+        (
+            uniform("0.5", "[2, 2, 2]").replace("[0, 0, 0]", "0"),
+            "key grid.origin: takes a list, in brackets, not a whole number",
+        ),
         (uniform("[0.5, 0.5, 0.5]", "8"), "key grid.cells: takes a list, in brackets, not a whole number"),
         (uniform("[0.5, 0.5, 0.5]", "[2, 2, 2, 2]"), "key grid.cells: takes 1 to 3 numbers, one for each axis, not 4"),
         (format!("{GRID}[output]\nformats = \"vtr\"\n"), "key output.formats: takes a list, in brackets, not a text"),

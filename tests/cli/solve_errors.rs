@@ -39,6 +39,14 @@ fn fails(from: &str, to: &str, words: &[&str]) {
 fn the_case_itself_is_right() {
     let at = Scratch::new();
     solved(&at, CASE, "out", &["-q"]);
+    // The same cells, whose size is one number.
+    let equal = "origin = [0, 0]\ncells = [2, 2]\nspacing = 0.5\n";
+    let listed = "x = [0, 0.5, 1]\ny = [0, 0.5, 1]\n";
+    let of = |grid: &str| CASE.replace("x = { points = [0, 1], cells = [4] }\ny = [0, 0.5, 1]\n", grid);
+    solved(&at, &of(equal), "one", &["-q"]);
+    solved(&at, &of(listed), "each", &["-q"]);
+    let edges = |out: &str| fs::read(at.file(out).join("final/edges.json")).expect("edges");
+    assert_eq!(edges("one"), edges("each"));
 }
 
 #[test]
@@ -182,6 +190,12 @@ fn numbers() {
     fails("[time]", "[drag]\ncr = [-1, 0, 0]\n[time]", &["key drag.cr[0]: needs a number from 0 to 1e30, not -1"]);
     fails("y = [0, 0.5, 1]", "y = [0, 0.5, 0.5]", &["y[2]: edge 0.5 does not lie above"]);
     fails("y = [0, 0.5, 1]", "y = [0, nan, 1]", &["y[1]: edge nan is not finite"]);
+    let equal = |keys: &str| format!("[grid]\norigin = [0, 0]\ncells = [4, 2]\nspacing = {keys}\n[gas]");
+    let edges = "[grid]\nx = { points = [0, 1], cells = [4] }\ny = [0, 0.5, 1]\n[gas]";
+    fails(edges, &equal("-1"), &["line 5, column 11: key grid.spacing: takes a finite number above 0, not -1"]);
+    fails(edges, &equal("[1, nan]"), &["key grid.spacing[1]: takes a finite number above 0, not NaN"]);
+    fails(edges, &equal("\"1\""), &["key grid.spacing: takes a number, or a list of one for each axis, not a text"]);
+    fails(edges, &equal("[1]"), &["key grid.spacing: has 1 numbers, but cells has 2: one for each axis"]);
     fails("cells = [4]", "cells = [0]", &["key grid.x: a segment needs at least one cell"]);
     fails("end = 0.1", "end = 0.1\n[output]\nevery = 1e-20", &["key output.every: makes more than"]);
     fails(
@@ -233,6 +247,16 @@ fn slips_in_states_and_regions() {
         "[boundary]",
         "[[region]]\nmin = [0.5]\np = 2\n[boundary]",
         &["key region: regions stand in", "[[initial.regions]]"],
+    );
+    fails(
+        "uniform = { rho = 1, u = 0.5, p = 1 }",
+        "rho = 1\np = 1",
+        &["line 9, column 1: key initial.rho: the state everywhere stands in initial.uniform"],
+    );
+    fails(
+        uniform,
+        &region("min = [0.5], u = 1e30"),
+        &["cell [2, 0, 0]", "p = 0.0: rounding leaves no pressure beside a kinetic energy of 5.0e59 J/m³"],
     );
     fails("y_min = { type = \"wall\" }", "y_min = { type = \"outflow\", p = 1 }", &["did you mean outlet?"]);
 }

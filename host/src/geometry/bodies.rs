@@ -331,7 +331,7 @@ fn say_doubts(shells: &[Closed], inner: &[usize], unclear: &[(usize, [DVec3; 2])
     if let Some(largest) = inner.iter().max_by(|a, b| volume(a).total_cmp(&volume(b))) {
         let [lo, hi] = shells[*largest].bounds;
         report.warn(format!(
-            "{} (the largest from {} to {}, {:.6e} m3): nothing tells whether {} a room or a part; {} taken as solid, and bounds hold both. \
+            "{} (the largest from {} to {}, {:.6e} m³): nothing tells whether {} a room or a part; {} taken as solid, and bounds hold both. \
              For a room, write one side of each surface: outer ones looking outward, rooms inward",
             counted(
                 inner.len(),

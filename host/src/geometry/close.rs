@@ -261,7 +261,7 @@ impl Open {
         if let Some(&[lo, _]) = self.uneven.first() {
             let volume: f64 = self.uneven.iter().map(|[lo, hi]| (*hi - *lo).element_product()).sum();
             report.warn(format!(
-                "{} not plane (the first near {}): what lies between its edge and the cap may be solid or open; the bounds of cells hold both in a box around it, {volume:.3e} m3 in all",
+                "{} not plane (the first near {}): what lies between its edge and the cap may be solid or open; the bounds of cells hold both in a box around it, {volume:.3e} m³ in all",
                 counted(self.uneven.len(), "hole is", "holes are"),
                 show(lo)
             ));

@@ -4,7 +4,7 @@
 //! - `x`, `y`, `z`: lists of edges;
 //! - `x`, `y`, `z`: segments `{ points = [0, 2, 10], cells = [4, 8], ratios = [1, 2] }`, as in PDRblockMesh: between two
 //!   points that many cells, the last `ratio` times as long as the first (−r means 1/r);
-//! - `origin`, `spacing`, `cells`: three numbers each.
+//! - `origin`, `spacing`, `cells`: three numbers each; one number as `spacing` is that of all axes.
 
 use super::{Edges, MAX_AXIS, decimal, few_enough, rounding};
 use crate::error::{Error, Result};
@@ -26,7 +26,7 @@ pub struct GridTable {
     y: Option<AxisSpec>,
     z: Option<AxisSpec>,
     origin: Option<Vec<f64>>,
-    spacing: Option<Vec<f64>>,
+    spacing: Option<Spacing>,
     /// Whatever whole numbers were written: what they may be is said here, not by their type.
     cells: Option<Vec<i64>>,
     /// In place of the grid itself: the file that holds it.
@@ -40,6 +40,56 @@ const KEYS: [&str; 6] = ["x", "y", "z", "origin", "spacing", "cells"];
 enum AxisSpec {
     Edges(Vec<f64>),
     Segments(Segments),
+}
+
+/// Sizes of cells as written: one number for all axes, or one for each.
+#[derive(Debug, Clone, PartialEq)]
+enum Spacing {
+    OfAll(f64),
+    OfEach(Vec<f64>),
+}
+
+impl Spacing {
+    /// A number for each of so many axes, with its name in messages.
+    fn of_axes(&self, axes: usize) -> Vec<(String, f64)> {
+        match self {
+            Spacing::OfAll(h) => vec![("spacing".to_owned(), *h); axes],
+            Spacing::OfEach(all) => all.iter().enumerate().map(|(a, h)| (format!("spacing[{a}]"), *h)).collect(),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Spacing {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(SpacingVisitor)
+    }
+}
+
+/// Tells the two forms of a spacing apart.
+struct SpacingVisitor;
+
+impl<'de> Visitor<'de> for SpacingVisitor {
+    type Value = Spacing;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("a number, or a list of one for each axis")
+    }
+
+    fn visit_f64<E>(self, h: f64) -> std::result::Result<Spacing, E> {
+        Ok(Spacing::OfAll(h))
+    }
+
+    fn visit_i64<E>(self, h: i64) -> std::result::Result<Spacing, E> {
+        Ok(Spacing::OfAll(h as f64))
+    }
+
+    fn visit_u64<E>(self, h: u64) -> std::result::Result<Spacing, E> {
+        Ok(Spacing::OfAll(h as f64))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> std::result::Result<Spacing, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(items)).map(Spacing::OfEach)
+    }
 }
 
 /// An axis in parts, each with cells that grow evenly.
@@ -160,6 +210,7 @@ impl GridTable {
             return Err(whole(&format!("a grid needs x, y, z or origin, spacing, cells{absent}")));
         };
         let (axes, least) = (cells.len(), if fewer_axes { 1 } else { 3 });
+        let spacing = spacing.of_axes(axes);
         for (key, n) in [("cells", axes), ("origin", origin.len()), ("spacing", spacing.len())] {
             if !(least..=3).contains(&n) {
                 let all = if fewer_axes { "1 to 3 numbers" } else { "3 numbers" };
@@ -169,10 +220,8 @@ impl GridTable {
                 return Err(wrong(key, format!("has {n} numbers, but cells has {axes}: one for each axis")));
             }
         }
-        for (a, &h) in spacing.iter().enumerate() {
-            if !(h > 0.0 && h.is_finite()) {
-                return Err(wrong(&format!("spacing[{a}]"), format!("takes a finite number above 0, not {h}")));
-            }
+        if let Some((key, h)) = spacing.iter().find(|(_, h)| !(*h > 0.0 && h.is_finite())) {
+            return Err(wrong(key, format!("takes a finite number above 0, not {h}")));
         }
         if let Some(a) = cells.iter().position(|&n| n < 1) {
             return Err(wrong(&format!("cells[{a}]"), format!("must be at least 1, not {}", cells[a])));
@@ -181,8 +230,9 @@ impl GridTable {
             .map_err(|reason| wrong("cells", reason))?;
         let edges = [0, 1, 2].map(|a| match cells.get(a) {
             Some(&n) => {
-                let decimal = decimal(rounding(origin[a], origin[a] + spacing[a] * n as f64));
-                let edge = |i: i64| if i == 0 { origin[a] } else { decimal(origin[a] + spacing[a] * i as f64) };
+                let h = spacing[a].1;
+                let decimal = decimal(rounding(origin[a], origin[a] + h * n as f64));
+                let edge = |i: i64| if i == 0 { origin[a] } else { decimal(origin[a] + h * i as f64) };
                 (0..=n).map(edge).collect()
             }
             None => UNIT_CELL.to_vec(),
@@ -190,9 +240,12 @@ impl GridTable {
         // Beyond the range of numbers it is not the step that is too small.
         let lost = |e: &Vec<f64>| e.iter().all(|x| x.is_finite()) && first_lost(e).is_some();
         if let Some(a) = edges.iter().position(lost) {
-            let (step, origin) = (written(spacing[a]), written(origin[a]));
-            let reason = format!("a step of {step} is lost in rounding at coordinates around origin[{a}] = {origin}");
-            return Err(wrong(&format!("spacing[{a}]"), format!("{reason}: move the origin nearer to 0")));
+            let ((key, step), origin) = (&spacing[a], written(origin[a]));
+            let reason = format!(
+                "a step of {} is lost in rounding at coordinates around origin[{a}] = {origin}",
+                written(*step)
+            );
+            return Err(wrong(key, format!("{reason}: move the origin nearer to 0")));
         }
         Ok(Edges(edges))
     }

@@ -70,7 +70,8 @@ pub fn sides<const D: usize>(
                 given[axis][side].map_or(Ok(()), |keys| no_flow_through(file, key, keys))?;
                 continue;
             };
-            let keys = given[axis][side].ok_or_else(|| file.wrong(&key, "is missing"))?;
+            let keys = given[axis][side]
+                .ok_or_else(|| file.wrong(&key, "is missing: a table with type, or a word such as \"wall\""))?;
             let place = Place { key, keys, at: (d, side), patch: None };
             sides.boundaries[d][side] = boundary(states, edges, cells, &place, &mut sides.inlets)?;
             sides.feed.0[d][side] = states.gamma(keys, None);

@@ -107,11 +107,19 @@ pub fn unphysical<const D: usize>(setup: &Setup<D>, error: Option<Error>) -> Str
         };
         (0..flow.len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b))).unwrap_or(0)
     };
+    let no_state = |cell: usize| {
+        let w = flow.get(cell);
+        let kinetic = 0.5 * w.density * w.velocity.iter().map(|u| u * u).sum::<f64>();
+        match w.pressure == 0.0 && kinetic > 0.0 {
+            true => format!("rounding leaves no pressure beside a kinetic energy of {kinetic:.1e} J/m³"),
+            false => "no gas has this state".to_owned(),
+        }
+    };
     let (cell, what) = match error {
-        Some(Error::Unphysical { cell }) => (cell, "no gas has this state".to_owned()),
+        Some(Error::Unphysical { cell }) => (cell, no_state(cell)),
         Some(other) => return other.to_string(),
         None => match (0..flow.len()).find(|&c| !physical(c)) {
-            Some(cell) => (cell, "no gas has this state".to_owned()),
+            Some(cell) => (cell, no_state(cell)),
             None => (fastest(), "the time step has shrunk to nothing, here is the fastest signal".to_owned()),
         },
     };

@@ -127,7 +127,7 @@ fn doubt_exact(subject: &Subject, reference: &Reference, session: &mut Session) 
         return;
     }
     let said = format!(
-        "{}: exact is {exact}, but the scene holds {} m3 in the grid (to within {:.0e}); errors of volumes are counted from exact all the same",
+        "{}: exact is {exact}, but the scene holds {} m³ in the grid (to within {:.0e}); errors of volumes are counted from exact all the same",
         subject.name,
         readable(volume, Reading::Volume),
         reference.uncertainty * volume + EXACT * exact,
