@@ -1,12 +1,15 @@
 //! What must not matter: where the origin is, which axis is called x, the unit, the number of threads.
 
 use glam::DVec3;
+use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, HugeVec, Options, Porosity, porosity};
+use voidage_core::convex::shape::{Capsule, Cylinder, Sphere};
+use voidage_tests::effort::cases;
 use voidage_tests::fields::assert_close;
 use voidage_tests::lattice::Lattice;
 use voidage_tests::random::Random;
-use voidage_tests::solids::{Triangle, scene, sphere, turned_box};
+use voidage_tests::solids::{Triangle, formulas, scene, sphere, turned_box};
 
 fn solids() -> Vec<Vec<Triangle>> {
     let mut rng = Random::new(7);
@@ -50,6 +53,46 @@ fn translation_by_whole_numbers_changes_only_rounding() {
         let moved = Edges([0, 1, 2].map(|a| edges.0[a].iter().map(|c| c + shift[a]).collect()));
         let p = run(&moved, &map(&solids, |p| p + shift));
         assert_close(&p.beta, &plain.beta, 1e-11, &format!("{shift}"));
+    }
+}
+
+/// Meshes and solids by formula at the coordinates of a survey, all numbers multiples of the last place there: seen from the corner of the grid nothing is lost.
+#[test]
+fn far_from_the_origin_meshes_beside_formulas_lose_nothing() {
+    let mut random = Random::new(23);
+    let (far, place) = (DVec3::new(524_285.0, 4_194_311.0, -3.0), 2.0_f64.powi(30));
+    let held = |p: DVec3| (p * place).round() / place;
+    for n in 0..cases(24) {
+        let size = [1.0, 1.0 / 64.0][random.below(2)];
+        let mut point = |reach: f64| held(random.point(DVec3::splat(-reach), DVec3::splat(reach)) * size);
+        let [a, b, c, d] = [0; 4].map(|_| point(0.7));
+        let turned = turned_box(a, DVec3::new(0.3, 0.2, 0.1) * size, random.turn());
+        let meshes: Vec<_> = [turned, sphere(b, 0.4 * size, 2)].map(|m| map(&[m], held).remove(0)).into();
+        let forms = |o: DVec3| {
+            let radius = held(DVec3::splat((0.15 + 0.02 * (n % 7) as f64) * size)).x;
+            vec![
+                Form::Sphere(Sphere { center: c + o, radius }),
+                Form::Cylinder(Cylinder::new(d + o, b + o, 0.5 * radius)),
+                Form::Capsule(Capsule { from: a + o, to: c + o, radius: 0.25 * radius }),
+            ]
+        };
+        let [near, seen] = [DVec3::ZERO, far].map(|o| {
+            let plane = |i: i32| held(DVec3::splat((f64::from(i) / 3.0 - 1.0) * size)).x;
+            let edges = Edges([0, 1, 2].map(|axis| (0..=6).map(|i| plane(i) + o[axis]).collect()));
+            let mut bodies = scene(&map(&meshes, |p| p + o));
+            bodies.bodies.extend(formulas(&forms(o)[..=n % 3]).bodies);
+            let options = Options { bounds: true, ..Options::default() };
+            porosity(&edges.grid(None).expect("a grid"), &bodies, options)
+        });
+        let [one, two] = [&near, &seen].map(|p| p.bounds.as_ref().expect("bounds"));
+        let all = |f: &FieldSet| -> Vec<f64> {
+            [&f.v, &f.x, &f.y, &f.z].into_iter().flat_map(|f| f.iter().copied()).collect()
+        };
+        let [low, high] = [0, 1].map(|end| all(&one[end]).into_iter().zip(all(&two[end])).collect::<Vec<_>>());
+        for (at, (low, high)) in low.into_iter().zip(high).enumerate() {
+            assert!(low.0.max(low.1) <= high.0.min(high.1) + 2e-12, "{n}, {at}: {low:?} to {high:?}");
+        }
+        assert!(seen.max_gap <= 1e-4 && near.max_gap <= 1e-4, "{n}: {} {}", near.max_gap, seen.max_gap);
     }
 }
 

@@ -176,6 +176,12 @@ impl<S: Support> Transformed<S> {
         Transformed { shape, columns, translation, norm: magnitude(rows), radius_scale }
     }
 
+    /// The same elsewhere.
+    #[must_use]
+    pub fn moved(self, by: S::Vector) -> Self {
+        Transformed { translation: self.translation + by, ..self }
+    }
+
     /// What is mapped.
     pub fn shape(&self) -> &S {
         &self.shape

@@ -59,6 +59,27 @@ impl Form {
         }
     }
 
+    /// The same elsewhere.
+    #[must_use]
+    pub fn moved(&self, by: DVec3) -> Form {
+        match self {
+            Form::Sphere(s) => Form::Sphere(Sphere { center: s.center + by, ..*s }),
+            Form::Ellipsoid(s) => Form::Ellipsoid(s.moved(by)),
+            Form::Box(s) => Form::Box(Aabb { min: s.min + by, max: s.max + by }),
+            Form::Cylinder(s) => {
+                let [from, to] = s.ends().map(|end| end + by);
+                Form::Cylinder(Cylinder::new(from, to, s.base_radius()))
+            }
+            Form::Capsule(s) => Form::Capsule(Capsule { from: s.from + by, to: s.to + by, ..*s }),
+            Form::Cone(s) => {
+                let [from, to] = s.ends().map(|end| end + by);
+                Form::Cone(Cone::truncated(from, to, s.base_radius(), s.top_radius()))
+            }
+            Form::Torus(s) => Form::Torus(TorusShape { center: s.center + by, ..*s }),
+            Form::Hull(corners) => Form::Hull(corners.iter().map(|p| *p + by).collect()),
+        }
+    }
+
     /// Bounded by planes: its triangles are the body itself, and the sums over its surface are exact.
     #[must_use]
     pub fn is_polytope(&self) -> bool {

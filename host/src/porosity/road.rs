@@ -57,7 +57,11 @@ impl Roads {
         for (body, known) in convex.iter_mut().enumerate() {
             match (known.as_ref(), &bodies.bodies[body].form) {
                 // Whatever the method: no other measures it.
-                (_, Some(Form::Torus(shape))) => formulas.extend(FormulaSolid::torus(body, &planes.torus(shape))),
+                (_, Some(form @ Form::Torus(_))) => {
+                    if let Form::Torus(shape) = planes.form(form) {
+                        formulas.extend(FormulaSolid::torus(body, &shape));
+                    }
+                }
                 (Some(Known::Round(shape)), _) if options.method == Method::Auto => {
                     if let Some(form) = FormulaSolid::new(body, *shape) {
                         formulas.push(form);

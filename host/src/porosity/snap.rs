@@ -54,7 +54,7 @@ impl<'a> ToPlanes<'a> {
         triangle.map(|p| self.corner(p, Some(body)))
     }
 
-    /// A solid by formula, its flat ends in the planes that they miss by rounding.
+    /// A solid by formula, its axis along one of the grid and its flat ends in planes, where it misses these by rounding.
     #[must_use]
     pub fn form(&self, form: &Form) -> Form {
         match form {
@@ -66,6 +66,7 @@ impl<'a> ToPlanes<'a> {
                 let [from, to] = self.ends(s.ends(), s.base_radius().max(s.top_radius()));
                 Form::Cone(Cone::truncated(from, to, s.base_radius(), s.top_radius()))
             }
+            Form::Torus(s) => Form::Torus(self.torus(s)),
             other => other.clone(),
         }
     }
@@ -84,8 +85,7 @@ impl<'a> ToPlanes<'a> {
     }
 
     /// A torus, its axis and its beginning along axes of the grid if no point of it misses that by more than rounding; flat ends across one are in a plane.
-    #[must_use]
-    pub fn torus(&self, torus: &TorusShape<DVec3>) -> TorusShape<DVec3> {
+    fn torus(&self, torus: &TorusShape<DVec3>) -> TorusShape<DVec3> {
         let reach = torus.radius + torus.tube;
         let aligned = |direction: DVec3| {
             let unit = direction / direction.abs().max_element();
