@@ -311,7 +311,8 @@ fn extremes(random: &mut Random) {
             assert!(low <= high, "{low} to {high}");
         }
         let solids: Vec<QuadricSolid> = solids.iter().flatten().cloned().collect();
-        let [low, high] = enclosure::excess(&solids, cell, UnionEffort { tol: enough.max(1e-3), most: 1 << 16 });
+        let [low, high] =
+            enclosure::excess(&solids, cell, UnionEffort { tol: enough.max(1e-3), most: 1 << 16, more: 1 });
         assert!(low <= high, "{low} to {high} by planes");
     }
 }
@@ -330,7 +331,7 @@ pub fn planes_agree(seed: u64) {
     // Where surfaces coincide, planes are slow, and sections are there for it.
     let coincide = matches!(family, Family::Twice | Family::OnOneAxis | Family::Touching | Family::Aligned);
     for tol in [1e-1, 1e-3, 1e-5] {
-        let [low, high] = enclosure::excess(&all, cell, UnionEffort { tol, most: 1 << 20 });
+        let [low, high] = enclosure::excess(&all, cell, UnionEffort { tol, most: 1 << 20, more: 1 });
         let apart = (low - sections[1]).max(sections[0] - high);
         assert!(
             apart <= rough,

@@ -104,6 +104,35 @@ fn pipes_end_to_end_are_one_pipe() {
     assert_eq!((parts.max_gap, parts.gjk.queries), (0.0, 0));
 }
 
+/// Long pipes in small cells that overlap by about a billionth of their length are one pipe, which the bounds hold; pipes flush but for rounding have no gap.
+#[test]
+fn pipes_that_overlap_by_next_to_nothing_are_one_pipe() {
+    let mut random = Random::new(71);
+    for (n, overlap) in [0.0, 1e-13, 1e-11, 1e-10, 4e-10, 9e-10, 3e-9, 1e-7].into_iter().cycle().take(96).enumerate() {
+        let turned = DVec3::from_array(random.on_sphere());
+        let along = [DVec3::X, DVec3::Y, DVec3::Z, turned][random.below(4)];
+        let (length, radius) = ([3.0, 30.0, 1000.0][random.below(3)], random.between(0.1, 0.7));
+        let middle = random.point(DVec3::splat(1.9), DVec3::splat(2.1));
+        let pipe = |a: f64, b: f64| Form::Cylinder(Cylinder::new(middle + along * a, middle + along * b, radius));
+        let common = overlap * length;
+        let parts = run(&lists(16), &[pipe(-length, 0.5 * common), pipe(-0.5 * common, length)], Options::default());
+        let whole = run(&lists(16), &[pipe(-length, length)], Options::default());
+        let what = format!("{n}: {overlap} of {length} along {along}, radius {radius}");
+        let ([_, low, high], [exact, ..]) = (fields(&parts), fields(&whole));
+        for ((low, high), exact) in low.iter().zip(high).zip(exact) {
+            for ((low, high), exact) in low.iter().zip(high).zip(exact) {
+                assert!(low - 2e-11 <= *exact && *exact <= high + 2e-11, "{exact} not in {low} to {high}: {what}");
+            }
+        }
+        let told = 8.0 * common / 0.25;
+        assert!(
+            parts.max_gap <= told.max(1e-9) || overlap > 1e-9 && parts.max_gap <= 1e-4,
+            "{}: {what}",
+            parts.max_gap
+        );
+    }
+}
+
 /// Two balls: the volume of their union is known.
 #[test]
 fn balls_that_meet_lie_within_their_bounds() {

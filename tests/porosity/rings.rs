@@ -5,9 +5,14 @@ use super::torus::{Shares, shares};
 use super::torus_points::inside;
 use glam::DVec3;
 use std::f64::consts::PI;
+use voidage::geometry::form::Form;
+use voidage::grid::Edges;
+use voidage::porosity::{Options, porosity};
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::solids::torus::{TorusShape, TorusSolid};
+use voidage_tests::effort::cases;
 use voidage_tests::random::Random;
+use voidage_tests::solids::{formulas, scene, turned_box};
 
 fn ring(center: DVec3, axis: DVec3, radius: f64, tube: f64) -> TorusShape<DVec3> {
     TorusShape { center, axis, start: axis.any_orthogonal_vector(), radius, tube, angle: 360.0 }
@@ -38,6 +43,37 @@ fn rings_cut_through_their_centre_keep_their_volume() {
                 }
             }
         }
+    }
+}
+
+/// A side of a box goes through the centre of a ring, which is half within the box, however both lie; few cells or many.
+#[test]
+fn half_of_a_ring_in_a_box() {
+    let random = &mut Random::new(17);
+    for n in 0..cases(16) {
+        let turn = random.turn();
+        let half = DVec3::new(random.between(0.5, 0.53), random.between(0.5, 0.53), 0.25);
+        let (center, radius) =
+            (DVec3::splat(1.0) + DVec3::from_array(random.on_sphere()) * 0.05, random.between(0.2, 0.35));
+        let shape = ring(center, DVec3::from_array(random.on_sphere()), radius, radius * random.between(0.1, 0.6));
+        let block = turned_box(center - turn * DVec3::Z * half.z, half, turn);
+        // The ring does not leave the box by its other sides.
+        if shape.radius + shape.tube > 0.5 {
+            continue;
+        }
+        let mut bodies = scene(&[block]);
+        bodies.bodies.extend(formulas(&[Form::Torus(shape)]).bodies);
+        let cells = [3, 5, 8, 13][random.below(4)];
+        let size = 2.0 / cells as f64;
+        let edges = Edges([0, 1, 2].map(|_| (0..=cells).map(|i| size * i as f64).collect()));
+        let found =
+            porosity(&edges.grid(None).expect("a grid"), &bodies, Options { bounds: true, ..Options::default() });
+        let what = format!("{n}: {cells} cells, {shape:?}");
+        assert!(found.max_gap <= 1e-4, "{}: {what}", found.max_gap);
+        let [low, high] = found.bounds.as_ref().expect("bounds");
+        let solid = |f: &[f64]| f.iter().map(|b| 1.0 - b).sum::<f64>() * size.powi(3);
+        let volume = 8.0 * half.element_product() + PI * PI * shape.radius * shape.tube * shape.tube;
+        assert!(solid(&high.v) - 1e-9 <= volume && volume <= solid(&low.v) + 1e-9, "{volume}: {what}");
     }
 }
 

@@ -11,6 +11,7 @@ mod pairs;
 mod planar;
 mod round;
 mod solid;
+mod touching;
 mod union;
 
 pub use nested::without_nested;
@@ -20,11 +21,13 @@ pub use solid::FormulaSolid;
 
 use kept::KeptFaces;
 use solid::{BELIEVED, Kind, Pair};
+use touching::TOLD;
 use union::{box_of, concentric, ends_at, union_of};
 use voidage_core::grid::Grid;
 use voidage_core::grid::bounds::Bounds;
 use voidage_core::grid::cell_range::{CellRange, RangeKind};
 use voidage_core::grid::fields::Layer;
+use voidage_core::solids::enclosure::BoxAround;
 use voidage_core::solids::torus::TorusSolid;
 
 /// Sums this near to 1 are 1, as in the core's sums over surfaces.
@@ -284,14 +287,15 @@ fn add_shared(
         let (kind, at) = (KINDS[usize::from(place[0].0)], place[0].1 as usize);
         shares.clear();
         place.iter().for_each(|entry| add_share(&mut shares, entry));
-        let place = Place { solids, grid, kind, range: cell(grid, kind, at, part), shares: &shares };
+        let place = Place { solids, grid, kind, range: cell(grid, kind, at, part), shares: &shares, tol };
         let alone = sums[number(kind)].value(at);
         let (mut found, known) = place.apart_and_meeting(alone, &mut bodies);
         if !bodies.is_empty() {
             *shared += usize::from(kind == RangeKind::Cells);
-            let known = place.together(&bodies, known, tol);
+            let known = place.together(&bodies, known);
             (found.lower, found.upper) = (found.lower + known.lower, found.upper + known.upper);
         }
+        found.lower -= place.common();
         let (lower, sum) = values(layer, kind);
         if found.lower > FULL {
             found = Bounds::CLOSED;
@@ -309,6 +313,7 @@ struct Place<'a, 's> {
     kind: RangeKind,
     range: CellRange,
     shares: &'s [(usize, [f64; 2])],
+    tol: f64,
 }
 
 impl<'a> Place<'a, '_> {
@@ -317,9 +322,27 @@ impl<'a> Place<'a, '_> {
         let with = |&(b, _): &(usize, [f64; 2])| match self.solids[a].pair_with(self.solids[b]) {
             None => false,
             Some(Pair::Meeting) => true,
-            Some(Pair::Touching) => beside(a) && beside(b),
+            Some(Pair::Touching) => (beside(a) && beside(b)) || self.common_of(a, b) > TOLD * self.tol,
         };
         self.shares.iter().any(with)
+    }
+
+    /// No less than the share that two solids have in common if they touch.
+    fn common_of(&self, a: usize, b: usize) -> f64 {
+        let place = || box_of(self.grid, self.kind, self.range);
+        match self.solids[a].pair_with(self.solids[b]) {
+            Some(Pair::Touching) => place().map_or(1.0, |cell| {
+                let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
+                self.solids[a].common_with(self.solids[b], &BoxAround::new(sides))
+            }),
+            _ => 0.0,
+        }
+    }
+
+    /// The same of all that touch here.
+    fn common(&self) -> f64 {
+        let pairs = self.shares.iter().enumerate().flat_map(|(n, a)| self.shares[..n].iter().map(move |b| (a.0, b.0)));
+        pairs.map(|(a, b)| self.common_of(a, b)).sum()
     }
 
     /// The sum of `alone` and the shares of solids that meet no other here; and of those that meet, which go to `bodies`, each once, the largest
@@ -345,8 +368,8 @@ impl<'a> Place<'a, '_> {
     }
 
     /// The share of the union of solids that meet here, from the largest share and the sum.
-    fn together(&self, bodies: &[&FormulaSolid], (largest, sum): (f64, Bounds<f64>), tol: f64) -> Bounds<f64> {
-        let Place { grid, kind, range, shares, .. } = *self;
+    fn together(&self, bodies: &[&FormulaSolid], (largest, sum): (f64, Bounds<f64>)) -> Bounds<f64> {
+        let Place { grid, kind, range, shares, tol, .. } = *self;
         let known = Bounds { lower: largest, upper: sum.upper.min(1.0) };
         let all_meet = shares.iter().all(|&(n, _)| self.meets(n));
         let ends = all_meet.then(|| concentric(bodies, grid, kind, range)).flatten();

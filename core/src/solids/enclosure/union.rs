@@ -18,6 +18,8 @@ pub struct UnionEffort {
     pub tol: f64,
     /// How many solids may be looked at in all parts of the box together; then the bounds are further apart.
     pub most: usize,
+    /// So many times as many where that brings the bounds to `tol`, by how fast they have come closer.
+    pub more: usize,
 }
 
 /// A solid that tells, for any box, polytopes within it and around it.
@@ -58,6 +60,9 @@ const FIRST_TOLERANCE: f64 = 1e-2;
 const FIRST_STEP: f64 = 1.0 / 8.0;
 const FINER: f64 = 1.0 / 128.0;
 
+/// The power of the tolerance by which the cost grows is expected to become no more than this.
+const FINER_GROWTH: f64 = 2.0 / 3.0;
+
 /// Bounds of parts along a curve are as close as this share of the tolerance asks.
 const ALONG_CURVE: f64 = 1.0 / 3.0;
 
@@ -82,8 +87,9 @@ pub fn union_bounds<E: Enclosed>(
 }
 
 /// Bounds of the sum of the shares that some solids have of a box, less that of their union.
-pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], UnionEffort { tol, most }: UnionEffort) -> [f64; 2] {
+pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], effort: UnionEffort) -> [f64; 2] {
     let place = &BoxAround::new(sides);
+    let (tol, mut most) = (effort.tol, effort.most);
     let mut found = [0.0, solids.len() as f64];
     let (mut looked_at, mut last) = (0, None);
     let mut enough = tol.max(FIRST_TOLERANCE);
@@ -95,9 +101,18 @@ pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], UnionEffort { tol
         looked_at += cost;
         // By which power of the tolerance the cost grows: a third where surfaces meet along curves, one where they coincide. At first a small step tells.
         let growth = last.map(|(other, tol): (f64, f64)| libm::log(cost as f64 / other) / libm::log(tol / enough));
-        let wanted = (0.7 * tol / gap).clamp(if growth.is_some() { FINER } else { FIRST_STEP }, 0.5);
-        let left = cost as f64 / most.saturating_sub(looked_at) as f64;
-        let finer = wanted.max(libm::pow(left, 1.0 / growth.unwrap_or(1.0).clamp(0.3, 1.5)));
+        let wanted = 0.7 * tol / gap;
+        let payable = |most: usize, growth: f64| {
+            let left = cost as f64 / most.saturating_sub(looked_at) as f64;
+            libm::pow(left, 1.0 / growth.clamp(0.3, 1.5))
+        };
+        // In coarse parts a curve seems to cost more than it will.
+        let all = effort.most.saturating_mul(effort.more);
+        if growth.is_some_and(|g| payable(all, g.min(FINER_GROWTH)) <= wanted) {
+            most = all;
+        }
+        let step = wanted.clamp(if growth.is_some() { FINER } else { FIRST_STEP }, 0.5);
+        let finer = step.max(payable(most, growth.unwrap_or(1.0)));
         let in_vain = gap > 0.9 * before && last.is_some_and(|(other, _)| cost as f64 > 1.5 * other);
         if gap <= tol || gap <= CLOSEST || !(finer <= 0.5) || in_vain || !(enough > CLOSEST) {
             // Bounds that contradict each other do so by rounding.

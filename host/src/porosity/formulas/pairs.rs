@@ -3,6 +3,8 @@
 use super::capsule::are_apart;
 use super::round::Round;
 use super::solid::{FormulaSolid, Kind, Pair, Partner};
+use super::touching::Slab;
+use crate::porosity::convex::Convex;
 use glam::DVec3;
 use rayon::prelude::*;
 use voidage_core::convex::gjk::{Intersection, intersect};
@@ -36,16 +38,38 @@ impl Support for Hull<'_> {
     }
 }
 
-/// How two convex bodies lie to each other; none if they are apart.
-fn pair(a: impl Support<Vector = DVec3> + Copy, b: impl Support<Vector = DVec3> + Copy) -> Option<Pair> {
+/// Directions in which a solid is likely to end where another begins: along the axis of a rod, across the ends of a bend.
+fn directions(kind: &Kind) -> Vec<DVec3> {
+    let along = |[from, to]: [DVec3; 2]| vec![to - from];
+    match kind {
+        Kind::Quadric(_, Convex::Cylinder(s)) => along(s.ends()),
+        Kind::Quadric(_, Convex::Cone(s)) => along(s.ends()),
+        Kind::Quadric(_, Convex::Capsule(s)) => along([s.from, s.to]),
+        Kind::Quadric(..) => Vec::new(),
+        Kind::Torus(torus, _) => torus.ends().map(|(_, inward, _)| DVec3::from_array(inward)).collect(),
+    }
+}
+
+/// How two convex bodies lie to each other; none if they are apart. With `directions` in which they may end.
+fn pair(
+    a: impl Support<Vector = DVec3> + Copy,
+    b: impl Support<Vector = DVec3> + Copy,
+    directions: &[DVec3],
+) -> Option<Found> {
     if matches!(intersect(&a, &b, None), Intersection::Apart { .. }) {
         return None;
     }
-    match intersect(&smaller(a), &smaller(b), None) {
-        Intersection::Apart { .. } => Some(Pair::Touching),
-        _ => Some(Pair::Meeting),
-    }
+    let Intersection::Apart { axis } = intersect(&smaller(a), &smaller(b), None) else {
+        return Some((Pair::Meeting, Vec::new()));
+    };
+    // Along rods that lie beside each other what separates them is across both.
+    let across = directions.iter().filter_map(|d| d.try_normalize()).map(|d| axis - d * d.dot(axis));
+    let normals = directions.iter().copied().chain(across).chain([axis]);
+    Some((Pair::Touching, Slab::between(&a, &b, normals).into_iter().collect()))
 }
+
+/// How two solids lie to each other, and if they touch what holds all that they have in common.
+type Found = (Pair, Vec<Slab>);
 
 /// A body, shrunk about its centre.
 fn smaller<S: Support<Vector = DVec3>>(s: S) -> Transformed<S> {
@@ -54,20 +78,28 @@ fn smaller<S: Support<Vector = DVec3>>(s: S) -> Transformed<S> {
 }
 
 /// How two solids lie to each other; of tori, their pieces.
-fn pair_of_solids(a: &Kind, b: &Kind) -> Option<Pair> {
-    let worse = |a: Option<Pair>, b: Option<Pair>| match (a, b) {
-        (Some(Pair::Meeting), _) | (_, Some(Pair::Meeting)) => Some(Pair::Meeting),
-        (Some(Pair::Touching), _) | (_, Some(Pair::Touching)) => Some(Pair::Touching),
-        (None, None) => None,
+fn pair_of_solids(a: &Kind, b: &Kind) -> Option<Found> {
+    if let (Kind::Quadric(_, a), Kind::Quadric(_, b)) = (a, b)
+        && are_apart(a, b)
+    {
+        return None;
+    }
+    let both = || -> Vec<DVec3> { [a, b].into_iter().flat_map(directions).collect() };
+    let worse = |a: Option<Found>, b: Option<Found>| match (a, b) {
+        (Some((Pair::Touching, some)), Some((Pair::Touching, more))) => Some((Pair::Touching, [some, more].concat())),
+        (met @ Some((Pair::Meeting, _)), _) | (_, met @ Some((Pair::Meeting, _))) => met,
+        (found, None) | (None, found) => found,
     };
     match (a, b) {
-        (Kind::Quadric(_, a), Kind::Quadric(_, b)) if are_apart(a, b) => None,
-        (Kind::Quadric(_, a), Kind::Quadric(_, b)) => pair(Round(a), Round(b)),
+        (Kind::Quadric(_, a), Kind::Quadric(_, b)) => pair(Round(a), Round(b), &both()),
         (Kind::Quadric(_, a), Kind::Torus(_, pieces)) | (Kind::Torus(_, pieces), Kind::Quadric(_, a)) => {
-            pieces.iter().map(|piece| pair(Round(a), Hull(piece))).fold(None, worse)
+            let directions = both();
+            pieces.iter().map(|piece| pair(Round(a), Hull(piece), &directions)).fold(None, worse)
         }
         (Kind::Torus(_, some), Kind::Torus(_, pieces)) => {
-            some.iter().flat_map(|one| pieces.iter().map(move |piece| pair(Hull(one), Hull(piece)))).fold(None, worse)
+            let directions = &both();
+            let pairs = |one| pieces.iter().map(move |piece| pair(Hull(one), Hull(piece), directions));
+            some.iter().flat_map(pairs).fold(None, worse)
         }
     }
 }
@@ -124,12 +156,12 @@ pub(super) fn of_touching_boxes<T: Send>(
 /// Numbers all solids, and finds the partners of each.
 pub fn find_partners(solids: &mut [FormulaSolid]) {
     solids.iter_mut().enumerate().for_each(|(n, s)| s.number = n);
-    let look = |a: usize, b: usize| pair_of_solids(&solids[a].kind, &solids[b].kind).map(|pair| (a, b, pair));
-    let found: Vec<(usize, usize, Pair)> = of_touching_boxes(solids, look);
-    for (a, b, pair) in found {
+    let look = |a: usize, b: usize| pair_of_solids(&solids[a].kind, &solids[b].kind).map(|found| (a, b, found));
+    let found: Vec<(usize, usize, Found)> = of_touching_boxes(solids, look);
+    for (a, b, (pair, common)) in found {
         let overlap = overlap(solids[a].bounds, solids[b].bounds);
-        solids[a].partners.push(Partner { number: b, pair, overlap });
-        solids[b].partners.push(Partner { number: a, pair, overlap });
+        solids[a].partners.push(Partner { number: b, pair, common: common.clone(), overlap });
+        solids[b].partners.push(Partner { number: a, pair, common, overlap });
     }
     solids.iter_mut().for_each(|s| s.partners.sort_unstable_by_key(|p| p.number));
 }

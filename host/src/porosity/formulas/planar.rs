@@ -5,7 +5,8 @@
 
 use super::round::Round;
 use super::solid::{FormulaSolid, Kind, Pair};
-use super::union::{FIRST, ends_in, narrowed};
+use super::touching::{Slab, TOLD};
+use super::union::{FIRST, ends_in};
 use glam::DVec3;
 use voidage_core::convex::support::Support;
 use voidage_core::grid::bounds::Bounds;
@@ -13,14 +14,11 @@ use voidage_core::number::aabb::Aabb;
 use voidage_core::solids::enclosure::{BoxAround, Enclosed, Enclosure, UnionEffort, union_bounds};
 use voidage_core::surface::PlanarPart;
 
-/// Of what a solid may reach beyond a plane, this share of the tolerance is told in the bounds.
-const REACHES: f64 = 1.0 / 8.0;
-
 /// As little counts in any case.
 const LEAST: f64 = 1e-12;
 
-/// Where surfaces nearly coincide, as those of a pipe and of a bore with its radius, planes take so many times the effort that is tried first.
-const MORE: usize = 8;
+/// Where bounds come close enough by that, so many times as much is looked at: not where surfaces coincide, as those of a pipe and of a bore with its radius.
+const MORE: usize = 32;
 
 /// Bounds of the union of some solids and bodies in a cell, in its low x, y and z face and in its high ones, so far as they are `wanted`; in a face, flat
 /// along one axis, all are its own.
@@ -54,7 +52,7 @@ fn union_in(
     tol: f64,
 ) -> Bounds<f64> {
     let place = &BoxAround::new(sides);
-    let room = (REACHES * tol).max(LEAST);
+    let room = (TOLD * tol).max(LEAST);
     // How much the union may be more than what is found, or less, for what solids reach beyond planes.
     let (mut more, mut less) = (0.0, 0.0);
     let bodies: Vec<_> = parts.chunk_by(|a, b| a.body == b.body).collect();
@@ -72,7 +70,7 @@ fn union_in(
                 Place::Across => apart = false,
             }
         }
-        less += beyond;
+        less += beyond + alone.iter().map(|other| solid.common_with(other, place)).sum::<f64>();
         apart = apart && alone.iter().all(|other| !meet(solid, other, axis, sides));
         alone.push(solid);
         members.push(Member::Solid(solid));
@@ -83,12 +81,8 @@ fn union_in(
         lower: sum.lower + share.lower,
         upper: sum.upper + share.upper,
     });
-    let by_planes = |most: usize| union_bounds(&members, sides, sum, UnionEffort { tol: 0.5 * tol, most });
-    let mut found = if apart { sum } else { by_planes(FIRST) };
-    // Twice as many parts halve the gap, about.
-    if found.gap() > tol && found.gap() < 0.5 * MORE as f64 * tol {
-        found = narrowed(found, by_planes(MORE * FIRST));
-    }
+    let effort = UnionEffort { tol: 0.5 * tol, most: FIRST, more: MORE };
+    let found = if apart { sum } else { union_bounds(&members, sides, sum, effort) };
     Bounds { lower: (found.lower - less).clamp(0.0, 1.0), upper: (found.upper + more).min(1.0) }
 }
 
@@ -134,7 +128,7 @@ fn place_of_part(solid: &FormulaSolid, body: &PlanarPart<f64>, place: &BoxAround
     let mut within = Some(0.0);
     for [normal, point] in &body.planes {
         let [behind, before] = [normal.map(|n| -n), *normal].map(|n| reach(solid, n.into(), (*point).into()));
-        let share = |depth: f64| share_near([normal, point], depth, place);
+        let share = |half: f64| Slab { normal: (*normal).into(), point: (*point).into(), half }.share(place);
         if share(behind) <= room {
             return Place::Beyond(share(behind));
         }
@@ -158,17 +152,6 @@ fn reach(solid: &FormulaSolid, normal: DVec3, point: DVec3) -> f64 {
     // As of the slack of supports.
     let rounding = 64.0 * f64::EPSILON * (size + point.abs().max_element());
     farthest - point.dot(normal) + rounding
-}
-
-/// No less than the share of a cell or face that lies within a depth of a plane.
-fn share_near([normal, point]: [&[f64; 3]; 2], depth: f64, place: &BoxAround) -> f64 {
-    let middle: f64 = (0..3).map(|n| normal[n] * (place.middle[n] - point[n])).sum();
-    let slopes = [0, 1, 2].map(|n| (normal[n] * place.half[n]).abs());
-    let steepest = slopes.iter().fold(0.0_f64, |most, s| most.max(*s));
-    if depth < 0.0 || middle.abs() > slopes.iter().sum::<f64>() + depth {
-        return 0.0;
-    }
-    if steepest > depth { depth / steepest } else { 1.0 }
 }
 
 /// A solid, or a part of a body.

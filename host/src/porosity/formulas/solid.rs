@@ -1,6 +1,7 @@
 //! One solid by formula: its shares of cells and faces, and those that it meets.
 
 use super::round::closed_form;
+use super::touching::Slab;
 use crate::porosity::convex::Convex;
 use glam::DVec3;
 use std::ops::Range;
@@ -21,7 +22,7 @@ const PIECE: f64 = 12.0;
 /// How two solids lie to each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pair {
-    /// They share no inner point, but may share a wall.
+    /// They share no inner point but for a share of 1e-9 of their size, which is told; they may share a wall.
     Touching,
     /// They may share inner points.
     Meeting,
@@ -46,6 +47,8 @@ pub struct FormulaSolid {
 pub(super) struct Partner {
     pub number: usize,
     pub pair: Pair,
+    /// Of one that it touches, what holds all that both have in common beyond rounding.
+    pub common: Vec<Slab>,
     /// The box outside of which they share no cell or face.
     pub overlap: Aabb<DVec3>,
 }
@@ -127,8 +130,17 @@ impl FormulaSolid {
     }
 
     pub(super) fn pair_with(&self, other: &FormulaSolid) -> Option<Pair> {
+        self.partner(other).map(|partner| partner.pair)
+    }
+
+    /// No less than the share of a cell or face that it has in common with one that it touches.
+    pub(super) fn common_with(&self, other: &FormulaSolid, place: &BoxAround) -> f64 {
+        self.partner(other).map_or(0.0, |partner| partner.common.iter().fold(0.0, |sum, slab| sum + slab.share(place)))
+    }
+
+    fn partner(&self, other: &FormulaSolid) -> Option<&Partner> {
         let at = self.partners.binary_search_by_key(&other.number, |p| p.number).ok()?;
-        Some(self.partners[at].pair)
+        self.partners.get(at)
     }
 
     /// Rows and columns of cells and faces, by their numbers along x and y, of which partners may have a share too between two planes across z.

@@ -29,7 +29,7 @@ pub(super) fn union_of(
     tol: f64,
 ) -> Bounds<f64> {
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
-    let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most }));
+    let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most, more: 1 }));
     let by_sections = |most: usize| by_sections(solids, (sum, cell), tol, most);
     let (few_slices, all_slices) = (|| by_sections(FIRST_SLICES), || by_sections(usize::MAX));
     let (few_planes, all_planes) = (|| by_planes(FIRST), || by_planes(MOST));
