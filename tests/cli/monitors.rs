@@ -127,7 +127,7 @@ fn places_of_tables_stay_what_they_were() {
         [("{ name = \"m\", x = 1.2 }", "0.5", "output.monitors"), (plane, "1.5", "output.probes")]
     {
         let text = stderr(&solve(&at, &with(planes, probe, 4), "out", &["--resume"]));
-        assert!(text.contains(&format!("checkpoint.bin: is of a run whose {of} lie elsewhere")), "{text}");
+        assert!(text.contains(&format!("checkpoint.bin: is of a run with other {of}: leave")), "{text}");
     }
     // Neither costs the run its state.
     solved(&at, &with("", "0.5", 3), "out", &["--resume"]);

@@ -1,6 +1,6 @@
 //! What a case asks for in solids changes nothing, and is told.
 
-use crate::kit::{Scratch, json, solve, solved, stderr, voidage};
+use crate::kit::{Scratch, array, json, solve, solved, stderr, voidage};
 use std::fs;
 
 /// A box from 0.2 to 0.6 on a grid of 10 x 10 cells, with a key of `[initial]`, sides and more.
@@ -149,4 +149,114 @@ fn fields_without_the_drag_of_solids_say_so() {
         let said = run(keys, more);
         assert!(!said.contains("only with --drag"), "{more:?}: {said}");
     }
+}
+
+/// Sides that solids close, frames of no format, an `initial.uniform` that is no rest under gravity.
+#[test]
+fn what_a_case_asks_for_in_vain_is_told() {
+    let told = |side: &str, output: &str, gravity: &str| {
+        let at = Scratch::new();
+        fs::write(at.file("box.toml"), BOX.replace("0.2", "-1").replace("0.6, 0.6", "0.6, 2")).expect("a file");
+        let text = case("", gravity, output).replace("x_min = \"wall\"", &format!("x_min = {side}"));
+        (stderr(&solved(&at, &text, "out", &[])), at)
+    };
+    let closed = "key boundary.x_min: solids close all faces of this side: no gas passes it";
+    let (text, at) = told("{ type = \"outlet\", p = 1 }", "", "");
+    assert!(text.contains(closed), "{text}");
+    let (text, _) = told("\"wall\"", "formats = []\nevery = 0.01", "[gravity]\ng = [0, -9.81, 0]\n");
+    assert!(!text.contains(closed), "{text}");
+    assert!(text.contains("key output.every: is of frames: formats is empty, and none is written"), "{text}");
+    let words = "key initial.uniform: the state is the same at all heights, which is no rest under gravity: the gas begins to swing, as from one end \
+                 to the other of the domain its weight makes 9.81 Pa for each kg/m³";
+    assert!(text.contains(words), "{text}");
+    // Where there is no gas the arrays say so.
+    let open = array(&at.file("out/final/beta_v.npy"));
+    assert_eq!(open.iter().filter(|open| **open == 0.0).count(), 60);
+}
+
+/// Arrays whose solid cells have open faces, and arrays of resistance that nothing takes.
+#[test]
+fn arrays_that_contradict_each_other_are_told() {
+    let at = Scratch::new();
+    fs::write(at.file("box.toml"), BOX.replace("[0, 0.2, -1]", "[0.2, 0.2, -1]")).expect("a file");
+    let grid = "{\"x\": [0, 0.2, 0.4, 0.6, 0.8, 1], \"y\": [0, 0.2, 0.4, 0.6, 0.8, 1], \"z\": [0, 1]}";
+    fs::write(at.file("grid.json"), grid).expect("a file");
+    let (scene, grid, fields) = (at.file("box.toml"), at.file("grid.json"), at.file("fields"));
+    let made = voidage(&[&"porosity", &scene, &"--grid", &grid, &"--npy", &fields]);
+    assert!(made.status.success(), "{}", stderr(&made));
+    let text =
+        case("", "", "").replace("scene = \"box.toml\"", "from = \"fields\"").replace("cells = [10]", "cells = [5]");
+    let said = |what: &str| stderr(&solved(&at, &text, what, &[]));
+    let quiet = said("one");
+    assert!(!quiet.contains("open faces") && !quiet.contains("cr_x.npy"), "{quiet}");
+    let (_, mut x) = voidage::files::npy::read(&fields.join("beta_x.npy")).expect("an array");
+    let closed = x.iter().position(|open| *open == 0.0).expect("a closed face");
+    x[closed] = 1.0;
+    voidage::files::npy::write(&fields.join("beta_x.npy"), [6, 5, 1], &x).expect("an array");
+    let mut resistance = vec![0.0; 25];
+    resistance[24] = 3.0;
+    voidage::files::npy::write(&fields.join("cr_x.npy"), [5, 5, 1], &resistance).expect("an array");
+    let text = said("two");
+    let words = "key porosity.from: 1 cell is solid but has open faces, the first at [1, 1, 0]: gas passes there";
+    assert!(text.contains(words), "{text}");
+    assert!(
+        text.contains("key porosity.from: cr_x.npy lies there, too, and exerts no force: [drag] from takes it"),
+        "{text}"
+    );
+}
+
+/// A grid in millimetres around a scene in metres; a unit that a grid has not; a file given twice.
+#[test]
+fn units_of_grids_and_files_given_twice() {
+    let at = Scratch::new();
+    let more = "[[solid]]\nshape = \"sphere\"\ncenter = [2, 2, 2]\nradius = 1\n";
+    fs::write(at.file("box.toml"), format!("{BOX}{more}")).expect("a file");
+    let grid = "origin = [-500, -500, -500]\nspacing = 1000\ncells = [4, 4, 4]\n";
+    let said = |grid: &str| {
+        fs::write(at.file("grid.toml"), grid).expect("a file");
+        voidage(&[&"porosity", &at.file("box.toml"), &at.file("box.toml"), &"--grid", &at.file("grid.toml")])
+    };
+    let output = said(grid);
+    let text = stderr(&output);
+    assert!(
+        output.status.success() && text.contains("box.toml: is given twice, and what it holds counts once"),
+        "{text}"
+    );
+    assert!(
+        text.contains("all of the geometry, 3 × 2.8 × 4 m, lies within one cell of 1000 × 1000 × 1000 m"),
+        "{text}"
+    );
+    let refused = said(&format!("unit = \"mm\"\n{grid}"));
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stderr(&refused).contains("line 1, column 1: key unit is not known here: a grid is in metres"));
+}
+
+/// Faces lowered to a throat are known less well than all else where solids are round; a study of an empty grid says nothing of what to choose.
+#[test]
+fn less_than_the_tolerance_and_nothing_at_all_are_told() {
+    let at = Scratch::new();
+    let bars = "[[solid]]\nshape = \"sphere\"\ncenter = [0.53, 0.51, 0.47]\nradius = 0.21\n";
+    fs::write(at.file("ball.toml"), bars).expect("a file");
+    let of = |faces: &str| {
+        let bounds = "0,0,0,1,1,1";
+        stderr(&voidage(&[
+            &"porosity",
+            &at.file("ball.toml"),
+            &"--cells",
+            &"3x3x3",
+            &"--bounds",
+            &bounds,
+            &"--faces",
+            &faces,
+        ]))
+    };
+    assert!(of("throat").contains("--faces throat: the bounds of some lowered faces are"), "{}", of("throat"));
+    assert!(!of("plane").contains("apart"), "{}", of("plane"));
+    let study = "[[scene]]\nname = \"ball\"\nfiles = [\"ball.toml\"]\n[[grid]]\norigin = [5, 5, 5]\nspacing = 0.1\ncells = [2, 2, 2]\n\
+                 [[method]]\nname = \"exact\"\n";
+    fs::write(at.file("study.toml"), study).expect("a file");
+    let output = voidage(&[&"study", &at.file("study.toml"), &"-o", &at.file("out")]);
+    assert!(output.status.success() && stderr(&output).contains("lies outside the grid"), "{}", stderr(&output));
+    let page = fs::read_to_string(at.file("out/study.md")).expect("a page");
+    assert!(page.contains("no solid lies in the grid") && !page.contains("no reason to choose"), "{page}");
 }

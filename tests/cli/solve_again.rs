@@ -119,7 +119,7 @@ fn places_are_kept() {
     };
     let refused = |more: &str, what: &str| {
         let text = stderr(&with(more, 9, &["--resume"]));
-        assert!(text.contains(&format!("{what} lie elsewhere")), "{text}");
+        assert!(text.contains(&format!("of a run with other {what}")), "{text}");
     };
     // The planes at the end and one cell before it see the same cell.
     assert!(with("monitors = [{ name = \"M\", x = 1 }]", 3, &[]).status.success());

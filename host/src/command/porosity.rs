@@ -65,7 +65,15 @@ pub fn porosity(args: &PorosityArgs) -> Result<()> {
         let (grid, coefficients) = (edges.grid(None)?, args.cd.unwrap_or_default());
         let drag = args.drag.map(|law| (law, coefficients));
         let wanted = Wanted { resistance, drag, faces: args.faces, warning: false };
+        let without_throats = result.max_gap;
         let found = obstacles(&grid, &bodies, &mut result, options, wanted, &mut progress);
+        if result.max_gap > args.tol.max(without_throats) {
+            progress.warn(format!(
+                "--faces throat: the bounds of some lowered faces are {:.1e} apart, more than tol, {:.1e}: shadows of round solids are those of \
+                 facets; all others are within {without_throats:.1e}",
+                result.max_gap, args.tol
+            ));
+        }
         // The report alone has it.
         let congestion = match (&found.resistance, &args.report) {
             (Some(_), Some(_)) => {

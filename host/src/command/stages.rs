@@ -17,7 +17,7 @@ use crate::text;
 use crate::words::{counted, either};
 use glam::DVec3;
 use std::path::Path;
-use voidage_core::grid::Grid;
+use voidage_core::grid::{Grid, Located};
 
 /// Read all files of a scene into bodies, in metres; and the grid that a scene file carries, if one does, or that there are two.
 ///
@@ -29,7 +29,10 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
     if args.scene.iter().filter(|path| is_stream(path)).count() > 1 {
         return Err(Error::usage("the standard input can be read once: - stands for one file of a scene"));
     }
-    for path in &args.scene {
+    for (n, path) in args.scene.iter().enumerate() {
+        if args.scene[..n].contains(path) {
+            progress.warn(format!("{}: is given twice, and what it holds counts once", path.display()));
+        }
         let (path, piped) = match is_stream(path) {
             true => (Path::new(INPUT), Some(read_input()?)),
             false => (path.as_path(), None),
@@ -133,6 +136,7 @@ pub fn measure(
     let grid = edges.grid(None)?;
     warn_if_outside(bodies, edges, left_out, &grid, progress);
     warn_if_coarse(bodies, edges, progress);
+    warn_if_in_one_cell(bodies, &grid, progress);
     room_for(porosity::memory(&grid, bodies, options))?;
     let layers = edges.cells()[2] * porosity::levels(bodies).len();
     let result = progress.stage("porosity", |p| {
@@ -211,7 +215,7 @@ pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
 }
 
 /// Geometry outside the grid does not count; say so.
-fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &Grid<f64>, progress: &mut Progress) {
+pub fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &Grid<f64>, progress: &mut Progress) {
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     // Digits by the size of each: a stray corner far away must not leave none of the grid.
     let extent = |p: DVec3, q: DVec3| {
@@ -274,6 +278,22 @@ fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid: &G
     let names: Vec<String> = solids.chain(files).collect();
     if let Some(names) = listed(&names) {
         progress.warn(format!("{names}: outside the grid, {within}, and without effect"));
+    }
+}
+
+/// Several bodies within a single cell of many: one of the two is likely in another unit; say so.
+fn warn_if_in_one_cell(bodies: &Bodies, grid: &Grid<f64>, progress: &mut Progress) {
+    let Some([lo, hi]) = bodies.bounds().filter(|_| bodies.bodies.len() > 1 && grid.cell_count() > 1) else { return };
+    let along = |axis: usize| match (grid.locate(axis, lo[axis]), grid.locate(axis, hi[axis])) {
+        (Located::Cell(a), Located::Cell(b)) if a == b => Some(grid.edges(axis)[a + 1] - grid.edges(axis)[a]),
+        _ => None,
+    };
+    if let (Some(x), Some(y), Some(z)) = (along(0), along(1), along(2)) {
+        let [size, cell] = [(hi - lo).to_array(), [x, y, z]].map(|all| all.map(short).join(" × "));
+        progress.warn(format!(
+            "{}: all of the geometry, {size} m, lies within one cell of {cell} m: are both in metres?",
+            bodies.files()
+        ));
     }
 }
 

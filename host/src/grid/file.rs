@@ -319,6 +319,10 @@ pub fn parse(path: &Path, text: &str, warnings: &mut Vec<String>) -> Result<Edge
         let reason = format!("key {} is not known here; did you mean {key}?", entry.key);
         return Err(misfit(&source, (entry.span.clone(), reason)));
     }
+    if let Some(entry) = strange.iter().find(|e| ["unit", "units"].contains(&&e.key[..])) {
+        let reason = format!("key {} is not known here: a grid is in metres", entry.key);
+        return Err(misfit(&source, (entry.span.clone(), reason)));
+    }
     for entry in strange {
         let meant =
             if entry.key == "comment" { "; a comment begins with #".to_owned() } else { meant(&entry.key, &KEYS) };

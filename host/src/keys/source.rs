@@ -153,7 +153,11 @@ const KINDS: [(&str, &str, &str); 4] = [
     ("a case", "gas", "voidage solve reads it"),
     ("a case", "initial", "voidage solve reads it"),
     ("a study", "method", "voidage study reads it"),
-    ("a scene", "solid", "voidage porosity reads it, and [porosity] scene = \"FILE\" of a case names it"),
+    (
+        "a scene",
+        "solid",
+        "voidage porosity reads it, [porosity] scene = \"FILE\" of a case names it, files = [\"FILE\"] of a [[scene]] of a study",
+    ),
 ];
 
 /// A key that tells a file to be of another kind than `kind`, and a sentence about it.

@@ -39,21 +39,21 @@ impl Snapshot {
         Snapshot { density, velocity, pressure, gamma }
     }
 
-    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`, and `gamma.npy` of a mixed gas, all or none.
+    /// Writes `rho.npy`, `u.npy`, `v.npy`, `w.npy`, `p.npy`, `gamma.npy` of a mixed gas and `beta_v.npy` where not all is open, all or none.
     ///
     /// # Errors
     /// The files cannot be written.
-    pub fn arrays(&self, dir: &Path, edges: &Edges) -> Result<()> {
-        let [u, v, w] = &self.velocity;
-        let named = [("rho", &self.density), ("u", u), ("v", v), ("w", w), ("p", &self.pressure)];
-        let named = named.into_iter().chain(self.gamma.iter().map(|gamma| ("gamma", gamma)));
-        let arrays: Vec<_> = named.map(|(name, values)| (name.to_owned(), edges.cells(), &values[..])).collect();
+    pub fn arrays(&self, dir: &Path, edges: &Edges, beta_v: Option<&[f64]>) -> Result<()> {
+        let [u, v, w] = self.velocity.each_ref().map(|v| &v[..]);
+        let named = [("rho", &self.density[..]), ("u", u), ("v", v), ("w", w), ("p", &self.pressure)];
+        let some = [("gamma", self.gamma.as_deref()), ("beta_v", beta_v)];
+        let given = some.into_iter().filter_map(|(name, values)| Some((name, values?)));
+        let arrays: Vec<_> =
+            named.into_iter().chain(given).map(|(name, values)| (name.to_owned(), edges.cells(), values)).collect();
         npy::write_fields(dir, edges, &arrays)?;
-        match self.gamma {
-            Some(_) => Ok(()),
-            // What an earlier run with a mixed gas has left would speak for this one.
-            None => forget(&dir.join("gamma.npy")),
-        }
+        // What an earlier run with a mixed gas or with solids has left would speak for this one.
+        let absent = some.into_iter().filter(|(_, values)| values.is_none());
+        absent.into_iter().try_for_each(|(name, _)| forget(&dir.join(format!("{name}.npy"))))
     }
 
     /// Writes a frame for ParaView.

@@ -401,8 +401,8 @@ impl<'a, const D: usize> Run<'a, D> {
 
     /// The last state, the largest values over time, and the pictures with the colours of the whole run.
     fn last(&mut self) -> Result<()> {
-        self.snapshot().arrays(&self.dir.join("final"), &self.setup.edges)?;
         let beta_v = self.setup.flow.beta_v();
+        self.snapshot().arrays(&self.dir.join("final"), &self.setup.edges, beta_v)?;
         if let Some(pictures) = &mut self.pictures {
             pictures.again(&self.setup, &self.journal.frames, &self.dir.join("frames"))?;
         }
@@ -437,7 +437,9 @@ impl<'a, const D: usize> Run<'a, D> {
                     shot.paraview(&path, &self.setup.edges, self.setup.flow.beta_v(), time)?;
                     frames::series(&self.dir.join(frames::SERIES), &self.journal.frames)?;
                 }
-                Format::Npy => shot.arrays(&dir.join(format!("{n:04}")), &self.setup.edges)?,
+                Format::Npy => {
+                    shot.arrays(&dir.join(format!("{n:04}")), &self.setup.edges, self.setup.flow.beta_v())?;
+                }
                 Format::Png => {
                     if let Some(pictures) = &mut self.pictures {
                         pictures.frame(&self.setup, &shot, (n, time), &dir)?;

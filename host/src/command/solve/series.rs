@@ -86,8 +86,9 @@ impl<const D: usize> Series<D> {
         let places = watched.places();
         for ((of, now), then) in ["output.probes", "output.monitors"].into_iter().zip(places).zip(journal.places) {
             if now != 0 && then != 0 && now != then {
-                let reason =
-                    format!("is of a run whose {of} lie elsewhere: leave them as they were, or run without --resume");
+                let reason = format!(
+                    "is of a run with other {of}: leave all of them as they were, or none, or run without --resume"
+                );
                 return Err(Error::file(&dir.join(checkpoint::NAME), reason));
             }
         }

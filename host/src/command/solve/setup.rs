@@ -20,6 +20,7 @@ use crate::command::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flow::{Flow, Tidied, Treatment};
 use crate::grid::{AXES, Edges};
+use crate::picture::ticks::number as short;
 use serde::Serialize;
 use voidage_core::flow::{Boundary, Gas, Limiter, PressureForm, Primitive, Scheme};
 
@@ -136,6 +137,7 @@ pub fn setup<const D: usize>(
     if flow.gravity.iter().all(|&g| g == 0.0) {
         skipped.push("gravity: none".into());
     }
+    warn_of_level_start(file, &flow.gravity, (edges, live), progress);
     if !gas.has_energy() {
         skipped.push("energy equation: the gas is barotropic".into());
     }
@@ -158,6 +160,7 @@ pub fn setup<const D: usize>(
     let solids = (!measured.is_empty())
         .then(|| SolidShares::new(&measured, &flow, (&pushed, &free_sides), !space::given_otherwise(file)));
     let regions = region_report::report(file, (&flow, &parts), &edges, live, progress)?;
+    sides::warn_of_closed(file, &flow, live, progress);
     let patches = sides::report(file, &flow, &edges, live, progress)?;
     Ok(Setup {
         flow,
@@ -295,6 +298,26 @@ const CAREFUL_STEPS: usize = 5;
 /// Share of the stable step of a case that does not say.
 const USUAL_CFL: f64 = 0.8;
 
+/// Tells that one state everywhere is no rest under gravity.
+fn warn_of_level_start<const D: usize>(
+    file: &CaseFile,
+    gravity: &[f64; D],
+    (edges, live): (&Edges, [usize; D]),
+    progress: &mut Progress,
+) {
+    let is_level = file.case.initial.uniform.is_some() && file.case.initial.from.is_none();
+    let [lo, hi] = edges.bounds();
+    let drop = gravity.iter().zip(live).map(|(g, axis)| g.abs() * (hi - lo)[axis]).sum::<f64>();
+    if is_level && drop > 0.0 {
+        let reason = format!(
+            "the state is the same at all heights, which is no rest under gravity: the gas begins to swing, as from one end to the other of the \
+             domain its weight makes {} Pa for each kg/m³; an atmosphere in layers is read by initial.from",
+            short(drop)
+        );
+        progress.warn(file.remark("initial.uniform", reason));
+    }
+}
+
 /// Tells of upright sides and patches with one pressure at all heights, through which an atmosphere under gravity flows.
 fn warn_of_level_pressures<const D: usize>(
     file: &CaseFile,
@@ -329,7 +352,7 @@ fn gravity<const D: usize>(file: &CaseFile, live: [usize; D]) -> Result<[f64; D]
     Ok(live.map(|d| g[d]))
 }
 
-/// Keys of pictures in a case that asks for none.
+/// Keys of pictures and frames in a case that asks for none.
 fn without_pictures(file: &CaseFile) -> Vec<String> {
     let output = &file.case.output;
     if output.formats().contains(&Format::Png) {
@@ -338,7 +361,12 @@ fn without_pictures(file: &CaseFile) -> Vec<String> {
     let RangeKeys { speed, overpressure } = &output.range;
     let keys = [("slice", output.slice.is_some()), ("range", speed.is_some() || overpressure.is_some())];
     let given = keys.into_iter().filter(|(_, given)| *given);
-    given.map(|(key, _)| file.remark(&format!("output.{key}"), "is of pictures: formats has no png")).collect()
+    let mut said: Vec<String> =
+        given.map(|(key, _)| file.remark(&format!("output.{key}"), "is of pictures: formats has no png")).collect();
+    if output.every.is_some() && output.formats().is_empty() {
+        said.push(file.remark("output.every", "is of frames: formats is empty, and none is written"));
+    }
+    said
 }
 
 type Coefficients<const D: usize> = [[Vec<f64>; D]; 2];
@@ -379,7 +407,14 @@ fn drag<const D: usize>(
         all[0] = by_law;
     }
     if let Some(dir) = from.filter(|_| all.iter().flatten().all(Vec::is_empty)) {
-        return Err(file.wrong("drag.from", format!("{}: {NOTHING}", dir.display())));
+        let of_others = (0..3).filter(|a| !live.contains(a)).map(|a| (a, format!("cr_{}.npy", AXES[a])));
+        let reason = match of_others.into_iter().find(|(_, name)| dir.join(name).exists()) {
+            Some((axis, name)) => {
+                format!("{name} is of the axis {}, which has one cell; of the others there is none", AXES[axis])
+            }
+            None => NOTHING.to_owned(),
+        };
+        return Err(file.wrong("drag.from", format!("{}: {reason}", dir.display())));
     }
     all.iter_mut().flatten().filter(|c| c.iter().all(|&x| x == 0.0)).for_each(Vec::clear);
     Ok(if all.iter().flatten().all(Vec::is_empty) { None } else { Some(all) })

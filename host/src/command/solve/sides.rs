@@ -200,6 +200,21 @@ fn areas_of<const D: usize>(patch: &Patch<f64, D>, region: &Region, edges: &Edge
     areas
 }
 
+/// Tells of sides that gas could pass, all of whose faces solids close; inlets are told apart.
+pub fn warn_of_closed<const D: usize>(file: &CaseFile, flow: &Flow<f64, D>, live: [usize; D], progress: &mut Progress) {
+    for (d, side) in (0..D).flat_map(|d| [(d, 0), (d, 1)]) {
+        let stands = &flow.boundaries[d][side];
+        if matches!(stands, Boundary::Wall | Boundary::Periodic | Boundary::Inlet(_)) {
+            continue;
+        }
+        let faces = flow.side(d, side, None);
+        if !faces.is_empty() && faces.iter().all(|(_, area)| *area == 0.0) {
+            let key = format!("boundary.{}", side_word(live[d], side));
+            progress.warn(file.remark(&key, "solids close all faces of this side: no gas passes it"));
+        }
+    }
+}
+
 /// What the patches of a flow came to; those that cover nothing are told.
 pub fn report<const D: usize>(
     file: &CaseFile,

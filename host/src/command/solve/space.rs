@@ -17,6 +17,7 @@ use crate::keys::reader::nearest;
 use crate::porosity::drag::{DragCoefficients, DragLaw};
 use crate::porosity::throat::{Faces, LoweredSide};
 use crate::porosity::{FieldSet, Options};
+use crate::words::counted;
 use std::path::{Path, PathBuf};
 
 /// Open fractions of all cells and of the faces of the axes that flow.
@@ -96,7 +97,10 @@ pub fn load<const D: usize>(
                 .collect::<Result<_>>()?;
             let mut faces = faces.into_iter();
             let faces = std::array::from_fn(|_| faces.next().unwrap_or_default());
-            (Space { volume: read("v", cells)?, faces, drag: None, surrounded: Vec::new(), scene: None }, Vec::new())
+            warn_of_coefficients(file, &dir, edges, live, progress);
+            let volume = read("v", cells)?;
+            warn_of_open_solid(file, (&volume, &faces), cells, live, progress);
+            (Space { volume, faces, drag: None, surrounded: Vec::new(), scene: None }, Vec::new())
         }
         (None, None) => return Ok((None, Vec::new())),
         (Some(_), Some(_)) => return Err(file.wrong("porosity", "takes scene or from, not both")),
@@ -104,6 +108,55 @@ pub fn load<const D: usize>(
     let resists = space.drag.iter().flatten().flatten().any(|&cr| cr > 0.0);
     let open = !resists && space.volume.iter().chain(space.faces.iter().flatten()).all(|&b| b == 1.0);
     Ok((if open { None } else { Some(space) }, solids))
+}
+
+/// Says that gas passes cells that are solid, by faces that are open.
+fn warn_of_open_solid<const D: usize>(
+    file: &CaseFile,
+    (volume, faces): (&[f64], &[Vec<f64>; D]),
+    cells: [usize; 3],
+    live: [usize; D],
+    progress: &mut Progress,
+) {
+    let is_passed = |cell: usize| {
+        live.iter().zip(faces).any(|(&axis, faces)| {
+            let shape = std::array::from_fn(|a| cells[a] + usize::from(a == axis));
+            let low = arrays::index(cell, cells);
+            let mut high = low;
+            high[axis] += 1;
+            [low, high].into_iter().any(|face| faces[arrays::position(face, shape)] >= DUST)
+        })
+    };
+    let mut passed = (0..volume.len()).filter(|&cell| volume[cell] == 0.0 && is_passed(cell));
+    if let Some(first) = passed.next() {
+        let count = counted(passed.count() + 1, "cell is solid but has", "cells are solid but have");
+        let at = arrays::index(first, cells);
+        let reason =
+            format!("{count} open faces, the first at {at:?}: gas passes there; faces of solid cells are closed");
+        progress.warn(file.remark("porosity.from", reason));
+    }
+}
+
+/// Says that arrays of resistance lie beside those of porosity, and that nothing takes them.
+fn warn_of_coefficients<const D: usize>(
+    file: &CaseFile,
+    dir: &Path,
+    edges: &Edges,
+    live: [usize; D],
+    progress: &mut Progress,
+) {
+    let name = |axis: usize| format!("cr_{}.npy", AXES[axis]);
+    let resists = |axis: &usize| {
+        let read = file.array("porosity.from", &dir.join(name(*axis)), edges.cells(), |_| None);
+        read.is_ok_and(|cr| cr.iter().any(|&cr| cr > 0.0))
+    };
+    if given_otherwise(file) {
+        return;
+    }
+    if let Some(axis) = live.into_iter().find(resists) {
+        let reason = format!("{} lies there, too, and exerts no force: [drag] from takes it", name(axis));
+        progress.warn(file.remark("porosity.from", reason));
+    }
 }
 
 /// The files of a scene, from where the case lies.
@@ -193,7 +246,7 @@ fn from_scene<const D: usize>(
     let found = obstacles(&grid, &bodies, &mut result, options, wanted, progress);
     // What has a drag of its own has told what it resists; of the others it is asked.
     let all_have_one = bodies.bodies.iter().all(|body| body.porosity > 0.0 || has_own(body));
-    if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none() && !all_have_one) {
+    if let Some(resistance) = found.resistance.as_ref().filter(|_| law.is_none() && !silent && !all_have_one) {
         warn_of_no_force(&bodies, (resistance, found.unseen), progress);
     }
     if !silent && wanted.drag.is_none() {
@@ -220,7 +273,9 @@ fn wanted_solids(file: &CaseFile, bodies: &Bodies) -> Result<Vec<String>> {
             name if known(name) => vec![name],
             name => {
                 let names: Vec<&str> = all.iter().flatten().copied().filter(|name| !name.is_empty()).collect();
-                let near = nearest(name, &names).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                let is_end = |own: &&&str| own.rsplit('/').next() == Some(name);
+                let near = nearest(name, &names).or_else(|| names.iter().find(is_end).copied());
+                let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
                 return Err(file.wrong(&format!("output.forces[{n}]"), format!("no solid is called \"{name}\"{near}")));
             }
         };

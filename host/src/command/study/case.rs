@@ -249,7 +249,8 @@ fn check_complete(source: &Source, case: &StudyCase) -> Result<()> {
     for (what, missing) in [("scene", subjects.is_empty()), ("grid", grids.is_empty()), ("method", recipes.is_empty())]
     {
         if missing && !(bare && others) {
-            return Err(source.at_end(format!("a study needs at least one {what}, a table [[{what}]]")));
+            let or = if bare { "; or flows, [[flow]], or scenes that grow, [[scaling]], alone" } else { "" };
+            return Err(source.at_end(format!("a study needs at least one {what}, a table [[{what}]]{or}")));
         }
     }
     Ok(())

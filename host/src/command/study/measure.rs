@@ -89,6 +89,11 @@ fn on_grid(
     rows: &mut Vec<Row>,
 ) -> Result<()> {
     let mut reference = None;
+    // Once for grids in the same box.
+    if case.grids.iter().find(|other| other.bounds() == edges.bounds()).is_some_and(|first| std::ptr::eq(first, edges))
+    {
+        stages::warn_if_outside(bodies, edges, [false; 3], &edges.grid(None)?, session.progress);
+    }
     for recipe in &case.recipes {
         let cost = cost(edges, recipe, case.repeats);
         if let Err(why) = possible(bodies, recipe) {

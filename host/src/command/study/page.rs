@@ -80,6 +80,9 @@ fn sentence(own: &[&Row]) -> Option<String> {
     let first = own.first()?;
     let place = format!("{} on {} cells", first.scene, first.grid);
     let time = |row: &Row| readable(row.seconds.median, Reading::Seconds);
+    if own.iter().all(|row| row.volume == 0.0) {
+        return Some(format!("{place}: no solid lies in the grid, and there is nothing to choose by."));
+    }
     let Some(exact) = fastest(own, EXACT) else {
         let near = own.iter().filter_map(|r| Some((worst(r)?, *r))).min_by(|a, b| a.0.total_cmp(&b.0));
         return near.map(|(error, row)| {
