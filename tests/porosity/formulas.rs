@@ -112,7 +112,9 @@ fn pipes_that_overlap_by_next_to_nothing_are_one_pipe() {
         let turned = DVec3::from_array(random.on_sphere());
         let along = [DVec3::X, DVec3::Y, DVec3::Z, turned][random.below(4)];
         let (length, radius) = ([3.0, 30.0, 1000.0][random.below(3)], random.between(0.1, 0.7));
-        let middle = random.point(DVec3::splat(1.9), DVec3::splat(2.1));
+        // Every other joint lies in planes of the grid.
+        let middle =
+            if n / 8 % 2 == 0 { DVec3::splat(2.0) } else { random.point(DVec3::splat(1.9), DVec3::splat(2.1)) };
         let pipe = |a: f64, b: f64| Form::Cylinder(Cylinder::new(middle + along * a, middle + along * b, radius));
         let common = overlap * length;
         let parts = run(&lists(16), &[pipe(-length, 0.5 * common), pipe(-0.5 * common, length)], Options::default());

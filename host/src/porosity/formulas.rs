@@ -318,13 +318,17 @@ struct Place<'a, 's> {
 
 impl<'a> Place<'a, '_> {
     fn meets(&self, a: usize) -> bool {
+        self.shares.iter().any(|&(b, _)| self.meet(a, b))
+    }
+
+    /// May two solids share more of it than is told?
+    fn meet(&self, a: usize, b: usize) -> bool {
         let beside = |n: usize| ends_at(&self.solids[n].bounds, self.grid, self.kind, self.range);
-        let with = |&(b, _): &(usize, [f64; 2])| match self.solids[a].pair_with(self.solids[b]) {
+        match self.solids[a].pair_with(self.solids[b]) {
             None => false,
             Some(Pair::Meeting) => true,
             Some(Pair::Touching) => (beside(a) && beside(b)) || self.common_of(a, b) > TOLD * self.tol,
-        };
-        self.shares.iter().any(with)
+        }
     }
 
     /// No less than the share that two solids have in common if they touch.
@@ -339,10 +343,11 @@ impl<'a> Place<'a, '_> {
         }
     }
 
-    /// The same of all that touch here.
+    /// The same of all that touch here; in faces those that meet have been found out.
     fn common(&self) -> f64 {
         let pairs = self.shares.iter().enumerate().flat_map(|(n, a)| self.shares[..n].iter().map(move |b| (a.0, b.0)));
-        pairs.map(|(a, b)| self.common_of(a, b)).sum()
+        let is_left = |&(a, b): &(usize, usize)| self.kind == RangeKind::Cells || !self.meet(a, b);
+        pairs.filter(is_left).map(|(a, b)| self.common_of(a, b)).sum()
     }
 
     /// The sum of `alone` and the shares of solids that meet no other here; and of those that meet, which go to `bodies`, each once, the largest

@@ -70,8 +70,13 @@ fn union_in(
                 Place::Across => apart = false,
             }
         }
-        less += beyond + alone.iter().map(|other| solid.common_with(other, place)).sum::<f64>();
-        apart = apart && alone.iter().all(|other| !meet(solid, other, axis, sides));
+        less += beyond;
+        for other in &alone {
+            let meet = meet(solid, other, axis, sides);
+            apart = apart && !meet;
+            // What meets in a face is found out.
+            less += if meet && axis.is_some() { 0.0 } else { solid.common_with(other, place) };
+        }
         alone.push(solid);
         members.push(Member::Solid(solid));
     }
