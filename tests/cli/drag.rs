@@ -439,3 +439,43 @@ fn drag_of_a_rim_names_its_cure() {
     let text = told("porosity = 0.5\ncr = 1e4", "[drag]\nlaw = \"pdr\"");
     assert!(text.contains("dynamic pressures") && !text.contains("the rim of"), "{text}");
 }
+
+/// A grating that lies in a solid block meets no gas: what it has outside counts, wherever the block stands in the scene. With `law = "none"` nothing is said of
+/// solids without force beside it.
+#[test]
+fn what_of_a_grating_lies_in_solids_adds_nothing() {
+    let at = Scratch::new();
+    let solid = |name: &str, to: f64, keys: &str| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = \"box\"\nmin = [0.5, 0, 0]\nmax = [{to}, 1, 1]\n{keys}\n")
+    };
+    let grating = solid("grating", 0.75, "porosity = 0.5\ncr = 10");
+    let resistance = |solids: [&str; 2]| {
+        let grid = "[grid]\norigin = [0, 0, 0]\nspacing = 0.5\ncells = [3, 2, 2]\n";
+        fs::write(at.file("scene.toml"), format!("{}{}{grid}", solids[0], solids[1])).expect("written");
+        let output = voidage(&[
+            &"porosity",
+            &at.file("scene.toml"),
+            &"--drag",
+            &"bluff",
+            &"--cd",
+            &"0",
+            &"--npy",
+            &at.file("npy"),
+        ]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        array(&at.file("npy/cr_x.npy"))
+    };
+    for (to, truth) in [(0.4, 5.0), (0.625, 2.5), (0.8, 0.0)] {
+        let block = solid("block", to, "").replace("[0.5, 0, 0]", "[0.3, 0, 0]");
+        for order in [[&grating[..], &block], [&block, &grating]] {
+            for (n, found) in resistance(order).into_iter().enumerate() {
+                let truth = if n % 3 == 1 { truth } else { 0.0 };
+                assert!((found - truth).abs() < 1e-12, "{to}, {n}: {found}, not {truth}");
+            }
+        }
+    }
+    fs::write(at.file("scene.toml"), grating + &solid("rod", 0.6, "").replace("1, 1]", "0.3, 0.1]")).expect("written");
+    let case = channel("scene.toml", "[drag]\nlaw = \"none\"").replace("end = 2", "max_steps = 1");
+    let text = stderr(&solved(&at, &case, "out", &["--force"]));
+    assert!(!text.contains("exert no force"), "{text}");
+}

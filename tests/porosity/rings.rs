@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{Options, porosity};
+use voidage_core::convex::shape::{Cone, Cylinder};
 use voidage_core::grid::cell_range::RangeKind;
 use voidage_core::solids::torus::{TorusShape, TorusSolid};
 use voidage_tests::effort::cases;
@@ -74,6 +75,41 @@ fn half_of_a_ring_in_a_box() {
         let solid = |f: &[f64]| f.iter().map(|b| 1.0 - b).sum::<f64>() * size.powi(3);
         let volume = 8.0 * half.element_product() + PI * PI * shape.radius * shape.tube * shape.tube;
         assert!(solid(&high.v) - 1e-9 <= volume && volume <= solid(&low.v) + 1e-9, "{volume}: {what}");
+    }
+}
+
+/// A bend, and a pipe, a cone or another bend that it takes up, whose ends overlap by next to nothing about a plane of the grid: all is known within the
+/// tolerance, and the joint is a disc.
+#[test]
+fn ends_that_overlap_by_next_to_nothing_in_a_plane() {
+    let tube = 0.05;
+    let bend = |center: DVec3, start: DVec3| {
+        Form::Torus(TorusShape { center, axis: DVec3::Z, start, radius: 0.5, tube, angle: 90.0 })
+    };
+    let axis = |i: i32| 0.05 * f64::from(i);
+    let edges =
+        Edges([(8..=12).map(axis).collect(), (-2..=2).map(axis).collect(), [-0.075, -0.025, 0.025, 0.075].to_vec()]);
+    let from = DVec3::new(0.5, -1.0, 0.0);
+    for overlap in [0.0, 1e-15, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6] {
+        let to = DVec3::new(0.5, overlap, 0.0);
+        for (n, other) in [
+            Form::Cylinder(Cylinder::new(from, to, tube)),
+            Form::Cone(Cone::truncated(from, to, 0.03, tube)),
+            bend(DVec3::new(1.0, overlap, 0.0), DVec3::NEG_X),
+            Form::Cylinder(Cylinder::new(from + DVec3::X * 0.01, to + DVec3::X * 0.01, 0.6 * tube)),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let bodies = formulas(&[bend(DVec3::ZERO, DVec3::X), other]);
+            let options = Options { bounds: true, ..Options::default() };
+            let found = porosity(&edges.grid(None).expect("a grid"), &bodies, options);
+            assert!(found.max_gap <= 1e-4, "{overlap} of {n}: {}", found.max_gap);
+            // The tube about (½, 0) fills the middle of four faces and touches their far sides.
+            let joint: f64 =
+                (0..12).map(|at| 1.0 - found.beta.y[at % 4 + 4 * (2 + 5 * (at / 4))]).sum::<f64>() * 0.0025;
+            assert!((joint - PI * tube * tube).abs() < 1e-6, "{overlap} of {n}: {joint}");
+        }
     }
 }
 

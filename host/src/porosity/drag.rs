@@ -196,7 +196,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The resistance in 1/m that solids are given as a whole, along all axes, by the share of each cell that they fill; all 0 where none is given one.
+/// The resistance in 1/m that solids are given as a whole, along all axes, by the share of each cell that they fill and no solid without one does; all 0
+/// where none is given one.
 #[must_use]
 pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Vec<f64> {
     let given = |n: usize| bodies.bodies[n].drag.cr.filter(|cr| *cr > 0.0);
@@ -205,12 +206,31 @@ pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Ve
         return vec![0.0; grid.cell_count()];
     }
     // Where several lie, the one that resists most counts, as of porous bodies the least open does.
-    let mut own = bodies.some(|n| given(n).is_some());
-    for body in &mut own.bodies {
-        body.porosity = 1.0 - body.drag.cr.map_or(0.0, |cr| cr / most);
+    let resistance = |which: &dyn Fn(usize) -> bool| -> Vec<f64> {
+        let mut some = bodies.some(which);
+        for body in &mut some.bodies {
+            // What is only in the way counts as if nothing resisted more.
+            body.porosity = body.drag.cr.filter(|cr| *cr > 0.0).map_or(0.0, |cr| 1.0 - cr / most);
+        }
+        let filled = porosity(grid, &some, Options { bounds: false, areas: false, resistance: false, ..options });
+        filled.beta.v.iter().map(|open| most * (1.0 - open)).collect()
+    };
+    let resists = |n: usize| given(n).is_some();
+    let own = resistance(&resists);
+    let touches = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| a.cmple(d).all() && c.cmple(b).all();
+    let all = &bodies.bodies;
+    let covers = |n: usize| {
+        let body = &all[n];
+        let is_over = |m: usize| resists(m) && touches(body.bounds, all[m].bounds);
+        !resists(n) && body.porosity == 0.0 && (0..all.len()).any(is_over)
+    };
+    if !(0..all.len()).any(covers) {
+        return own;
     }
-    let filled = porosity(grid, &own, Options { bounds: false, areas: false, ..options });
-    filled.beta.v.iter().map(|open| most * (1.0 - open)).collect()
+    // What a solid covers no gas meets.
+    let (solid, together) = (resistance(&covers), resistance(&|n| covers(n) || resists(n)));
+    let uncovered = together.iter().zip(solid).map(|(all, solid)| (all - solid).max(0.0));
+    own.into_iter().zip(uncovered).map(|(own, uncovered)| own.min(uncovered)).collect()
 }
 
 /// A cell that is less open than this is full, but for rounding.

@@ -37,6 +37,9 @@ const FULL: f64 = 1.0 - 256.0 * f64::EPSILON;
 /// and what it may be off by.
 type Entry = (u8, u32, u32, [f64; 2]);
 
+/// A solid among those at hand, its share of a place and what that may be off by.
+type Share = (usize, [f64; 2]);
+
 /// A thread's memory.
 #[derive(Debug, Default)]
 pub struct FormulaMemory {
@@ -281,7 +284,7 @@ fn add_shared(
 ) {
     let FormulaMemory { sums, entries, shared, .. } = memory;
     entries.sort_unstable_by_key(|e| (e.0, e.1, e.2));
-    let mut shares: Vec<(usize, [f64; 2])> = Vec::new();
+    let mut shares: Vec<Share> = Vec::new();
     let mut bodies: Vec<&FormulaSolid> = Vec::new();
     for place in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let (kind, at) = (KINDS[usize::from(place[0].0)], place[0].1 as usize);
@@ -312,7 +315,7 @@ struct Place<'a, 's> {
     grid: &'a Grid<'a, f64>,
     kind: RangeKind,
     range: CellRange,
-    shares: &'s [(usize, [f64; 2])],
+    shares: &'s [Share],
     tol: f64,
 }
 
@@ -345,9 +348,14 @@ impl<'a> Place<'a, '_> {
 
     /// The same of all that touch here; in faces those that meet have been found out.
     fn common(&self) -> f64 {
-        let pairs = self.shares.iter().enumerate().flat_map(|(n, a)| self.shares[..n].iter().map(move |b| (a.0, b.0)));
-        let is_left = |&(a, b): &(usize, usize)| self.kind == RangeKind::Cells || !self.meet(a, b);
-        pairs.filter(is_left).map(|(a, b)| self.common_of(a, b)).sum()
+        let pairs = self.shares.iter().enumerate().flat_map(|(n, a)| self.shares[..n].iter().map(move |b| (a, b)));
+        let is_left = |a: usize, b: usize| self.kind == RangeKind::Cells || !self.meet(a, b);
+        // No more than one of them has.
+        let common = |(&(a, of_a), &(b, of_b)): (&Share, &Share)| {
+            let most = of_a.iter().sum::<f64>().min(of_b.iter().sum());
+            if is_left(a, b) { self.common_of(a, b).min(most) } else { 0.0 }
+        };
+        pairs.map(common).sum()
     }
 
     /// The sum of `alone` and the shares of solids that meet no other here; and of those that meet, which go to `bodies`, each once, the largest
@@ -393,7 +401,7 @@ impl<'a> Place<'a, '_> {
 }
 
 /// Adds an entry to the shares of a place, ordered by solids.
-fn add_share(shares: &mut Vec<(usize, [f64; 2])>, &(_, _, n, share): &Entry) {
+fn add_share(shares: &mut Vec<Share>, &(_, _, n, share): &Entry) {
     match shares.last_mut() {
         // The parts of a capsule.
         Some((last, sum)) if *last == n as usize => *sum = [sum[0] + share[0], sum[1] + share[1]],

@@ -144,18 +144,17 @@ fn place_of_part(solid: &FormulaSolid, body: &PlanarPart<f64>, place: &BoxAround
 
 /// How far a solid reaches beyond a plane, to the side of a unit normal, not less than it does; below 0 if it does not.
 fn reach(solid: &FormulaSolid, normal: DVec3, point: DVec3) -> f64 {
-    let (farthest, size) = match &solid.kind {
+    let farthest = match &solid.kind {
         Kind::Quadric(_, convex) => {
             let round = Round(convex);
-            (round.farthest(normal).point.dot(normal) + Support::radius(&round), round.extent())
+            round.farthest(normal).point.dot(normal) + Support::radius(&round)
         }
-        Kind::Torus(torus, _) => {
-            let far = solid.bounds.min.abs().max(solid.bounds.max.abs());
-            (DVec3::from_array(torus.outermost(normal.to_array())).dot(normal), far.max_element() + torus.size())
-        }
+        Kind::Torus(torus, _) => DVec3::from_array(torus.outermost(normal.to_array())).dot(normal),
     };
-    // As of the slack of supports.
-    let rounding = 64.0 * f64::EPSILON * (size + point.abs().max_element());
+    // As of the slack of supports, of which what is along the plane is no part.
+    let Aabb { min, max } = solid.bounds;
+    let sizes = (min.abs().max(max.abs()) + point.abs()).dot(normal.abs()) + (max - min).min_element();
+    let rounding = 64.0 * f64::EPSILON * sizes;
     farthest - point.dot(normal) + rounding
 }
 
