@@ -31,7 +31,7 @@ pub fn load(args: &SceneArgs, progress: &mut Progress) -> Result<(Bodies, Result
     }
     for (n, path) in args.scene.iter().enumerate() {
         if args.scene[..n].contains(path) {
-            progress.warn(format!("{}: is given twice, and what it holds counts once", path.display()));
+            progress.warn(format!("{}: is given twice: once would do", path.display()));
         }
         let (path, piped) = match is_stream(path) {
             true => (Path::new(INPUT), Some(read_input()?)),

@@ -52,8 +52,8 @@ impl Snapshot {
             named.into_iter().chain(given).map(|(name, values)| (name.to_owned(), edges.cells(), values)).collect();
         npy::write_fields(dir, edges, &arrays)?;
         // What an earlier run with a mixed gas or with solids has left would speak for this one.
-        let absent = some.into_iter().filter(|(_, values)| values.is_none());
-        absent.into_iter().try_for_each(|(name, _)| forget(&dir.join(format!("{name}.npy"))))
+        let mut absent = some.into_iter().filter(|(_, values)| values.is_none());
+        absent.try_for_each(|(name, _)| forget(&dir.join(format!("{name}.npy"))))
     }
 
     /// Writes a frame for ParaView.

@@ -124,6 +124,11 @@ impl Maxima {
         })
     }
 
+    /// Has any cell met the threshold?
+    pub fn has_arrived(&self) -> bool {
+        self.arrival.iter().any(|time| !time.is_nan())
+    }
+
     /// Writes `overpressure.npy`, `impulse.npy`, `arrival.npy`, `dynamic_pressure.npy` and, for ParaView, `maxima.vtr`.
     ///
     /// # Errors

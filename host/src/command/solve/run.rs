@@ -161,6 +161,7 @@ fn run<const D: usize>(
     stepped?;
     run.warn_of_inlets(file, &mut progress);
     run.warn_of_an_end_not_reached(file, &mut progress);
+    run.warn_of_a_threshold_not_met(file, &mut progress);
     progress.stage("output", |_| run.last())?;
     let report = |run: &Run<D>, progress: &Progress| {
         let report = Report::new(file, &run.setup, &run.journal, run.done, progress).with_end(&run.limits);
@@ -397,6 +398,17 @@ impl<'a, const D: usize> Run<'a, D> {
         let across = edges.across(live);
         forces.iter_mut().flat_map(|solid| &mut solid.force).for_each(|force| *force *= across);
         forces
+    }
+
+    /// A threshold that the case names and no cell has met: the moments of arrival are all NaN.
+    fn warn_of_a_threshold_not_met(&self, file: &CaseFile, progress: &mut Progress) {
+        let given = file.case.output.maxima.as_ref().and_then(|keys| keys.threshold);
+        if let (Some(threshold), Some(maxima)) = (given, &self.maxima)
+            && !maxima.has_arrived()
+        {
+            let reason = format!("an overpressure of {threshold} Pa was met in no cell: arrival.npy holds NaN alone");
+            progress.warn(file.remark("output.maxima.threshold", reason));
+        }
     }
 
     /// The last state, the largest values over time, and the pictures with the colours of the whole run.

@@ -309,10 +309,10 @@ pub fn markdown(found: &StudyFindings, pictures: &[(String, Panels)]) -> String 
 
 /// How it was measured.
 fn about(found: &StudyFindings) -> Vec<String> {
-    let quick =
-        if found.quick { " A quick look: one run of each, of short flows more, the smallest grids." } else { "" };
+    let quick = if found.quick { " A quick look: one run of each, the smallest grids." } else { "" };
+    let more = if found.flows.is_empty() { "" } else { ", of short flows more" };
     let mut lines = vec![format!(
-        "Made by `{}`, {}, on {}; medians of {}, the fastest and the slowest beside them.{quick}",
+        "Made by `{}`, {}, on {}; medians of {}{more}, the fastest and the slowest beside them.{quick}",
         found.command,
         found.program,
         counted(found.processors, "processor", "processors"),
