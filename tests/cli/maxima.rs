@@ -58,9 +58,9 @@ probes = [{{ name = "wall", at = [0.799, 0.1, 0.1] }}, {{ name = "far", at = [0.
 "#
     );
     let never = "key output.maxima.threshold: an overpressure of";
-    let text = stderr(&solved(&at, &case, "out", &["-q"]));
+    let text = stderr(&solved(&at, &case, "out", &[]));
     assert!(!text.contains(never), "{text}");
-    let text = stderr(&solved(&at, &case.replace("2e4", "2e6"), "never", &["-q"]));
+    let text = stderr(&solved(&at, &case.replace("2e4", "2e6"), "never", &[]));
     assert!(text.contains(&format!("{never} 2000000 Pa was met in no cell: arrival.npy holds NaN alone")), "{text}");
     let (wall, speed) = stopped(gamma, rho, p, u);
     assert!((wall / 1.489e5 - 1.0).abs() < 1e-3 && speed > 250.0 && speed < 340.0, "{wall} Pa, {speed} m/s");
