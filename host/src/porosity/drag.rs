@@ -200,8 +200,8 @@ impl<'a> Rows<'a> {
 /// where none is given one.
 #[must_use]
 pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Vec<f64> {
-    let given = |n: usize| bodies.bodies[n].drag.cr.filter(|cr| *cr > 0.0);
-    let most = (0..bodies.bodies.len()).filter_map(given).fold(0.0, f64::max);
+    let resisting = |body: &Body| body.drag.cr.filter(|cr| *cr > 0.0);
+    let most = bodies.bodies.iter().filter_map(resisting).fold(0.0, f64::max);
     if most == 0.0 {
         return vec![0.0; grid.cell_count()];
     }
@@ -210,25 +210,26 @@ pub fn own_resistance(grid: &Grid<f64>, bodies: &Bodies, options: Options) -> Ve
         let mut some = bodies.some(which);
         for body in &mut some.bodies {
             // What is only in the way counts as if nothing resisted more.
-            body.porosity = body.drag.cr.filter(|cr| *cr > 0.0).map_or(0.0, |cr| 1.0 - cr / most);
+            body.porosity = resisting(body).map_or(0.0, |cr| 1.0 - cr / most);
         }
         let filled = porosity(grid, &some, Options { bounds: false, areas: false, resistance: false, ..options });
         filled.beta.v.iter().map(|open| most * (1.0 - open)).collect()
     };
-    let resists = |n: usize| given(n).is_some();
-    let own = resistance(&resists);
-    let touches = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| a.cmple(d).all() && c.cmple(b).all();
-    let all = &bodies.bodies;
-    let covers = |n: usize| {
-        let body = &all[n];
-        let is_over = |m: usize| resists(m) && touches(body.bounds, all[m].bounds);
-        !resists(n) && body.porosity == 0.0 && (0..all.len()).any(is_over)
+    let resists: Vec<bool> = bodies.bodies.iter().map(|body| resisting(body).is_some()).collect();
+    let own = resistance(&|n| resists[n]);
+    let places: Vec<_> =
+        bodies.bodies.iter().filter(|body| resisting(body).is_some()).map(|body| body.bounds).collect();
+    let covers = |(body, resists): (&Body, &bool)| {
+        let [lo, hi] = body.bounds;
+        let touches = |place: &[DVec3; 2]| lo.cmple(place[1]).all() && place[0].cmple(hi).all();
+        !resists && body.porosity == 0.0 && places.iter().any(touches)
     };
-    if !(0..all.len()).any(covers) {
+    let covers: Vec<bool> = bodies.bodies.iter().zip(&resists).map(covers).collect();
+    if !covers.contains(&true) {
         return own;
     }
     // What a solid covers no gas meets.
-    let (solid, together) = (resistance(&covers), resistance(&|n| covers(n) || resists(n)));
+    let (solid, together) = (resistance(&|n| covers[n]), resistance(&|n| covers[n] || resists[n]));
     let uncovered = together.iter().zip(solid).map(|(all, solid)| (all - solid).max(0.0));
     own.into_iter().zip(uncovered).map(|(own, uncovered)| own.min(uncovered)).collect()
 }

@@ -37,12 +37,6 @@ fn parse(source: &Source) -> Result<Case> {
             let reason = format!("key {}: regions stand in the table initial: [[initial.regions]]", entry.key);
             return Err(misfit(source, (entry.span.clone(), reason)));
         }
-        if let Some(Value::Table(initial)) = of("initial").map(|e| &e.node.value)
-            && let Some(entry) = initial.iter().find(|e| places::STATE.contains(&&e.key[..]))
-        {
-            let reason = format!("key initial.{}: the state everywhere stands in initial.uniform", entry.key);
-            return Err(misfit(source, (entry.span.clone(), reason)));
-        }
         if let Some(entry) = of("grid").filter(|e| matches!(e.node.value, Value::List(_))) {
             let reason = "a case has one table [grid]; tables [[grid]] belong to a study";
             return Err(misfit(source, (entry.span.clone(), reason.into())));

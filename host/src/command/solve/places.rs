@@ -23,6 +23,10 @@ const PATCH: [&str; 12] = ["side", "min", "max", "type", "rho", "T", "u", "v", "
 /// The first of them; a region or a state everywhere that is no table.
 pub fn check(case: &PlacedValue) -> Result<(), Misfit> {
     let initial = member(case, "initial");
+    if let Some(entry) = initial.and_then(|t| entries(t).iter().find(|e| STATE.contains(&&e.key[..]))) {
+        let reason = format!("key initial.{}: the state everywhere stands in initial.uniform", entry.key);
+        return Err((entry.span.clone(), reason));
+    }
     if let Some(uniform) = initial.and_then(|t| member(t, "uniform")) {
         known(uniform, "initial.uniform", &STATE, false)?;
     }

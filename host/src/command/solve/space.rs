@@ -38,6 +38,15 @@ pub struct Space<const D: usize> {
 /// A cell that is open by less is solid: unions of solids are known to some 1e-12 of a cell, and what rounding leaves of one would be a pocket of gas.
 const DUST: f64 = 1e-9;
 
+/// Where the low and the high face of a cell along an axis stand among those of that axis.
+fn faces_of(cell: usize, axis: usize, cells: [usize; 3]) -> [usize; 2] {
+    let shape = std::array::from_fn(|a| cells[a] + usize::from(a == axis));
+    let low = arrays::index(cell, cells);
+    let mut high = low;
+    high[axis] += 1;
+    [low, high].map(|face| arrays::position(face, shape))
+}
+
 /// Closes cells that rounding has left open, with all their faces, given as [`Space`] has them; returns how many cells and how many faces.
 pub fn close_dust<const D: usize>(
     (volume, faces): (&mut [f64], &mut [Vec<f64>; D]),
@@ -49,12 +58,8 @@ pub fn close_dust<const D: usize>(
         *open = 0.0;
         closed[0] += 1;
         for (faces, &axis) in faces.iter_mut().zip(&live) {
-            let shape = std::array::from_fn(|a| cells[a] + usize::from(a == axis));
-            let low = arrays::index(n, cells);
-            let mut high = low;
-            high[axis] += 1;
-            for face in [low, high] {
-                let open = std::mem::replace(&mut faces[arrays::position(face, shape)], 0.0);
+            for face in faces_of(n, axis, cells) {
+                let open = std::mem::replace(&mut faces[face], 0.0);
                 closed[1] += usize::from(open > 0.0);
             }
         }
@@ -119,13 +124,9 @@ fn warn_of_open_solid<const D: usize>(
     progress: &mut Progress,
 ) {
     let is_passed = |cell: usize| {
-        live.iter().zip(faces).any(|(&axis, faces)| {
-            let shape = std::array::from_fn(|a| cells[a] + usize::from(a == axis));
-            let low = arrays::index(cell, cells);
-            let mut high = low;
-            high[axis] += 1;
-            [low, high].into_iter().any(|face| faces[arrays::position(face, shape)] >= DUST)
-        })
+        live.iter()
+            .zip(faces)
+            .any(|(&axis, faces)| faces_of(cell, axis, cells).into_iter().any(|face| faces[face] >= DUST))
     };
     let mut passed = (0..volume.len()).filter(|&cell| volume[cell] == 0.0 && is_passed(cell));
     if let Some(first) = passed.next() {
