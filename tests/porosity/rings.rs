@@ -3,7 +3,7 @@
 
 use super::torus::{Shares, shares};
 use super::torus_points::inside;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
@@ -75,6 +75,42 @@ fn half_of_a_ring_in_a_box() {
         let solid = |f: &[f64]| f.iter().map(|b| 1.0 - b).sum::<f64>() * size.powi(3);
         let volume = 8.0 * half.element_product() + PI * PI * shape.radius * shape.tube * shape.tube;
         assert!(solid(&high.v) - 1e-9 <= volume && volume <= solid(&low.v) + 1e-9, "{volume}: {what}");
+    }
+}
+
+/// Thick rings through slabs across their axis, in coarse cells of uneven size that their surface crosses more than once: bounds are within the
+/// tolerance, and hold what has a closed form.
+#[test]
+fn thick_rings_through_slabs_in_coarse_cells() {
+    let ends = 2.1;
+    for (tube, slab, inner) in [
+        (0.8, [0.4, 1.4], [vec![-0.72, -0.28, -0.13], vec![-1.21, -1.0, -0.16], vec![-0.95, 0.34]]),
+        (0.95, [0.01, 1.01], [vec![-1.7, 0.98, 1.56], vec![0.53, 1.08, 1.16], vec![0.02, 0.35, 1.48]]),
+    ] {
+        let edges = Edges(inner.map(|planes| [vec![-ends], planes, vec![ends]].concat()));
+        let turn = DMat3::from_axis_angle(DVec3::new(0.0, 0.6, 0.8), 1e-6);
+        let center = DVec3::X * 0.5 * (slab[0] + slab[1]);
+        let half = DVec3::new(0.5 * (slab[1] - slab[0]), 2.0, 2.0);
+        let mut bodies = scene(&[turned_box(center, half, turn)]);
+        bodies.bodies.extend(formulas(&[Form::Torus(ring(DVec3::ZERO, DVec3::X, 1.0, tube))]).bodies);
+        let options = Options { bounds: true, ..Options::default() };
+        let found = porosity(&edges.grid(None).expect("a grid"), &bodies, options);
+        assert!(found.max_gap <= 1e-4, "{}: tube {tube}", found.max_gap);
+        // An annulus of area 4 pi sqrt(tube^2 - x^2) in each plane across the axis.
+        let below = |x: f64| {
+            let x = x.clamp(-tube, tube);
+            2.0 * PI * (x * (tube * tube - x * x).sqrt() + tube * tube * (x / tube).asin())
+        };
+        let volume = 8.0 * half.element_product() + 2.0 * PI * PI * tube * tube - (below(slab[1]) - below(slab[0]));
+        let [low, high] = found.bounds.as_ref().expect("bounds");
+        let [nx, ny, _] = edges.0.each_ref().map(|planes| planes.len() - 1);
+        let size = |axis: usize, n: usize| edges.0[axis][n + 1] - edges.0[axis][n];
+        let solid = |field: &[f64]| {
+            let share =
+                |(n, open): (usize, &f64)| (1.0 - open) * size(0, n % nx) * size(1, n / nx % ny) * size(2, n / nx / ny);
+            field.iter().enumerate().map(share).sum::<f64>()
+        };
+        assert!(solid(&high.v) - 1e-9 <= volume && volume <= solid(&low.v) + 1e-9, "{volume}: tube {tube}");
     }
 }
 

@@ -60,6 +60,9 @@ const FIRST_TOLERANCE: f64 = 1e-2;
 const FIRST_STEP: f64 = 1.0 / 8.0;
 const FINER: f64 = 1.0 / 128.0;
 
+/// So many times as many may be looked at until it is known how the cost grows.
+const PROBED: usize = 4;
+
 /// The power of the tolerance by which the cost grows is expected to become no more than this.
 const FINER_GROWTH: f64 = 2.0 / 3.0;
 
@@ -89,7 +92,10 @@ pub fn union_bounds<E: Enclosed>(
 /// Bounds of the sum of the shares that some solids have of a box, less that of their union.
 pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], effort: UnionEffort) -> [f64; 2] {
     let place = &BoxAround::new(sides);
-    let (tol, mut most) = (effort.tol, effort.most);
+    let tol = effort.tol;
+    // How many until it is known how the cost grows, and how many where that brings the bounds to `tol`.
+    let [at_first, all] = [PROBED, usize::MAX].map(|times| effort.most.saturating_mul(effort.more.min(times)));
+    let mut most = effort.most;
     let mut found = [0.0, solids.len() as f64];
     let (mut looked_at, mut last) = (0, None);
     let mut enough = tol.max(FIRST_TOLERANCE);
@@ -106,20 +112,26 @@ pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], effort: UnionEffo
             let left = cost as f64 / most.saturating_sub(looked_at) as f64;
             libm::pow(left, 1.0 / growth.clamp(0.3, 1.5))
         };
-        // In coarse parts a curve seems to cost more than it will.
-        let all = effort.most.saturating_mul(effort.more);
-        if growth.is_some_and(|g| payable(all, g.min(FINER_GROWTH)) <= wanted) {
-            most = all;
-        }
-        let step = wanted.clamp(if growth.is_some() { FINER } else { FIRST_STEP }, 0.5);
-        let finer = step.max(payable(most, growth.unwrap_or(1.0)));
+        let (step, payable) = match growth {
+            None => {
+                most = if cost < most { at_first } else { most };
+                (FIRST_STEP, payable(most, 1.0))
+            }
+            Some(growth) => {
+                // In coarse parts a curve seems to cost more than it will.
+                let pays = most == all || payable(all, growth.min(FINER_GROWTH)) <= wanted;
+                most = if pays { all } else { effort.most };
+                (FINER, payable(most, growth))
+            }
+        };
+        let finer = f64::max(wanted.clamp(step, 0.5) * enough.min(gap), payable * enough);
         let in_vain = gap > 0.9 * before && last.is_some_and(|(other, _)| cost as f64 > 1.5 * other);
-        if gap <= tol || gap <= CLOSEST || !(finer <= 0.5) || in_vain || !(enough > CLOSEST) {
+        if gap <= tol || gap <= CLOSEST || !(finer <= 0.5 * enough) || in_vain || !(enough > CLOSEST) {
             // Bounds that contradict each other do so by rounding.
             return if gap >= 0.0 { found } else { bounds };
         }
         last = Some((cost as f64, enough));
-        enough = finer * enough.min(gap);
+        enough = finer;
     }
 }
 
