@@ -176,7 +176,8 @@ struct Extent<'a> {
 
 impl Extent<'_> {
     fn counts(&self, body: &bodies::Body) -> bool {
-        let touches = |[lo, hi]: [DVec3; 2]| body.bounds[0].cmple(hi).all() && body.bounds[1].cmpge(lo).all();
+        let [low, high] = snap::reach(&self.grid, body);
+        let touches = |[lo, hi]: [DVec3; 2]| low.cmple(hi).all() && high.cmpge(lo).all();
         body.porosity <= self.level && self.near.is_none_or(touches)
     }
 }
@@ -193,8 +194,8 @@ impl Union {
     fn may_change(&self, grid: &Grid<f64>, bodies: &Bodies, level: f64, k: usize) -> bool {
         let edges = grid.edges(2);
         let (below, above) = (edges[k.saturating_sub(1)], edges[(k + 2).min(edges.len() - 1)]);
-        let mut added = bodies.bodies.iter().filter(|b| b.porosity > self.level && b.porosity <= level);
-        added.any(|b| b.bounds[0].z <= above && b.bounds[1].z >= below)
+        let added = bodies.bodies.iter().filter(|b| b.porosity > self.level && b.porosity <= level);
+        added.map(|b| snap::reach(grid, b)).any(|[lo, hi]| lo.z <= above && hi.z >= below)
     }
 
     fn copy_layer(&self, k: usize, target: &mut Target) -> Summary {

@@ -235,19 +235,20 @@ pub fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid
     let near = snap::near(grid);
     // The ends of a curved solid are rounded away from it, those of a torus by most.
     let rounded = |b: &Body| if b.form.is_some() { (b.bounds[1] - b.bounds[0]) * 1e-11 } else { DVec3::ZERO };
-    let single = |b: &Body| b.single.map_or(DVec3::ZERO, |s| s.error(b.bounds[0]).max(s.error(b.bounds[1])));
-    let room = |b: &Body| near + single(b) + rounded(b);
+    let room = |b: &Body| near + b.single_error() + rounded(b);
     let beyond = |b: &Body| {
         let room = room(b);
         (b.bounds[0] + room).cmplt(lo).any() || (b.bounds[1] - room).cmpgt(hi).any()
     };
+    let outside = |[min, max]: [DVec3; 2]| (min - near).cmpgt(hi).any() || (max + near).cmplt(lo).any();
     if !((min + near).cmplt(hi).all() && (max - near).cmpgt(lo).all()) {
-        progress.warn(format!(
-            "{}: the geometry, {}, lies outside the grid, {}: every cell is open",
-            bodies.files(),
-            extent(min, max),
-            within
-        ));
+        let (place, faces) = match outside([min, max]) {
+            true => ("lies outside", ""),
+            false => ("touches from outside", ", but faces in that side may be closed"),
+        };
+        let (files, geometry) = (bodies.files(), extent(min, max));
+        progress
+            .warn(format!("{files}: the geometry, {geometry}, {place} the grid, {within}: every cell is open{faces}"));
         return;
     }
     if bodies.bodies.iter().any(beyond) {
@@ -258,7 +259,6 @@ pub fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid
             within
         ));
     }
-    let outside = |[min, max]: [DVec3; 2]| (min - near).cmpgt(hi).any() || (max + near).cmplt(lo).any();
     let solid = |s: &SolidSummary| {
         let own = &bodies.bodies[s.bodies.clone()];
         let copies = own.chunks((own.len() / s.copies.max(1)).max(1));
@@ -305,9 +305,7 @@ fn warn_if_coarse(bodies: &Bodies, edges: &Edges, progress: &mut Progress) {
     let widths = [0, 1, 2].map(|axis| edges.widths(axis).into_iter().fold(f64::INFINITY, f64::min));
     let (mut worst, widths) = (0.0_f64, DVec3::from_array(widths));
     for body in &bodies.bodies {
-        let Some(single) = body.single else { continue };
-        let step = 2.0 * single.error(body.bounds[0]).max(single.error(body.bounds[1]));
-        worst = worst.max((step / widths).max_element());
+        worst = worst.max((2.0 * body.single_error() / widths).max_element());
     }
     if worst > COARSE {
         progress.warn(format!(

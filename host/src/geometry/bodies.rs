@@ -86,6 +86,13 @@ impl Body {
     pub fn form_alone(&self) -> Option<&Form> {
         self.form.as_ref().filter(|_| self.triangles.is_empty())
     }
+
+    /// How far along each axis its corners may be from those meant, as its file holds them in single precision; 0 if it does not.
+    #[must_use]
+    pub fn single_error(&self) -> DVec3 {
+        let [lo, hi] = self.bounds;
+        self.single.map_or(DVec3::ZERO, |single| single.error(lo).max(single.error(hi)))
+    }
 }
 
 /// Drag that a scene gives for a solid.

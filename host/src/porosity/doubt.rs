@@ -9,7 +9,7 @@
 //! - Holes whose rims are not plane: all that lies in a box around the rim is solid or open.
 
 use super::windows::Window;
-use super::{FieldSet, Options, Porosity};
+use super::{FieldSet, Options, Porosity, snap};
 use crate::geometry::bodies::{Bodies, Body, Doubt};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ pub fn open_upwards(found: &mut Porosity, less: Porosity) {
 /// Widens the bounds of all cells and faces within the boxes of doubtful bodies to 0…1.
 pub fn widen(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
     for body in bodies.bodies.iter().filter(|b| b.doubt == Doubt::Unknown) {
-        let Some(Window { cells }) = Window::around(grid, body.bounds) else { continue };
+        let Some(Window { cells }) = Window::around(grid, snap::reach(grid, body)) else { continue };
         found.max_gap = 1.0;
         for (set, value) in found.bounds.iter_mut().flatten().zip([0.0, 1.0]) {
             change(grid, &cells, set, options.areas, |_, _| value);
@@ -79,7 +79,7 @@ pub fn widen_leaking(
     }
     let mut apart = 0.0;
     for (body, by) in by_body {
-        let Some(Window { cells }) = Window::around(grid, bodies.bodies[body].bounds) else { continue };
+        let Some(Window { cells }) = Window::around(grid, snap::reach(grid, &bodies.bodies[body])) else { continue };
         let of_layer = |layer: Option<usize>| layer.and_then(|k| by.get(k)).copied().unwrap_or(0.0);
         spread(grid, &cells, areas, bounds, |place| match (place.axis, place.at[2]) {
             // Beside two layers.
@@ -94,7 +94,7 @@ pub fn widen_leaking(
 /// Widens the bounds of all cells and faces within the boxes of bodies that were cut, by what the rounding of their new corners may change.
 pub fn allow_for_rounding(grid: &Grid<f64>, bodies: &Bodies, options: Options, found: &mut Porosity) {
     for body in bodies.bodies.iter().filter(|b| b.rounding > 0.0) {
-        let Some(Window { cells }) = Window::around(grid, body.bounds) else { continue };
+        let Some(Window { cells }) = Window::around(grid, snap::reach(grid, body)) else { continue };
         // If all surface moved by the rounding on both sides, a cell would change by this share of its width.
         let share = |axis: usize| {
             let widths = grid.edges(axis)[cells[axis].start..=cells[axis].end].windows(2).map(|w| w[1] - w[0]);

@@ -3,7 +3,7 @@
 //! Coordinates of a survey (5.8e6 m) leave few digits for a part's own size, and every product of them loses more. Differences from a corner
 //! nearby are exact, or rounded far below the digits that were there. Equal coordinates stay equal, and none change their order.
 
-use super::snap::ToPlanes;
+use super::snap::{self, ToPlanes};
 use crate::geometry::bodies::Bodies;
 use crate::grid::Edges;
 use glam::DVec3;
@@ -27,7 +27,7 @@ pub fn from_corner(grid: &Grid<f64>, bodies: &Bodies, triangles: &[[DVec3; 3]]) 
     let mut seen = bodies.clone();
     seen.triangles = triangles.iter().map(|t| t.map(|p| p - corner)).collect();
     for body in &mut seen.bodies {
-        body.bounds = body.bounds.map(|p| p - corner);
+        body.bounds = snap::reach(grid, body).map(|p| p - corner);
         body.form = body.form.as_ref().map(|form| to_planes.form(form).moved(-corner));
         body.unknown.iter_mut().flatten().for_each(|p| *p -= corner);
         body.single = None;

@@ -136,6 +136,13 @@ pub fn near(grid: &Grid<f64>) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|axis| grid.rounding(axis)))
 }
 
+/// The box around a body once its corners are in the planes that they miss by rounding, or a little larger.
+#[must_use]
+pub fn reach(grid: &Grid<f64>, body: &Body) -> [DVec3; 2] {
+    let room = near(grid) + body.single_error();
+    [body.bounds[0] - room, body.bounds[1] + room]
+}
+
 /// The number of the body that a triangle belongs to; bodies have their triangles one after the other.
 #[must_use]
 pub fn number_of_body(bodies: &Bodies, triangle: usize) -> usize {

@@ -1,5 +1,6 @@
 //! Boxes of cells around bodies: where a union with them differs from one without them.
 
+use super::snap;
 use crate::geometry::bodies::Bodies;
 use glam::DVec3;
 use std::ops::Range;
@@ -65,7 +66,7 @@ pub fn reached(edges: &[f64], lo: f64, hi: f64) -> Range<usize> {
 #[must_use]
 pub fn windows(grid: &Grid<f64>, bodies: &Bodies, porosity: f64) -> Vec<Window> {
     let own = bodies.bodies.iter().filter(|b| b.porosity == porosity);
-    let found: Vec<Window> = own.filter_map(|b| Window::around(grid, b.bounds)).collect();
+    let found: Vec<Window> = own.filter_map(|b| Window::around(grid, snap::reach(grid, b))).collect();
     let cost: usize = found.iter().map(|window| window.with_margin(grid).cell_count()).sum();
     if cost < grid.cell_count() { found } else { vec![Window::whole(grid)] }
 }
