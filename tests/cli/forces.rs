@@ -96,6 +96,33 @@ fn forces_on_solids_add_up_to_the_force_on_all() {
     }
 }
 
+/// A leg that goes askew through a wall of the domain feels the pressure above the ambient one on its section there, and a brace between two walls nothing.
+#[test]
+fn what_goes_askew_through_walls_feels_its_section() {
+    let at = Scratch::new();
+    let leg = "[[solid]]\nname = \"leg\"\nshape = \"cylinder\"\nfrom = [1.17, 0.26, -0.4]\nto = [1.13, 0.54, 0.4]\nradius = 0.047\n";
+    let brace = "[[solid]]\nname = \"brace\"\nshape = \"box\"\nmin = [0.5, -0.5, 0.41]\nmax = [0.56, 1.5, 0.47]\n\
+                 rotate = { axis = \"z\", angle = 27 }\n";
+    fs::write(at.file("scene.toml"), [leg, brace].concat()).expect("written");
+    let more = "[time]\nmax_steps = 1\n[output]\nformats = []\nambient = 4e4\nforces = [\"leg\", \"brace\"]\n";
+    solved(&at, &case(0.0, more), "out", &["-q"]);
+    let log = log(&at, "out");
+    let way = [-0.04, 0.28, 0.8_f64];
+    let cosine = way[2] / way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let along_z = -6e4 * std::f64::consts::PI * 0.047 * 0.047 / cosine;
+    for (name, axis, force) in [
+        ("leg", "x", 0.0),
+        ("leg", "y", 0.0),
+        ("leg", "z", along_z),
+        ("brace", "x", 0.0),
+        ("brace", "y", 0.0),
+        ("brace", "z", 0.0),
+    ] {
+        let found = log[&format!("{name} force_{axis}")][0];
+        assert!((found - force).abs() < 1e-6, "{name} along {axis}: {found} N, not {force}");
+    }
+}
+
 /// Gas at rest pushes no solid, wherever it stands.
 #[test]
 fn a_cube_in_gas_at_rest_feels_nothing() {

@@ -97,6 +97,7 @@ pub fn obstacles(
             Faces::Plane => (0, ClosedCells { left: division.told(grid, &result.beta, Some(&shadows)), faces: 0 }),
             Faces::Throat => {
                 let sides = throat::lowered_sides(grid, &result.beta, &shadows);
+                let sides = throat::seen_from_within(grid, bodies, options, sides);
                 found.surrounded = division.surrounded(grid, &result.beta, sides);
                 (throat::lower(grid, result, &shadows), division.close(grid, result, &shadows))
             }

@@ -91,8 +91,8 @@ impl Division {
         ClosedCells { faces: closing.close(grid, result), left: DividedCells::of(grid, &leaking) }
     }
 
-    /// Of faces in sides of the grid that are to be lowered, those of obstacles that have gas all around: neither do they reach the side, nor are they walls that keep
-    /// gas apart, one side of which the flow leaves out. `beta` holds the open fractions in the planes of faces. Runs in the current rayon pool.
+    /// Of faces in sides of the grid that are to be lowered, those of obstacles that have gas all around: not of walls that keep gas apart, one side of
+    /// which the flow leaves out. `beta` holds the open fractions in the planes of faces. Runs in the current rayon pool.
     #[must_use]
     pub fn surrounded(&self, grid: &Grid<f64>, beta: &FieldSet, mut sides: Vec<LoweredSide>) -> Vec<LoweredSide> {
         let mut cells: Vec<usize> = sides.iter().map(|side| side.cell).collect();
@@ -108,11 +108,7 @@ impl Division {
             let (all, leaking) = self.leaking(grid, beta, |_| false);
             along_walls(grid, &all, &leaking)
         };
-        sides.retain(|&LoweredSide { cell, axis, side, shown, passes }| {
-            // By points: rounding may hold apart what touches.
-            let is_open = |parts: &Parts| parts.open_share(axis, side) > 0.5 * (shown + passes);
-            walls.binary_search(&cell).is_err() && parts.of(cell).is_none_or(is_open)
-        });
+        sides.retain(|side| walls.binary_search(&side.cell).is_err());
         sides
     }
 

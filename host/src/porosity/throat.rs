@@ -1,8 +1,10 @@
 //! Faces that see what stands between them: walls are tight wherever they lie.
 
-use super::Porosity;
 use super::fields::FieldSet;
 use super::shadows::{Shadows, faces_of_nth_cell, place_of_cell};
+use super::{Options, Porosity, porosity};
+use crate::geometry::bodies::Bodies;
+use crate::grid::Edges;
 use voidage_core::grid::Grid;
 
 /// What the open fraction of a face means.
@@ -72,7 +74,7 @@ pub struct LoweredSide {
     pub axis: usize,
     /// 0 for the low side of the grid, 1 for the high one.
     pub side: usize,
-    /// Open fraction in the plane of the face.
+    /// Open fraction in the plane of the face, or as the gas within sees it.
     pub shown: f64,
     /// Open fraction once it is lowered.
     pub passes: f64,
@@ -95,6 +97,54 @@ pub fn lowered_sides(grid: &Grid<f64>, beta: &FieldSet, shadows: &Shadows) -> Ve
         }
     }
     found
+}
+
+/// What is nearer to a side than this share of a cell, or than so many times the rounding of its plane, stands on the side.
+const ON_SIDE: f64 = 1e-6;
+const ON_SIDE_ROUNDED: f64 = 64.0;
+
+/// A share of a face, in which less than this may be what reaches into the side by the slope of its surface.
+const STANDS: f64 = 1e-4;
+
+/// The same faces as the gas within sees them, where that is less open: what stands on a side but for rounding shows nothing in its plane. Those of which
+/// nothing is lowered then are left out. Runs in the current rayon pool.
+#[must_use]
+pub fn seen_from_within(
+    grid: &Grid<f64>,
+    bodies: &Bodies,
+    options: Options,
+    mut sides: Vec<LoweredSide>,
+) -> Vec<LoweredSide> {
+    let options = Options { bounds: false, areas: true, resistance: false, ..options };
+    for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
+        if !sides.iter().any(|s| (s.axis, s.side) == (axis, side)) {
+            continue;
+        }
+        let mut edges = [0, 1, 2].map(|axis| grid.edges(axis).to_vec());
+        let along = &mut edges[axis];
+        if side == 1 {
+            along.drain(..along.len() - 2);
+        }
+        along.truncate(2);
+        let width = along[1] - along[0];
+        let off = f64::max(ON_SIDE * width, ON_SIDE_ROUNDED * grid.rounding(axis)).min(0.5 * width);
+        along[1 - side] = along[side] + if side == 0 { off } else { -off };
+        let edges = Edges(edges);
+        let Ok(slab) = edges.grid(None) else { continue };
+        let within = porosity(&slab, bodies, options).beta;
+        for found in sides.iter_mut().filter(|s| (s.axis, s.side) == (axis, side)) {
+            let mut place = place_of_cell(grid, found.cell);
+            place[axis] = 0;
+            let [nx, ny, _] = slab.cells();
+            let cell = place[0] + nx * (place[1] + ny * place[2]);
+            let open = within.faces(axis)[faces_of_nth_cell(&slab, axis, cell)[1 - side]];
+            if found.shown - open > STANDS {
+                found.shown = open.max(found.passes);
+            }
+        }
+    }
+    sides.retain(|found| found.shown - found.passes > LEAST);
+    sides
 }
 
 /// What passes a cell along an axis, if its faces, `open` in their planes, show more, and which of them is lowered to that. The cell is one of `count` along the

@@ -146,12 +146,6 @@ impl Parts {
         is_opening(self.parts[part].sides[axis][side] & next.parts[other].sides[axis][1 - side])
     }
 
-    /// Which share of a side within its edges is open.
-    pub fn open_share(&self, axis: usize, side: usize) -> f64 {
-        let open = self.in_side(axis, side, |_| true) & WITHIN_EDGES;
-        f64::from(open.count_ones()) / f64::from(WITHIN_EDGES.count_ones())
-    }
-
     /// The points that some of the parts have in a side, those on its edges, too.
     pub fn in_side(&self, axis: usize, side: usize, is_wanted: impl Fn(usize) -> bool) -> u64 {
         let wanted = self.parts.iter().enumerate().filter(|(part, _)| is_wanted(*part));
