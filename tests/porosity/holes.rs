@@ -1,10 +1,12 @@
-//! Holes: rims that touch in corners are rims of their own, and a rim that is not plane leaves bounds for any surface that it may hold.
+//! Holes: rims that touch in corners are rims of their own, a rim that is not plane leaves bounds for any surface that it may hold, and parts of a surface that
+//! do not quite meet are no body that is nothing.
 
+use glam::{DMat3, DVec3};
 use voidage::geometry::bodies::Bodies;
 use voidage::geometry::mesh::Mesh;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Options, porosity};
-use voidage_tests::solids::{Triangle, sphere};
+use voidage_tests::solids::{Triangle, cuboid, sphere};
 
 fn bodies(triangles: Vec<Triangle>) -> Bodies {
     let mut bodies = Bodies::default();
@@ -85,4 +87,54 @@ fn bounds_hold_what_may_close_an_uneven_hole() {
         }
     }
     assert!(uneven > 3, "{uneven} holes that are not plane");
+}
+
+/// The bounds of the solid volume in a grid of cells of 0.3 m around the origin, and the warnings.
+fn volume_bounds(triangles: Vec<Triangle>) -> ([f64; 2], String) {
+    let edges = Edges([0.0, 0.1, 0.2].map(|by| (0..=9).map(|i| f64::from(i) * 0.3 - 1.45 + by).collect()));
+    let bodies = bodies(triangles);
+    let found = porosity(&edges.grid(None).expect("a grid"), &bodies, Options { bounds: true, ..Options::default() });
+    let [lower, upper] = found.bounds.as_ref().expect("bounds were asked for");
+    let solid = |set: &FieldSet| set.v.iter().map(|open| 0.027 * (1.0 - open)).sum::<f64>();
+    ([solid(upper), solid(lower)], bodies.warnings.join("\n"))
+}
+
+/// The faces of a cube, each a little smaller than its side, however they are turned and rounded: perhaps a cube, perhaps six plates of nothing.
+#[test]
+fn faces_that_nearly_meet_may_be_a_body_however_they_are_turned() {
+    let faces: Vec<Triangle> = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5))
+        .into_iter()
+        .map(|t| {
+            let normal = (t[1] - t[0]).cross(t[2] - t[0]).normalize();
+            t.map(|p| p * 0.999 + normal * (0.5 * 0.001))
+        })
+        .collect();
+    for angle in [0.0, 0.3, 0.7, 2.0] {
+        for digits in [6, 9, 17] {
+            let turn = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), angle);
+            let write = |x: f64| format!("{x:.digits$}").parse::<f64>().expect("a number");
+            let written = faces.iter().map(|t| t.map(|p| DVec3::from((turn * p).to_array().map(write)))).collect();
+            let ([least, most], said) = volume_bounds(written);
+            assert!(least < 1e-6 && 1.0 <= most, "turned by {angle}, {digits} digits: from {least} to {most}\n{said}");
+            assert!(said.contains("nearly meet"), "turned by {angle}, {digits} digits: {said}");
+        }
+    }
+}
+
+/// A box with a room in it, written inside out, that is flush with a wall or breaks through it: the wall is what is left, or bounds hold both readings, and it is told.
+#[test]
+fn a_room_that_breaks_through_a_wall() {
+    let inward = |t: Triangle| [t[0], t[2], t[1]];
+    for (end, wall) in [(0.4, 0.488), (0.5, 0.424), (0.501, 0.424)] {
+        let mut triangles = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+        triangles.extend(cuboid(DVec3::splat(-0.4), DVec3::new(end, 0.4, 0.4)).into_iter().map(inward));
+        let ([least, most], said) = volume_bounds(triangles);
+        assert!(least - 1e-9 <= wall && wall <= most + 1e-9, "{end}: from {least} to {most}\n{said}");
+        assert_eq!(said.contains("breaks through their surface"), end > 0.5, "{end}: {said}");
+    }
+    // A part turned inside out that only ends in another is a part.
+    let mut triangles = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+    triangles.extend(cuboid(DVec3::new(0.1, -0.1, -0.1), DVec3::new(1.0, 0.1, 0.1)).into_iter().map(inward));
+    let ([least, most], said) = volume_bounds(triangles);
+    assert!((least - 1.02).abs() < 1e-9 && (most - 1.02).abs() < 1e-9, "from {least} to {most}\n{said}");
 }

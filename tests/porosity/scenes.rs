@@ -335,3 +335,33 @@ fn layers_without_porous_solids_are_those_of_the_solid_ones() {
         }
     }
 }
+
+/// A louvre just outside a side of the grid closes its faces there, however far it misses the side by rounding, and whatever else stands in the grid.
+#[test]
+fn what_misses_a_side_by_rounding_closes_it_beside_any_solid() {
+    for (axis, high, far) in (0..3).flat_map(|a| [(a, false, 0.0), (a, true, 0.0), (a, true, 4e5), (a, false, 4e5)]) {
+        let ulp = f64::EPSILON * (1.0 + far);
+        for (off, other) in [0.0, 0.25, 1.0].into_iter().flat_map(|off| [None, Some(0.0), Some(0.6)].map(|o| (off, o)))
+        {
+            let at = DVec3::splat(far);
+            let (mut lo, mut hi) = (at, at + 1.0);
+            let gap = off * ulp;
+            if high {
+                (lo[axis], hi[axis]) = (far + 1.0 + gap, far + 1.25);
+            } else {
+                (lo[axis], hi[axis]) = (far - 0.25, far - gap);
+            }
+            let crate_of = other.map(|_| solids::cuboid(at + 0.4, at + 0.6));
+            let mut bodies = solids::scene(&[vec![solids::cuboid(lo, hi)], crate_of.into_iter().collect()].concat());
+            bodies.bodies[0].porosity = 0.3;
+            if let Some(porosity) = other {
+                bodies.bodies[1].porosity = porosity;
+            }
+            let edges = Edges([0; 3].map(|_| (0..=4).map(|i| far + f64::from(i) * 0.25).collect()));
+            let found = porosity(&edges.grid(None).expect("a grid"), &bodies, Options::default());
+            let faces = found.beta.faces(axis);
+            let closed = faces.iter().filter(|open| (**open - 0.3).abs() < 1e-9).count();
+            assert_eq!(closed, 16, "axis {axis}, high {high}, {off} units off, {far} far, beside {other:?}");
+        }
+    }
+}

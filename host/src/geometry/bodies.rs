@@ -236,7 +236,7 @@ impl Bodies {
     /// Give the shells their roles and orientation, and store them.
     fn assemble(&mut self, parts: Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
         let (names, shells): (Vec<String>, Vec<Closed>) = parts.into_iter().map(|p| (p.name, p.shell)).unzip();
-        let Nesting { roles, either: rooms_or_parts, either_in, unclear } = nesting::nest(&shells, &names);
+        let Nesting { roles, either: rooms_or_parts, either_in, unclear, breaking } = nesting::nest(&shells, &names);
         let is_either = |s: usize| rooms_or_parts.binary_search(&s).is_ok();
         let first = self.bodies.len();
         let mut cavities_of: HashMap<usize, Vec<&Closed>> = HashMap::default();
@@ -260,7 +260,7 @@ impl Bodies {
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
             let rounding = joined.iter().fold(shell.rounding, |most, cavity| most.max(cavity.rounding));
             let doubt = match shell.doubt {
-                _ if !clear => Doubt::Unknown,
+                _ if !clear || breaking.contains(&s) => Doubt::Unknown,
                 Doubt::None if is_either(s) => Doubt::Perhaps,
                 doubt => doubt,
             };
@@ -289,6 +289,7 @@ impl Bodies {
         let is_inverted = |s: usize| shells[s].volume < 0.0;
         let of_bodies = (0..shells.len()).filter(|&s| roles[s] == Role::Body).map(is_inverted);
         say_roles(&self.bodies[first..], of_bodies, d, report);
+        nesting::say_breaking(&shells, &breaking, report);
         say_doubts(&shells, &rooms_or_parts, &unclear, report);
     }
 

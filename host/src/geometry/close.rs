@@ -14,6 +14,7 @@ use crate::words::{counted, either};
 use glam::DVec3;
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 /// What is to be closed.
 pub(super) struct Unclosed<'a> {
@@ -86,15 +87,19 @@ pub(super) fn close(
     closed
 }
 
-/// Sheets that nearly meet may be a body whose corners were written too coarsely: all in the box around them is in doubt.
+/// Sheets, or leaves thin enough for that, that nearly meet may be a body whose corners were written too coarsely: all in the box around them is in doubt.
 fn doubt_gaping(mesh: &Indexed, parts: &mut [Part], loose: &[Loose], report: &mut Reporter) {
-    if !parts.iter().any(|p| p.shell.is_sheet()) {
+    // A plane part and its cap hold what its corners are rounded by, once it is turned.
+    let is_leaf = |n: usize| parts[n].shell.is_sheet() || !gaps::holds_volume(&parts[n].shell);
+    let loose_parts: BTreeSet<usize> = loose.iter().map(|l| l.part).collect();
+    let leaves: BTreeSet<usize> = loose_parts.into_iter().filter(|&n| is_leaf(n)).collect();
+    if leaves.is_empty() {
         return;
     }
     for Gaping { parts: members, width } in gaps::gaping(mesh, loose, parts.len()) {
         let own = members.iter().flat_map(|&n| parts[n].own().iter().copied());
         let whole = Closed::new(own.collect());
-        let sheet = members.iter().find(|&&n| parts[n].shell.is_sheet());
+        let sheet = members.iter().find(|n| leaves.contains(n));
         let Some(&sheet) = sheet.filter(|_| gaps::holds_volume(&whole)) else { continue };
         let [lo, hi] = whole.bounds;
         parts[sheet].shell.unknown.push([lo, hi]);

@@ -8,9 +8,12 @@
 //! Any such matching gives one solid, and only such a matching is taken, if there is one ([`crate::geometry::repair::rooms`]). Where there is none, or one
 //! that goes against the names in the file, several readings differ, and what overlaps is in doubt.
 
-use crate::geometry::repair::closed::{Closed, Doubt};
+use crate::geometry::diagnosis::{Reporter, show};
+use crate::geometry::repair::closed::{Closed, Doubt, beside};
 use crate::geometry::repair::overlap::contains;
 use crate::geometry::repair::rooms::{Role, Rooms};
+use crate::geometry::repair::tree::Tree;
+use crate::words::{counted, either};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -26,6 +29,8 @@ pub struct Nesting {
     pub either_in: Vec<(usize, usize)>,
     /// Bodies, and boxes in which it is not known which of several bodies has a cavity.
     pub unclear: Vec<(usize, [DVec3; 2])>,
+    /// Bodies that lie for the most part, not wholly, in larger ones of the opposite orientation: perhaps rooms whose walls they break through.
+    pub breaking: Vec<usize>,
 }
 
 /// What shells with these names are to each other.
@@ -58,7 +63,67 @@ pub fn nest(shells: &[Closed], names: &[String]) -> Nesting {
     let pairs = either.iter().flat_map(|&inner| around[&inner].iter().map(move |&outer| (outer, inner)));
     let either_in = pairs.filter(|&(outer, inner)| is_largest(inner, outer)).collect();
     let (roles, unclear) = rooms.told();
-    Nesting { roles, either, either_in, unclear }
+    let breaking = if is_mixed { breaking(shells, &order, &roles) } else { Vec::new() };
+    Nesting { roles, either, either_in, unclear, breaking }
+}
+
+/// A room may break through its walls with less than the rest of its surface.
+const MOSTLY: f64 = 2.0 / 3.0;
+
+/// So many triangles of a shell, the largest, tell how much of it lies in others.
+const LARGEST: usize = 64;
+
+/// Bodies of which more than two thirds of the surface lie in larger bodies of the opposite orientation: were it all, they would be cavities.
+fn breaking(shells: &[Closed], order: &[usize], roles: &[Role]) -> Vec<usize> {
+    let bodies: Vec<usize> = order.iter().copied().filter(|&s| roles[s] == Role::Body).collect();
+    let tree = Tree::of_boxes(bodies.iter().map(|&s| shells[s].bounds), None);
+    let is_breaking = |s: &usize| {
+        let shell = &shells[*s];
+        let mut around = Vec::new();
+        tree.touching(shell.bounds, |n| {
+            let other = &shells[bodies[n as usize]];
+            let is_opposite = (other.volume > 0.0) != (shell.volume > 0.0);
+            if is_opposite && other.volume.abs() > shell.volume.abs() && other.overlaps(shell) {
+                around.push(other);
+            }
+        });
+        if around.is_empty() {
+            return false;
+        }
+        let area = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).length();
+        let mut largest: Vec<(f64, &[DVec3; 3])> = shell.triangles.iter().map(|t| (area(t), t)).collect();
+        largest.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let (mut within, mut all) = (0.0, 0.0);
+        for (area, triangle) in largest.into_iter().take(LARGEST) {
+            let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+            // Of the triangle's quarters.
+            for at in [middle, triangle[0], triangle[1], triangle[2]].map(|p| middle.midpoint(p)) {
+                let Some(point) = beside(triangle, at, shell.volume) else { continue };
+                all += area;
+                within += if around.iter().any(|other| other.winds_around(point)) { area } else { 0.0 };
+            }
+        }
+        MOSTLY * all < within
+    };
+    bodies.par_iter().copied().filter(is_breaking).collect()
+}
+
+/// Tell of bodies that may be rooms.
+pub(in crate::geometry) fn say_breaking(shells: &[Closed], breaking: &[usize], report: &mut Reporter) {
+    let volume = |s: &usize| shells[*s].volume.abs();
+    let Some(largest) = breaking.iter().max_by(|a, b| volume(a).total_cmp(&volume(b))) else { return };
+    let [lo, hi] = shells[*largest].bounds;
+    report.warn(format!(
+        "{} for the most part in others that look the other way, and {} through their surface (the largest from {} to {}, {:.6e} m³): \
+         nothing tells whether {} a room or a part; {} taken as solid, and the bounds of all cells in the box are 0 and 1. A room must lie wholly in its body, or be one shell with it",
+        counted(breaking.len(), "body lies", "bodies lie"),
+        either(breaking.len(), "breaks", "break"),
+        show(lo),
+        show(hi),
+        volume(largest),
+        either(breaking.len(), "it is", "each is"),
+        either(breaking.len(), "it is", "they are"),
+    ));
 }
 
 /// For shells with two sides those with two sides that hold them, unless a cavity of these does.
