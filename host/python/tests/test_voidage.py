@@ -55,6 +55,13 @@ class Porosity(unittest.TestCase):
             voidage.porosity([3], (LINE, LINE, LINE))
 
 
+class Tolerance(unittest.TestCase):
+    def test_is_a_number_from_0_on(self):
+        for tol in (-1.0, float("nan"), float("inf")):
+            with self.assertRaisesRegex(ValueError, "tol"):
+                voidage.porosity(tetrahedron(), (LINE, LINE, LINE), tol=tol)
+
+
 class Bodies(unittest.TestCase):
     def test_meets(self):
         cube = voidage.Body.box((0, 0, 0), (1, 1, 1))
@@ -73,6 +80,26 @@ class Bodies(unittest.TestCase):
     def test_what_is_wrong_is_told(self):
         with self.assertRaisesRegex(ValueError, "body, entry 1"):
             voidage.meets(voidage.Body.point((0, 0, 0)), voidage.Body.sphere((0, 0, 0), -1))
+
+    def test_points_have_three_coordinates(self):
+        for wrong in (
+            lambda: voidage.Body.sphere((3, 0), 1),
+            lambda: voidage.Body.sphere((3, 0, 0, 0.5), 1),
+            lambda: voidage.Body.segment((1, 2), (3, 4)),
+            lambda: voidage.Body.triangle((0, 0), (1, 0), (0, 1)),
+            lambda: voidage.Body.point((1,)),
+            lambda: voidage.Body.hull([(0, 0), (1, 0)]),
+            lambda: voidage.Body.oriented_box((0, 0, 0), [(1, 0), (0, 1), (0, 0)]),
+            lambda: voidage.Body.ellipsoid((0, 0, 0), [(1, 0, 0), (0, 1, 0)]),
+        ):
+            with self.assertRaisesRegex(ValueError, "three"):
+                wrong()
+
+    def test_rounded_twice(self):
+        body = voidage.Body.point((0, 0, 0)).rounded(0.5).rounded(0.25)
+        self.assertAlmostEqual(voidage.distance(body, voidage.Body.point((2, 0, 0))).distance, 1.25, delta=1e-14)
+        with self.assertRaises(ValueError):
+            body.rounded(-0.25)
 
 
 class Flow(unittest.TestCase):

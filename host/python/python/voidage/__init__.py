@@ -36,6 +36,13 @@ def _edges(grid):
     return [x, y, z]
 
 
+def _point(coordinates, what):
+    numbers = [float(c) for c in coordinates]
+    if len(numbers) != 3:
+        raise ValueError(f"{what} has three coordinates, not {len(numbers)}")
+    return numbers
+
+
 def porosity(meshes, grid, *, scale=1.0, tol=1e-4, depth=6, areas=True, bounds=False):
     """Open fractions of cells and faces, 1 open and 0 blocked; overlaps count once.
 
@@ -47,38 +54,49 @@ def porosity(meshes, grid, *, scale=1.0, tol=1e-4, depth=6, areas=True, bounds=F
     """
     if isinstance(meshes, (str, _os.PathLike, _np.ndarray)):
         meshes = [meshes]
+    if not 0.0 <= tol < float("inf"):
+        raise ValueError(f"tol is a number from 0 on, not {tol!r}")
     sources = [_np.asarray(m, dtype=_np.float64) if isinstance(m, _np.ndarray) else m for m in meshes]
     return _voidage.porosity(sources, _edges(grid), (scale, tol, depth), (areas, bounds))
+
+
+def _frame(center, half_axes):
+    axes = [_point(axis, "a half axis") for axis in half_axes]
+    if len(axes) != 3:
+        raise ValueError(f"there are three half axes, not {len(axes)}")
+    return [*_point(center, "center"), *(c for axis in axes for c in axis)]
 
 
 class Body:
     """A convex body, made by one of the functions below."""
 
     def __init__(self, kind, numbers, points=(), round=0.0):
-        self._made = (kind, [float(n) for n in numbers], [[float(c) for c in p] for p in points])
-        self._native = _voidage.Body(*self._made, float(round))
+        self._made = (kind, [float(n) for n in numbers], [_point(p, "a point") for p in points])
+        self._round = float(round)
+        self._native = _voidage.Body(*self._made, self._round)
 
     def rounded(self, radius):
         """All points within radius of the body."""
-        kind, numbers, points = self._made
-        return Body(kind, numbers, points, radius)
+        if not radius >= 0.0:
+            raise ValueError(f"radius is a number from 0 on, not {radius!r}")
+        return Body(*self._made, self._round + radius)
 
     @staticmethod
     def point(at):
-        return Body(0, at)
+        return Body(0, _point(at, "at"))
 
     @staticmethod
     def segment(start, end):
-        return Body(1, [*start, *end])
+        return Body(1, [*_point(start, "start"), *_point(end, "end")])
 
     @staticmethod
     def triangle(a, b, c):
-        return Body(2, [*a, *b, *c])
+        return Body(2, [*_point(a, "a"), *_point(b, "b"), *_point(c, "c")])
 
     @staticmethod
     def box(low, high):
         """Along the axes, from its lowest to its highest corner."""
-        return Body(3, [*low, *high])
+        return Body(3, [*_point(low, "low"), *_point(high, "high")])
 
     @staticmethod
     def hull(points):
@@ -86,32 +104,30 @@ class Body:
 
     @staticmethod
     def sphere(center, radius):
-        return Body(5, [*center, radius])
+        return Body(5, [*_point(center, "center"), radius])
 
     @staticmethod
     def capsule(start, end, radius):
-        return Body(6, [*start, *end, radius])
+        return Body(6, [*_point(start, "start"), *_point(end, "end"), radius])
 
     @staticmethod
     def cylinder(start, end, radius):
-        return Body(7, [*start, *end, radius])
+        return Body(7, [*_point(start, "start"), *_point(end, "end"), radius])
 
     @staticmethod
     def cone(base, apex, radius, top_radius=0.0):
         """From base to apex; with a radius there it is truncated."""
-        return Body(11, [*base, *apex, radius, top_radius])
+        return Body(11, [*_point(base, "base"), *_point(apex, "apex"), radius, top_radius])
 
     @staticmethod
     def ellipsoid(center, half_axes):
         """Three half axes, at right angles."""
-        u, v, w = half_axes
-        return Body(9, [*center, *u, *v, *w])
+        return Body(9, _frame(center, half_axes))
 
     @staticmethod
     def oriented_box(center, half_axes):
         """From the centre to the middle of three faces."""
-        u, v, w = half_axes
-        return Body(10, [*center, *u, *v, *w])
+        return Body(10, _frame(center, half_axes))
 
 
 @_dataclass(frozen=True)
