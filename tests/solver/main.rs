@@ -23,5 +23,6 @@ mod repairs;
 mod stress;
 mod throat;
 mod uneven;
+mod vents;
 mod wall_forces;
 mod walls;

@@ -196,7 +196,11 @@ fn stated<R: Real>(density: R, pressure: R, gas: Gas<R>) -> R {
 }
 
 /// The state that a simple wave from outside makes of `w` when it brings the pressure to `pressure`.
-fn outlet<R: Real, const D: usize>(w: Primitive<R, D>, pressure: R, gas: Gas<R>) -> Primitive<R, D> {
+pub(in crate::flow) fn outlet<R: Real, const D: usize>(
+    w: Primitive<R, D>,
+    pressure: R,
+    gas: Gas<R>,
+) -> Primitive<R, D> {
     let c = gas.sound_speed(&w);
     let v = w.velocity[0];
     if !(v < c) || pressure == w.pressure {

@@ -8,6 +8,7 @@
 //! - `inclined_walls`: the half step beside walls askew to the grid
 //! - `positive_fluxes`: fluxes beside cells that nothing else keeps physical
 //! - `reconstruct`: slopes and half step; `fluxes`: fluxes through faces, by the loop over them in `face_fluxes`; `update`: new states
+//! - `side_throats`: ghosts beyond openings in the sides of the domain
 //! - `shocks`: fluxes through faces that lie along a strong shock
 //! - `wall_pushes`: what the walls of watched cells feel of the fluxes
 //! - `solver_calls`: what differs from one Riemann solver to another
@@ -29,6 +30,7 @@ pub(crate) mod row_slopes;
 pub(crate) mod rows;
 pub(crate) mod scratch;
 pub(crate) mod shocks;
+pub(crate) mod side_throats;
 pub(crate) mod slab;
 pub(crate) mod slopes_at_breaks;
 pub(crate) mod solver_calls;

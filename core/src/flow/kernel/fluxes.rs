@@ -9,6 +9,7 @@ use crate::flow::kernel::positive_fluxes::positive_fluxes;
 use crate::flow::kernel::rows::{self, Faces, FluxBlock, var};
 use crate::flow::kernel::scratch::Work;
 use crate::flow::kernel::shocks::{Pressures, fluxes_along_shocks};
+use crate::flow::kernel::side_throats::ghost_beyond;
 use crate::flow::kernel::slab::{CellsBeside, FaceRow, RowAt, Slab, tightened};
 use crate::flow::porosity::flags::{break_high, break_low, is, marked};
 use crate::flow::porosity::fractions::Medium;
@@ -174,7 +175,10 @@ fn states_at_ends<R: Real, const D: usize, const MIXED: bool>(
         ((inner_high, of_high), (inner_low, of_low))
     } else {
         let [a, b] = [false, true].map(|high| slab.problem.side(0, high, row.at));
-        let (low, high) = (a.ghost_face(&inner_low, 0, true, gases[0]), b.ghost_face(&inner_high, 0, false, gases[1]));
+        let mut last = row.at;
+        last[0] = n - 1;
+        let low = ghost_beyond(slab, (0, false, row.at), &inner_low, gases[0]);
+        let high = ghost_beyond(slab, (0, true, last), &inner_high, gases[1]);
         ((low, middle(a, of_low, &low)), (high, middle(b, of_high, &high)))
     };
     rows::put_state(work.left, m, 0, &low.0);
@@ -329,11 +333,13 @@ fn ghosts<R: Real, const D: usize, const MIXED: bool>(
     out: &mut [R],
 ) {
     let n = slab.size.n;
+    // From one past the end to the cell inside.
+    at[d] -= usize::from(!low);
     for i in 0..n {
         at[0] = i;
         let boundary = slab.problem.side(d, !low, at);
         let gas = slab.gas_of::<MIXED>(inner, (D + 3) * n + i);
-        let w = boundary.ghost_face(&rows::face_state::<R, D>(inner, n, i), d, low, gas);
+        let w = ghost_beyond(slab, (d, !low, at), &rows::face_state::<R, D>(inner, n, i), gas);
         rows::put_state(out, n, i, &w);
         if MIXED {
             out[(D + 3) * n + i] = slab.problem.capacity_beyond((d, !low), at, inner[(D + 3) * n + i]);

@@ -6,6 +6,7 @@ use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::contractions::{AtFaces, Contractions};
 use crate::flow::kernel::rows::{self, FluxBlock, var};
+use crate::flow::kernel::side_throats::stream_before;
 use crate::flow::kernel::slab::{RowAt, Slab, place_of, tightened};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::cell_walls::Border;
@@ -143,6 +144,9 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
         });
         let pinched = nearly_chokes(machs, [areas[0][l], areas[1][l]]) && row.ducts.pinched(group[l]);
         throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched);
+        if let Some(duct) = stream_before(slab, (row.d, row.beside(group[l])), machs) {
+            (throat[l], areas[0][l], areas[1][l]) = (duct, duct, duct);
+        }
     }
     let acoustic_weight = group.map(|i| row.acoustic_weight(i));
     let faces =

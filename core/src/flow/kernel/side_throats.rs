@@ -1,0 +1,146 @@
+//! What stands beyond faces in the sides of the domain that are open less than the duct of the cell before them: louvres, holes in a wall.
+//!
+//! The stream that leaves through such an opening is a jet: it has the outlet's pressure in the opening, not in the cell before it, and does not get back beyond it what
+//! it has of dynamic pressure. So the pressure in the duct is found that a stream without losses has left when it comes to the outlet's in the opening; or
+//! that at which it chokes there.
+
+use crate::flow::boundary::{Boundary, outlet};
+use crate::flow::kernel::slab::Slab;
+use crate::flow::porosity::areas::share;
+use crate::flow::porosity::flags::{break_high, break_low};
+use crate::flow::porosity::throat::ThroatGas;
+use crate::flow::state::{Gas, Primitive};
+use crate::number::real::Real;
+
+/// The ghost beyond the low or high face, along axis `d`, of the cell `at` in a side of the domain. States are in the frame of the axis.
+pub(in crate::flow) fn ghost_beyond<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, high, at): (usize, bool, [usize; D]),
+    inner: &Primitive<R, D>,
+    gas: Gas<R>,
+) -> Primitive<R, D> {
+    let boundary = slab.problem.side(d, high, at);
+    if let Boundary::Outlet { pressure } = boundary
+        && let Some([duct, open]) = narrowed(slab, (d, high, at))
+    {
+        let pressure = in_duct(inner, [duct, open], (*pressure, high), gas);
+        return Boundary::Outlet { pressure }.ghost_face(inner, d, !high, gas);
+    }
+    boundary.ghost_face(inner, d, !high, gas)
+}
+
+/// Area of the stream that leaves through a narrower opening of an outlet beside these cells, slower than sound: the ghost is the stream there. By the
+/// Mach numbers on both sides of the face, positive to the right.
+pub(in crate::flow) fn stream_before<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, cells): (usize, [Option<[usize; D]>; 2]),
+    machs: [R; 2],
+) -> Option<R> {
+    let (high, at) = match cells {
+        [None, Some(at)] => (false, at),
+        [Some(at), None] => (true, at),
+        _ => return None,
+    };
+    let [inner, ghost] = if high { machs } else { [-machs[1], -machs[0]] };
+    let leaves = R::ZERO < ghost && ghost < R::ONE && inner < R::ONE;
+    if !(leaves && matches!(slab.problem.side(d, high, at), Boundary::Outlet { .. })) {
+        return None;
+    }
+    narrowed(slab, (d, high, at)).map(|[duct, _]| duct)
+}
+
+/// Area of the stream before a face in a side, and of the opening, if that is a sudden narrowing.
+fn narrowed<R: Real, const D: usize>(
+    slab: &Slab<'_, R, D>,
+    (d, high, at): (usize, bool, [usize; D]),
+) -> Option<[R; 2]> {
+    let medium = slab.medium.as_ref()?;
+    let cell = medium.mesh.index(at);
+    let bit = if high { break_high(d) } else { break_low(d) };
+    if medium.porosity.marks.get(cell)? & bit == 0 {
+        return None;
+    }
+    let ducts = medium.ducts(d, at);
+    let mut face = at;
+    face[d] += usize::from(high);
+    let (open, (low, high)) = (ducts.opening(0, high), ducts.beside(0, high));
+    // Of the two ducts the one beyond the side is a copy.
+    let duct = R::smaller(low, high);
+    if !(R::ZERO < open && open < duct)
+        || ducts.gentleness(0, bit == break_high(d)) > R::ZERO
+        || slab.has_border(d, face)
+    {
+        return None;
+    }
+    let contraction = if D == 1 { R::ONE } else { medium.contraction(at, slab.old.momentum.map(|m| m[cell])) };
+    let duct = share(open, duct, contraction);
+    (open < duct).then_some([duct, open])
+}
+
+/// The pressure in a duct whose stream leaves through a smaller opening against a given pressure.
+// Called, not inlined: few cells have such a face.
+#[inline(never)]
+fn in_duct<R: Real, const D: usize>(
+    inner: &Primitive<R, D>,
+    [duct, open]: [R; 2],
+    (pressure, high): (R, bool),
+    gas: Gas<R>,
+) -> R {
+    let mut w = *inner;
+    if !high {
+        w.velocity[0] = -w.velocity[0];
+    }
+    let (throat, c) = (ThroatGas::new(gas), gas.sound_speed(&w));
+    // A stream that comes in, or faster than sound, meets what stands outside as it does without the opening.
+    if !(outlet(w, pressure, gas).velocity[0] > R::ZERO && w.velocity[0] < c) {
+        return pressure;
+    }
+    // By how much the pressure in the opening is more than that outside; less than nothing where the stream would choke.
+    let excess = |in_duct: R| {
+        let stream = outlet(w, in_duct, gas);
+        let at = throat.carry(&stream, duct, open);
+        let ahead = at.state.pressure - pressure;
+        if at.passing < duct { R::smaller(pressure * (at.passing / duct - R::ONE), ahead) } else { ahead }
+    };
+    // That at which the gas rests lies above.
+    let gamma = gas.gamma();
+    let above = w.pressure
+        * match gas {
+            Gas::Isothermal { .. } => (w.velocity[0] / c).exp(),
+            _ => {
+                let half = R::HALF * (gamma - R::ONE);
+                (R::ONE + half * w.velocity[0] / c).pow(gamma / half)
+            }
+        };
+    let (mut ends, mut values) = ([pressure, above], [excess(pressure), excess(above)]);
+    if !(values[0] < R::ZERO && values[1] > R::ZERO) {
+        return pressure;
+    }
+    // Secants; an end that stays weighs less each time.
+    let mut stays = None;
+    for _ in 0..MOST_STEPS {
+        let [low, high] = ends;
+        if high - low <= R::TWO * R::EPSILON * high {
+            break;
+        }
+        let share = values[0] / (values[0] - values[1]);
+        let next =
+            low + R::smaller(R::larger(share, R::from_f64(LEAST_STEP)), R::from_f64(1.0 - LEAST_STEP)) * (high - low);
+        let found = excess(next);
+        if found == R::ZERO {
+            return next;
+        }
+        let (moved, other) = if found < R::ZERO { (0, 1) } else { (1, 0) };
+        if stays == Some(other) {
+            values[other] *= R::HALF;
+        }
+        (ends[moved], values[moved], stays) = (next, found, Some(other));
+    }
+    R::HALF * (ends[0] + ends[1])
+}
+
+/// The least share of what is left that a step takes.
+const LEAST_STEP: f64 = 1e-3;
+
+/// More steps than the pressure takes.
+const MOST_STEPS: usize = 100;
