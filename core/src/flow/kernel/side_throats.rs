@@ -13,6 +13,7 @@ use crate::flow::state::{Gas, Primitive};
 use crate::number::real::Real;
 
 /// The ghost beyond the low or high face, along axis `d`, of the cell `at` in a side of the domain. States are in the frame of the axis.
+#[inline(never)]
 pub(in crate::flow) fn ghost_beyond<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, high, at): (usize, bool, [usize; D]),
@@ -31,6 +32,7 @@ pub(in crate::flow) fn ghost_beyond<R: Real, const D: usize>(
 
 /// Area of the stream that leaves through a narrower opening of an outlet beside these cells, slower than sound: the ghost is the stream there. By the
 /// Mach numbers on both sides of the face, positive to the right.
+#[inline(never)]
 pub(in crate::flow) fn stream_before<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, cells): (usize, [Option<[usize; D]>; 2]),
@@ -50,6 +52,7 @@ pub(in crate::flow) fn stream_before<R: Real, const D: usize>(
 }
 
 /// Area of the stream before a face in a side, and of the opening, if that is a sudden narrowing.
+#[inline(never)]
 fn narrowed<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, high, at): (usize, bool, [usize; D]),
@@ -95,52 +98,30 @@ fn in_duct<R: Real, const D: usize>(
     if !(outlet(w, pressure, gas).velocity[0] > R::ZERO && w.velocity[0] < c) {
         return pressure;
     }
-    // By how much the pressure in the opening is more than that outside; less than nothing where the stream would choke.
-    let excess = |in_duct: R| {
+    // Does the stream come to less than that in the opening, or choke before it?
+    let is_too_fast = |in_duct: R| {
         let stream = outlet(w, in_duct, gas);
         let at = throat.carry(&stream, duct, open);
-        let ahead = at.state.pressure - pressure;
-        if at.passing < duct { R::smaller(pressure * (at.passing / duct - R::ONE), ahead) } else { ahead }
+        stream.velocity[0] > R::ZERO && (at.passing < duct || at.state.pressure < pressure)
     };
-    // That at which the gas rests lies above.
-    let gamma = gas.gamma();
-    let above = w.pressure
-        * match gas {
-            Gas::Isothermal { .. } => (w.velocity[0] / c).exp(),
-            _ => {
-                let half = R::HALF * (gamma - R::ONE);
-                (R::ONE + half * w.velocity[0] / c).pow(gamma / half)
-            }
-        };
-    let (mut ends, mut values) = ([pressure, above], [excess(pressure), excess(above)]);
-    if !(values[0] < R::ZERO && values[1] > R::ZERO) {
-        return pressure;
-    }
-    // Secants; an end that stays weighs less each time.
-    let mut stays = None;
+    // No stream slower than sound has so much more at rest.
+    let (mut low, mut high) = (pressure, R::from_f64(AT_REST) * R::larger(pressure, w.pressure));
     for _ in 0..MOST_STEPS {
-        let [low, high] = ends;
-        if high - low <= R::TWO * R::EPSILON * high {
+        let middle = R::HALF * (low + high);
+        if !(low < middle && middle < high) {
             break;
         }
-        let share = values[0] / (values[0] - values[1]);
-        let next =
-            low + R::smaller(R::larger(share, R::from_f64(LEAST_STEP)), R::from_f64(1.0 - LEAST_STEP)) * (high - low);
-        let found = excess(next);
-        if found == R::ZERO {
-            return next;
+        if is_too_fast(middle) {
+            low = middle;
+        } else {
+            high = middle;
         }
-        let (moved, other) = if found < R::ZERO { (0, 1) } else { (1, 0) };
-        if stays == Some(other) {
-            values[other] *= R::HALF;
-        }
-        (ends[moved], values[moved], stays) = (next, found, Some(other));
     }
-    R::HALF * (ends[0] + ends[1])
+    high
 }
 
-/// The least share of what is left that a step takes.
-const LEAST_STEP: f64 = 1e-3;
+/// The pressure at rest over that of a stream at the speed of sound is less than this for any gas of γ up to 5.
+const AT_REST: f64 = 16.0;
 
 /// More steps than the pressure takes.
 const MOST_STEPS: usize = 100;
