@@ -115,7 +115,8 @@ fn in_frame(
     layer_done: &(dyn Fn() + Sync),
 ) -> Porosity {
     let roads = Roads::choose(grid, bodies, triangles, options);
-    let mut joined = joined(&Scene { grid, bodies, triangles, roads, options }, &levels(bodies), layer_done);
+    let boxes = bodies.bodies.iter().map(|body| snap::reach(grid, body)).collect();
+    let mut joined = joined(&Scene { grid, bodies, boxes, triangles, roads, options }, &levels(bodies), layer_done);
     doubt::allow_for_rounding(grid, bodies, options, &mut joined);
     doubt::widen_unknown(grid, bodies, options, &mut joined);
     doubt::widen(grid, bodies, options, &mut joined);
@@ -126,6 +127,8 @@ fn in_frame(
 struct Scene<'a> {
     grid: &'a Grid<'a, f64>,
     bodies: &'a Bodies,
+    /// Around each body.
+    boxes: Vec<[DVec3; 2]>,
     triangles: &'a [[DVec3; 3]],
     roads: Roads,
     options: Options,
@@ -175,10 +178,10 @@ struct Extent<'a> {
 }
 
 impl Extent<'_> {
-    fn counts(&self, body: &bodies::Body) -> bool {
-        let [low, high] = snap::reach(&self.grid, body);
+    fn counts(&self, scene: &Scene, body: usize) -> bool {
+        let [low, high] = scene.boxes[body];
         let touches = |[lo, hi]: [DVec3; 2]| low.cmple(hi).all() && high.cmpge(lo).all();
-        body.porosity <= self.level && self.near.is_none_or(touches)
+        scene.bodies.bodies[body].porosity <= self.level && self.near.is_none_or(touches)
     }
 }
 
@@ -191,11 +194,12 @@ struct Union {
 
 impl Union {
     /// May bodies above this level, up to another, change a layer? Bodies in the layers beside it count as well: they may touch.
-    fn may_change(&self, grid: &Grid<f64>, bodies: &Bodies, level: f64, k: usize) -> bool {
-        let edges = grid.edges(2);
+    fn may_change(&self, scene: &Scene, level: f64, k: usize) -> bool {
+        let edges = scene.grid.edges(2);
         let (below, above) = (edges[k.saturating_sub(1)], edges[(k + 2).min(edges.len() - 1)]);
-        let added = bodies.bodies.iter().filter(|b| b.porosity > self.level && b.porosity <= level);
-        added.map(|b| snap::reach(grid, b)).any(|[lo, hi]| lo.z <= above && hi.z >= below)
+        let bodies = scene.bodies.bodies.iter().zip(&scene.boxes);
+        let mut added = bodies.filter(|(body, _)| body.porosity > self.level && body.porosity <= level);
+        added.any(|(_, [lo, hi])| lo.z <= above && hi.z >= below)
     }
 
     fn copy_layer(&self, k: usize, target: &mut Target) -> Summary {
@@ -211,7 +215,7 @@ impl Union {
 fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn Fn() + Sync)) -> Union {
     let Scene { bodies, triangles, roads, options, .. } = scene;
     let Extent { grid, level, .. } = extent;
-    let counts = |body: usize| extent.counts(&bodies.bodies[body]);
+    let counts = |body: usize| extent.counts(scene, body);
     let convex = roads.road(triangles, *options, counts);
     let (surfaces, broken) = surfaces(bodies, |number, body| {
         let by_surface = counts(number) && roads.by_surface(number);
@@ -225,7 +229,7 @@ fn union(scene: &Scene, extent: &Extent, last: Option<&Union>, layer_done: &(dyn
     let mut bounds = options.bounds.then(|| [FieldSet::new(grid, options.areas), FieldSet::new(grid, options.areas)]);
     let with_surface = with_surface(scene, &convex);
     let wanted = if with_surface { WantedOfLayer::FractionsAndSurface } else { WantedOfLayer::Fractions };
-    let same = |k: usize| last.filter(|last| !last.may_change(grid, bodies, *level, k));
+    let same = |k: usize| last.filter(|last| !last.may_change(scene, *level, k));
     let mut summaries: Vec<Summary> = targets(grid, &mut beta, bounds.as_mut(), wanted)
         .into_par_iter()
         .enumerate()

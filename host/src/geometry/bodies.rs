@@ -236,8 +236,9 @@ impl Bodies {
     /// Give the shells their roles and orientation, and store them.
     fn assemble(&mut self, parts: Vec<Part>, d: &mut Diagnosis, report: &mut Reporter) {
         let (names, shells): (Vec<String>, Vec<Closed>) = parts.into_iter().map(|p| (p.name, p.shell)).unzip();
-        let Nesting { roles, either: rooms_or_parts, either_in, unclear, breaking } = nesting::nest(&shells, &names);
-        let is_either = |s: usize| rooms_or_parts.binary_search(&s).is_ok();
+        let nesting = nesting::nest(&shells, &names);
+        let Nesting { roles, either, either_in, unclear, breaking } = &nesting;
+        let is_in = |some: &[usize], s: usize| some.binary_search(&s).is_ok();
         let first = self.bodies.len();
         let mut cavities_of: HashMap<usize, Vec<&Closed>> = HashMap::default();
         for (role, shell) in roles.iter().zip(&shells) {
@@ -260,8 +261,8 @@ impl Bodies {
             let (triangles, bounds, sheet) = (begin..self.triangles.len(), shell.bounds, shell.is_sheet());
             let rounding = joined.iter().fold(shell.rounding, |most, cavity| most.max(cavity.rounding));
             let doubt = match shell.doubt {
-                _ if !clear || breaking.contains(&s) => Doubt::Unknown,
-                Doubt::None if is_either(s) => Doubt::Perhaps,
+                _ if !clear || is_in(breaking, s) => Doubt::Unknown,
+                Doubt::None if is_in(either, s) => Doubt::Perhaps,
                 doubt => doubt,
             };
             let of_body = unclear.iter().filter(|(body, _)| *body == s).map(|(_, around)| *around);
@@ -289,8 +290,7 @@ impl Bodies {
         let is_inverted = |s: usize| shells[s].volume < 0.0;
         let of_bodies = (0..shells.len()).filter(|&s| roles[s] == Role::Body).map(is_inverted);
         say_roles(&self.bodies[first..], of_bodies, d, report);
-        nesting::say_breaking(&shells, &breaking, report);
-        say_doubts(&shells, &rooms_or_parts, &unclear, report);
+        nesting.say_doubts(&shells, report);
     }
 
     /// Store a shell's triangles, outward or inward; returns its volume without sign.
@@ -329,35 +329,6 @@ fn say_roles(bodies: &[Body], inverted: impl Iterator<Item = bool>, d: &Diagnosi
             "{} no thickness (the first at {}); what is open on both sides holds no volume and blocks a face only where it lies in its plane",
             counted(d.sheets, "sheet has", "sheets have"),
             show(place)
-        ));
-    }
-}
-
-/// Tell of what may be a room or a part, and of rooms that may be of one body or another.
-fn say_doubts(shells: &[Closed], inner: &[usize], unclear: &[(usize, [DVec3; 2])], report: &mut Reporter) {
-    let volume = |s: &usize| shells[*s].volume.abs();
-    if let Some(largest) = inner.iter().max_by(|a, b| volume(a).total_cmp(&volume(b))) {
-        let [lo, hi] = shells[*largest].bounds;
-        report.warn(format!(
-            "{} (the largest from {} to {}, {:.6e} m³): nothing tells whether {} a room or a part; {} taken as solid, and bounds hold both. \
-             For a room, write one side of each surface: outer ones looking outward, rooms inward",
-            counted(
-                inner.len(),
-                "closed surface with two sides lies within another with two sides",
-                "closed surfaces with two sides lie within others with two sides"
-            ),
-            show(lo),
-            show(hi),
-            volume(largest),
-            either(inner.len(), "it is", "each is"),
-            either(inner.len(), "it is", "they are"),
-        ));
-    }
-    if let Some((_, [lo, hi])) = unclear.first() {
-        report.warn(format!(
-            "cavities overlap within several bodies (the first from {} to {}), and nothing tells which of them is whose: what is solid there cannot be told, and the bounds there are wide",
-            show(*lo),
-            show(*hi)
         ));
     }
 }

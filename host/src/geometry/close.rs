@@ -90,19 +90,18 @@ pub(super) fn close(
 /// Sheets, or leaves thin enough for that, that nearly meet may be a body whose corners were written too coarsely: all in the box around them is in doubt.
 fn doubt_gaping(mesh: &Indexed, parts: &mut [Part], loose: &[Loose], report: &mut Reporter) {
     // A plane part and its cap hold what its corners are rounded by, once it is turned.
-    let is_leaf = |n: usize| parts[n].shell.is_sheet() || !gaps::holds_volume(&parts[n].shell);
-    let loose_parts: BTreeSet<usize> = loose.iter().map(|l| l.part).collect();
-    let leaves: BTreeSet<usize> = loose_parts.into_iter().filter(|&n| is_leaf(n)).collect();
+    let mut leaves: BTreeSet<usize> = loose.iter().map(|l| l.part).collect();
+    leaves.retain(|&n| !gaps::holds_volume(&parts[n].shell));
     if leaves.is_empty() {
         return;
     }
     for Gaping { parts: members, width } in gaps::gaping(mesh, loose, parts.len()) {
         let own = members.iter().flat_map(|&n| parts[n].own().iter().copied());
         let whole = Closed::new(own.collect());
-        let sheet = members.iter().find(|n| leaves.contains(n));
-        let Some(&sheet) = sheet.filter(|_| gaps::holds_volume(&whole)) else { continue };
+        let leaf = members.iter().find(|n| leaves.contains(n));
+        let Some(&leaf) = leaf.filter(|_| gaps::holds_volume(&whole)) else { continue };
         let [lo, hi] = whole.bounds;
-        parts[sheet].shell.unknown.push([lo, hi]);
+        parts[leaf].shell.unknown.push([lo, hi]);
         report.warn(format!(
             "{} from {} to {} nearly {} along edges, with gaps of up to {width:.1e}: whether they close a body cannot be told, and the bounds of all cells within their box are 0 and 1",
             counted(members.len(), "open part", "open parts"),

@@ -177,8 +177,8 @@ fn states_at_ends<R: Real, const D: usize, const MIXED: bool>(
         let [a, b] = [false, true].map(|high| slab.problem.side(0, high, row.at));
         let mut last = row.at;
         last[0] = n - 1;
-        let low = ghost_beyond(slab, (0, false, row.at), &inner_low, gases[0]);
-        let high = ghost_beyond(slab, (0, true, last), &inner_high, gases[1]);
+        let low = ghost_beyond((slab, a), (0, false, row.at), &inner_low, gases[0]);
+        let high = ghost_beyond((slab, b), (0, true, last), &inner_high, gases[1]);
         ((low, middle(a, of_low, &low)), (high, middle(b, of_high, &high)))
     };
     rows::put_state(work.left, m, 0, &low.0);
@@ -339,7 +339,7 @@ fn ghosts<R: Real, const D: usize, const MIXED: bool>(
         at[0] = i;
         let boundary = slab.problem.side(d, !low, at);
         let gas = slab.gas_of::<MIXED>(inner, (D + 3) * n + i);
-        let w = ghost_beyond(slab, (d, !low, at), &rows::face_state::<R, D>(inner, n, i), gas);
+        let w = ghost_beyond((slab, boundary), (d, !low, at), &rows::face_state::<R, D>(inner, n, i), gas);
         rows::put_state(out, n, i, &w);
         if MIXED {
             out[(D + 3) * n + i] = slab.problem.capacity_beyond((d, !low), at, inner[(D + 3) * n + i]);

@@ -6,7 +6,7 @@ use crate::flow::boundary::Boundary;
 use crate::flow::face_gas::{FaceGas, MixedFace};
 use crate::flow::kernel::contractions::{AtFaces, Contractions};
 use crate::flow::kernel::rows::{self, FluxBlock, var};
-use crate::flow::kernel::side_throats::stream_before;
+use crate::flow::kernel::side_throats::jet_from;
 use crate::flow::kernel::slab::{RowAt, Slab, place_of, tightened};
 use crate::flow::porosity::areas::{Ducts, share};
 use crate::flow::porosity::cell_walls::Border;
@@ -144,7 +144,10 @@ fn jump_group<R: Real, const D: usize, const MIXED: bool>(
         });
         let pinched = nearly_chokes(machs, [areas[0][l], areas[1][l]]) && row.ducts.pinched(group[l]);
         throat[l] = throat_area(areas[0][l], face, areas[1][l], pinched);
-        if let Some(duct) = stream_before(slab, (row.d, row.beside(group[l])), machs) {
+        if slab.is_in_side(row.d, row.at, group[l])
+            && let Some(inner) = jet_from(slab, (row.d, row.beside(group[l])), machs)
+        {
+            let duct = areas[inner][l];
             (throat[l], areas[0][l], areas[1][l]) = (duct, duct, duct);
         }
     }

@@ -12,15 +12,14 @@ use crate::flow::porosity::throat::ThroatGas;
 use crate::flow::state::{Gas, Primitive};
 use crate::number::real::Real;
 
-/// The ghost beyond the low or high face, along axis `d`, of the cell `at` in a side of the domain. States are in the frame of the axis.
+/// The ghost beyond the low or high face, along axis `d`, of the cell `at` in a side of the domain, where `boundary` stands. States are in the frame of the axis.
 #[inline(never)]
 pub(in crate::flow) fn ghost_beyond<R: Real, const D: usize>(
-    slab: &Slab<'_, R, D>,
+    (slab, boundary): (&Slab<'_, R, D>, &Boundary<R, D>),
     (d, high, at): (usize, bool, [usize; D]),
     inner: &Primitive<R, D>,
     gas: Gas<R>,
 ) -> Primitive<R, D> {
-    let boundary = slab.problem.side(d, high, at);
     if let Boundary::Outlet { pressure } = boundary
         && let Some([duct, open]) = narrowed(slab, (d, high, at))
     {
@@ -30,25 +29,26 @@ pub(in crate::flow) fn ghost_beyond<R: Real, const D: usize>(
     boundary.ghost_face(inner, d, !high, gas)
 }
 
-/// Area of the stream that leaves through a narrower opening of an outlet beside these cells, slower than sound: the ghost is the stream there. By the
-/// Mach numbers on both sides of the face, positive to the right.
+/// On which side of a face in a side of the domain, 0 left and 1 right, the gas is that leaves through a narrower opening of an outlet, slower than sound: then the
+/// ghost is the stream in the duct before it. By the cells and the Mach numbers on both sides of the face, these positive to the right.
 #[inline(never)]
-pub(in crate::flow) fn stream_before<R: Real, const D: usize>(
+pub(in crate::flow) fn jet_from<R: Real, const D: usize>(
     slab: &Slab<'_, R, D>,
     (d, cells): (usize, [Option<[usize; D]>; 2]),
     machs: [R; 2],
-) -> Option<R> {
-    let (high, at) = match cells {
-        [None, Some(at)] => (false, at),
-        [Some(at), None] => (true, at),
-        _ => return None,
+) -> Option<usize> {
+    let (inner, at) = match cells {
+        [Some(at), _] => (0, at),
+        [None, Some(at)] => (1, at),
+        [None, None] => return None,
     };
-    let [inner, ghost] = if high { machs } else { [-machs[1], -machs[0]] };
-    let leaves = R::ZERO < ghost && ghost < R::ONE && inner < R::ONE;
-    if !(leaves && matches!(slab.problem.side(d, high, at), Boundary::Outlet { .. })) {
-        return None;
-    }
-    narrowed(slab, (d, high, at)).map(|[duct, _]| duct)
+    let high = inner == 0;
+    let [within, ghost] = if high { machs } else { [-machs[1], -machs[0]] };
+    let leaves = R::ZERO < ghost && ghost < R::ONE && within < R::ONE;
+    let is_jet = leaves
+        && matches!(slab.problem.side(d, high, at), Boundary::Outlet { .. })
+        && narrowed(slab, (d, high, at)).is_some();
+    is_jet.then_some(inner)
 }
 
 /// Area of the stream before a face in a side, and of the opening, if that is a sudden narrowing.
@@ -66,13 +66,9 @@ fn narrowed<R: Real, const D: usize>(
     let ducts = medium.ducts(d, at);
     let mut face = at;
     face[d] += usize::from(high);
-    let (open, (low, high)) = (ducts.opening(0, high), ducts.beside(0, high));
-    // Of the two ducts the one beyond the side is a copy.
-    let duct = R::smaller(low, high);
-    if !(R::ZERO < open && open < duct)
-        || ducts.gentleness(0, bit == break_high(d)) > R::ZERO
-        || slab.has_border(d, face)
-    {
+    let (open, duct) = (ducts.opening(0, high), ducts.duct(0));
+    let is_sudden = R::ZERO < open && open < duct && !(ducts.gentleness(0, high) > R::ZERO);
+    if !is_sudden || slab.has_border(d, face) {
         return None;
     }
     let contraction = if D == 1 { R::ONE } else { medium.contraction(at, slab.old.momentum.map(|m| m[cell])) };

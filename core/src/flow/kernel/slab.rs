@@ -163,6 +163,12 @@ impl<'p, R: Real, const D: usize> Slab<'p, R, D> {
         }
     }
 
+    /// Whether face `i` of a row along or across axis `d` lies in a side of the domain that is not periodic; `at` is the cell above the first of them.
+    pub fn is_in_side(&self, d: usize, at: [usize; D], i: usize) -> bool {
+        let place = if d == 0 { i } else { at[d] };
+        !self.periodic[d] && (place == 0 || place >= self.problem.mesh.cells()[d])
+    }
+
     /// The border askew to the grid in the cells beside the low face of a cell along `d`, in the frame of that axis. `at[d]` may be one past the end.
     #[inline(always)]
     pub fn border(&self, d: usize, at: [usize; D]) -> Option<Border<R, D>> {

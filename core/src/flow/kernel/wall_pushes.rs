@@ -77,12 +77,9 @@ fn passing<R: Real, const D: usize>(
     seen: [R; 2],
     own: usize,
 ) -> R {
-    let d = faces.d;
-    let place = if d == 0 { i } else { faces.at[d] };
-    let inside = slab.periodic[d] || (place > 0 && place < slab.problem.mesh.cells()[d]);
     if !(ducts.face(i) > R::ZERO) {
         R::ZERO
-    } else if inside {
+    } else if !slab.is_in_side(faces.d, faces.at, i) {
         let [left, right] = match border {
             // What lies in the cells beside a border meets no wall of it.
             Some(border) => border.ducts.map(|duct| if duct.is_some() { R::ONE } else { R::ZERO }),

@@ -29,7 +29,7 @@ pub struct Nesting {
     pub either_in: Vec<(usize, usize)>,
     /// Bodies, and boxes in which it is not known which of several bodies has a cavity.
     pub unclear: Vec<(usize, [DVec3; 2])>,
-    /// Bodies that lie for the most part, not wholly, in larger ones of the opposite orientation: perhaps rooms whose walls they break through.
+    /// Bodies that lie for the most part, not wholly, in larger ones of the opposite orientation, in ascending order: perhaps rooms whose walls they break through.
     pub breaking: Vec<usize>,
 }
 
@@ -75,7 +75,8 @@ const LARGEST: usize = 64;
 
 /// Bodies of which more than two thirds of the surface lie in larger bodies of the opposite orientation: were it all, they would be cavities.
 fn breaking(shells: &[Closed], order: &[usize], roles: &[Role]) -> Vec<usize> {
-    let bodies: Vec<usize> = order.iter().copied().filter(|&s| roles[s] == Role::Body).collect();
+    let mut bodies: Vec<usize> = order.iter().copied().filter(|&s| roles[s] == Role::Body).collect();
+    bodies.sort_unstable();
     let tree = Tree::of_boxes(bodies.iter().map(|&s| shells[s].bounds), None);
     let is_breaking = |s: &usize| {
         let shell = &shells[*s];
@@ -108,22 +109,47 @@ fn breaking(shells: &[Closed], order: &[usize], roles: &[Role]) -> Vec<usize> {
     bodies.par_iter().copied().filter(is_breaking).collect()
 }
 
-/// Tell of bodies that may be rooms.
-pub(in crate::geometry) fn say_breaking(shells: &[Closed], breaking: &[usize], report: &mut Reporter) {
-    let volume = |s: &usize| shells[*s].volume.abs();
-    let Some(largest) = breaking.iter().max_by(|a, b| volume(a).total_cmp(&volume(b))) else { return };
-    let [lo, hi] = shells[*largest].bounds;
-    report.warn(format!(
-        "{} for the most part in others that look the other way, and {} through their surface (the largest from {} to {}, {:.6e} m³): \
-         nothing tells whether {} a room or a part; {} taken as solid, and the bounds of all cells in the box are 0 and 1. A room must lie wholly in its body, or be one shell with it",
-        counted(breaking.len(), "body lies", "bodies lie"),
-        either(breaking.len(), "breaks", "break"),
-        show(lo),
-        show(hi),
-        volume(largest),
-        either(breaking.len(), "it is", "each is"),
-        either(breaking.len(), "it is", "they are"),
-    ));
+impl Nesting {
+    /// Tell of what may be a room or a part, and of rooms that may be of one body or another.
+    pub(in crate::geometry) fn say_doubts(&self, shells: &[Closed], report: &mut Reporter) {
+        let volume = |s: &usize| shells[*s].volume.abs();
+        let largest = |some: &[usize]| {
+            let largest = some.iter().max_by(|a, b| volume(a).total_cmp(&volume(b)))?;
+            let [lo, hi] = shells[*largest].bounds.map(show);
+            Some(format!("the largest from {lo} to {hi}, {:.6e} m³", volume(largest)))
+        };
+        let taken = |count| (either(count, "it is", "each is"), either(count, "it is", "they are"));
+        if let Some(largest) = largest(&self.breaking) {
+            let count = self.breaking.len();
+            let (it, they) = taken(count);
+            report.warn(format!(
+                "{} for the most part in others that look the other way, and {} through their surface ({largest}): \
+                 nothing tells whether {it} a room or a part; {they} taken as solid, and the bounds of all cells in the box are 0 and 1. A room must lie wholly in its body, or be one shell with it",
+                counted(count, "body lies", "bodies lie"),
+                either(count, "breaks", "break"),
+            ));
+        }
+        if let Some(largest) = largest(&self.either) {
+            let count = self.either.len();
+            let (it, they) = taken(count);
+            report.warn(format!(
+                "{} ({largest}): nothing tells whether {it} a room or a part; {they} taken as solid, and bounds hold both. \
+                 For a room, write one side of each surface: outer ones looking outward, rooms inward",
+                counted(
+                    count,
+                    "closed surface with two sides lies within another with two sides",
+                    "closed surfaces with two sides lie within others with two sides"
+                ),
+            ));
+        }
+        if let Some((_, [lo, hi])) = self.unclear.first() {
+            report.warn(format!(
+                "cavities overlap within several bodies (the first from {} to {}), and nothing tells which of them is whose: what is solid there cannot be told, and the bounds there are wide",
+                show(*lo),
+                show(*hi)
+            ));
+        }
+    }
 }
 
 /// For shells with two sides those with two sides that hold them, unless a cavity of these does.
