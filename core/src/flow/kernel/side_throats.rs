@@ -116,8 +116,8 @@ fn in_duct<R: Real, const D: usize>(
     high
 }
 
-/// The pressure at rest over that of a stream at the speed of sound is less than this for any gas of γ up to 5.
-const AT_REST: f64 = 16.0;
+/// The pressure at rest over that of a stream at the speed of sound is less than this for any gas of γ up to 100.
+const AT_REST: f64 = 4096.0;
 
 /// More steps than the pressure takes.
 const MOST_STEPS: usize = 100;
