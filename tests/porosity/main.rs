@@ -16,6 +16,7 @@ mod holes;
 mod hulls;
 mod invariance;
 mod known;
+mod long;
 mod meshes;
 mod obstacles;
 mod on_planes;

@@ -24,7 +24,7 @@
 //!
 //! A file uses only those above it in this list:
 //!
-//! 1. `twofold`: differences that keep their rounding errors; `arc`: the lens between an arc of a conic and its chord
+//! 1. `twofold`: differences that keep their rounding errors; `anchor`: where an axis is counted from; `arc`: the lens between an arc of a conic and its chord
 //! 2. `wall`: curved surfaces: lines through them, conics in planes
 //! 3. `end_line`, `outline`: what a solid has of a rectangle; `ends`: flat ends; `solid_angle`: of sections of a ball; `cone`: fluxes through those of a cone
 //! 4. `part`: one curved surface between flat ends, its fluxes and its volume in a cell; `window`: the cells it may reach
@@ -36,6 +36,7 @@
 //!    two or three pipes have in common of a box, by planes along two axes; `upright`: two pipes along axes of the grid; `shared`: what several solids share of a cell or face
 
 mod aligned;
+mod anchor;
 mod arc;
 mod balls;
 mod concave;

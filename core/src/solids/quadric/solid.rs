@@ -1,5 +1,6 @@
 //! The public interface of this module: solids, and what they tell of a layer.
 
+use super::anchor::Anchor;
 use super::ends::End;
 use super::part::Part;
 use super::spread::{self, FacesBetween, NumberedPart};
@@ -122,14 +123,17 @@ impl QuadricSolid {
         if one == other {
             return Some(Self::of(&[tube(from, to, one)?]));
         }
-        // From the larger end; the origin is there, or in the apex if there is one.
+        // From the larger end; the origin is there, or in the apex if there is one, unless that is far. An apex that is not the origin is an end of
+        // no radius.
         let (wide_end, narrow, radii) = if one > other { (from, to, [one, other]) } else { (to, from, [other, one]) };
         let (height, axis) = direction(wide_end, narrow)?;
         if !SIZES.contains(&radii[0]) || !(radii[1] == 0.0 || SIZES.contains(&radii[1])) {
             return None;
         }
         let slope = (radii[1] - radii[0]) / height;
-        let origin = if radii[1] == 0.0 { narrow } else { wide_end };
+        let start = if radii[1] == 0.0 { (narrow, 0.0) } else { (wide_end, radii[0]) };
+        let anchor = Anchor::of([wide_end, narrow], (height, axis), start.0, radii[0]);
+        let (origin, radius) = anchor.map_or(start, |anchor| (anchor.place, anchor.radius(radii)));
         let end = |center: [f64; 3], sign: f64, radius: f64| End {
             center,
             shift: Axis::ALL.map(|n| center[n] - origin[n]),
@@ -138,8 +142,7 @@ impl QuadricSolid {
             closed: true,
         };
         let (base, top) = (end(wide_end, 1.0, radii[0]), end(narrow, -1.0, radii[1]));
-        let ends = [Some(base), (radii[1] > 0.0).then_some(top)];
-        let radius = if radii[1] == 0.0 { 0.0 } else { radii[0] };
+        let ends = [Some(base), (radius > 0.0).then_some(top)];
         Some(Self::of(&[Part::new(origin, Curved::new(Wall::Cone { radius, slope }, axis), ends)]))
     }
 
@@ -230,14 +233,15 @@ fn narrowest<R: Real>(part: &Part, grid: &Grid<R>, k: usize) -> [f64; 3] {
 
 /// A cylinder.
 fn tube(from: [f64; 3], to: [f64; 3], radius: f64) -> Option<Part> {
-    let (_, axis) = direction(from, to)?;
+    let (length, axis) = direction(from, to)?;
+    let origin = Anchor::of([from, to], (length, axis), from, radius).map_or(from, |anchor| anchor.place);
     let end = |center: [f64; 3], sign: f64| End {
         center,
-        shift: Axis::ALL.map(|n| center[n] - from[n]),
+        shift: Axis::ALL.map(|n| center[n] - origin[n]),
         inward: axis.map(|a| a * sign),
         radius,
         closed: true,
     };
     let ends = [Some(end(from, 1.0)), Some(end(to, -1.0))];
-    SIZES.contains(&radius).then(|| Part::new(from, Curved::new(Wall::Cylinder { radius }, axis), ends))
+    SIZES.contains(&radius).then(|| Part::new(origin, Curved::new(Wall::Cylinder { radius }, axis), ends))
 }

@@ -21,7 +21,7 @@ pub(super) fn difference(a: f64, b: f64) -> Twofold {
 
 /// `a · b`, exactly but for overflow and underflow.
 #[inline(always)]
-fn product(a: f64, b: f64) -> Twofold {
+pub(super) fn product(a: f64, b: f64) -> Twofold {
     let value = a * b;
     Twofold { value, rest: rest_of_product(a, b, value) }
 }
