@@ -1,6 +1,7 @@
 //! Solids by formula as the library measures them: alone, in unions, and their bounds beside those of subdivision.
 
 use glam::DVec3;
+use std::f64::consts::PI;
 use voidage::geometry::form::Form;
 use voidage::grid::Edges;
 use voidage::porosity::{FieldSet, Method, Options, Porosity, porosity};
@@ -149,6 +150,36 @@ fn balls_that_meet_lie_within_their_bounds() {
     assert!(solid(&high.v) <= union + 1e-12 && union - 1e-12 <= solid(&low.v), "{union}");
     // The circle in which they meet keeps cells and faces from the tolerance at the default depth, but not by much.
     assert!(found.max_gap <= 1e-3 && (found.solid_volume - union).abs() < 1e-4, "{}", found.max_gap);
+}
+
+/// Hundreds of tubes through a header, all in one cell: more than a list of solids that meet used to hold.
+#[test]
+fn tubes_through_a_header_in_one_cell() {
+    let (small, large, step) = (0.01, 0.25, 2.0 / 30.0);
+    let lines = |n: i32, middle: f64| (0..n).map(move |i| middle + step * (f64::from(i) - f64::from(n - 1) / 2.0));
+    let tubes = lines(30, 1.75).flat_map(|x| lines(9, 1.75).map(move |y| DVec3::new(x, y, 0.6)));
+    let tube = |from: DVec3| Form::Cylinder(Cylinder::new(from, from.with_z(3.0), small));
+    let mut forms: Vec<Form> = tubes.map(tube).collect();
+    let header = Cylinder::new(DVec3::new(0.3, 1.75, 0.9), DVec3::new(3.2, 1.75, 0.9), large);
+    forms.push(Form::Cylinder(header));
+    let edges = Edges([0, 1, 2].map(|_| vec![0.0, 3.5]));
+    let found = run(&edges, &forms, Options::default());
+    // What a tube has in common with the header, by its slices along the header.
+    let common = |aside: f64| -> f64 {
+        let slices = 20_000;
+        let slice = |n: i32| {
+            let t = PI * ((f64::from(n) + 0.5) / f64::from(slices) - 0.5);
+            let y = aside + small * t.sin();
+            4.0 * (small * t.cos()).powi(2) * (large * large - y * y).max(0.0).sqrt()
+        };
+        (0..slices).map(slice).sum::<f64>() * PI / f64::from(slices)
+    };
+    let of_tubes = 270.0 * PI * small * small * 2.4 - 30.0 * lines(9, 0.0).map(common).sum::<f64>();
+    let solid = (of_tubes + PI * large * large * 2.9) / 3.5_f64.powi(3);
+    let [low, high] = found.bounds.as_ref().expect("bounds");
+    let (low, high) = (1.0 - high.v[0], 1.0 - low.v[0]);
+    assert!(low - 1e-9 <= solid && solid <= high + 1e-9, "{low} to {high}, not {solid}");
+    assert!(found.max_gap <= 1e-4, "{:e} apart", found.max_gap);
 }
 
 #[test]

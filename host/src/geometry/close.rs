@@ -95,21 +95,34 @@ fn doubt_gaping(mesh: &Indexed, parts: &mut [Part], loose: &[Loose], report: &mu
     if leaves.is_empty() {
         return;
     }
-    for Gaping { parts: members, width } in gaps::gaping(mesh, loose, parts.len()) {
-        let own = members.iter().flat_map(|&n| parts[n].own().iter().copied());
+    let mut doubtful: Vec<(Gaping, [DVec3; 2])> = Vec::new();
+    for gaping in gaps::gaping(mesh, loose, parts.len()) {
+        let own = gaping.parts.iter().flat_map(|&n| parts[n].own().iter().copied());
         let whole = Closed::new(own.collect());
-        let leaf = members.iter().find(|n| leaves.contains(n));
+        let leaf = gaping.parts.iter().find(|n| leaves.contains(n));
         let Some(&leaf) = leaf.filter(|_| gaps::holds_volume(&whole)) else { continue };
-        let [lo, hi] = whole.bounds;
-        parts[leaf].shell.unknown.push([lo, hi]);
-        report.warn(format!(
-            "{} from {} to {} nearly {} along edges, with gaps of up to {width:.1e}: whether they close a body cannot be told, and the bounds of all cells within their box are 0 and 1",
-            counted(members.len(), "open part", "open parts"),
-            show(lo),
-            show(hi),
-            either(members.len(), "meets itself", "meet"),
-        ));
+        parts[leaf].shell.unknown.push(whole.bounds);
+        doubtful.push((gaping, whole.bounds));
     }
+    say_gaping(&doubtful, report);
+}
+
+fn say_gaping(doubtful: &[(Gaping, [DVec3; 2])], report: &mut Reporter) {
+    let Some((first, bounds)) = doubtful.first() else { return };
+    let [lo, hi] = bounds.map(show);
+    let count = first.parts.len();
+    let parts = format!("{} from {lo} to {hi}", counted(count, "open part", "open parts"));
+    let width = doubtful.iter().fold(0.0, |most, (gaping, _)| f64::max(most, gaping.width));
+    let gaps = format!("along edges, with gaps of up to {width:.1e}");
+    report.warn(if doubtful.len() == 1 {
+        let meet = either(count, "meets itself", "meet");
+        format!("{parts} nearly {meet} {gaps}: whether they close a body cannot be told, and the bounds of all cells within their box are 0 and 1")
+    } else {
+        format!(
+            "{} groups of open parts nearly meet {gaps} (the first: {parts}): whether they close bodies cannot be told, and the bounds of all cells within their boxes are 0 and 1",
+            doubtful.len()
+        )
+    });
 }
 
 /// Takes those parts apart that were joined although each closes by itself, if some of them look the other way, or a part that looks the other way holds one

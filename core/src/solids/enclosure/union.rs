@@ -53,7 +53,7 @@ const MOST_AT_ONCE: usize = MOST_PARTS * MOST_CONSTRAINTS;
 const MOST_LEVELS: usize = 20;
 
 /// Solids that the lists of all levels hold; where they are full, a part of a box looks at those of the box once more.
-const MOST_LISTED: usize = 256;
+const MOST_LISTED: usize = 2048;
 
 /// The first division is for no smaller tolerance; each further one for one at most so many times smaller.
 const FIRST_TOLERANCE: f64 = 1e-2;
@@ -62,6 +62,9 @@ const FINER: f64 = 1.0 / 128.0;
 
 /// So many times as many may be looked at until it is known how the cost grows.
 const PROBED: usize = 4;
+
+/// A division that costs this share of what may be spent, and brings the bounds no closer, is the last.
+const VAIN: f64 = 1.0 / 16.0;
 
 /// The power of the tolerance by which the cost grows is expected to become no more than this.
 const FINER_GROWTH: f64 = 2.0 / 3.0;
@@ -125,7 +128,9 @@ pub fn excess<E: Enclosed>(solids: &[E], sides: [[f64; 2]; 3], effort: UnionEffo
             }
         };
         let finer = f64::max(wanted.clamp(step, 0.5) * enough.min(gap), payable * enough);
-        let in_vain = gap > 0.9 * before && last.is_some_and(|(other, _)| cost as f64 > 1.5 * other);
+        // Of solids much smaller than the box nothing is found out before its parts are as small as they are.
+        let is_vain = |(other, _)| cost as f64 > f64::max(1.5 * other, most as f64 * VAIN);
+        let in_vain = gap > 0.9 * before && last.is_some_and(is_vain);
         if gap <= tol || gap <= CLOSEST || !(finer <= 0.5 * enough) || in_vain || !(enough > CLOSEST) {
             // Bounds that contradict each other do so by rounding.
             return if gap >= 0.0 { found } else { bounds };

@@ -14,6 +14,13 @@ use voidage_core::solids::quadric::{QuadricSolid, share_of_union};
 pub(super) const FIRST: usize = 1 << 15;
 const MOST: usize = 1 << 21;
 
+/// So many times each of many solids may be looked at likewise.
+const FIRST_OF_EACH: usize = 1 << 6;
+const MOST_OF_EACH: usize = 1 << 12;
+
+/// Where bounds come close enough by that, so many times as many.
+const MORE: usize = 4;
+
 /// So many parts of solids, a capsule having three, have few enough sets that sections tell what each of these has in common sooner than planes do.
 const FEW: usize = 6;
 
@@ -29,10 +36,12 @@ pub(super) fn union_of(
     tol: f64,
 ) -> Bounds<f64> {
     let sides = [0, 1, 2].map(|n| [cell.min[n], cell.max[n]]);
-    let by_planes = |most: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most, more: 1 }));
+    let by_planes = |most: usize, more: usize| Some(union_bounds(solids, sides, sum, UnionEffort { tol, most, more }));
     let by_sections = |most: usize| by_sections(solids, (sum, cell), tol, most);
     let (few_slices, all_slices) = (|| by_sections(FIRST_SLICES), || by_sections(usize::MAX));
-    let (few_planes, all_planes) = (|| by_planes(FIRST), || by_planes(MOST));
+    let count = solids.len();
+    let (first, most) = (FIRST.max(FIRST_OF_EACH * count), MOST.max(MOST_OF_EACH * count));
+    let (few_planes, all_planes) = (|| by_planes(first, 1), || by_planes(most, MORE));
     let parts = || solids.iter().map(|solid| solid.part_count()).sum::<usize>();
     let are_balls = || solids.iter().all(|solid| matches!(&solid.kind, Kind::Quadric(ball, _) if ball.is_ball()));
     let sections_first = cell.size().min_element() == 0.0 || parts() <= FEW || are_balls();
