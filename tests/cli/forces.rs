@@ -570,3 +570,24 @@ fn obstacles_just_above_a_wall_have_gas_below() {
         }
     }
 }
+
+/// Solids of which few cells tell the shape are named; wide ones, and plates across the stream, are not.
+#[test]
+fn loads_on_what_few_cells_resolve_are_told() {
+    let at = Scratch::new();
+    let pipe =
+        |radius: f64| format!("shape = \"cylinder\"\nfrom = [1, -1, 0.4]\nto = [1, 2, 0.4]\nradius = {radius}\n");
+    let plate = |high: f64| format!("shape = \"box\"\nmin = [1, 0, 0]\nmax = [1.01, 0.8, {high}]\n");
+    for (shape, words) in [
+        (pipe(0.06), Some("output.forces: \"it\" is 0.12 m wide, 1.2 cells")),
+        (pipe(0.2), None),
+        (plate(0.12), Some("output.forces: \"it\" is 0.12 m wide, 1.2 cells")),
+        (plate(0.5), None),
+    ] {
+        fs::write(at.file("scene.toml"), format!("[[solid]]\nname = \"it\"\n{shape}")).expect("written");
+        let case = case(0.0, "[time]\nmax_steps = 1\n[output]\nforces = [\"it\"]\n");
+        let text = stderr(&solved(&at, &case, "out", &["--force"]));
+        assert_eq!(words.is_none(), !text.contains("cells: loads"), "{shape}: {text}");
+        assert!(words.is_none_or(|words| text.contains(words)), "{shape}: {text}");
+    }
+}

@@ -414,6 +414,7 @@ fn broken_texts_are_told_in_the_words_of_their_writer() {
         ("gr\u{f6}sse = 3", "this cannot stand in a key"),
         ("porosity\u{a0}= 1", "this cannot stand in a key"),
         ("porosity = 0,5", "decimals are written with a point"),
+        ("drag = { cd = 2, cr = 101325,0 }", "decimals are written with a point"),
         ("porosity = 0.5.5", no_value),
         ("porosity = 1.5e3.2", no_value),
         ("porosity = 50%", no_value),

@@ -234,3 +234,23 @@ fn velocities_and_temperatures_of_no_explosion_are_doubted() {
         assert!(!text.contains("check the exponent"), "{state}: {text}");
     }
 }
+
+/// A ratio of specific heats of no gas is doubted, and frames that come after the end.
+#[test]
+fn ratios_and_frames_of_no_use_are_doubted() {
+    let air = "rho = 1.2, p = 1e5";
+    let of_gamma = |gamma: &str| {
+        let case = case("", air, "\"wall\"", "").replace("gamma = 1.4", &format!("gamma = {gamma}"));
+        stderr(&solved(&Scratch::new(), &case, "out", &[]))
+    };
+    let text = of_gamma("14");
+    assert!(text.contains("key gas.gamma: 14 is the ratio of specific heats of no gas"), "{text}");
+    assert!(!of_gamma("1.67").contains("specific heats"));
+    let of_every = |every: &str| {
+        let case = case("", air, "\"wall\"", &format!("every = {every}")).replace("max_steps = 1", "end = 0.001");
+        stderr(&solved(&Scratch::new(), &case, "out", &[]))
+    };
+    let text = of_every("5");
+    assert!(text.contains("key output.every: 5 s is after the end, 0.001 s"), "{text}");
+    assert!(!of_every("0.001").contains("output.every"));
+}

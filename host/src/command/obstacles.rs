@@ -246,8 +246,8 @@ pub fn warn_of_no_force(bodies: &Bodies, (found, unseen): (&Resistance, [f64; 3]
     if unseen.iter().zip(found.totals.frontal_area).any(|(unseen, all)| *unseen > LEAST_UNSEEN * all) {
         let [x, y, z] = unseen.map(|a| part(a, found.totals.wetted_area, digits_of_areas(bodies)));
         progress.warn(format!(
-            "{}: {x}, {y}, {z} m² of frontal area along x, y, z lie inside cells, where no face shows them, and exert no force: [drag] law = \"pdr\" \
-             or \"bluff\" gives them one, law = \"none\" says that it is meant so",
+            "{}: {x}, {y}, {z} m² of frontal area along x, y, z lie inside cells, where faces show them at most in part, and no drag acts on them: [drag] law = \"pdr\" \
+             or \"bluff\" gives them some, law = \"none\" says that it is meant so",
             bodies.files()
         ));
     }

@@ -10,6 +10,7 @@ pub mod case;
 pub mod case_file;
 pub mod charges;
 pub mod checkpoint;
+mod coarse;
 mod cut_off;
 pub mod force;
 pub mod force_peaks;

@@ -208,7 +208,7 @@ pub fn need_surfaces(bodies: &Bodies) -> Result<()> {
     match bodies.solids.iter().find(|s| bodies.bodies[s.bodies.clone()].iter().any(|b| b.triangles.is_empty())) {
         None => Ok(()),
         Some(solid) => Err(Error::new(format!(
-            "{}: solid \"{}\": a {} has no triangles to be measured by its surface",
+            "{}: solid \"{}\": a {} has no triangles to be measured by its surface; --method auto takes its formula",
             solid.scene, solid.name, solid.shape
         ))),
     }
@@ -219,9 +219,9 @@ pub fn warn_if_outside(bodies: &Bodies, edges: &Edges, left_out: [bool; 3], grid
     let ([lo, hi], Some([min, max])) = (edges.bounds(), bodies.bounds()) else { return };
     // Digits by the size of each: a stray corner far away must not leave none of the grid.
     let extent = |p: DVec3, q: DVec3| {
-        let fine = 1e-6 * (q - p).max_element();
-        let digits = |v: f64| number_to(if v.abs() < fine { 0.0 } else { v }, fine);
-        let point = |p: DVec3| format!("({})", p.to_array().map(digits).join(", "));
+        let fine = 1e-6 * (q - p);
+        let digits = |v: f64, fine: f64| number_to(if v.abs() < fine { 0.0 } else { v }, fine);
+        let point = |p: DVec3| format!("({})", [0, 1, 2].map(|n| digits(p[n], fine[n])).join(", "));
         format!("{} to {}", point(p), point(q))
     };
     let unit_cells: Vec<&str> = (0..3).filter(|&a| left_out[a]).map(|a| AXES[a]).collect();

@@ -99,6 +99,7 @@ pub fn in_words(text: &str, span: &Range<usize>, message: &str) -> String {
             "a value is missing here".to_owned()
         }
         Some(NO_VALUE) if text.get(span.start..).is_some_and(|t| t.starts_with('(')) => NO_PARENTHESES.to_owned(),
+        Some(NO_TEXT) if is_comma_in_number(text, span.start) => "decimals are written with a point".to_owned(),
         Some(words) => words.to_owned(),
         None if message.starts_with("duplicate key") => twice(text, span),
         None if message.starts_with("invalid unquoted key") => no_key(text, span).to_owned(),
@@ -111,6 +112,15 @@ pub fn in_words(text: &str, span: &Range<usize>, message: &str) -> String {
 fn line_at(text: &str, at: usize) -> (&str, &str) {
     let (before, after) = text.split_at_checked(at).unwrap_or((text, ""));
     (before.rsplit('\n').next().unwrap_or(""), after.lines().next().unwrap_or(""))
+}
+
+/// Is the last thing before a byte of a text a number with a comma in it, `101325,0`?
+fn is_comma_in_number(text: &str, at: usize) -> bool {
+    let number = line_at(text, at).0.trim_end();
+    let (Some((before, after)), is_digit) = (number.rsplit_once(','), |c: char| c.is_ascii_digit()) else {
+        return false;
+    };
+    before.ends_with(is_digit) && !after.is_empty() && after.chars().all(is_digit)
 }
 
 /// What a character is that cannot stand in a key.

@@ -396,7 +396,7 @@ fn restore_walls<const D: usize>(setup: &mut Setup<D>, walls: &[f64]) {
 
 /// Header and values, or the reason why there are none.
 fn parse(bytes: &[u8]) -> std::result::Result<(Header, &[u8]), String> {
-    let damaged = |what: &str| format!("is damaged: {what}");
+    let damaged = |what: &str| format!("is damaged: {what}; without --resume the run begins anew");
     let rest = bytes.strip_prefix(MAGIC).ok_or("is no checkpoint of this version")?;
     let (body, sum) = bytes.split_last_chunk::<4>().ok_or_else(|| damaged("it ends too early"))?;
     if crc32fast::hash(body) != u32::from_le_bytes(*sum) {

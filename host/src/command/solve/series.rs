@@ -87,7 +87,7 @@ impl<const D: usize> Series<D> {
         for ((of, now), then) in ["output.probes", "output.monitors"].into_iter().zip(places).zip(journal.places) {
             if now != 0 && then != 0 && now != then {
                 let reason = format!(
-                    "is of a run with other {of}: leave all of them as they were, or none, or run without --resume"
+                    "is of a run with other {of}: leave all of them as they were, or take all of them out, or run without --resume"
                 );
                 return Err(Error::file(&dir.join(checkpoint::NAME), reason));
             }

@@ -3,6 +3,7 @@
 use super::arrays;
 use super::case::{LawName, Paths, PorosityKeys};
 use super::case_file::CaseFile;
+use super::coarse;
 use super::solids::{self, Measured, OTHERS};
 use crate::command::cli::SceneArgs;
 use crate::command::obstacles::{Wanted, obstacles, warn_of_gratings, warn_of_no_force};
@@ -231,6 +232,9 @@ fn from_scene<const D: usize>(
         let names = absent.join(", ");
         let reason = format!("{names}: without a part in the grid that no other name has: all forces on them are 0");
         progress.warn(file.remark("output.forces", reason));
+    }
+    if let Some(coarse) = coarse::coarse(&bodies, &wanted, edges, &live) {
+        progress.warn(file.remark("output.forces", coarse));
     }
     let (grid, law) = (edges.grid(None)?, law(file)?);
     let silent = file.case.drag.law == Some(LawName::None) || given_otherwise(file);

@@ -1,6 +1,7 @@
 //! Drag that all but stops the gas within one cell.
 
 use super::arrays;
+use super::coarse::is_resolved;
 use super::state::centre;
 use crate::command::progress::Progress;
 use crate::flow::Flow;
@@ -49,18 +50,18 @@ pub fn warn<const D: usize>(
              than should; what gas cannot pass should be solid{}",
             counted(count, "cell takes", "cells take"),
             number(largest),
-            bodies.and_then(|bodies| of_a_rim(bodies, edges, place)).unwrap_or_default()
+            bodies.and_then(|bodies| of_a_rim(bodies, (edges, &live), place)).unwrap_or_default()
         ));
     }
 }
 
-/// What is to be done if the law takes the rim of a solid body for obstacles; none if no tight body with a drag by the law comes near the cell `place`.
-fn of_a_rim(bodies: &Bodies, edges: &Edges, place: usize) -> Option<String> {
+/// What is to be done if the law takes the rim of a solid body for obstacles; none if no tight body with a drag by the law, and many cells wide, comes near the cell `place`.
+fn of_a_rim(bodies: &Bodies, (edges, live): (&Edges, &[usize]), place: usize) -> Option<String> {
     let at = arrays::index(place, edges.cells());
     let [low, high] = [0, 1].map(|end| DVec3::from_array([0, 1, 2].map(|axis| edges.0[axis][at[axis] + end])));
     let is_near = |body: &Body| body.bounds[0].cmple(high).all() && body.bounds[1].cmpge(low).all();
     let drags = |body: &Body| body.porosity == 0.0 && body.drag.cr.is_none() && body.drag.cd != Some(0.0);
-    let found = |(_, body): &(usize, &Body)| drags(body) && is_near(body);
+    let found = |(_, body): &(usize, &Body)| drags(body) && is_near(body) && is_resolved(body, edges, live);
     let near: Vec<usize> = bodies.bodies.iter().enumerate().filter(found).map(|(n, _)| n).collect();
     let solid_of = |n: &usize| bodies.solids.iter().find(|solid| solid.bodies.contains(n)).map(|solid| &solid.name[..]);
     let name = near.first().and_then(solid_of).filter(|name| near.iter().all(|n| solid_of(n) == Some(name)));

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Bytes of lines kept before they are written.
@@ -34,7 +34,12 @@ impl Table {
     /// # Errors
     /// The file cannot be opened, is shorter, or has other columns.
     pub fn resume(path: &Path, head: &str, of: &str, bytes: u64) -> Result<Self> {
-        let failed = |e: std::io::Error| Error::io(path, "go on with", &e);
+        let failed = |e: std::io::Error| match e.kind() {
+            ErrorKind::NotFound => {
+                Error::file(path, "is missing, and the run was to go on with it: without --resume it begins anew")
+            }
+            _ => Error::io(path, "go on with", &e),
+        };
         let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();
         if length < bytes {

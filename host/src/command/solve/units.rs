@@ -39,6 +39,9 @@ const HOTTEST: f64 = 1e5;
 /// A velocity above this many m/s is doubted: gas that bursts into a vacuum reaches a few thousand.
 const FASTEST: f64 = 1e4;
 
+/// A ratio of specific heats above this is doubted: that of gases of one atom is 5/3.
+const STIFFEST: f64 = 3.0;
+
 /// Lowest pressures of gas that is meant to be in Pa, whatever else the case says.
 const ATMOSPHERES: [f64; 2] = [1e4, 1e6];
 
@@ -86,6 +89,20 @@ pub fn doubts(file: &CaseFile, [lowest, highest]: [f64; 2]) -> Vec<String> {
         said.push(file.remark(&format!("{key}.p"), reason));
     }
     said.extend(beyond_sense(file, &states, is_si, is_pascal));
+    let of_regions = states.iter().map(|(key, keys)| (format!("{key}.gamma"), keys.gamma));
+    let mut all = std::iter::once(("gas.gamma".to_owned(), file.case.gas.gamma)).chain(of_regions);
+    if let Some((key, gamma)) = all.find_map(|(key, gamma)| Some((key, gamma.filter(|g| *g > STIFFEST)?))) {
+        let reason =
+            format!("{} is the ratio of specific heats of no gas: they have 1.05 to 1.67, air 1.4", written(gamma));
+        said.push(file.remark(&key, reason));
+    }
+    if let (Some(every), Some(end)) = (file.case.output.every, file.case.time.end)
+        && every > end
+    {
+        let reason =
+            format!("{} s is after the end, {} s: no frame is written before that", written(every), written(end));
+        said.push(file.remark("output.every", reason));
+    }
     if let Some(p) = file.case.output.ambient.filter(|p| *p > 0.0 && FAR_BELOW * p < lowest) {
         let reason = format!(
             "{p} is less than a hundredth of the lowest pressure at the beginning, {lowest}; it is in the unit of the states, Pa"

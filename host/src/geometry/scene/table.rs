@@ -144,13 +144,19 @@ impl<'a> StrictTable<'a> {
     /// # Errors
     /// The second of two that do.
     pub fn with_names_of_their_own(tables: Vec<Self>) -> Result<Vec<Self>> {
-        let name = |table: &Self| table.table.get("name").and_then(|value| text(value.get_ref()).ok());
-        let names: Vec<Option<String>> = tables.iter().map(name).collect();
-        let taken = |n: usize| names[n].is_some() && names[..n].contains(&names[n]);
-        match (0..tables.len()).find(|&n| taken(n)) {
-            Some(n) => Err(tables[n].wrong("name", "is that of another table before; results are told apart by it")),
-            None => Ok(tables),
+        let given = |table: &Self| table.table.get("name").and_then(|value| text(value.get_ref()).ok());
+        // What has none is called by its number.
+        let names: Vec<String> = tables.iter().map(|t| given(t).unwrap_or_else(|| t.subject.clone())).collect();
+        for (n, table) in tables.iter().enumerate() {
+            if let Some(before) = names[..n].iter().position(|name| *name == names[n]) {
+                return Err(match given(table) {
+                    Some(_) => table.wrong("name", "is that of another table before; results are told apart by it"),
+                    None => tables[before]
+                        .wrong("name", "is what a later table without a name is called; results are told apart by it"),
+                });
+            }
         }
+        Ok(tables)
     }
 
     /// The table that a key holds, if it is there.
